@@ -1,0 +1,11 @@
+# EMBODY_SANITIZE: empty, "address,undefined" or "thread"; EMBODY_COVERAGE: gcov counters.
+set(EMBODY_SANITIZE "" CACHE STRING "Sanitizers, comma separated")
+option(EMBODY_COVERAGE "Count executed lines" OFF)
+if(EMBODY_SANITIZE)
+  add_compile_options(-fsanitize=${EMBODY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${EMBODY_SANITIZE})
+endif()
+if(EMBODY_COVERAGE)
+  add_compile_options(--coverage)
+  add_link_options(--coverage)
+endif()

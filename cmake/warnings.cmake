@@ -1,0 +1,11 @@
+# Warnings for our own code; libraries come in as SYSTEM.
+add_library(embody_warnings INTERFACE)
+target_compile_options(embody_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast
+                       -Woverloaded-virtual -Wnull-dereference -Wmisleading-indentation)
+# gcc 12 reports null dereferences and uninitialised uses inside the standard library's own inlined code.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(embody_warnings INTERFACE -Wno-null-dereference -Wno-maybe-uninitialized)
+endif()
+if(EMBODY_WARNINGS_AS_ERRORS)
+  target_compile_options(embody_warnings INTERFACE -Werror)
+endif()

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "math/bounds.h"
+
+namespace embody::physics {
+
+/// Finds the pairs of bodies whose bounds overlap. Bounds are kept enlarged by a margin, so that a body that moves little
+/// costs nothing; pairs persist until their enlarged bounds part.
+class BroadPhase {
+public:
+    BroadPhase();
+    ~BroadPhase();
+
+    /// `body` is the caller's index, unique among the proxies. Two immovable bodies are never a pair.
+    void insert(std::uint32_t body, const Bounds& bounds, bool movable);
+    void remove(std::uint32_t body);
+    /// Tells new bounds; cheap while they stay within the enlarged ones. `force` re-inserts even then.
+    void move(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion);
+
+    struct Pair {
+        std::uint32_t a = 0, b = 0;  ///< a < b
+        friend auto operator<=>(const Pair&, const Pair&) = default;
+    };
+    /// All pairs with overlapping enlarged bounds, sorted; each once.
+    const std::vector<Pair>& update_pairs();
+
+    /// Calls `visit` for each body whose enlarged bounds overlap `box`, in ascending order of index.
+    void query(const Bounds& box, const std::function<void(std::uint32_t)>& visit) const;
+    /// Calls `visit` for bodies whose bounds the ray may meet; it returns the new maximal distance (smaller after a hit).
+    void query_ray(Vec3 origin, Vec3 direction, double max_distance,
+                   const std::function<double(std::uint32_t, double)>& visit) const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace embody::physics

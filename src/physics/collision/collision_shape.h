@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "foundation/result.h"
+#include "geometry/mass_properties.h"
+#include "math/bounds.h"
+#include "physics/collision/manifold.h"
+#include "physics/inter/definitions/shape_definition.h"
+
+namespace embody::physics {
+
+/// A shape as the collision stages need it: hulls with faces and planes, meshes with a bounding volume tree. Immutable.
+class CollisionShape {
+public:
+    /// Fails where validate(definition) fails or the points of a hull span no volume.
+    static Result<std::unique_ptr<CollisionShape>> create(const ShapeDefinition& definition);
+    ~CollisionShape();
+
+    [[nodiscard]] const ShapeDefinition& definition() const;
+    /// Of the homogeneous solid at density 1; zero for static-only shapes.
+    [[nodiscard]] const geometry::MassProperties& mass_properties() const;
+    [[nodiscard]] Bounds local_bounds() const;
+    [[nodiscard]] Bounds bounds(const Transform& pose) const;
+    /// Largest distance of a surface point from `center` (in the shape's frame): bounds the motion by rotation.
+    [[nodiscard]] double radius_about(Vec3 center) const;
+
+    struct Data;
+    [[nodiscard]] const Data& data() const { return *data_; }
+
+private:
+    CollisionShape();
+    std::unique_ptr<Data> data_;
+};
+
+/// Appends the contact regions of a and b where they are closer than `margin` (m, >= 0). Any pair of shapes but two
+/// static-only ones. Points with separation up to `margin` are reported, so that the solver can act before they touch.
+void collide(const CollisionShape& a, const Transform& pose_a, const CollisionShape& b, const Transform& pose_b,
+             double margin, std::vector<Manifold>& manifolds);
+
+struct ShapeRayHit {
+    double distance = 0;  ///< m along the unit direction
+    Vec3 normal;          ///< world, unit, against the ray
+};
+/// First hit of the ray from `origin` along the unit `direction` within `max_distance`; rays from inside a solid miss it.
+std::optional<ShapeRayHit> cast_ray(const CollisionShape& shape, const Transform& pose, Vec3 origin, Vec3 direction,
+                                    double max_distance);
+
+/// Time of impact in [0, 1] of shape a moving linearly by `motion_a` and turning to `pose_a_end`'s rotation while b
+/// stands still, by conservative advancement; std::nullopt if they stay farther apart than `target_separation`.
+std::optional<double> time_of_impact(const CollisionShape& a, const Transform& pose_a_start, const Transform& pose_a_end,
+                                     const CollisionShape& b, const Transform& pose_b, double target_separation);
+
+/// Gap between the shapes, m: exact where positive, <= 0 where they overlap; may stop at `enough` if it is larger.
+double separation(const CollisionShape& a, const Transform& pose_a, const CollisionShape& b, const Transform& pose_b,
+                  double enough);
+
+}  // namespace embody::physics

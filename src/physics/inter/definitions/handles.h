@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "foundation/handle.h"
+
+namespace embody::physics {
+
+using ShapeHandle = Handle<struct ShapeTag>;
+using BodyHandle = Handle<struct BodyTag>;
+using JointHandle = Handle<struct JointTag>;
+
+}  // namespace embody::physics

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "math/vec3.h"
+
+namespace embody::physics {
+
+/// The stages of a step, in their order.
+enum class StepStage : std::uint8_t { wake, find_pairs, touch, impact, islands, substeps, continuous, sleep, count };
+
+/// Limits reached while running; each names the setting to change.
+enum class StepLimit : std::uint32_t {
+    none = 0,
+    linear_speed_clamped = 1u << 0,     ///< raise WorldSettings::max_linear_speed
+    not_finite_body_frozen = 1u << 1,   ///< a body's state left the finite numbers; it was disabled where it last was
+    impact_rounds_exhausted = 1u << 2,  ///< an impact needed more rounds than allowed; a smaller time_step helps
+    deep_penetration = 1u << 3,         ///< bodies overlap deeply; place them apart or use a smaller time_step
+};
+
+struct StepReport {
+    std::uint64_t step = 0;   ///< steps done since the world was made
+    double time = 0;          ///< simulated, s
+    std::uint32_t bodies_active = 0, bodies_wanting_to_sleep = 0, bodies_asleep = 0;  ///< dynamic ones
+    std::uint32_t pairs = 0;      ///< found by the broad phase
+    std::uint32_t contacts = 0;   ///< touching manifolds
+    std::uint32_t islands = 0;
+    std::uint32_t impacts = 0;    ///< manifolds solved by eq. (3) in this step
+    std::uint32_t limits = 0;     ///< bits of StepLimit
+    double milliseconds = 0;      ///< wall time of the step
+    std::array<double, static_cast<std::size_t>(StepStage::count)> stage_milliseconds{};
+};
+
+/// Sums over all enabled dynamic bodies.
+struct Conserved {
+    double kinetic_energy = 0;    ///< J
+    double potential_energy = 0;  ///< J in the world's gravity, zero at the origin's height
+    Vec3 linear_momentum;         ///< kg m/s
+    Vec3 angular_momentum;        ///< about the world's origin, kg m²/s
+};
+
+}  // namespace embody::physics

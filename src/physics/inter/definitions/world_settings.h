@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "foundation/result.h"
+#include "math/vec3.h"
+
+namespace embody::physics {
+
+struct WorldSettings {
+    Vec3 gravity{0, -9.81, 0};    ///< m/s²
+    double time_step = 1.0 / 60;  ///< s, 1e-5 … 0.1
+    int substeps = 4;             ///< parts a step is solved in, 1 … 64
+    double time_to_sleep = 0.5;   ///< an island this long quiet falls asleep, s, 0.05 … 60
+    bool sleeping = true;
+    bool shock_propagation = true;  ///< paper, section IV
+    double max_linear_speed = 1e4;  ///< a faster body is slowed to this and the report says so, m/s
+};
+
+/// The error's `where` is the field.
+Result<void> validate(const WorldSettings& settings);
+
+}  // namespace embody::physics

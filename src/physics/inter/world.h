@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "foundation/result.h"
+#include "math/bounds.h"
+#include "physics/inter/definitions/body_definition.h"
+#include "physics/inter/definitions/events.h"
+#include "physics/inter/definitions/joint_definition.h"
+#include "physics/inter/definitions/shape_definition.h"
+#include "physics/inter/definitions/step_report.h"
+#include "physics/inter/definitions/world_settings.h"
+
+namespace embody::physics {
+
+struct WorldState;
+
+/// The paper's Inter module: how a user and every other part talk to the physics. Owns shapes, bodies and joints and
+/// advances them. One thread at a time; several worlds are independent. Setters that are given a bad number or a stale
+/// handle refuse it with the field's name and change nothing.
+class World {
+public:
+    static Result<std::unique_ptr<World>> create(const WorldSettings& settings = {});
+    ~World();
+    World(const World&) = delete;
+    World& operator=(const World&) = delete;
+
+    [[nodiscard]] const WorldSettings& settings() const;
+    Result<void> set_settings(const WorldSettings& settings);
+
+    // Shapes: built once, shared by any number of bodies.
+    Result<ShapeHandle> create_shape(const ShapeDefinition& definition);
+    /// Refused while a body uses it.
+    Result<void> destroy_shape(ShapeHandle shape);
+    /// Unit density; zero volume for static-only shapes.
+    [[nodiscard]] std::optional<double> volume(ShapeHandle shape) const;
+
+    // Bodies.
+    Result<BodyHandle> create_body(const BodyDefinition& definition);
+    /// Its joints go with it.
+    Result<void> destroy_body(BodyHandle body);
+    [[nodiscard]] bool contains(BodyHandle body) const;
+    [[nodiscard]] std::vector<BodyHandle> bodies() const;
+
+    /// The definition as it stands now: pose, velocities and everything that was set since; std::nullopt if stale.
+    [[nodiscard]] std::optional<BodyDefinition> body(BodyHandle body) const;
+    /// Replaces everything but the handle (kind, shape, mass, material, pose, …) and wakes what it touches.
+    Result<void> set_body(BodyHandle body, const BodyDefinition& definition);
+
+    /// Cheap reads for streaming; identity, zero and asleep for a stale handle.
+    [[nodiscard]] Transform pose(BodyHandle body) const;
+    [[nodiscard]] Vec3 linear_velocity(BodyHandle body) const;
+    [[nodiscard]] Vec3 angular_velocity(BodyHandle body) const;
+    [[nodiscard]] SleepState sleep_state(BodyHandle body) const;
+    /// kg; infinite for static and kinematic bodies.
+    [[nodiscard]] double mass(BodyHandle body) const;
+    /// World position of the centre of mass.
+    [[nodiscard]] Vec3 center_of_mass(BodyHandle body) const;
+    /// About the centre of mass in the body's axes, kg m².
+    [[nodiscard]] Mat3 inertia(BodyHandle body) const;
+
+    Result<void> set_pose(BodyHandle body, const Transform& pose);  ///< teleports and wakes
+    Result<void> set_velocity(BodyHandle body, Vec3 linear, Vec3 angular);
+    Result<void> set_force(BodyHandle body, Vec3 force, Vec3 torque);  ///< constant until set again
+    Result<void> apply_impulse(BodyHandle body, Vec3 impulse, std::optional<Vec3> at_world_point = std::nullopt);
+    Result<void> apply_angular_impulse(BodyHandle body, Vec3 impulse);
+    /// A force for the next step only, N, at a world point or the centre of mass.
+    Result<void> apply_force(BodyHandle body, Vec3 force, std::optional<Vec3> at_world_point = std::nullopt);
+    Result<void> set_enabled(BodyHandle body, bool enabled);
+    Result<void> wake(BodyHandle body);
+
+    // Joints.
+    Result<JointHandle> create_joint(const JointDefinition& definition);
+    Result<void> destroy_joint(JointHandle joint);
+    [[nodiscard]] std::vector<JointHandle> joints() const;
+    [[nodiscard]] std::optional<JointDefinition> joint(JointHandle joint) const;
+    Result<void> set_joint(JointHandle joint, const JointDefinition& definition);
+    /// Force and torque that body_a exerts on body_b through the joint, mean over the last step, world axes, N and N m.
+    struct JointReaction {
+        Vec3 force, torque;
+    };
+    [[nodiscard]] JointReaction joint_reaction(JointHandle joint) const;
+    /// Hinge angle (rad) or slider displacement (m); 0 for others.
+    [[nodiscard]] double joint_coordinate(JointHandle joint) const;
+
+    /// Advances by settings().time_step.
+    const StepReport& step();
+    [[nodiscard]] const StepReport& last_report() const;
+
+    // What happened in the last step; valid until the next call that changes the world.
+    [[nodiscard]] std::span<const ContactEvent> contact_events() const;
+    [[nodiscard]] std::span<const SleepEvent> sleep_events() const;
+    [[nodiscard]] std::vector<ContactView> contacts() const;
+    [[nodiscard]] Conserved conserved() const;
+
+    // Queries.
+    /// The nearest body the ray meets within `max_distance`; `direction` need not be unit. `ignore` may be null.
+    [[nodiscard]] std::optional<RayHit> cast_ray(Vec3 origin, Vec3 direction, double max_distance,
+                                                 BodyHandle ignore = {}) const;
+    /// Bodies whose shapes overlap the box.
+    [[nodiscard]] std::vector<BodyHandle> overlap_box(const Bounds& box) const;
+    /// World bounds of a body's shape; empty for a body without one.
+    [[nodiscard]] Bounds bounds(BodyHandle body) const;
+    /// How far the body can move down (-Y) until it touches another; std::nullopt if it meets nothing in
+    /// `max_distance`. The body may overlap nothing at its start.
+    [[nodiscard]] std::optional<double> drop_distance(BodyHandle body, double max_distance) const;
+
+    /// Equal iff the states of all bodies are bit for bit equal.
+    [[nodiscard]] std::uint64_t state_hash() const;
+
+private:
+    World();
+    std::unique_ptr<WorldState> state_;
+};
+
+}  // namespace embody::physics
