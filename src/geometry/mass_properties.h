@@ -8,8 +8,8 @@ namespace embody::geometry {
 
 /// Of a solid of density 1 kg/m³.
 struct MassProperties {
-    double volume = 0;  ///< m³; equals the mass at density 1
-    Vec3 center;        ///< centre of mass, m
+    double volume = 0;            ///< m³; equals the mass at density 1
+    Vec3 center;                  ///< centre of mass, m
     Mat3 inertia = Mat3::zero();  ///< about `center`, kg m² at density 1
 };
 
@@ -17,6 +17,22 @@ struct MassProperties {
 /// consistently oriented outwards (B. Mirtich, "Fast and accurate computation of polyhedral mass properties", 1996).
 /// On an open mesh the numbers mean nothing: ask is_closed() first.
 MassProperties integrate_polyhedron(const TriangleMesh& mesh);
+
+/// The same integrals, one oriented triangle after another, in double precision.
+class PolyhedronIntegral {
+public:
+    /// `reference` should be near the solid, so that the tetrahedra are small and their sums lose no digits.
+    explicit PolyhedronIntegral(Vec3 reference) : reference_(reference) {}
+    void add_triangle(Vec3 a, Vec3 b, Vec3 c);
+    /// Of the triangles so far; a volume of 0 has its center at the reference.
+    [[nodiscard]] MassProperties mass_properties() const;
+
+private:
+    Vec3 reference_;
+    double volume_ = 0;
+    Vec3 first_moment_;                  // ∫ x dV, from the reference
+    Mat3 second_moment_ = Mat3::zero();  // ∫ x xᵀ dV, from the reference
+};
 
 /// The same solid moved by `t`.
 MassProperties transformed(const Transform& t, const MassProperties& p);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "foundation/result.h"
 #include "math/bounds.h"
 
 namespace embody::geometry {
@@ -15,6 +16,20 @@ struct TriangleMesh {
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
+/// Bounds of the vertices that triangles use; empty where there are no triangles.
 Bounds bounds(const TriangleMesh& mesh);
+
+/// Whether every index points to a vertex and every used vertex is finite; names the first triangle that is wrong.
+/// Whatever comes from a file passes here first: the functions of this layer take both for granted.
+Result<void> validate(const TriangleMesh& mesh);
+
+/// Sum of the triangles' areas, m².
+double surface_area(const TriangleMesh& mesh);
+
+/// The corners of triangle `index` in double precision.
+inline std::array<Vec3, 3> corners(const TriangleMesh& mesh, std::size_t index) {
+    const auto& t = mesh.triangles[index];
+    return {to_vec3(mesh.positions[t[0]]), to_vec3(mesh.positions[t[1]]), to_vec3(mesh.positions[t[2]])};
+}
 
 }  // namespace embody::geometry
