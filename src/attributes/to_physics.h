@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "attributes/attribute.h"
+#include "attributes/model_facts.h"
+#include "foundation/result.h"
+#include "physics/inter/definitions/body_definition.h"
+#include "physics/inter/definitions/shape_definition.h"
+
+namespace embody::attributes {
+
+/// What the collision shape of a model may need of its geometry, fetched only if asked for.
+class ModelGeometry {
+public:
+    virtual ~ModelGeometry() = default;
+    /// Vertices of the convex hull, at most physics::max_hull_vertices.
+    virtual Result<std::vector<Vec3>> hull_points() = 0;
+    virtual Result<physics::MeshShape> mesh() = 0;
+};
+
+/// A body's definition without pose, velocity and shape handle: kind, mass, material, damping … from the attributes.
+Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attributes);
+
+/// The collision shape that the attributes name (collision_shape), in the model's frame.
+Result<physics::ShapeDefinition> shape_from_attributes(const AttributeSet& attributes, const GeometryFacts& facts,
+                                                       ModelGeometry& geometry);
+
+}  // namespace embody::attributes

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "attributes/attribute.h"
+#include "attributes/model_facts.h"
+#include "attributes/resolver.h"
+#include "foundation/result.h"
+#include "geometry/triangle_mesh.h"
+
+namespace embody::catalog {
+
+/// The paper's four kinds of model geometry.
+enum class GeometryKind : std::uint8_t { mesh, point_cloud, voxel, analytical };
+
+struct ModelSummary {
+    std::int64_t id = 0;    ///< in this database
+    std::string key;        ///< the same in every database and after re-import; what a scene file names
+    std::string name, source, licence, author, category, subcategory;
+    std::string physical_kind;  ///< static, rigid, soft …: the attribute `kind`
+    std::vector<std::string> tags;
+    Vec3 size;              ///< m
+    GeometryKind geometry_kind = GeometryKind::mesh;
+    std::uint32_t vertices = 0, triangles = 0, parts = 0;
+    int quality = 0;        ///< 0 broken … 3 precise
+    std::uint64_t content_hash = 0;  ///< changes when the model's geometry does: for caches
+};
+
+struct SearchQuery {
+    std::string words;      ///< full text over name, tags, category, source; prefixes match; empty: all
+    std::string category;   ///< exact; empty: all
+    int limit = 50;         ///< 1 … 1000
+    int offset = 0;
+};
+struct SearchPage {
+    std::vector<ModelSummary> models;  ///< best match first; by name where there are no words
+    std::int64_t total = 0;
+};
+struct CategoryCount {
+    std::string category;
+    std::int64_t models = 0;
+};
+
+struct ImportProgress {
+    std::size_t done = 0, total = 0, failed = 0, unchanged = 0;
+    std::string current;    ///< name of the model just finished
+};
+struct ImportFailure {
+    std::string path;
+    Error error;
+};
+struct ImportReport {
+    std::size_t added = 0, updated = 0, unchanged = 0;
+    std::vector<ImportFailure> failures;
+    double seconds = 0;
+    bool stopped = false;   ///< the progress callback asked to stop; the next import goes on from there
+};
+struct ImportOptions {
+    int workers = 0;        ///< 0: one a core
+    bool again = false;     ///< prepare also what is in the database unchanged
+    std::filesystem::path worker_program;                      ///< empty: beside the running program
+    std::function<bool(const ImportProgress&)> progress;       ///< returns false to stop; may be empty
+};
+
+/// The model database: what exists, what it looks like, what it is made of. One instance a thread; any number of processes may
+/// have the same file open.
+class Catalog {
+public:
+    /// Opens or creates the file (and its folder); migrates an older schema; refuses a newer one by name.
+    static Result<std::unique_ptr<Catalog>> open(const std::filesystem::path& file,
+                                                 const std::filesystem::path& taxonomy_folder);
+    /// $XDG_DATA_HOME/embody/models.sqlite, or ~/.local/share/embody/models.sqlite.
+    static std::filesystem::path default_file();
+    ~Catalog();
+
+    Result<SearchPage> search(const SearchQuery& query) const;
+    Result<std::vector<CategoryCount>> categories() const;
+    /// By key, id as decimal text, or a name that only one model has.
+    Result<ModelSummary> model(std::string_view key_or_id_or_name) const;
+    [[nodiscard]] std::int64_t model_count() const;
+
+    Result<attributes::ModelFacts> facts(std::int64_t id) const;
+    /// Automatic attributes with the manual ones on top.
+    Result<attributes::AttributeSet> attributes(std::int64_t id) const;
+    /// Without the manual ones: what reset goes back to.
+    Result<attributes::AttributeSet> automatic_attributes(std::int64_t id) const;
+    /// A manual change by a person; survives re-import.
+    Result<void> set_attribute(std::int64_t id, std::string_view name, const attributes::AttributeValue& value);
+    Result<void> reset_attribute(std::int64_t id, std::string_view name);
+
+    Result<std::vector<std::uint8_t>> thumbnail(std::int64_t id) const;     ///< PNG
+    Result<std::vector<std::uint8_t>> geometry_glb(std::int64_t id) const;  ///< with materials and textures, for drawing
+    Result<std::vector<Vec3>> hull_points(std::int64_t id) const;           ///< model frame
+    Result<geometry::TriangleMesh> mesh(std::int64_t id) const;             ///< model frame, all parts
+
+    /// Imports files, folders and catalogues (.sh3f, the Sweet Home 3D jar). Fails only if nothing can be imported at all;
+    /// what is wrong with single files is in the report.
+    Result<ImportReport> import(const std::vector<std::filesystem::path>& paths, const ImportOptions& options);
+    Result<void> remove(std::int64_t id);
+
+private:
+    Catalog();
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace embody::catalog
