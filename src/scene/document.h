@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "attributes/attribute.h"
+#include "math/transform.h"
+#include "physics/inter/definitions/joint_definition.h"
+#include "physics/inter/definitions/shape_definition.h"
+#include "physics/inter/definitions/world_settings.h"
+#include "scene/action.h"
+
+namespace embody::scene {
+
+/// Names an entity of a document for as long as the document lives; never used twice.
+using EntityIndex = std::uint32_t;
+
+/// A model of the database, by its key.
+struct ModelReference {
+    std::string key;
+    friend bool operator==(const ModelReference&, const ModelReference&) = default;
+};
+
+/// The paper's VSEle = {index, GeomAttr, PhyAttr} (definition 2): what it looks like, what it is made of, where it is.
+struct Entity {
+    EntityIndex index = 0;
+    std::string name;
+    std::variant<ModelReference, physics::ShapeDefinition> geometry;  ///< the paper's GeomAttr (definition 3)
+    /// Manual attributes of this entity by registry name; everything else comes from the model or the defaults (definition 4, 5).
+    std::map<std::string, attributes::AttributeValue> attributes;
+    Transform pose;
+    Vec3 linear_velocity;   ///< of the centre of mass at the start, m/s
+    Vec3 angular_velocity;  ///< rad/s
+    Vec3 force;             ///< constant, N, world axes, at the centre of mass
+    Vec3 torque;            ///< constant, N m
+    bool enabled = true;
+    bool start_asleep = false;
+    bool continuous = false;                      ///< sweep fast motion
+    std::string category;                         ///< of primitives, for actions; models bring theirs
+    std::optional<std::array<double, 3>> color;   ///< of primitives, linear RGB 0 … 1
+    double scale = 1;                             ///< of a model, uniform, > 0
+};
+
+/// A joint between two entities, or an entity and the world.
+struct SceneJoint {
+    std::uint32_t index = 0;
+    std::string name;
+    std::optional<EntityIndex> entity_a;  ///< open: the world
+    EntityIndex entity_b = 0;
+    physics::JointDefinition definition;  ///< its body handles are left null
+};
+
+/// The paper's VS = {VSEle_i} (definition 1) with what acts in it. A plain value: copy, compare, save.
+struct Document {
+    std::string title = "Untitled";
+    std::string description;
+    physics::WorldSettings settings;
+    std::vector<Entity> entities;     ///< ascending index
+    std::vector<SceneJoint> joints;   ///< ascending index
+    std::vector<Action> actions;      ///< ascending id
+    std::optional<std::pair<Vec3, Vec3>> camera;  ///< position and target to open the scene with
+
+    [[nodiscard]] const Entity* find(EntityIndex index) const;
+    [[nodiscard]] Entity* find(EntityIndex index);
+    /// One more than the highest index ever used here.
+    EntityIndex next_index = 1;
+};
+
+}  // namespace embody::scene

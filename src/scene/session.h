@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "catalog/catalog.h"
+#include "foundation/result.h"
+#include "scene/document.h"
+
+namespace embody::scene {
+
+/// What a client must be told after a command or a step, as the protocol's events.
+struct Events {
+    std::vector<nlohmann::json> messages;  ///< in order, for every client
+    bool all_poses = false;                ///< send every entity's pose again
+};
+
+/// One entity's state for a state frame.
+struct EntityState {
+    EntityIndex entity = 0;
+    Transform pose;
+    std::uint8_t state = 3;  ///< 0 active, 1 wants to sleep, 2 asleep, 3 static or kinematic
+};
+
+struct SessionOptions {
+    std::filesystem::path saved_scenes;  ///< folder of the user's scenes; autosaves go to its sub-folder "autosave"
+    std::filesystem::path demo_scenes;   ///< folder of the scenes that come with Embody
+};
+
+/// One open scene: the document with undo, its running simulation, and every command of docs/protocol.md that is not the
+/// transport's. Used by one thread.
+class Session {
+public:
+    /// `catalog` may be null (scenes of primitives only); it outlives the session.
+    static Result<std::unique_ptr<Session>> create(catalog::Catalog* catalog, const SessionOptions& options);
+    ~Session();
+
+    /// Carries out a command of docs/protocol.md; the value is its `result`.
+    Result<nlohmann::json> execute(const std::string& command, const nlohmann::json& params);
+    /// What happened since the last call.
+    Events take_events();
+
+    [[nodiscard]] const Document& document() const;
+    [[nodiscard]] bool playing() const;
+    [[nodiscard]] double time_step() const;
+    /// One step of the simulation, with actions; pauses where an action says so.
+    void step();
+    /// Every entity's pose and state now (spawned ones too).
+    void read_states(std::vector<EntityState>& states) const;
+    [[nodiscard]] double simulated_time() const;
+    [[nodiscard]] std::uint64_t simulated_steps() const;
+    /// The `statistics` event.
+    [[nodiscard]] nlohmann::json statistics() const;
+    /// Writes the document beside the saved scenes if it changed since the last call; for a timer.
+    Result<void> autosave();
+
+private:
+    Session();
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace embody::scene
