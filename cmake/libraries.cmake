@@ -9,21 +9,21 @@ find_package(Boost REQUIRED)
 find_package(Qhull REQUIRED)
 find_package(assimp REQUIRED)
 find_package(meshoptimizer REQUIRED)
-find_package(LibArchive REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
 pkg_check_modules(stb REQUIRED IMPORTED_TARGET stb)
+pkg_check_modules(minizip REQUIRED IMPORTED_TARGET minizip)
 pkg_check_modules(seccomp REQUIRED IMPORTED_TARGET libseccomp)
 find_package(embree 3 REQUIRED)
 
 # Groups by the layer that uses them.
 add_library(embody_model_readers INTERFACE)
-target_link_libraries(embody_model_readers INTERFACE assimp::assimp LibArchive::LibArchive PkgConfig::stb
+target_link_libraries(embody_model_readers INTERFACE assimp::assimp PkgConfig::minizip PkgConfig::stb
                       nlohmann_json::nlohmann_json meshoptimizer::meshoptimizer)
 
 add_library(embody_catalog_libraries INTERFACE)
 target_link_libraries(embody_catalog_libraries INTERFACE nlohmann_json::nlohmann_json meshoptimizer::meshoptimizer
-                      PkgConfig::zstd PkgConfig::stb PkgConfig::seccomp LibArchive::LibArchive embree Threads::Threads)
+                      PkgConfig::zstd PkgConfig::stb PkgConfig::seccomp embree Threads::Threads)
 
 add_library(embody_server_libraries INTERFACE)
 target_link_libraries(embody_server_libraries INTERFACE Boost::headers nlohmann_json::nlohmann_json spdlog::spdlog
