@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -68,7 +69,8 @@ private:
                b.lower[1] <= a.upper[1] && a.lower[2] <= b.upper[2] && b.lower[2] <= a.upper[2];
     }
     static Ray prepare_ray(Vec3 origin, Vec3 direction);
-    // Where the ray enters the box; infinite where it misses it before max_t.
+    // Where the ray enters the box; NaN where it misses it before max_t, which no `<= max_t` lets through (an infinite
+    // max_t is allowed, so infinity could not mean a miss).
     static double enter(const Ray& ray, const Box& box, double max_t);
 
     std::vector<Node> nodes_;
@@ -108,7 +110,7 @@ inline double BoundingVolumeTree::enter(const Ray& ray, const Box& box, double m
         near = std::fmax(near, std::fmin(a, b));
         far = std::fmin(far, std::fmax(a, b));
     }
-    return near <= far ? near : HUGE_VAL;
+    return near <= far ? near : std::numeric_limits<double>::quiet_NaN();
 }
 
 template <class Visit>
@@ -124,7 +126,7 @@ void BoundingVolumeTree::query_ray(Vec3 origin, Vec3 direction, double max_t, Vi
     waiting[count++] = {0, enter(ray, nodes_[0].box, max_t)};
     while (count > 0) {
         const Waiting next = waiting[--count];
-        if (next.enter > max_t) continue;
+        if (!(next.enter <= max_t)) continue;
         const Node& node = nodes_[next.node];
         if (node.count > 0) {
             for (std::uint32_t i = node.link; i < node.link + node.count; ++i) {
