@@ -25,10 +25,10 @@ std::optional<AttributeLevel> level_from_name(std::string_view name);
 
 /// The paper's Attr_Entry = {attr_name, attr_kind, attr_value} (definition 5), with unit, interval, source and level.
 struct AttributeEntry {
-    std::string name;                  ///< a name of the registry
+    std::string name;  ///< a name of the registry
     AttributeValue value;
-    std::optional<double> low, high;   ///< 80 % interval of a number, where one is known
-    std::string source;                ///< why we think so, in words a user reads; names literature where it is from there
+    std::optional<double> low, high;  ///< 80 % interval of a number, where one is known
+    std::string source;  ///< why we think so, in words a user reads; names literature where it is from there
     AttributeLevel level = AttributeLevel::standard;
 };
 

@@ -14,13 +14,14 @@ namespace embody::attributes {
 
 enum class ValueType : std::uint8_t { number, word, truth, vector, tensor };
 
-/// What an attribute is: the one source of truth for the API, the scene schema, the command line, the Studio's panel and
-/// the documentation.
+/// What an attribute is: the one source of truth for the API, the scene schema, the command line, the Studio's panel
+/// and the documentation.
 struct AttributeDescription {
-    std::string name;      ///< e.g. "friction_dynamic"
-    std::string kind;      ///< the paper's attr_kind: identity, mass, shape, surface, motion, soft, cloth, rope, fluid, grain
+    std::string name;  ///< e.g. "friction_dynamic"
+    std::string
+        kind;  ///< the paper's attr_kind: identity, mass, shape, surface, motion, soft, cloth, rope, fluid, grain
     ValueType type = ValueType::number;
-    std::string unit;      ///< SI, "1" for a pure number, "" for words
+    std::string unit;                  ///< SI, "1" for a pure number, "" for words
     AttributeValue standard;           ///< default value
     std::optional<double> low, high;   ///< valid range of a number or of each component
     std::vector<std::string> choices;  ///< of a word; empty: any word
@@ -33,8 +34,8 @@ struct AttributeDescription {
 const std::vector<AttributeDescription>& registry();
 const AttributeDescription* describe(std::string_view name);
 
-/// Whether the name exists, the type fits and the value is in range; the error says range or choices, and for a wrong name the
-/// nearest right one.
+/// Whether the name exists, the type fits and the value is in range; the error says range or choices, and for a wrong
+/// name the nearest right one.
 Result<void> validate(std::string_view name, const AttributeValue& value);
 
 /// Reads a value typed by a person ("0.5", "true", "oak", "1,2,3") and validates it.

@@ -11,7 +11,8 @@
 
 namespace embody::attributes {
 
-/// The mapping of the paper's Fig. 4: words → category → physical kind → predefined attribute set. Read from data/taxonomy.
+/// The mapping of the paper's Fig. 4: words → category → physical kind → predefined attribute set. Read from
+/// data/taxonomy.
 class Taxonomy {
 public:
     /// `folder` holds taxonomy.json and materials.json; the error names file, entry and field.
@@ -26,11 +27,12 @@ private:
     std::unique_ptr<Data> data_;
 };
 
-/// All attributes of a model from what is known of it, each with source and level: category → kind → attribute set, then
-/// what geometry tells. Deterministic; never fails: what nothing tells gets the default.
+/// All attributes of a model from what is known of it, each with source and level: category → kind → attribute set,
+/// then what geometry tells. Deterministic; never fails: what nothing tells gets the default.
 AttributeSet resolve(const Taxonomy& taxonomy, const ModelFacts& facts);
 
 /// `automatic` with the manual entries laid over it and what depends on them computed again (mass from density, …).
-AttributeSet with_manual(const AttributeSet& automatic, const std::vector<AttributeEntry>& manual, const ModelFacts& facts);
+AttributeSet with_manual(const AttributeSet& automatic, const std::vector<AttributeEntry>& manual,
+                         const ModelFacts& facts);
 
 }  // namespace embody::attributes

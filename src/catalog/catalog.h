@@ -22,22 +22,22 @@ namespace embody::catalog {
 enum class GeometryKind : std::uint8_t { mesh, point_cloud, voxel, analytical };
 
 struct ModelSummary {
-    std::int64_t id = 0;    ///< in this database
-    std::string key;        ///< the same in every database and after re-import; what a scene file names
+    std::int64_t id = 0;  ///< in this database
+    std::string key;      ///< the same in every database and after re-import; what a scene file names
     std::string name, source, licence, author, category, subcategory;
     std::string physical_kind;  ///< static, rigid, soft …: the attribute `kind`
     std::vector<std::string> tags;
-    Vec3 size;              ///< m
+    Vec3 size;  ///< m
     GeometryKind geometry_kind = GeometryKind::mesh;
     std::uint32_t vertices = 0, triangles = 0, parts = 0;
-    int quality = 0;        ///< 0 broken … 3 precise
+    int quality = 0;                 ///< 0 broken … 3 precise
     std::uint64_t content_hash = 0;  ///< changes when the model's geometry does: for caches
 };
 
 struct SearchQuery {
-    std::string words;      ///< full text over name, tags, category, source; prefixes match; empty: all
-    std::string category;   ///< exact; empty: all
-    int limit = 50;         ///< 1 … 1000
+    std::string words;     ///< full text over name, tags, category, source; prefixes match; empty: all
+    std::string category;  ///< exact; empty: all
+    int limit = 50;        ///< 1 … 1000
     int offset = 0;
 };
 struct SearchPage {
@@ -51,7 +51,7 @@ struct CategoryCount {
 
 struct ImportProgress {
     std::size_t done = 0, total = 0, failed = 0, unchanged = 0;
-    std::string current;    ///< name of the model just finished
+    std::string current;  ///< name of the model just finished
 };
 struct ImportFailure {
     std::string path;
@@ -61,17 +61,17 @@ struct ImportReport {
     std::size_t added = 0, updated = 0, unchanged = 0;
     std::vector<ImportFailure> failures;
     double seconds = 0;
-    bool stopped = false;   ///< the progress callback asked to stop; the next import goes on from there
+    bool stopped = false;  ///< the progress callback asked to stop; the next import goes on from there
 };
 struct ImportOptions {
-    int workers = 0;        ///< 0: one a core
-    bool again = false;     ///< prepare also what is in the database unchanged
-    std::filesystem::path worker_program;                      ///< empty: beside the running program
-    std::function<bool(const ImportProgress&)> progress;       ///< returns false to stop; may be empty
+    int workers = 0;                                      ///< 0: one a core
+    bool again = false;                                   ///< prepare also what is in the database unchanged
+    std::filesystem::path worker_program;                 ///< empty: beside the running program
+    std::function<bool(const ImportProgress&)> progress;  ///< returns false to stop; may be empty
 };
 
-/// The model database: what exists, what it looks like, what it is made of. One instance a thread; any number of processes may
-/// have the same file open.
+/// The model database: what exists, what it looks like, what it is made of. One instance a thread; any number of
+/// processes may have the same file open.
 class Catalog {
 public:
     /// Opens or creates the file (and its folder); migrates an older schema; refuses a newer one by name.
@@ -96,13 +96,14 @@ public:
     Result<void> set_attribute(std::int64_t id, std::string_view name, const attributes::AttributeValue& value);
     Result<void> reset_attribute(std::int64_t id, std::string_view name);
 
-    Result<std::vector<std::uint8_t>> thumbnail(std::int64_t id) const;     ///< PNG
-    Result<std::vector<std::uint8_t>> geometry_glb(std::int64_t id) const;  ///< with materials and textures, for drawing
-    Result<std::vector<Vec3>> hull_points(std::int64_t id) const;           ///< model frame
-    Result<geometry::TriangleMesh> mesh(std::int64_t id) const;             ///< model frame, all parts
+    Result<std::vector<std::uint8_t>> thumbnail(std::int64_t id) const;  ///< PNG
+    Result<std::vector<std::uint8_t>> geometry_glb(
+        std::int64_t id) const;                                    ///< with materials and textures, for drawing
+    Result<std::vector<Vec3>> hull_points(std::int64_t id) const;  ///< model frame
+    Result<geometry::TriangleMesh> mesh(std::int64_t id) const;    ///< model frame, all parts
 
-    /// Imports files, folders and catalogues (.sh3f, the Sweet Home 3D jar). Fails only if nothing can be imported at all;
-    /// what is wrong with single files is in the report.
+    /// Imports files, folders and catalogues (.sh3f, the Sweet Home 3D jar). Fails only if nothing can be imported at
+    /// all; what is wrong with single files is in the report.
     Result<ImportReport> import(const std::vector<std::filesystem::path>& paths, const ImportOptions& options);
     Result<void> remove(std::int64_t id);
 

@@ -36,7 +36,8 @@ struct RawMesh {
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// What any importer makes of a file: flat (node transforms applied), Y up, right-handed, in metres as far as the file tells.
+/// What any importer makes of a file: flat (node transforms applied), Y up, right-handed, in metres as far as the file
+/// tells.
 struct RawScene {
     std::vector<RawMesh> meshes;
     std::vector<RawMaterial> materials;

@@ -14,7 +14,9 @@ struct Bounds {
     Vec3 upper{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
                -std::numeric_limits<double>::infinity()};
 
-    [[nodiscard]] constexpr bool is_empty() const { return lower.x > upper.x || lower.y > upper.y || lower.z > upper.z; }
+    [[nodiscard]] constexpr bool is_empty() const {
+        return lower.x > upper.x || lower.y > upper.y || lower.z > upper.z;
+    }
     [[nodiscard]] constexpr Vec3 center() const { return (lower + upper) * 0.5; }
     [[nodiscard]] constexpr Vec3 size() const { return upper - lower; }
     [[nodiscard]] constexpr Vec3 half_extents() const { return size() * 0.5; }

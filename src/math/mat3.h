@@ -29,7 +29,9 @@ constexpr Mat3 operator*(const Mat3& m, double s) { return {m.x * s, m.y * s, m.
 constexpr Mat3 operator*(double s, const Mat3& m) { return m * s; }
 constexpr Mat3& operator+=(Mat3& a, const Mat3& b) { return a = a + b; }
 
-constexpr Mat3 transpose(const Mat3& m) { return {{m.x.x, m.y.x, m.z.x}, {m.x.y, m.y.y, m.z.y}, {m.x.z, m.y.z, m.z.z}}; }
+constexpr Mat3 transpose(const Mat3& m) {
+    return {{m.x.x, m.y.x, m.z.x}, {m.x.y, m.y.y, m.z.y}, {m.x.z, m.y.z, m.z.z}};
+}
 constexpr double determinant(const Mat3& m) { return dot(m.x, cross(m.y, m.z)); }
 constexpr double trace(const Mat3& m) { return m.x.x + m.y.y + m.z.z; }
 

@@ -14,7 +14,9 @@ struct Transform {
 };
 
 constexpr Vec3 transform_point(const Transform& t, Vec3 p) { return t.position + rotate(t.rotation, p); }
-constexpr Vec3 inverse_transform_point(const Transform& t, Vec3 p) { return rotate_inverse(t.rotation, p - t.position); }
+constexpr Vec3 inverse_transform_point(const Transform& t, Vec3 p) {
+    return rotate_inverse(t.rotation, p - t.position);
+}
 /// First `b`, then `a`.
 constexpr Transform operator*(const Transform& a, const Transform& b) {
     return {transform_point(a, b.position), a.rotation * b.rotation};

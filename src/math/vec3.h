@@ -25,9 +25,7 @@ constexpr Vec3& operator-=(Vec3& a, Vec3 b) { return a = a - b; }
 constexpr Vec3& operator*=(Vec3& a, double s) { return a = a * s; }
 
 constexpr double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-constexpr Vec3 cross(Vec3 a, Vec3 b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
+constexpr Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 constexpr double length_squared(Vec3 a) { return dot(a, a); }
 inline double length(Vec3 a) { return std::sqrt(length_squared(a)); }
 inline double distance(Vec3 a, Vec3 b) { return length(a - b); }
@@ -58,8 +56,6 @@ struct Vec3f {
 constexpr Vec3 to_vec3(Vec3f a) {
     return {static_cast<double>(a.x), static_cast<double>(a.y), static_cast<double>(a.z)};
 }
-constexpr Vec3f to_vec3f(Vec3 a) {
-    return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
-}
+constexpr Vec3f to_vec3f(Vec3 a) { return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)}; }
 
 }  // namespace embody

@@ -32,7 +32,8 @@ struct Entity {
     EntityIndex index = 0;
     std::string name;
     std::variant<ModelReference, physics::ShapeDefinition> geometry;  ///< the paper's GeomAttr (definition 3)
-    /// Manual attributes of this entity by registry name; everything else comes from the model or the defaults (definition 4, 5).
+    /// Manual attributes of this entity by registry name; everything else comes from the model or the defaults
+    /// (definition 4, 5).
     std::map<std::string, attributes::AttributeValue> attributes;
     Transform pose;
     Vec3 linear_velocity;   ///< of the centre of mass at the start, m/s
@@ -41,10 +42,10 @@ struct Entity {
     Vec3 torque;            ///< constant, N m
     bool enabled = true;
     bool start_asleep = false;
-    bool continuous = false;                      ///< sweep fast motion
-    std::string category;                         ///< of primitives, for actions; models bring theirs
-    std::optional<std::array<double, 3>> color;   ///< of primitives, linear RGB 0 … 1
-    double scale = 1;                             ///< of a model, uniform, > 0
+    bool continuous = false;                     ///< sweep fast motion
+    std::string category;                        ///< of primitives, for actions; models bring theirs
+    std::optional<std::array<double, 3>> color;  ///< of primitives, linear RGB 0 … 1
+    double scale = 1;                            ///< of a model, uniform, > 0
 };
 
 /// A joint between two entities, or an entity and the world.
@@ -61,9 +62,9 @@ struct Document {
     std::string title = "Untitled";
     std::string description;
     physics::WorldSettings settings;
-    std::vector<Entity> entities;     ///< ascending index
-    std::vector<SceneJoint> joints;   ///< ascending index
-    std::vector<Action> actions;      ///< ascending id
+    std::vector<Entity> entities;                 ///< ascending index
+    std::vector<SceneJoint> joints;               ///< ascending index
+    std::vector<Action> actions;                  ///< ascending id
     std::optional<std::pair<Vec3, Vec3>> camera;  ///< position and target to open the scene with
 
     [[nodiscard]] const Entity* find(EntityIndex index) const;

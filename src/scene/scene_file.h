@@ -10,8 +10,8 @@
 
 namespace embody::scene {
 
-/// docs/scene-format.md. Reading refuses unknown and wrong fields by name; the error's `where` is the field's path, e.g.
-/// "entities[3].pose.position".
+/// docs/scene-format.md. Reading refuses unknown and wrong fields by name; the error's `where` is the field's path,
+/// e.g. "entities[3].pose.position".
 Result<Document> document_from_json(const nlohmann::json& json);
 nlohmann::json document_to_json(const Document& document);
 

@@ -33,8 +33,8 @@ struct SessionOptions {
     std::filesystem::path demo_scenes;   ///< folder of the scenes that come with Embody
 };
 
-/// One open scene: the document with undo, its running simulation, and every command of docs/protocol.md that is not the
-/// transport's. Used by one thread.
+/// One open scene: the document with undo, its running simulation, and every command of docs/protocol.md that is not
+/// the transport's. Used by one thread.
 class Session {
 public:
     /// `catalog` may be null (scenes of primitives only); it outlives the session.

@@ -14,14 +14,15 @@ namespace embody::catalog {
 
 /// One model to import: where its file is and what the catalogue that it came from says about it.
 struct ImportItem {
-    std::string key;          ///< stable name of the model, e.g. "sweethome3d:Blend Swap CC-0#armchair" or "file:<hash>"
-    std::string archive;      ///< path of the .sh3f, .jar or .zip that holds the file; empty: a plain file
-    std::string path;         ///< of the model file, inside the archive or on disk
-    std::string icon_path;    ///< of a ready thumbnail inside the archive; may be empty
+    std::string key;        ///< stable name of the model, e.g. "sweethome3d:Blend Swap CC-0#armchair" or "file:<hash>"
+    std::string archive;    ///< path of the .sh3f, .jar or .zip that holds the file; empty: a plain file
+    std::string path;       ///< of the model file, inside the archive or on disk
+    std::string icon_path;  ///< of a ready thumbnail inside the archive; may be empty
     std::string name, source, licence, author, category;
     std::vector<std::string> tags;
     std::optional<std::array<double, 3>> stated_size;  ///< width X, height Y, depth Z, m
-    std::array<double, 9> stated_rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< rows; the catalogue's correction of the file's axes
+    std::array<double, 9> stated_rotation{1, 0, 0, 0, 1,
+                                          0, 0, 0, 1};  ///< rows; the catalogue's correction of the file's axes
     std::optional<bool> movable;
     bool door_or_window = false;
 };
@@ -32,9 +33,9 @@ struct PreparedModel {
     std::vector<std::uint8_t> thumbnail;  ///< PNG, 256 × 256
     std::vector<Vec3f> hull_points;       ///< at most 256, model frame
     attributes::ModelFacts facts;
-    std::uint64_t content_hash = 0;       ///< of the model file's bytes
+    std::uint64_t content_hash = 0;  ///< of the model file's bytes
     std::uint32_t vertices = 0, triangles = 0, parts = 0, materials = 0, images = 0;
-    int quality = 0;                      ///< 0 broken … 3 precise; see catalog/prepare/quality.h
+    int quality = 0;  ///< 0 broken … 3 precise; see catalog/prepare/quality.h
     std::vector<std::string> warnings;
 };
 

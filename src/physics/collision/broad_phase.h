@@ -10,8 +10,8 @@
 
 namespace embody::physics {
 
-/// Finds the pairs of bodies whose bounds overlap. Bounds are kept enlarged by a margin, so that a body that moves little
-/// costs nothing; pairs persist until their enlarged bounds part.
+/// Finds the pairs of bodies whose bounds overlap. Bounds are kept enlarged by a margin, so that a body that moves
+/// little costs nothing; pairs persist until their enlarged bounds part.
 class BroadPhase {
 public:
     BroadPhase();
@@ -32,7 +32,8 @@ public:
 
     /// Calls `visit` for each body whose enlarged bounds overlap `box`, in ascending order of index.
     void query(const Bounds& box, const std::function<void(std::uint32_t)>& visit) const;
-    /// Calls `visit` for bodies whose bounds the ray may meet; it returns the new maximal distance (smaller after a hit).
+    /// Calls `visit` for bodies whose bounds the ray may meet; it returns the new maximal distance (smaller after a
+    /// hit).
     void query_ray(Vec3 origin, Vec3 direction, double max_distance,
                    const std::function<double(std::uint32_t, double)>& visit) const;
 

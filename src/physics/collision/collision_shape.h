@@ -45,14 +45,16 @@ struct ShapeRayHit {
     double distance = 0;  ///< m along the unit direction
     Vec3 normal;          ///< world, unit, against the ray
 };
-/// First hit of the ray from `origin` along the unit `direction` within `max_distance`; rays from inside a solid miss it.
+/// First hit of the ray from `origin` along the unit `direction` within `max_distance`; rays from inside a solid miss
+/// it.
 std::optional<ShapeRayHit> cast_ray(const CollisionShape& shape, const Transform& pose, Vec3 origin, Vec3 direction,
                                     double max_distance);
 
 /// Time of impact in [0, 1] of shape a moving linearly by `motion_a` and turning to `pose_a_end`'s rotation while b
 /// stands still, by conservative advancement; std::nullopt if they stay farther apart than `target_separation`.
-std::optional<double> time_of_impact(const CollisionShape& a, const Transform& pose_a_start, const Transform& pose_a_end,
-                                     const CollisionShape& b, const Transform& pose_b, double target_separation);
+std::optional<double> time_of_impact(const CollisionShape& a, const Transform& pose_a_start,
+                                     const Transform& pose_a_end, const CollisionShape& b, const Transform& pose_b,
+                                     double target_separation);
 
 /// Gap between the shapes, m: exact where positive, <= 0 where they overlap; may stop at `enough` if it is larger.
 double separation(const CollisionShape& a, const Transform& pose_a, const CollisionShape& b, const Transform& pose_b,

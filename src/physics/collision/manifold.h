@@ -10,15 +10,15 @@ namespace embody::physics {
 
 /// One corner of a contact region (paper, III.B: the contact area is a polygon, not one point).
 struct ManifoldPoint {
-    Vec3 position;            ///< world, midway between the two surfaces
-    double separation = 0;    ///< along the normal, m; negative where the shapes overlap
+    Vec3 position;              ///< world, midway between the two surfaces
+    double separation = 0;      ///< along the normal, m; negative where the shapes overlap
     std::uint32_t feature = 0;  ///< which features met; equal from step to step while they stay the same
 };
 
 /// The contact region of two convex pieces: up to four points kept of the polygon, chosen for area.
 struct Manifold {
     static constexpr int max_points = 4;
-    Vec3 normal;  ///< world, unit, from shape a to shape b
+    Vec3 normal;                             ///< world, unit, from shape a to shape b
     std::uint32_t piece_a = 0, piece_b = 0;  ///< child of a compound, triangle of a mesh; 0 otherwise
     int count = 0;
     std::array<ManifoldPoint, max_points> points;

@@ -29,26 +29,26 @@ struct MassDefinition {
 
 struct BodyDefinition {
     BodyKind kind = BodyKind::dynamic_body;
-    ShapeHandle shape;             ///< null: a body without collision shape (then mass and inertia must be given)
-    Vec3 position;                 ///< of the body's origin, m
-    Quat rotation;                 ///< normalised on creation; must not be zero
-    Vec3 linear_velocity;          ///< of the centre of mass, m/s
-    Vec3 angular_velocity;         ///< world axes, rad/s
+    ShapeHandle shape;      ///< null: a body without collision shape (then mass and inertia must be given)
+    Vec3 position;          ///< of the body's origin, m
+    Quat rotation;          ///< normalised on creation; must not be zero
+    Vec3 linear_velocity;   ///< of the centre of mass, m/s
+    Vec3 angular_velocity;  ///< world axes, rad/s
     MassDefinition mass;
     Material material;
-    double linear_damping = 0;     ///< 1/s, 0 … 100
-    double angular_damping = 0;    ///< 1/s, 0 … 100
-    double gravity_factor = 1;     ///< -10 … 10
-    Vec3 force;                    ///< constant, world axes, at the centre of mass, N
-    Vec3 torque;                   ///< constant, world axes, N m
+    double linear_damping = 0;                         ///< 1/s, 0 … 100
+    double angular_damping = 0;                        ///< 1/s, 0 … 100
+    double gravity_factor = 1;                         ///< -10 … 10
+    Vec3 force;                                        ///< constant, world axes, at the centre of mass, N
+    Vec3 torque;                                       ///< constant, world axes, N m
     double sleep_energy_per_mass = 0.5 * 0.03 * 0.03;  ///< J/kg: quieter than this for half a second may sleep
     bool allow_sleep = true;
     bool start_asleep = false;
-    bool enabled = true;           ///< a disabled body neither moves nor collides
-    bool continuous = false;       ///< sweep fast motion against everything, not only as the step's margin allows
-    std::uint32_t collision_group = 1;           ///< bits
+    bool enabled = true;                ///< a disabled body neither moves nor collides
+    bool continuous = false;            ///< sweep fast motion against everything, not only as the step's margin allows
+    std::uint32_t collision_group = 1;  ///< bits
     std::uint32_t collision_mask = 0xFFFFFFFFu;  ///< bodies a and b collide iff a.group & b.mask and b.group & a.mask
-    std::uint64_t user_data = 0;   ///< handed back in events; the library never reads it
+    std::uint64_t user_data = 0;                 ///< handed back in events; the library never reads it
 };
 
 /// Whether every number is finite and in range; the error's `where` is the field. Shape and handle are checked by the

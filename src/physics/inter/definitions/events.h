@@ -12,9 +12,9 @@ struct ContactEvent {
     enum class Kind : std::uint8_t { begin, end } kind;
     BodyHandle a, b;
     std::uint64_t user_data_a = 0, user_data_b = 0;
-    Vec3 position;             ///< of the first contact point, world; only for begin
-    Vec3 normal;               ///< from a to b, world; only for begin
-    double approach_speed = 0; ///< m/s along the normal before the step's impulses, >= 0; only for begin
+    Vec3 position;              ///< of the first contact point, world; only for begin
+    Vec3 normal;                ///< from a to b, world; only for begin
+    double approach_speed = 0;  ///< m/s along the normal before the step's impulses, >= 0; only for begin
 };
 
 /// A body fell asleep or woke in the last step.
@@ -27,16 +27,16 @@ struct SleepEvent {
 /// One point of a contact region after the step.
 struct ContactView {
     BodyHandle a, b;
-    Vec3 position;    ///< world, m
-    Vec3 normal;      ///< from a to b
+    Vec3 position;          ///< world, m
+    Vec3 normal;            ///< from a to b
     double separation = 0;  ///< m, negative where the bodies overlap
-    Vec3 impulse;     ///< on b over the whole step, world, N s (normal and friction part together)
+    Vec3 impulse;           ///< on b over the whole step, world, N s (normal and friction part together)
 };
 
 struct RayHit {
     BodyHandle body;
-    Vec3 position;   ///< world
-    Vec3 normal;     ///< of the surface, world, unit
+    Vec3 position;        ///< world
+    Vec3 normal;          ///< of the surface, world, unit
     double distance = 0;  ///< from the ray's origin, m
 };
 

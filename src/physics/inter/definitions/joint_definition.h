@@ -37,10 +37,10 @@ struct SliderJoint {
 
 struct JointDefinition {
     std::variant<FixedJoint, BallJoint, HingeJoint, SliderJoint> joint;
-    BodyHandle body_a;      ///< null: the world
-    BodyHandle body_b;      ///< not null, not body_a
-    Transform frame_a;      ///< joint frame in body_a's frame (in the world, where body_a is null)
-    Transform frame_b;      ///< joint frame in body_b's frame
+    BodyHandle body_a;            ///< null: the world
+    BodyHandle body_b;            ///< not null, not body_a
+    Transform frame_a;            ///< joint frame in body_a's frame (in the world, where body_a is null)
+    Transform frame_b;            ///< joint frame in body_b's frame
     bool bodies_collide = false;  ///< whether the two jointed bodies touch each other
 };
 

@@ -21,15 +21,15 @@ enum class StepLimit : std::uint32_t {
 };
 
 struct StepReport {
-    std::uint64_t step = 0;   ///< steps done since the world was made
-    double time = 0;          ///< simulated, s
+    std::uint64_t step = 0;  ///< steps done since the world was made
+    double time = 0;         ///< simulated, s
     std::uint32_t bodies_active = 0, bodies_wanting_to_sleep = 0, bodies_asleep = 0;  ///< dynamic ones
-    std::uint32_t pairs = 0;      ///< found by the broad phase
-    std::uint32_t contacts = 0;   ///< touching manifolds
+    std::uint32_t pairs = 0;                                                          ///< found by the broad phase
+    std::uint32_t contacts = 0;                                                       ///< touching manifolds
     std::uint32_t islands = 0;
-    std::uint32_t impacts = 0;    ///< manifolds solved by eq. (3) in this step
-    std::uint32_t limits = 0;     ///< bits of StepLimit
-    double milliseconds = 0;      ///< wall time of the step
+    std::uint32_t impacts = 0;  ///< manifolds solved by eq. (3) in this step
+    std::uint32_t limits = 0;   ///< bits of StepLimit
+    double milliseconds = 0;    ///< wall time of the step
     std::array<double, static_cast<std::size_t>(StepStage::count)> stage_milliseconds{};
 };
 
