@@ -1,13 +1,17 @@
-# embody_layer(NAME [USES other layers …] [LIBRARIES external targets …])
-#   A static library embody_NAME of all .cpp files below the current folder that no sub-folder's own layer claims.
+# embody_layer(NAME [FOLDER below the current one, NAME if not given] [WITHOUT sub-folder with a layer of its own]
+#              [USES other layers …] [LIBRARIES external targets …])
+#   A static library embody_NAME of all .cpp files below the folder; programs' main.cpp and …_main.cpp are left out.
 #   External libraries are PRIVATE: no public header of a layer includes one, so they never leak upwards.
 function(embody_layer NAME)
-  cmake_parse_arguments(LAYER "" "FOLDER" "USES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(LAYER "" "FOLDER;WITHOUT" "USES;LIBRARIES" ${ARGN})
   if(NOT LAYER_FOLDER)
     set(LAYER_FOLDER ${NAME})
   endif()
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${LAYER_FOLDER}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/(.*_)?main\\.cpp$")
+  if(LAYER_WITHOUT)
+    list(FILTER sources EXCLUDE REGEX "/${LAYER_FOLDER}/${LAYER_WITHOUT}/")
+  endif()
   if(NOT sources)
     add_library(embody_${NAME} INTERFACE)
     set(visibility INTERFACE)

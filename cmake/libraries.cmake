@@ -21,9 +21,11 @@ add_library(embody_model_readers INTERFACE)
 target_link_libraries(embody_model_readers INTERFACE assimp::assimp PkgConfig::minizip PkgConfig::stb
                       nlohmann_json::nlohmann_json meshoptimizer::meshoptimizer)
 
+add_library(embody_preparation_libraries INTERFACE)
+target_link_libraries(embody_preparation_libraries INTERFACE PkgConfig::seccomp embree Threads::Threads)
+
 add_library(embody_catalog_libraries INTERFACE)
-target_link_libraries(embody_catalog_libraries INTERFACE nlohmann_json::nlohmann_json meshoptimizer::meshoptimizer
-                      PkgConfig::zstd PkgConfig::stb PkgConfig::seccomp embree Threads::Threads)
+target_link_libraries(embody_catalog_libraries INTERFACE nlohmann_json::nlohmann_json PkgConfig::zstd Threads::Threads)
 
 add_library(embody_server_libraries INTERFACE)
 target_link_libraries(embody_server_libraries INTERFACE Boost::headers nlohmann_json::nlohmann_json spdlog::spdlog
