@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+#include "database/connection.h"
+
+#include <sqlite3.h>
+
+#include <chrono>
+#include <map>
+#include <system_error>
+#include <thread>
+
+namespace embody::database {
+
+struct Connection::Handles {
+    sqlite3* database = nullptr;
+    std::multimap<std::string, sqlite3_stmt*, std::less<>> idle;  ///< compiled commands nobody uses just now
+
+    ~Handles() {
+        for (auto& [command, compiled] : idle) sqlite3_finalize(compiled);
+        sqlite3_close_v2(database);
+    }
+};
+
+namespace {
+
+constexpr int page_bytes = 8192;  // geometry blobs are tens of kilobytes: fewer overflow pages than with 4096
+
+/// Why the library refused, and what a person can do about it.
+Error describe(const std::filesystem::path& file, int code, const char* detail) {
+    const std::string where = file.string();
+    const std::string told = detail ? detail : sqlite3_errstr(code);
+    switch (code & 0xff) {
+        case SQLITE_BUSY:
+        case SQLITE_LOCKED:
+            return {where, "another process is writing to it and did not finish in time", "try again when it is done"};
+        case SQLITE_READONLY:
+        case SQLITE_PERM:
+            return {where, "is read-only", "make file and folder writable, or name another file with --database"};
+        case SQLITE_FULL:
+            return {where, "no space left on the disk", "make room, then go on: what was stored before is kept"};
+        case SQLITE_NOTADB:
+            return {where, "is not a database", "name another file with --database; this one was left as it is"};
+        case SQLITE_CORRUPT:
+            return {where, "is damaged: " + told, "move it away; the next import builds it anew from the model files"};
+        case SQLITE_CANTOPEN:
+            return {where, "cannot be opened", "check that the folder exists and may be written"};
+        case SQLITE_IOERR:
+            return {where, "reading or writing failed: " + told, "check the disk and its free space"};
+        default:
+            return {where, told, {}};
+    }
+}
+
+/// What can be told before the library is asked.
+Result<void> prepare_place(const std::filesystem::path& file) {
+    std::error_code failure;
+    if (file.empty()) return Error{"database", "no file is named", "name one with --database"};
+    if (std::filesystem::is_directory(file, failure)) {
+        return Error{file.string(), "is a folder, not a database file", "name a file in it"};
+    }
+    if (!file.has_parent_path()) return {};
+    std::filesystem::create_directories(file.parent_path(), failure);
+    if (failure) return Error{file.parent_path().string(), "the folder cannot be made: " + failure.message(), {}};
+    return {};
+}
+
+}  // namespace
+
+Connection::Connection(std::filesystem::path file, std::unique_ptr<Handles> handles)
+    : file_(std::move(file)), handles_(std::move(handles)) {}
+
+Connection::~Connection() = default;
+
+Result<std::unique_ptr<Connection>> Connection::open(const std::filesystem::path& file,
+                                                     const ConnectionOptions& options) {
+    if (auto place = prepare_place(file); !place) return place.error();
+
+    // One instance a thread, so the library needs no lock of its own.
+    auto handles = std::make_unique<Handles>();
+    const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
+    const int code = sqlite3_open_v2(file.c_str(), &handles->database, flags, nullptr);
+    if (code != SQLITE_OK) return describe(file, code, handles->database ? sqlite3_errmsg(handles->database) : nullptr);
+    std::unique_ptr<Connection> connection(new Connection(file, std::move(handles)));
+
+    // Nothing is written before the file is known to be ours or new.
+    sqlite3_busy_timeout(connection->handles_->database, options.wait_milliseconds);
+    if (auto owned = connection->check_ownership(options); !owned) return owned.error();
+    if (sqlite3_db_readonly(connection->handles_->database, "main") == 1)
+        return describe(file, SQLITE_READONLY, nullptr);
+    if (auto configured = connection->configure(options); !configured) return configured.error();
+    return connection;
+}
+
+Result<void> Connection::check_ownership(const ConnectionOptions& options) {
+    const auto mark = query_integer("PRAGMA application_id");
+    if (!mark) return mark.error();
+    if (static_cast<std::uint32_t>(*mark) == options.application_id) return {};
+
+    // No mark and nothing in it: a new or empty file.
+    const auto version = query_integer("PRAGMA user_version");
+    if (!version) return version.error();
+    const auto tables = query_integer("SELECT count(*) FROM sqlite_schema");
+    if (!tables) return tables.error();
+    if (*mark == 0 && *version == 0 && *tables == 0) return {};
+    return Error{file_.string(), "is a database of another program, not " + options.content,
+                 "name another file with --database; this one was left as it is"};
+}
+
+Result<void> Connection::configure(const ConnectionOptions& options) {
+    // A page size counts only before the first write; the mark is set by whoever comes first.
+    if (auto size = execute("PRAGMA page_size = " + std::to_string(page_bytes)); !size) return size;
+    if (auto log = switch_to_write_ahead_log(options.wait_milliseconds); !log) return log;
+    const auto mark = query_integer("PRAGMA application_id");
+    if (!mark) return mark.error();
+    if (*mark == 0) {
+        if (auto set = execute("PRAGMA application_id = " + std::to_string(options.application_id)); !set) return set;
+    }
+
+    // NORMAL: a killed process loses nothing that was committed, a power cut at most the last commits, never the file.
+    return execute(
+        "PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = ON; PRAGMA cache_size = -32768; PRAGMA temp_store = MEMORY;"
+        "PRAGMA journal_size_limit = 67108864; PRAGMA trusted_schema = OFF");
+}
+
+Result<void> Connection::switch_to_write_ahead_log(int wait_milliseconds) {
+    // The switch does not wait for other connections by itself: two processes may create the file at the same moment.
+    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(wait_milliseconds);
+    while (true) {
+        const int code = sqlite3_exec(handles_->database, "PRAGMA journal_mode = WAL", nullptr, nullptr, nullptr);
+        if (code == SQLITE_OK) return {};
+        if ((code & 0xff) != SQLITE_BUSY || std::chrono::steady_clock::now() > until) return last_error();
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+}
+
+Result<void> Connection::execute(const std::string& commands) {
+    if (sqlite3_exec(handles_->database, commands.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) return last_error();
+    return {};
+}
+
+Result<Statement> Connection::prepare(std::string_view command) {
+    // From the idle ones where there is one.
+    if (auto found = handles_->idle.find(command); found != handles_->idle.end()) {
+        auto taken = handles_->idle.extract(found);
+        return Statement(*this, std::move(taken.key()), taken.mapped());
+    }
+    sqlite3_stmt* compiled = nullptr;
+    const int code = sqlite3_prepare_v3(handles_->database, command.data(), static_cast<int>(command.size()),
+                                        SQLITE_PREPARE_PERSISTENT, &compiled, nullptr);
+    if (code != SQLITE_OK) return last_error();
+    return Statement(*this, std::string(command), compiled);
+}
+
+void Connection::give_back(std::string command, void* compiled) {
+    auto* statement = static_cast<sqlite3_stmt*>(compiled);
+    sqlite3_reset(statement);
+    sqlite3_clear_bindings(statement);
+    handles_->idle.emplace(std::move(command), statement);
+}
+
+Result<std::int64_t> Connection::query_integer(std::string_view command) {
+    auto statement = prepare(command);
+    if (!statement) return statement.error();
+    const auto row = statement->step();
+    if (!row) return row.error();
+    if (!*row) return Error{file_.string(), "gave no row for: " + std::string(command), {}};
+    return statement->integer(0);
+}
+
+std::int64_t Connection::last_row_id() const { return sqlite3_last_insert_rowid(handles_->database); }
+
+Result<void> Connection::check_integrity() {
+    auto pages = prepare("PRAGMA integrity_check(1)");
+    if (!pages) return pages.error();
+    if (const auto row = pages->step(); !row) return row.error();
+    if (const std::string told = pages->text(0); told != "ok") return describe(file_, SQLITE_CORRUPT, told.c_str());
+
+    auto references = prepare("PRAGMA foreign_key_check");
+    if (!references) return references.error();
+    const auto broken = references->step();
+    if (!broken) return broken.error();
+    if (*broken)
+        return describe(file_, SQLITE_CORRUPT,
+                        ("a row of table " + references->text(0) + " has lost its model").c_str());
+    return {};
+}
+
+Error Connection::last_error() const {
+    return describe(file_, sqlite3_extended_errcode(handles_->database), sqlite3_errmsg(handles_->database));
+}
+
+}  // namespace embody::database

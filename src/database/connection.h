@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "database/statement.h"
+#include "foundation/result.h"
+
+namespace embody::database {
+
+struct ConnectionOptions {
+    std::uint32_t application_id = 0;  ///< marks our files; a file with another mark is refused, never written to
+    std::string content;               ///< what such a file is, for errors: "a model database of Embody"
+    int wait_milliseconds = 20000;     ///< how long to wait for another process that writes
+};
+
+/// An open database file. One instance a thread; any number of threads and processes may have the same file open: one
+/// of them writes at a time, the others wait, and readers never wait (write-ahead log).
+class Connection {
+public:
+    /// Opens the file or creates it (with its folder). Errors: not a database, another program's database, read-only, a
+    /// folder, no space, locked for too long.
+    static Result<std::unique_ptr<Connection>> open(const std::filesystem::path& file,
+                                                    const ConnectionOptions& options);
+    ~Connection();
+    Connection(const Connection&) = delete;
+    Connection& operator=(const Connection&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+
+    /// Runs one or more commands that take no values and give no rows.
+    Result<void> execute(const std::string& commands);
+    /// A compiled command, kept for the next call with the same text.
+    Result<Statement> prepare(std::string_view command);
+    /// The first column of the first row; the error tells if there is none.
+    Result<std::int64_t> query_integer(std::string_view command);
+    /// Row id of the last insertion.
+    [[nodiscard]] std::int64_t last_row_id() const;
+
+    /// Reads the whole file and checks pages, indices and references; the error names the first thing that is wrong.
+    Result<void> check_integrity();
+
+private:
+    friend class Statement;
+    struct Handles;
+    Connection(std::filesystem::path file, std::unique_ptr<Handles> handles);
+    [[nodiscard]] Error last_error() const;
+    Result<void> check_ownership(const ConnectionOptions& options);
+    Result<void> configure(const ConnectionOptions& options);
+    Result<void> switch_to_write_ahead_log(int wait_milliseconds);
+    void give_back(std::string command, void* compiled);
+
+    std::filesystem::path file_;
+    std::unique_ptr<Handles> handles_;
+};
+
+}  // namespace embody::database

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "database/model_schema.h"
+
+#include <array>
+
+namespace embody::database {
+namespace {
+
+// Small rows in `model`, so that listing and searching read few pages; what is large or seldom asked for lies beside
+// it. Times are seconds since 1970, UTC.
+constexpr const char* first_version = R"sql(
+CREATE TABLE model (
+    id            INTEGER PRIMARY KEY,
+    key           TEXT    NOT NULL UNIQUE,
+    name          TEXT    NOT NULL,
+    source        TEXT    NOT NULL,
+    licence       TEXT    NOT NULL,
+    author        TEXT    NOT NULL,
+    category      TEXT    NOT NULL,
+    subcategory   TEXT    NOT NULL,
+    physical_kind TEXT    NOT NULL,
+    tags          TEXT    NOT NULL,              -- one a line
+    size_x        REAL    NOT NULL,              -- m
+    size_y        REAL    NOT NULL,
+    size_z        REAL    NOT NULL,
+    geometry_kind TEXT    NOT NULL CHECK (geometry_kind IN ('mesh', 'point_cloud', 'voxel', 'analytical')),
+    vertices      INTEGER NOT NULL,
+    triangles     INTEGER NOT NULL,
+    parts         INTEGER NOT NULL,
+    materials     INTEGER NOT NULL,
+    images        INTEGER NOT NULL,
+    quality       INTEGER NOT NULL CHECK (quality BETWEEN 0 AND 3),
+    file_hash     INTEGER NOT NULL,              -- of the model file's bytes
+    geometry_hash INTEGER NOT NULL,              -- of the stored geometry
+    changed_at    INTEGER NOT NULL
+) STRICT;
+CREATE INDEX model_by_name     ON model (name COLLATE NOCASE, id);
+CREATE INDEX model_by_category ON model (category, name COLLATE NOCASE, id);
+CREATE INDEX model_by_file     ON model (file_hash);
+
+CREATE TABLE model_geometry (
+    model       INTEGER PRIMARY KEY REFERENCES model (id) ON DELETE CASCADE,
+    compact     BLOB NOT NULL,                   -- versioned in its own header
+    hull_points BLOB NOT NULL                    -- x y z as little-endian floats, m
+) STRICT;
+
+CREATE TABLE model_thumbnail (
+    model INTEGER PRIMARY KEY REFERENCES model (id) ON DELETE CASCADE,
+    png   BLOB NOT NULL
+) STRICT;
+
+CREATE TABLE model_knowledge (
+    model     INTEGER PRIMARY KEY REFERENCES model (id) ON DELETE CASCADE,
+    facts     TEXT NOT NULL CHECK (json_valid(facts)),
+    automatic TEXT NOT NULL CHECK (json_valid(automatic))
+) STRICT;
+
+-- By key and without a reference: a person's work outlives the deletion of the model and comes back with it.
+CREATE TABLE manual_attribute (
+    model_key TEXT    NOT NULL,
+    name      TEXT    NOT NULL,
+    value     TEXT    NOT NULL CHECK (json_valid(value)),
+    set_by    TEXT    NOT NULL,
+    set_at    INTEGER NOT NULL,
+    PRIMARY KEY (model_key, name)
+) STRICT, WITHOUT ROWID;
+
+-- What was imported from where, to know at the next import what is done.
+CREATE TABLE import_source (
+    location     TEXT    PRIMARY KEY,            -- a file, or archive!entry
+    model        INTEGER NOT NULL REFERENCES model (id) ON DELETE CASCADE,
+    stamp        TEXT    NOT NULL,               -- size and time of the file on disk
+    file_hash    INTEGER NOT NULL,               -- of the file on disk: the model's own, or its archive's
+    prepare_hash INTEGER NOT NULL,               -- of all that preparing depends on
+    item_hash    INTEGER NOT NULL                -- of what the catalogue says beyond that
+) STRICT, WITHOUT ROWID;
+CREATE INDEX import_source_by_model ON import_source (model);
+
+CREATE TABLE setting (
+    name  TEXT PRIMARY KEY,
+    value TEXT NOT NULL
+) STRICT, WITHOUT ROWID;
+
+-- The words of `model`, without a copy of the text.
+CREATE VIRTUAL TABLE model_words USING fts5 (
+    name, tags, category, subcategory, source,
+    content = 'model', content_rowid = 'id', prefix = '1 2 3', tokenize = 'porter unicode61 remove_diacritics 2'
+);
+CREATE TRIGGER model_words_insert AFTER INSERT ON model BEGIN
+    INSERT INTO model_words (rowid, name, tags, category, subcategory, source)
+    VALUES (new.id, new.name, new.tags, new.category, new.subcategory, new.source);
+END;
+CREATE TRIGGER model_words_delete AFTER DELETE ON model BEGIN
+    INSERT INTO model_words (model_words, rowid, name, tags, category, subcategory, source)
+    VALUES ('delete', old.id, old.name, old.tags, old.category, old.subcategory, old.source);
+END;
+CREATE TRIGGER model_words_update AFTER UPDATE OF name, tags, category, subcategory, source ON model BEGIN
+    INSERT INTO model_words (model_words, rowid, name, tags, category, subcategory, source)
+    VALUES ('delete', old.id, old.name, old.tags, old.category, old.subcategory, old.source);
+    INSERT INTO model_words (rowid, name, tags, category, subcategory, source)
+    VALUES (new.id, new.name, new.tags, new.category, new.subcategory, new.source);
+END;
+)sql";
+
+constexpr std::array<Migration, 1> migrations{{{1, first_version}}};
+
+}  // namespace
+
+std::span<const Migration> model_migrations() { return migrations; }
+
+Result<std::unique_ptr<Connection>> open_model_database(const std::filesystem::path& file) {
+    auto connection = Connection::open(file, {.application_id = model_application_id, .content = "a model database"});
+    if (!connection) return connection;
+    if (auto migrated = migrate(**connection, migrations); !migrated) return migrated.error();
+    return connection;
+}
+
+}  // namespace embody::database
