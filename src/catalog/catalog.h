@@ -59,6 +59,7 @@ struct ImportFailure {
 };
 struct ImportReport {
     std::size_t added = 0, updated = 0, unchanged = 0;
+    std::vector<std::string> keys;  ///< of the models added, updated or found unchanged; the first 1000
     std::vector<ImportFailure> failures;
     double seconds = 0;
     bool stopped = false;  ///< the progress callback asked to stop; the next import goes on from there
