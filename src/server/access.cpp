@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "server/access.h"
+
+#include <string_view>
+
+namespace embody::server {
+namespace {
+
+/// "localhost:8080" → "localhost"; "[::1]:8080" → "[::1]".
+std::string_view without_port(std::string_view host) {
+    const std::size_t bracket = host.rfind(']');
+    const std::size_t colon = host.rfind(':');
+    if (colon == std::string_view::npos || (bracket != std::string_view::npos && colon < bracket)) return host;
+    return host.substr(0, colon);
+}
+
+bool names_loopback(std::string_view host) {
+    const std::string_view name = without_port(host);
+    return name == "127.0.0.1" || name == "localhost" || name == "[::1]";
+}
+
+/// Equal in a time that does not tell how many characters were right.
+bool equal_secrets(std::string_view a, std::string_view b) {
+    unsigned difference = a.size() == b.size() ? 0 : 1;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(i < b.size() ? b[i] : 0);
+    }
+    return difference == 0;
+}
+
+std::string cookie_value(std::string_view cookies, std::string_view name) {
+    while (!cookies.empty()) {
+        std::string_view pair = cookies.substr(0, cookies.find(';'));
+        cookies.remove_prefix(pair.size() < cookies.size() ? pair.size() + 1 : pair.size());
+        while (!pair.empty() && pair.front() == ' ') pair.remove_prefix(1);
+        const std::size_t equals = pair.find('=');
+        if (equals != std::string_view::npos && pair.substr(0, equals) == name)
+            return std::string(pair.substr(equals + 1));
+    }
+    return {};
+}
+
+}  // namespace
+
+Access check_access(const AccessRules& rules, const HttpRequest& request, bool changes_state) {
+    // A page of another site that resolves its own name to 127.0.0.1 still sends that name as Host.
+    if (rules.loopback_only && !request.host.empty() && !names_loopback(request.host))
+        return {false, "this server answers only to localhost and 127.0.0.1, not to \"" + request.host + "\""};
+    // Browsers always send Origin with WebSocket upgrades and POSTs; programs without a browser need not.
+    if (changes_state && !request.origin.empty() && request.origin != "http://" + request.host &&
+        request.origin != "https://" + request.host)
+        return {false, "pages of another site (" + request.origin + ") may not use this server"};
+    if (rules.token.empty()) return {true, {}};
+    if (equal_secrets(rules.token, query_parameter(request.target, "token")) ||
+        equal_secrets(rules.token, cookie_value(request.cookie, token_cookie)))
+        return {true, {}};
+    return {false, "the address must end with ?token=… as printed when the server started"};
+}
+
+}  // namespace embody::server

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "server/routes.h"
+
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "foundation/version.h"
+
+namespace embody::server {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::map<std::string, std::string>& content_types() {
+    static const std::map<std::string, std::string> types = {
+        {".html", "text/html; charset=utf-8"},
+        {".js", "text/javascript; charset=utf-8"},
+        {".mjs", "text/javascript; charset=utf-8"},
+        {".css", "text/css; charset=utf-8"},
+        {".json", "application/json"},
+        {".map", "application/json"},
+        {".svg", "image/svg+xml"},
+        {".png", "image/png"},
+        {".jpg", "image/jpeg"},
+        {".ico", "image/x-icon"},
+        {".woff2", "font/woff2"},
+        {".wasm", "application/wasm"},
+        {".glb", "model/gltf-binary"},
+        {".hdr", "application/octet-stream"},
+        {".txt", "text/plain; charset=utf-8"},
+    };
+    return types;
+}
+
+/// "/models/17/geometry.glb" → 17 and "geometry.glb"; id 0 where it is something else.
+struct ModelPath {
+    std::int64_t id = 0;
+    std::string part;
+};
+ModelPath split_model_path(const std::string& path) {
+    static const std::string prefix = "/models/";
+    const std::size_t slash = path.find('/', prefix.size());
+    if (slash == std::string::npos) return {};
+    ModelPath split;
+    const char* const end = path.data() + slash;
+    const auto [stop, error] = std::from_chars(path.data() + prefix.size(), end, split.id);
+    if (error != std::errc{} || stop != end || split.id <= 0) return {};
+    split.part = path.substr(slash + 1);
+    return split;
+}
+
+}  // namespace
+
+Routes::Routes(std::unique_ptr<catalog::Catalog> catalog, fs::path studio_folder,
+               std::function<std::string()> scene_json)
+    : catalog_(std::move(catalog)), studio_folder_(std::move(studio_folder)), scene_json_(std::move(scene_json)) {}
+
+HttpResponse Routes::answer(const HttpRequest& request) const {
+    if (request.method != "GET" && request.method != "HEAD")
+        return error_response(405, request.target, "only GET is answered here");
+    const std::string path = decoded_path(request.target);
+    if (path.empty() || path.front() != '/') return error_response(400, request.target, "is not a path");
+    if (path == "/api/health") {
+        HttpResponse response;
+        const nlohmann::json body = {
+            {"name", "embody"}, {"version", version_text}, {"models", catalog_->model_count()}};
+        response.body = body.dump();
+        return response;
+    }
+    if (path == "/scene.json") {
+        HttpResponse response;
+        response.body = scene_json_();
+        response.headers["Content-Disposition"] = "attachment; filename=\"scene.json\"";
+        return response;
+    }
+    if (path.starts_with("/models/")) return answer_model(request, path);
+    return answer_file(path);
+}
+
+HttpResponse Routes::answer_model(const HttpRequest& request, const std::string& path) const {
+    const ModelPath model = split_model_path(path);
+    if (model.id == 0 || (model.part != "thumbnail.png" && model.part != "geometry.glb"))
+        return error_response(404, path, "there is no such page", "see docs/protocol.md for the addresses");
+    const bool thumbnail = model.part == "thumbnail.png";
+    auto bytes = thumbnail ? catalog_->thumbnail(model.id) : catalog_->geometry_glb(model.id);
+    if (!bytes) return error_response(404, path, bytes.error().message());
+    HttpResponse response;
+    response.content_type = thumbnail ? "image/png" : "model/gltf-binary";
+    response.body.assign(bytes->begin(), bytes->end());
+    // With the content's hash in the address, what lies there never changes.
+    const bool versioned = !query_parameter(request.target, "v").empty();
+    response.headers["Cache-Control"] = versioned ? "public, max-age=31536000, immutable" : "no-cache";
+    return response;
+}
+
+HttpResponse Routes::answer_file(const std::string& path) const {
+    // Resolve links and dots, then insist that the file lies inside the front-end's folder.
+    std::error_code error;
+    const fs::path root = fs::weakly_canonical(studio_folder_, error);
+    const fs::path file = fs::weakly_canonical(root / (path == "/" ? "index.html" : path.substr(1)), error);
+    const fs::path inside = file.lexically_relative(root);
+    if (inside.empty() || *inside.begin() == "..") return error_response(404, path, "there is no such page");
+    std::ifstream stream(file, std::ios::binary);
+    if (!fs::is_regular_file(file, error) || !stream) {
+        if (path == "/")
+            return error_response(503, "the Studio", "is not built: " + file.string() + " is missing",
+                                  "start with ./run, or: cd studio && npm ci && npm run build");
+        return error_response(404, path, "there is no such page");
+    }
+    HttpResponse response;
+    response.body.assign(std::istreambuf_iterator<char>(stream), {});
+    const auto type = content_types().find(file.extension().string());
+    response.content_type = type == content_types().end() ? "application/octet-stream" : type->second;
+    // The bundler puts a hash in the names below assets/.
+    response.headers["Cache-Control"] =
+        path.starts_with("/assets/") ? "public, max-age=31536000, immutable" : "no-cache";
+    return response;
+}
+
+}  // namespace embody::server

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: MIT
+#include "server/scene_thread.h"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <future>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "catalog/catalog.h"
+#include "scene/scene_file.h"
+#include "server/state_frame.h"
+
+namespace embody::server {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using nlohmann::json;
+
+constexpr auto statistics_period = std::chrono::milliseconds(250);
+constexpr auto autosave_period = std::chrono::seconds(20);
+/// A machine that cannot keep up runs the scene slower instead of falling ever further behind.
+constexpr double most_seconds_behind = 0.1;
+
+std::string dump(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
+
+json failed(const json& id, const Error& error) {
+    return {
+        {"id", id}, {"ok", false}, {"error", {{"where", error.where}, {"why", error.why}, {"remedy", error.remedy}}}};
+}
+
+/// A client's command, or the transport's wish for the document (then `scene` is set and the rest is not).
+struct Message {
+    ClientId client = 0;
+    std::string text;
+    std::shared_ptr<std::promise<std::string>> scene;
+};
+
+}  // namespace
+
+struct SceneThread::State {
+    SceneThreadOptions options;
+    SceneThreadListener listener;
+    std::unique_ptr<catalog::Catalog> catalog;
+    std::unique_ptr<scene::Session> session;
+
+    mutable std::mutex mutex;  ///< guards messages, stop, board
+    std::condition_variable changed;
+    std::deque<Message> messages;
+    bool stop = false;
+    StateBoard board;
+
+    std::thread thread;
+    std::vector<scene::EntityState> scratch;
+    Clock::time_point statistics_due{}, autosave_due{}, statistics_since{};
+    double statistics_time = 0;  ///< simulated time at statistics_since
+
+    Result<void> open();
+    void run();
+    void handle(const Message& message);
+    json execute(const json& request);
+    void tell_events();
+    void publish(bool all_changed);
+    void tell_statistics(Clock::time_point now);
+    void play_until(Clock::time_point& due);
+};
+
+SceneThread::SceneThread() : state_(std::make_unique<State>()) {}
+
+SceneThread::~SceneThread() {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->stop = true;
+    }
+    state_->changed.notify_all();
+    if (state_->thread.joinable()) state_->thread.join();
+}
+
+Result<std::unique_ptr<SceneThread>> SceneThread::start(const SceneThreadOptions& options,
+                                                        SceneThreadListener listener) {
+    std::unique_ptr<SceneThread> made(new SceneThread);
+    State& state = *made->state_;
+    state.options = options;
+    state.listener = std::move(listener);
+    // The catalogue and the session are opened on the thread that uses them; its first result is whether that worked.
+    std::promise<Result<void>> opened;
+    std::future<Result<void>> result = opened.get_future();
+    state.thread = std::thread([&state, opened = std::move(opened)]() mutable {
+        Result<void> opening = state.open();
+        const bool ok = opening.ok();
+        opened.set_value(std::move(opening));
+        if (ok) state.run();
+    });
+    if (Result<void> opening = result.get(); !opening) return opening.error();
+    return made;
+}
+
+void SceneThread::post(ClientId client, std::string message) {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->messages.push_back({client, std::move(message), nullptr});
+    }
+    state_->changed.notify_all();
+}
+
+SceneThread::Frame SceneThread::frame_since(std::uint64_t seen) const {
+    const std::lock_guard lock(state_->mutex);
+    return {state_->board.frame_since(seen), state_->board.version()};
+}
+
+std::string SceneThread::scene_json() const {
+    auto wanted = std::make_shared<std::promise<std::string>>();
+    std::future<std::string> scene = wanted->get_future();
+    {
+        const std::lock_guard lock(state_->mutex);
+        if (state_->stop) return "{}";
+        state_->messages.push_back({0, {}, std::move(wanted)});
+    }
+    state_->changed.notify_all();
+    return scene.get();
+}
+
+Result<void> SceneThread::State::open() {
+    auto opened_catalog = catalog::Catalog::open(options.database, options.taxonomy_folder);
+    if (!opened_catalog) return opened_catalog.error();
+    catalog = std::move(*opened_catalog);
+    auto created = scene::Session::create(catalog.get(), options.session);
+    if (!created) return created.error();
+    session = std::move(*created);
+    if (!options.open_scene.empty()) {
+        json params = {{"name", options.open_scene}};
+        if (std::filesystem::is_regular_file(options.open_scene)) {
+            auto document = scene::load_document(options.open_scene);
+            if (!document) return document.error();
+            params = {{"scene", scene::document_to_json(*document)}};
+        }
+        if (auto loaded = session->execute("scene.load", params); !loaded) return loaded.error();
+    }
+    tell_events();
+    publish(true);
+    return {};
+}
+
+void SceneThread::State::run() {
+    Clock::time_point due = Clock::now();
+    autosave_due = due + autosave_period;
+    for (;;) {
+        // Wait for a command, or for the time of the next step.
+        std::deque<Message> taken;
+        {
+            std::unique_lock lock(mutex);
+            const auto ready = [this] { return stop || !messages.empty(); };
+            if (session->playing())
+                changed.wait_until(lock, due, ready);
+            else
+                changed.wait_until(lock, autosave_due, ready);
+            taken.swap(messages);
+            if (stop && taken.empty()) break;
+        }
+        for (const Message& message : taken) handle(message);
+        if (session->playing())
+            play_until(due);
+        else
+            due = Clock::now();
+        if (Clock::now() >= autosave_due) {
+            autosave_due = Clock::now() + autosave_period;
+            if (auto saved = session->autosave(); !saved)
+                listener.broadcast(
+                    dump({{"event", "message"}, {"level", "warning"}, {"text", saved.error().message()}}));
+        }
+    }
+    // Nothing is lost when the server ends; there is nobody left to tell if this fails.
+    (void)session->autosave();
+}
+
+void SceneThread::State::play_until(Clock::time_point& due) {
+    const Clock::time_point now = Clock::now();
+    if (now < due) return;
+    const auto step = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(session->time_step()));
+    session->step();
+    due += step;
+    const auto most_behind =
+        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(most_seconds_behind));
+    due = std::max(due, now - most_behind);
+    tell_events();
+    publish(false);
+    if (now >= statistics_due || !session->playing()) tell_statistics(now);
+}
+
+void SceneThread::State::tell_statistics(Clock::time_point now) {
+    json statistics = session->statistics();
+    const double wall = std::chrono::duration<double>(now - statistics_since).count();
+    const double simulated = session->simulated_time() - statistics_time;
+    statistics["real_time_factor"] = wall > 0 && simulated >= 0 ? simulated / wall : 0.0;
+    statistics_since = now;
+    statistics_time = session->simulated_time();
+    statistics_due = now + statistics_period;
+    listener.broadcast(dump(statistics));
+}
+
+void SceneThread::State::handle(const Message& message) {
+    if (message.scene) {
+        const json document = scene::document_to_json(session->document());
+        message.scene->set_value(document.dump(2, ' ', false, json::error_handler_t::replace));
+        return;
+    }
+    json request = json::parse(message.text, nullptr, false);
+    json reply;
+    const bool was_playing = session->playing();
+    if (request.is_discarded() || !request.is_object()) {
+        reply = failed(nullptr, {"message", "is not a JSON object", R"(send {"id": 1, "command": "hello"})"});
+    } else {
+        reply = execute(request);
+    }
+    // Events first, so that a client that gets its reply has already heard what the command did.
+    tell_events();
+    listener.reply(message.client, dump(reply));
+    if (session->playing() != was_playing) tell_statistics(Clock::now());
+}
+
+json SceneThread::State::execute(const json& request) {
+    const json id = request.value("id", json());
+    if (!id.is_number_integer()) return failed(nullptr, {"id", "must be an integer", "number your commands"});
+    for (const auto& [field, value] : request.items()) {
+        if (field != "id" && field != "command" && field != "params")
+            return failed(id, {field, "is no field of a command", "use id, command and params"});
+    }
+    const json command = request.value("command", json());
+    if (!command.is_string()) return failed(id, {"command", "must be a string", ""});
+    const json params = request.value("params", json::object());
+    if (!params.is_object()) return failed(id, {"params", "must be an object", ""});
+    auto result = session->execute(command.get<std::string>(), params);
+    if (!result) return failed(id, result.error());
+    return {{"id", id}, {"ok", true}, {"result", std::move(*result)}};
+}
+
+void SceneThread::State::tell_events() {
+    scene::Events events = session->take_events();
+    bool document_changed = false;
+    for (const json& event : events.messages) {
+        document_changed = document_changed || event.value("event", "") == "document";
+        listener.broadcast(dump(event));
+    }
+    if (document_changed || events.all_poses || !session->playing()) publish(events.all_poses);
+}
+
+void SceneThread::State::publish(bool all_changed) {
+    session->read_states(scratch);
+    {
+        const std::lock_guard lock(mutex);
+        board.publish(scratch, session->simulated_time(), session->simulated_steps(), all_changed);
+    }
+    listener.states_changed();
+}
+
+}  // namespace embody::server
