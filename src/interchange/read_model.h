@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "interchange/file_source.h"
+#include "interchange/raw_scene.h"
+
+namespace embody::interchange {
+
+/// File name extensions of the formats that are read, lower case with the dot: .obj .stl .ply .dae .gltf .glb.
+const std::vector<std::string>& model_extensions();
+/// Whether the file's extension, in any case, is one of model_extensions().
+bool is_model_file(const std::filesystem::path& file);
+
+/// Reads a model file and what it refers to in its own folder and below. Every position is finite, every index in
+/// range, every mesh has triangles and every image is PNG or JPEG; else an error with file and reason. What can be left
+/// out (a texture that is missing or lies outside the folder, points and lines) is left out with a warning. glTF is in
+/// metres and Y up; COLLADA is turned and scaled as its <asset> says; OBJ, STL and PLY are taken as they are.
+Result<RawScene> read_model(const std::filesystem::path& file);
+
+/// The same from any source, e.g. an archive; `path` is inside the source.
+Result<RawScene> read_model(const FileSource& source, const std::string& path);
+
+}  // namespace embody::interchange
