@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+//
+// The only file that sees CLI11. One function a command: its options, its help and an example.
+#include "cli/arguments.h"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "catalog/catalog.h"
+#include "foundation/version.h"
+
+namespace embody::cli {
+namespace {
+
+/// A sub-command whose options write into `into`; choosing it chooses that struct.
+template <class T>
+struct Command {
+    CLI::App* app = nullptr;
+    std::shared_ptr<T> into = std::make_shared<T>();
+};
+
+class Parser {
+public:
+    Parser() : app_("Embody: a VR scene studio whose models behave.", "embody") {
+        app_.set_version_flag("--version", std::string("embody ") + version_text);
+        app_.set_help_flag("-h,--help", "Print this help");
+        app_.require_subcommand(1);
+        app_.failure_message(CLI::FailureMessage::simple);
+        add_serve();
+        add_import();
+        add_search();
+        add_show();
+        add_set();
+        add_reset();
+        add_simulate();
+        add_check();
+        add_scene();
+        add_bench();
+    }
+
+    Parsed parse(int count, char** words) {
+        try {
+            app_.parse(count, words);
+        } catch (const CLI::ParseError& error) {
+            // 0: help or version was asked for and printed.
+            const int code = app_.exit(error);
+            return {std::nullopt, code == 0 ? exit_ok : exit_usage};
+        }
+        return {chosen_, exit_ok};
+    }
+
+private:
+    template <class T>
+    Command<T> add(const std::string& name, const std::string& what, const std::string& example) {
+        Command<T> command;
+        command.app = app_.add_subcommand(name, what);
+        command.app->footer("Example:\n  " + example);
+        command.app->callback([this, into = command.into] { chosen_ = *into; });
+        return command;
+    }
+    template <class T>
+    static void add_database(const Command<T>& command) {
+        command.into->database = catalog::Catalog::default_file();
+        command.app->add_option("--database", command.into->database, "Model database")->capture_default_str();
+    }
+    template <class T>
+    static void add_json(const Command<T>& command) {
+        command.app->add_flag("--json", command.into->json, "Print JSON, for programs");
+    }
+
+    void add_serve() {
+        auto c = add<ServeArguments>("serve", "Serve the Studio: open the printed address in a browser",
+                                     "embody serve --scene stack --port 9000");
+        add_database(c);
+        c.app
+            ->add_option("--address", c.into->address,
+                         "IP address to listen on; other than loopback needs the printed token")
+            ->capture_default_str();
+        c.app->add_option("--port", c.into->port,
+                          "Port; 0: any free one (default 8420, or a free one where it is taken)");
+        c.app->add_option("--scene", c.into->scene, "Scene to open: a file, or the name of a saved or demo scene")
+            ->capture_default_str();
+        c.app->add_flag("--open", c.into->open_browser, "Open the Studio in the desktop's browser");
+    }
+    void add_import() {
+        auto c =
+            add<ImportArguments>("import", "Bring models into the database: files, folders, Sweet Home 3D catalogues",
+                                 "embody import chair.glb ~/models /usr/share/sweethome3d/furniture/Scopia.sh3f");
+        add_database(c);
+        c.app->add_option("paths", c.into->paths, "Files (.glb .gltf .obj .stl .ply .dae .sh3f .jar .zip) and folders")
+            ->required();
+        c.app->add_option("--workers", c.into->workers, "Processes that read models (default: one a core)")
+            ->check(CLI::Range(0, 256));
+        c.app->add_flag("--again", c.into->again, "Read also what is unchanged since the last import");
+        add_json(c);
+    }
+    void add_search() {
+        auto c = add<SearchArguments>("search", "Find models by words in name, tags, category and source",
+                                      "embody search --limit 5 office chair");
+        add_database(c);
+        c.app->add_option("words", c.into->words, "Words; their beginnings match too");
+        c.app->add_option("--category", c.into->category, "Only this category");
+        c.app->add_option("--limit", c.into->limit, "At most so many")
+            ->capture_default_str()
+            ->check(CLI::Range(1, 1000));
+        c.app->add_option("--offset", c.into->offset, "Skip so many")->check(CLI::NonNegativeNumber);
+        add_json(c);
+    }
+    void add_show() {
+        auto c = add<ShowArguments>("show", "Print a model and its physical attributes, each with the reason",
+                                    "embody show \"sweethome3d:Blend Swap CC-0#armchair\"");
+        add_database(c);
+        c.app->add_option("model", c.into->model, "Key, id or unique name of a model")->required();
+        add_json(c);
+    }
+    void add_set() {
+        auto c = add<SetArguments>("set", "Change attributes of a model by hand; survives re-import",
+                                   "embody set 17 mass=12.5 friction_dynamic=0.6");
+        add_database(c);
+        c.app->add_option("model", c.into->model, "Key, id or unique name of a model")->required();
+        c.app->add_option("assignments", c.into->assignments, "name=value …")->required();
+        add_json(c);
+    }
+    void add_reset() {
+        auto c = add<ResetArguments>("reset", "Go back to the automatic value of attributes", "embody reset 17 mass");
+        add_database(c);
+        c.app->add_option("model", c.into->model, "Key, id or unique name of a model")->required();
+        c.app->add_option("names", c.into->names, "Attributes; none: all that were changed by hand");
+        add_json(c);
+    }
+    void add_simulate() {
+        auto c =
+            add<SimulateArguments>("simulate", "Run a scene without a window and record what happens",
+                                   "embody simulate data/scenes/stack.json --seconds 5 --record out.jsonl --energy");
+        add_database(c);
+        c.app->add_option("scene", c.into->scene, "Scene file, or a name that `embody scene` lists")->required();
+        c.app->add_option("--seconds", c.into->seconds, "Simulated time")
+            ->capture_default_str()
+            ->check(CLI::Range(0.0, 1e6));
+        c.app->add_option("--record", c.into->record, "File for JSON lines: every entity's pose, velocities and state");
+        c.app->add_option("--rate", c.into->rate, "Samples a simulated second")
+            ->capture_default_str()
+            ->check(CLI::Range(1e-3, 1e5));
+        c.app->add_flag("--contacts", c.into->contacts, "Record contacts with impulses");
+        c.app->add_flag("--energy", c.into->energy, "Record energy and momenta");
+        add_json(c);
+    }
+    void add_check() {
+        auto c = add<CheckArguments>("check", "Say whether scene files can be read and simulated, and what is wrong",
+                                     "embody check data/scenes/*.json");
+        add_database(c);
+        c.app->add_option("scenes", c.into->scenes, "Scene files")->required();
+        add_json(c);
+    }
+    void add_scene() {
+        auto c = add<SceneArguments>("scene", "List the built-in scenes, or write one as a scene file",
+                                     "embody scene table1_f --output wall.json");
+        c.app->add_option("name", c.into->name, "Built-in scene; none: list them");
+        c.app->add_option("--output", c.into->output, "File to write (default: standard output)");
+        add_json(c);
+    }
+    void add_bench() {
+        auto c = add<BenchArguments>("bench", "Time the paper's scenes beside the paper's own numbers",
+                                     "embody bench table1 --scene table1_f --json");
+        c.app->add_option("suite", c.into->suite, "table1")->capture_default_str()->check(CLI::IsMember({"table1"}));
+        c.app->add_option("--scene", c.into->scene, "Only this scene");
+        c.app->add_option("--steps", c.into->steps, "Steps of each scene (default: its own number)")
+            ->check(CLI::NonNegativeNumber);
+        add_json(c);
+    }
+
+    CLI::App app_;
+    std::optional<Arguments> chosen_;
+};
+
+}  // namespace
+
+Parsed parse_arguments(int count, char** words) { return Parser().parse(count, words); }
+
+}  // namespace embody::cli

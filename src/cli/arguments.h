@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace embody::cli {
+
+// What a person asked for, one struct a command. Every command knows --json; those with a database know --database.
+
+struct ServeArguments {
+    std::filesystem::path database;
+    std::string address = "127.0.0.1";
+    std::optional<unsigned short> port;  ///< open: 8420, or a free one where that is taken
+    std::string scene = "furnished_room";
+    bool open_browser = false;
+};
+struct ImportArguments {
+    std::filesystem::path database;
+    std::vector<std::filesystem::path> paths;
+    int workers = 0;
+    bool again = false;
+    bool json = false;
+};
+struct SearchArguments {
+    std::filesystem::path database;
+    std::vector<std::string> words;
+    std::string category;
+    int limit = 20;
+    int offset = 0;
+    bool json = false;
+};
+struct ShowArguments {
+    std::filesystem::path database;
+    std::string model;
+    bool json = false;
+};
+struct SetArguments {
+    std::filesystem::path database;
+    std::string model;
+    std::vector<std::string> assignments;  ///< "name=value"
+    bool json = false;
+};
+struct ResetArguments {
+    std::filesystem::path database;
+    std::string model;
+    std::vector<std::string> names;
+    bool json = false;
+};
+struct SimulateArguments {
+    std::filesystem::path database;
+    std::string scene;  ///< a file, or the name of a demo scene or builder
+    double seconds = 10;
+    std::filesystem::path record;
+    double rate = 60;  ///< samples a simulated second
+    bool contacts = false, energy = false;
+    bool json = false;
+};
+struct CheckArguments {
+    std::filesystem::path database;
+    std::vector<std::filesystem::path> scenes;
+    bool json = false;
+};
+struct SceneArguments {
+    std::string name;  ///< of a builder; empty: list them
+    std::filesystem::path output;
+    bool json = false;
+};
+struct BenchArguments {
+    std::string suite = "table1";
+    std::string scene;  ///< only this one
+    int steps = 0;      ///< 0: as many as the scene says
+    bool json = false;
+};
+
+using Arguments = std::variant<ServeArguments, ImportArguments, SearchArguments, ShowArguments, SetArguments,
+                               ResetArguments, SimulateArguments, CheckArguments, SceneArguments, BenchArguments>;
+
+/// Exit codes of the program.
+enum ExitCode : int { exit_ok = 0, exit_failed = 1, exit_usage = 2, exit_partly = 3 };
+
+/// Either what to do, or that the program is done already (help was printed, or the words were wrong and that was
+/// said).
+struct Parsed {
+    std::optional<Arguments> arguments;
+    int exit_code = exit_ok;
+};
+Parsed parse_arguments(int count, char** words);
+
+}  // namespace embody::cli

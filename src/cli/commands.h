@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "cli/arguments.h"
+
+namespace embody::cli {
+
+// One function a command, each in its own file. They print, and return the program's exit code.
+
+int run_serve(const ServeArguments& arguments);
+int run_import(const ImportArguments& arguments);
+int run_search(const SearchArguments& arguments);
+int run_show(const ShowArguments& arguments);
+int run_set(const SetArguments& arguments);
+int run_reset(const ResetArguments& arguments);
+int run_simulate(const SimulateArguments& arguments);
+int run_check(const CheckArguments& arguments);
+int run_scene(const SceneArguments& arguments);
+int run_bench(const BenchArguments& arguments);
+
+}  // namespace embody::cli

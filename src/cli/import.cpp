@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/locations.h"
+#include "cli/output.h"
+
+namespace embody::cli {
+namespace {
+
+// Ctrl+C ends the import after the model in hand; what is in the database stays.
+volatile std::sig_atomic_t interrupted = 0;
+void note_interrupt(int) { interrupted = 1; }
+
+nlohmann::json to_json(const catalog::ImportReport& report) {
+    nlohmann::json failures = nlohmann::json::array();
+    for (const catalog::ImportFailure& failure : report.failures)
+        failures.push_back({{"path", failure.path}, {"why", failure.error.message()}});
+    return {{"added", report.added},           {"updated", report.updated}, {"unchanged", report.unchanged},
+            {"failures", std::move(failures)}, {"seconds", report.seconds}, {"stopped", report.stopped}};
+}
+
+}  // namespace
+
+int run_import(const ImportArguments& arguments) {
+    auto catalog = open_catalog(arguments.database);
+    if (!catalog) return report(catalog.error());
+    ProgressBar bar("Importing");
+    catalog::ImportOptions options;
+    options.workers = arguments.workers;
+    options.again = arguments.again;
+    options.progress = [&](const catalog::ImportProgress& progress) {
+        bar.show(progress.done, progress.total, progress.current);
+        return interrupted == 0;
+    };
+    std::signal(SIGINT, note_interrupt);
+    std::signal(SIGTERM, note_interrupt);
+    const auto result = (*catalog)->import(arguments.paths, options);
+    bar.finish();
+    if (!result) return report(result.error());
+    for (const catalog::ImportFailure& failure : result->failures)
+        fmt::print(stderr, "embody: {}: {}\n", failure.path, failure.error.message());
+    if (arguments.json) {
+        print_json(to_json(*result));
+    } else {
+        fmt::print("{} added, {} updated, {} unchanged, {} failed in {:.1f} s; {} models in {}\n", result->added,
+                   result->updated, result->unchanged, result->failures.size(), result->seconds,
+                   (*catalog)->model_count(), arguments.database.string());
+    }
+    if (result->stopped) {
+        fmt::print(stderr, "embody: stopped; the same command goes on from here\n");
+        return exit_failed;
+    }
+    return result->failures.empty() ? exit_ok : exit_partly;
+}
+
+}  // namespace embody::cli

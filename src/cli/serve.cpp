@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+#include <spawn.h>
+
+#include <array>
+#include <cstdlib>
+
+#include "cli/commands.h"
+#include "cli/locations.h"
+#include "cli/output.h"
+#include "server/server.h"
+
+namespace embody::cli {
+namespace {
+
+/// Asks the desktop to show the address; there may be none, and that is no error.
+void open_in_browser(const std::string& url) {
+    if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
+    std::string program = "xdg-open";
+    std::string address = url;
+    std::array<char*, 3> words{program.data(), address.data(), nullptr};
+    pid_t process = 0;
+    if (posix_spawnp(&process, words[0], nullptr, nullptr, words.data(), environ) != 0)
+        fmt::print(stderr, "No program to open a browser was found; open the address above by hand.\n");
+}
+
+}  // namespace
+
+int run_serve(const ServeArguments& arguments) {
+    server::ServerOptions options;
+    options.address = arguments.address;
+    options.any_port_if_taken = !arguments.port.has_value();
+    if (arguments.port) options.port = *arguments.port;
+    options.studio_folder = studio_folder();
+    options.scene.database = arguments.database;
+    options.scene.taxonomy_folder = data_folder() / "taxonomy";
+    options.scene.session.saved_scenes = saved_scenes_folder();
+    options.scene.session.demo_scenes = data_folder() / "scenes";
+    options.scene.open_scene = arguments.scene;
+    auto server = server::Server::start(options);
+    if (!server) return report(server.error());
+    fmt::print("Studio: {}\n", (*server)->url());
+    fmt::print("Stop with Ctrl+C.\n");
+    std::fflush(stdout);
+    if (arguments.open_browser) open_in_browser((*server)->url());
+    (*server)->run();
+    return exit_ok;
+}
+
+}  // namespace embody::cli

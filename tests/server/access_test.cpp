@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "server/access.h"
+
+#include <gtest/gtest.h>
+
+namespace embody::server {
+namespace {
+
+HttpRequest request(const std::string& host, const std::string& origin = "") {
+    HttpRequest made;
+    made.method = "GET";
+    made.target = "/ws";
+    made.host = host;
+    made.origin = origin;
+    return made;
+}
+
+const AccessRules loopback{true, 8420, ""};
+const AccessRules open_network{false, 8420, "0123456789abcdef"};
+
+TEST(AccessOnLoopback, ForeignPagesMayNotChangeState) {
+    EXPECT_FALSE(check_access(loopback, request("127.0.0.1:8420", "http://evil.example"), true).granted);
+    EXPECT_FALSE(check_access(loopback, request("127.0.0.1:8420", "null"), true).granted);
+    // Another port of this machine is another site.
+    EXPECT_FALSE(check_access(loopback, request("127.0.0.1:8420", "http://127.0.0.1:9999"), true).granted);
+}
+
+TEST(AccessOnLoopback, NamesThatWereReboundToThisMachineAreRefused) {
+    EXPECT_FALSE(check_access(loopback, request("evil.example:8420"), false).granted);
+    EXPECT_FALSE(check_access(loopback, request("127.0.0.1.evil.example"), false).granted);
+}
+
+TEST(AccessOnLoopback, OwnPagesAndScriptsAreServed) {
+    EXPECT_TRUE(check_access(loopback, request("127.0.0.1:8420", "http://127.0.0.1:8420"), true).granted);
+    EXPECT_TRUE(check_access(loopback, request("localhost:8420", "http://localhost:8420"), true).granted);
+    EXPECT_TRUE(check_access(loopback, request("[::1]:8420", "http://[::1]:8420"), true).granted);
+    EXPECT_TRUE(check_access(loopback, request("127.0.0.1:8420"), true).granted);
+}
+
+TEST(AccessFromTheNetwork, NeedsTheToken) {
+    EXPECT_FALSE(check_access(open_network, request("192.0.2.1:8420"), false).granted);
+    HttpRequest wrong = request("192.0.2.1:8420");
+    wrong.target = "/?token=0123456789abcdee";
+    EXPECT_FALSE(check_access(open_network, wrong, false).granted);
+    wrong.target = "/?token=";
+    EXPECT_FALSE(check_access(open_network, wrong, false).granted);
+    wrong.target = "/?token=0123456789abcdef0";
+    EXPECT_FALSE(check_access(open_network, wrong, false).granted);
+}
+
+TEST(AccessFromTheNetwork, TakesTheTokenFromAddressOrCookie) {
+    HttpRequest by_address = request("192.0.2.1:8420");
+    by_address.target = "/?token=0123456789abcdef";
+    EXPECT_TRUE(check_access(open_network, by_address, false).granted);
+    HttpRequest by_cookie = request("192.0.2.1:8420");
+    by_cookie.cookie = "theme=dark; embody_token=0123456789abcdef";
+    EXPECT_TRUE(check_access(open_network, by_cookie, false).granted);
+    by_cookie.cookie = "not_embody_token=0123456789abcdef";
+    EXPECT_FALSE(check_access(open_network, by_cookie, false).granted);
+}
+
+}  // namespace
+}  // namespace embody::server
