@@ -20,7 +20,8 @@ public:
     /// `body` is the caller's index, unique among the proxies. Two immovable bodies are never a pair.
     void insert(std::uint32_t body, const Bounds& bounds, bool movable);
     void remove(std::uint32_t body);
-    /// Tells new bounds; cheap while they stay within the enlarged ones. `force` re-inserts even then.
+    /// Tells new bounds; cheap while they stay within the enlarged ones. `expected_motion` (m, of the next step) says
+    /// where to enlarge them.
     void move(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion);
 
     struct Pair {

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// From a pair of shapes to pairs of convexes. Everything below works in a frame of world axes whose origin is shape a's
+// position, so that a scene far from the world's origin loses no digits.
+#include "foundation/assert.h"
+#include "physics/collision/collision_shape.h"
+#include "physics/collision/collision_shape_data.h"
+#include "physics/collision/convex_pairs.h"
+#include "physics/collision/surface_pair.h"
+
+namespace embody::physics {
+
+namespace {
+
+void flip(Manifold& manifold) {
+    manifold.normal = -manifold.normal;
+    std::swap(manifold.piece_a, manifold.piece_b);
+}
+
+void collide_with_plane(const CollisionShape::Data& a, const Transform& pose_a, const CollisionShape::Data& plane,
+                        const Transform& pose_b, double margin, std::vector<Manifold>& manifolds) {
+    thread_local ContactRegion region;
+    const Vec3 normal = rotate(pose_b.rotation, plane.plane_normal);
+    const PlacedPlane placed{normal, plane.plane_offset + dot(normal, pose_b.position - pose_a.position)};
+    for (std::uint32_t i = 0; i < a.pieces.size(); ++i) {
+        region.points.clear();
+        collide_plane(place(a.pieces[i], pose_a, pose_a.position), placed, margin, region);
+        const std::size_t before = manifolds.size();
+        append_manifold(region, pose_a.position, manifolds);
+        if (manifolds.size() > before) manifolds.back().piece_a = i;
+    }
+}
+
+Bounds bounds_in_frame(const PlacedConvex& convex) {
+    const Mat3& r = convex.rotation;
+    const Vec3 h = convex.shape->bounds.half_extents();
+    const Vec3 c = convex.to_frame(convex.shape->bounds.center());
+    const Vec3 e = abs(r.x) * h.x + abs(r.y) * h.y + abs(r.z) * h.z;
+    return {c - e, c + e};
+}
+
+void collide_pieces(const CollisionShape::Data& a, const Transform& pose_a, const CollisionShape::Data& b,
+                    const Transform& pose_b, double margin, std::vector<Manifold>& manifolds) {
+    thread_local ContactRegion region;
+    thread_local std::vector<PlacedConvex> placed_b;
+    thread_local std::vector<Bounds> bounds_b;
+    placed_b.clear();
+    bounds_b.clear();
+    for (const ConvexPiece& piece : b.pieces) {
+        placed_b.push_back(place(piece, pose_b, pose_a.position));
+        bounds_b.push_back(bounds_in_frame(placed_b.back()));
+    }
+    for (std::uint32_t i = 0; i < a.pieces.size(); ++i) {
+        const PlacedConvex placed_a = place(a.pieces[i], pose_a, pose_a.position);
+        const Bounds bounds_a = enlarged(bounds_in_frame(placed_a), margin);
+        for (std::uint32_t j = 0; j < placed_b.size(); ++j) {
+            if (!overlaps(bounds_a, bounds_b[j])) continue;
+            collide_convexes(placed_a, placed_b[j], margin, region);
+            const std::size_t before = manifolds.size();
+            append_manifold(region, pose_a.position, manifolds);
+            if (manifolds.size() == before) continue;
+            manifolds.back().piece_a = i;
+            manifolds.back().piece_b = j;
+        }
+    }
+}
+
+}  // namespace
+
+void collide_convexes(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region) {
+    region.points.clear();
+    // Each pair of kinds in one order, so that swapped arguments give the mirrored answer.
+    if (a.shape->kind > b.shape->kind) {
+        collide_convexes(b, a, margin, region);
+        region.normal = -region.normal;
+        return;
+    }
+    if (a.shape->kind == ConvexKind::sphere) {
+        collide_sphere(a, b, margin, region);
+    } else if (a.shape->kind == ConvexKind::polytope && b.shape->kind == ConvexKind::polytope) {
+        collide_polytopes(a, b, margin, region);
+    } else {
+        collide_round(a, b, margin, region);
+    }
+}
+
+void collide(const CollisionShape& a, const Transform& pose_a, const CollisionShape& b, const Transform& pose_b,
+             double margin, std::vector<Manifold>& manifolds) {
+    EMBODY_ASSERT(!(is_static_only(a.definition()) && is_static_only(b.definition())));
+    const CollisionShape::Data &data_a = a.data(), &data_b = b.data();
+    // A convex or compound comes first, what is only static second.
+    if (is_static_only(data_a.definition)) {
+        const std::size_t before = manifolds.size();
+        collide(b, pose_b, a, pose_a, margin, manifolds);
+        for (std::size_t i = before; i < manifolds.size(); ++i) flip(manifolds[i]);
+        return;
+    }
+    if (data_b.is_plane) {
+        collide_with_plane(data_a, pose_a, data_b, pose_b, margin, manifolds);
+    } else if (data_b.surface) {
+        for (std::uint32_t i = 0; i < data_a.pieces.size(); ++i) {
+            collide_surface(data_a.pieces[i], i, pose_a, {*data_b.surface, pose_b}, margin, manifolds);
+        }
+    } else {
+        collide_pieces(data_a, pose_a, data_b, pose_b, margin, manifolds);
+    }
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+// Clipping: I. Sutherland, G. Hodgman, "Reentrant polygon clipping", 1974, with the edges' names carried along so that
+// a corner of the region is known again in the next step.
+#include "physics/collision/contact_region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace embody::physics {
+
+namespace {
+
+/// A corner of the clipped polygon: the edges that meet there name it.
+struct ClipCorner {
+    Vec3 position;
+    std::uint32_t edge_in = 0, edge_out = 0;
+};
+
+constexpr std::uint32_t reference_edge_tag = 0x8000u;
+
+// Keeps the part of a closed polygon (or an open segment) that lies below the plane.
+void clip_by_plane(const std::vector<ClipCorner>& from, bool closed, Vec3 normal, double offset, std::uint32_t name,
+                   std::vector<ClipCorner>& to) {
+    to.clear();
+    const std::size_t n = from.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        const ClipCorner& u = from[i];
+        const double height_u = dot(normal, u.position) - offset;
+        if (height_u <= 0) to.push_back(u);
+        if (!closed && i + 1 == n) break;
+
+        // Where the edge crosses the plane, a new corner between this edge and the plane.
+        const ClipCorner& v = from[(i + 1) % n];
+        const double height_v = dot(normal, v.position) - offset;
+        if ((height_u <= 0) == (height_v <= 0)) continue;
+        const Vec3 p = u.position + (v.position - u.position) * (height_u / (height_u - height_v));
+        if (height_u <= 0) {
+            to.push_back({p, u.edge_out, name});
+        } else {
+            to.push_back({p, name, u.edge_out});
+        }
+    }
+}
+
+/// Parameters of the nearest points of the lines p + s u and q + t v; false where they are parallel.
+bool nearest_on_lines(Vec3 p, Vec3 u, Vec3 q, Vec3 v, double& s, double& t) {
+    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v);
+    const double det = uu * vv - uv * uv;
+    // sin² of the angle between them.
+    if (!(det > 1e-4 * uu * vv)) return false;
+    const Vec3 w = p - q;
+    const double du = dot(u, w), dv = dot(v, w);
+    s = (uv * dv - vv * du) / det;
+    t = (uu * dv - uv * du) / det;
+    return true;
+}
+
+}  // namespace
+
+std::uint32_t feature_name(std::initializer_list<std::uint32_t> parts) {
+    std::uint32_t name = 0x811C9DC5u;
+    for (const std::uint32_t part : parts) {
+        for (int shift = 0; shift < 32; shift += 8) {
+            name ^= (part >> shift) & 0xFFu;
+            name *= 0x01000193u;
+        }
+    }
+    return name;
+}
+
+void clip_to_region(const ContactFeature& reference, const ContactFeature& incident, bool reference_is_a, double lift,
+                    double margin, ContactRegion& region) {
+    thread_local std::vector<ClipCorner> corners, clipped;
+    const std::size_t sides = reference.points.size();
+    const bool closed = incident.points.size() > 2;
+
+    // The incident's corners, named by the edges before and after them.
+    corners.clear();
+    const auto n = static_cast<std::uint32_t>(incident.points.size());
+    for (std::uint32_t i = 0; i < n; ++i) corners.push_back({incident.points[i], (i + n - 1) % n, i});
+
+    // By each side of the reference in turn; a tiny slack keeps corners that lie on a side.
+    for (std::size_t i = 0; i < sides && !corners.empty(); ++i) {
+        const Vec3 p = reference.points[i];
+        const Vec3 along = reference.points[(i + 1) % sides] - p;
+        const Vec3 outwards = normalized(cross(along, reference.normal));
+        const double slack = 1e-9 * (std::fabs(along.x) + std::fabs(along.y) + std::fabs(along.z));
+        const auto name = static_cast<std::uint32_t>(i) | reference_edge_tag;
+        clip_by_plane(corners, closed, outwards, dot(outwards, p) + slack, name, clipped);
+        std::swap(corners, clipped);
+    }
+
+    // What is near enough, with its height over the reference's plane.
+    for (const ClipCorner& corner : corners) {
+        const double separation = dot(corner.position - reference.points[0], reference.normal) - lift;
+        if (separation > margin) continue;
+        const std::uint32_t name =
+            feature_name({reference_is_a ? 1u : 2u, reference.id, incident.id, corner.edge_in << 16 | corner.edge_out});
+        const Vec3 on_reference = corner.position - reference.normal * (separation + lift);
+        const Vec3 on_a = reference_is_a ? on_reference : on_reference - region.normal * separation;
+        region.add(on_a, separation, name);
+    }
+}
+
+void cross_segments(const ContactFeature& a, const ContactFeature& b, double radius_a, double radius_b, double margin,
+                    ContactRegion& region) {
+    const Vec3 p = a.points[0], q = b.points[0];
+    const Vec3 u = a.points[1] - p, v = b.points[1] - q;
+    const auto add = [&](Vec3 on_a, Vec3 on_b, std::uint32_t part) {
+        const double separation = dot(region.normal, on_b - on_a) - radius_a - radius_b;
+        if (separation > margin) return;
+        region.add(on_a + region.normal * radius_a, separation, feature_name({3u, a.id, b.id, part}));
+    };
+
+    // Crossing edges meet in one point.
+    double s = 0, t = 0;
+    if (nearest_on_lines(p, u, q, v, s, t)) {
+        add(p + u * std::clamp(s, 0.0, 1.0), q + v * std::clamp(t, 0.0, 1.0), 0);
+        return;
+    }
+
+    // Parallel ones along their common part: its two ends, seen from a.
+    const double uu = dot(u, u);
+    double s0 = dot(q - p, u) / uu, s1 = dot(q + v - p, u) / uu;
+    const double span = s1 - s0;
+    const double low = std::clamp(std::min(s0, s1), 0.0, 1.0), high = std::clamp(std::max(s0, s1), 0.0, 1.0);
+    const auto on_b = [&](double at) {
+        return q + v * (std::fabs(span) > 1e-12 ? std::clamp((at - s0) / span, 0.0, 1.0) : 0.5);
+    };
+    add(p + u * low, on_b(low), 1);
+    if (high - low > 1e-6) add(p + u * high, on_b(high), 2);
+}
+
+void reduce_to_four(ContactRegion& region) {
+    auto& points = region.points;
+    if (points.size() <= Manifold::max_points) return;
+    const Vec3 normal = region.normal;
+    const auto take_best = [&points](std::size_t slot, auto&& score) {
+        std::size_t best = slot;
+        double highest = -std::numeric_limits<double>::infinity();
+        for (std::size_t i = slot; i < points.size(); ++i) {
+            const double value = score(points[i]);
+            // Ties by a hair go to the earlier point, so that rounding does not choose.
+            if (value > highest + 1e-9 * std::fabs(highest)) {
+                highest = value;
+                best = i;
+            }
+        }
+        std::rotate(points.begin() + static_cast<std::ptrdiff_t>(slot),
+                    points.begin() + static_cast<std::ptrdiff_t>(best),
+                    points.begin() + static_cast<std::ptrdiff_t>(best) + 1);
+    };
+
+    // The deepest, the farthest from it, the farthest from their line, then the largest area on the other side.
+    take_best(0, [](const ManifoldPoint& p) { return -p.separation; });
+    const Vec3 first = points[0].position;
+    take_best(1, [&](const ManifoldPoint& p) { return length_squared(p.position - first); });
+    const Vec3 second = points[1].position;
+    const auto area = [&](Vec3 from, Vec3 to, Vec3 p) { return dot(normal, cross(to - from, p - from)); };
+    take_best(2, [&](const ManifoldPoint& p) { return std::fabs(area(first, second, p.position)); });
+    const Vec3 third = points[2].position;
+    const double turn = area(first, second, third) < 0 ? -1.0 : 1.0;
+    take_best(3, [&](const ManifoldPoint& p) {
+        // How far outside of the triangle: the largest of the areas beyond its three sides.
+        return std::max({-turn * area(first, second, p.position), -turn * area(second, third, p.position),
+                         -turn * area(third, first, p.position)});
+    });
+    points.resize(Manifold::max_points);
+}
+
+void append_manifold(ContactRegion& region, Vec3 origin, std::vector<Manifold>& manifolds) {
+    if (region.points.empty()) return;
+    reduce_to_four(region);
+    Manifold manifold;
+    manifold.normal = region.normal;
+    for (const ManifoldPoint& point : region.points) {
+        manifold.points[static_cast<std::size_t>(manifold.count)] = point;
+        manifold.points[static_cast<std::size_t>(manifold.count)].position += origin;
+        ++manifold.count;
+    }
+    manifolds.push_back(manifold);
+}
+
+}  // namespace embody::physics

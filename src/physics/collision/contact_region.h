@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <initializer_list>
+#include <vector>
+
+#include "physics/collision/convex.h"
+#include "physics/collision/manifold.h"
+
+namespace embody::physics {
+
+/// What a shape offers to a contact: a polygon (counter-clockwise seen from outside), a segment or a point, in the
+/// frame of the pair. `ids` name the corners; edge i runs from corner i to the next.
+struct ContactFeature {
+    std::vector<Vec3> points;
+    std::uint32_t id = 0;  ///< of the face, edge or vertex within its shape
+    Vec3 normal;           ///< outwards, of a polygon only
+
+    void clear() {
+        points.clear();
+        id = 0;
+    }
+};
+
+/// 32-bit name of a meeting of features.
+std::uint32_t feature_name(std::initializer_list<std::uint32_t> parts);
+
+/// A contact region while it is gathered, in the frame of the pair.
+struct ContactRegion {
+    Vec3 normal;  ///< unit, a to b
+    std::vector<ManifoldPoint> points;
+
+    /// `on_a` on the surface of a, `separation` from there along the normal to b.
+    void add(Vec3 on_a, double separation, std::uint32_t feature) {
+        points.push_back({on_a + normal * (0.5 * separation), separation, feature});
+    }
+};
+
+/// Clips `incident` (polygon or segment) by the sides of the polygon `reference` and adds what lies within `margin` of
+/// the reference's plane. `reference_is_a` tells whose plane it is; region.normal must be +-reference.normal. `lift`:
+/// radius around the incident's core.
+void clip_to_region(const ContactFeature& reference, const ContactFeature& incident, bool reference_is_a, double lift,
+                    double margin, ContactRegion& region);
+
+/// Two segments: the overlap of nearly parallel ones (two points), else where they pass each other (one point).
+/// Separations are measured along region.normal less the radii.
+void cross_segments(const ContactFeature& a, const ContactFeature& b, double radius_a, double radius_b, double margin,
+                    ContactRegion& region);
+
+/// Keeps at most four points: the deepest, then those that span the largest area (paper, III.B), in a fixed order.
+void reduce_to_four(ContactRegion& region);
+
+/// Appends the region as manifold, moved by `origin` into the world; nothing for an empty region.
+void append_manifold(ContactRegion& region, Vec3 origin, std::vector<Manifold>& manifolds);
+
+}  // namespace embody::physics

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "physics/collision/convex.h"
+
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace embody::physics {
+
+namespace {
+
+Vec3 rim_support(const Convex& round, Vec3 local_direction, double height) {
+    const double flat = std::hypot(local_direction.x, local_direction.z);
+    if (flat <= 1e-150) return {round.radius, height, 0};
+    const double s = round.radius / flat;
+    return {local_direction.x * s, height, local_direction.z * s};
+}
+
+Vec3 local_core_support(const Convex& convex, Vec3 d) {
+    switch (convex.kind) {
+        case ConvexKind::sphere:
+            return {};
+        case ConvexKind::capsule:
+            return {0, d.y < 0 ? -convex.half_height : convex.half_height, 0};
+        case ConvexKind::polytope:
+            return convex.polytope.vertices[support_vertex(convex.polytope, d)];
+        case ConvexKind::cylinder:
+            return rim_support(convex, d, d.y < 0 ? -convex.half_height : convex.half_height);
+        case ConvexKind::cone:
+            break;
+    }
+    // Cone: the apex or the rim of the base.
+    const Vec3 rim = rim_support(convex, d, -convex.half_height);
+    const Vec3 apex{0, convex.half_height, 0};
+    return dot(d, apex) > dot(d, rim) ? apex : rim;
+}
+
+}  // namespace
+
+Polytope box_polytope(Vec3 h) {
+    Polytope box;
+    for (int i = 0; i < 8; ++i) {
+        box.vertices.push_back({(i & 1) != 0 ? h.x : -h.x, (i & 2) != 0 ? h.y : -h.y, (i & 4) != 0 ? h.z : -h.z});
+    }
+    // Corners by the bits x, y, z; each loop counter-clockwise seen from outside.
+    static constexpr std::uint32_t corners[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                                    {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    const Vec3 normals[6] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
+    const double offsets[6] = {h.x, h.x, h.y, h.y, h.z, h.z};
+    for (std::uint32_t f = 0; f < 6; ++f) {
+        box.faces.push_back({normals[f], offsets[f], 4 * f, 4});
+        box.loops.insert(box.loops.end(), std::begin(corners[f]), std::end(corners[f]));
+    }
+    link_edges(box);
+    return box;
+}
+
+Polytope triangle_polytope(Vec3 a, Vec3 b, Vec3 c) {
+    Polytope triangle;
+    triangle.vertices = {a, b, c};
+    triangle.faces.push_back({{}, 0, 0, 3});
+    triangle.loops = {0, 1, 2};
+    triangle.edges = {{0, 1, 0, Polytope::no_face}, {1, 2, 0, Polytope::no_face}, {2, 0, 0, Polytope::no_face}};
+    triangle.edge_directions.resize(3);
+    set_triangle(triangle, a, b, c);
+    return triangle;
+}
+
+void set_triangle(Polytope& triangle, Vec3 a, Vec3 b, Vec3 c) {
+    triangle.vertices[0] = a;
+    triangle.vertices[1] = b;
+    triangle.vertices[2] = c;
+    triangle.faces[0].normal = normalized(cross(b - a, c - a));
+    triangle.faces[0].offset = dot(triangle.faces[0].normal, a);
+    triangle.edge_directions[0] = normalized(b - a);
+    triangle.edge_directions[1] = normalized(c - b);
+    triangle.edge_directions[2] = normalized(a - c);
+    triangle.center = (a + b + c) / 3;
+}
+
+void link_edges(Polytope& polytope) {
+    // Each undirected edge is met twice: first by the face on its left, then by the one on its right.
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> seen;
+    for (std::uint32_t f = 0; f < polytope.faces.size(); ++f) {
+        const Polytope::Face& face = polytope.faces[f];
+        for (std::uint32_t i = 0; i < face.count; ++i) {
+            const std::uint32_t from = polytope.loops[face.first + i];
+            const std::uint32_t to = polytope.loops[face.first + (i + 1) % face.count];
+            const auto found = seen.find({to, from});
+            if (found != seen.end()) {
+                polytope.edges[found->second].right = f;
+            } else {
+                seen[{from, to}] = polytope.edges.size();
+                polytope.edges.push_back({from, to, f, Polytope::no_face});
+            }
+        }
+    }
+
+    // Directions once each, so that parallel edges cost one axis.
+    for (const Polytope::Edge& edge : polytope.edges) {
+        const Vec3 d = normalized(polytope.vertices[edge.to] - polytope.vertices[edge.from]);
+        bool known = false;
+        for (const Vec3& other : polytope.edge_directions) known = known || std::fabs(dot(d, other)) > 1 - 1e-12;
+        if (!known) polytope.edge_directions.push_back(d);
+    }
+    for (const Vec3& v : polytope.vertices) polytope.center += v / static_cast<double>(polytope.vertices.size());
+}
+
+std::uint32_t support_vertex(const Polytope& polytope, Vec3 direction) {
+    std::uint32_t best = 0;
+    double farthest = dot(polytope.vertices[0], direction);
+    for (std::uint32_t i = 1; i < polytope.vertices.size(); ++i) {
+        const double along = dot(polytope.vertices[i], direction);
+        if (along > farthest) {
+            farthest = along;
+            best = i;
+        }
+    }
+    return best;
+}
+
+std::uint32_t support_face(const Polytope& polytope, Vec3 direction) {
+    std::uint32_t best = 0;
+    double most = dot(polytope.faces[0].normal, direction);
+    for (std::uint32_t i = 1; i < polytope.faces.size(); ++i) {
+        const double aligned = dot(polytope.faces[i].normal, direction);
+        if (aligned > most) {
+            most = aligned;
+            best = i;
+        }
+    }
+    return best;
+}
+
+Vec3 core_support(const PlacedConvex& convex, Vec3 direction) {
+    return convex.to_frame(local_core_support(*convex.shape, convex.direction_to_local(direction)));
+}
+
+Vec3 interior_point(const PlacedConvex& convex) {
+    if (convex.shape->kind == ConvexKind::polytope) return convex.to_frame(convex.shape->polytope.center);
+    if (convex.shape->kind == ConvexKind::cone) return convex.to_frame({0, -0.5 * convex.shape->half_height, 0});
+    return convex.position;
+}
+
+double separation_along(const PlacedConvex& a, const PlacedConvex& b, Vec3 normal) {
+    return dot(normal, core_support(b, -normal) - core_support(a, normal)) - rounding(*a.shape) - rounding(*b.shape);
+}
+
+ConeSlope cone_slope(const Convex& cone) {
+    const double slant = std::hypot(2 * cone.half_height, cone.radius);
+    return {2 * cone.half_height / slant, cone.radius / slant};
+}
+
+}  // namespace embody::physics

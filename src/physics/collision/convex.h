@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "math/bounds.h"
+#include "math/mat3.h"
+
+namespace embody::physics {
+
+/// Convex polyhedron with merged planar faces. Loops run counter-clockwise seen from outside.
+struct Polytope {
+    static constexpr std::uint32_t no_face = 0xFFFFFFFFu;
+
+    struct Face {
+        Vec3 normal;                         ///< unit, outwards
+        double offset = 0;                   ///< dot(normal, p) on the face
+        std::uint32_t first = 0, count = 0;  ///< its corners in `loops`
+    };
+    struct Edge {
+        std::uint32_t from = 0, to = 0;  ///< vertices, as `left` runs along it
+        std::uint32_t left = 0, right = no_face;
+    };
+    std::vector<Vec3> vertices;
+    std::vector<Face> faces;
+    std::vector<std::uint32_t> loops;  ///< vertex indices, face after face
+    std::vector<Edge> edges;
+    std::vector<Vec3> edge_directions;  ///< unit, each direction once (without its sign)
+    Vec3 center;                        ///< mean of the vertices, inside
+};
+
+Polytope box_polytope(Vec3 half_extents);
+/// One flat face with open edges, counter-clockwise seen from the front.
+Polytope triangle_polytope(Vec3 a, Vec3 b, Vec3 c);
+/// Moves an existing triangle without allocating.
+void set_triangle(Polytope& triangle, Vec3 a, Vec3 b, Vec3 c);
+/// Fills edges, edge_directions and center from vertices, faces and loops.
+void link_edges(Polytope& polytope);
+
+enum class ConvexKind : std::uint8_t { sphere, capsule, polytope, cylinder, cone };
+
+/// A convex solid in its own frame: a core and, for sphere and capsule, a radius around it.
+struct Convex {
+    ConvexKind kind = ConvexKind::sphere;
+    double radius = 0;
+    double half_height = 0;
+    Polytope polytope;
+    Bounds bounds;
+};
+
+/// A convex seen from the frame in which a pair is compared (world axes, origin near the pair: far from the world's
+/// origin no digit is lost).
+struct PlacedConvex {
+    const Convex* shape = nullptr;
+    Mat3 rotation;
+    Vec3 position;
+
+    [[nodiscard]] Vec3 to_frame(Vec3 local) const { return position + rotation * local; }
+    [[nodiscard]] Vec3 direction_to_frame(Vec3 local) const { return rotation * local; }
+    [[nodiscard]] Vec3 to_local(Vec3 p) const { return direction_to_local(p - position); }
+    [[nodiscard]] Vec3 direction_to_local(Vec3 d) const {
+        return {dot(rotation.x, d), dot(rotation.y, d), dot(rotation.z, d)};
+    }
+};
+
+/// Index of the vertex farthest along `direction` (local).
+std::uint32_t support_vertex(const Polytope& polytope, Vec3 direction);
+/// Index of the face whose normal is nearest to `direction` (local).
+std::uint32_t support_face(const Polytope& polytope, Vec3 direction);
+/// Farthest point of the core along `direction` (frame, any length).
+Vec3 core_support(const PlacedConvex& convex, Vec3 direction);
+/// Radius around the core.
+inline double rounding(const Convex& convex) {
+    return convex.kind == ConvexKind::sphere || convex.kind == ConvexKind::capsule ? convex.radius : 0.0;
+}
+/// A point well inside.
+Vec3 interior_point(const PlacedConvex& convex);
+/// Gap between the two solids along the unit direction `normal` from a to b: never more than their true distance, and
+/// equal to it (or to minus the penetration depth) along the best normal.
+double separation_along(const PlacedConvex& a, const PlacedConvex& b, Vec3 normal);
+
+/// Cone: slope of the side's normal: unit (radial, axial) components.
+struct ConeSlope {
+    double radial = 0, axial = 0;
+};
+ConeSlope cone_slope(const Convex& cone);
+
+}  // namespace embody::physics

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/collision/contact_region.h"
+#include "physics/collision/convex.h"
+
+namespace embody::physics {
+
+// Each finds the contact region of one family of pairs; the region's normal is set where there are points.
+
+/// Signed distance of a point from the surface of a convex (negative inside), and the outward direction there.
+struct SurfaceDistance {
+    Vec3 normal;  ///< unit, local
+    double distance = 0;
+};
+SurfaceDistance distance_from_surface(const Convex& convex, Vec3 local_point);
+
+/// Half space below dot(normal, p) = offset, in the frame of the pair.
+struct PlacedPlane {
+    Vec3 normal;
+    double offset = 0;
+};
+
+/// a is a sphere, b any convex.
+void collide_sphere(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region);
+/// a is any convex, b the plane; the normal points from a into the plane.
+void collide_plane(const PlacedConvex& a, const PlacedPlane& plane, double margin, ContactRegion& region);
+/// Both are polytopes with volume.
+void collide_polytopes(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region);
+/// Any pair of convexes, by GJK and EPA: those with a round side, and triangles.
+void collide_round(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region);
+
+/// Picks the right one of the above; `region` is emptied first.
+void collide_convexes(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region);
+
+}  // namespace embody::physics

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+
+#include "physics/collision/convex.h"
+
+namespace embody::physics {
+
+/// A corner of the Minkowski difference b - a and the two points it comes from.
+struct DifferencePoint {
+    Vec3 difference, on_a, on_b;
+};
+DifferencePoint difference_support(const PlacedConvex& a, const PlacedConvex& b, Vec3 direction);
+
+/// Nearest points of two cores (the shapes without the radius around sphere and capsule).
+struct CoreDistance {
+    bool overlap = false;
+    double distance = 0;
+    Vec3 on_a, on_b;
+    std::array<DifferencePoint, 4> simplex;  ///< of the last iteration, where they overlap it holds the origin
+    int simplex_size = 0;
+};
+/// May stop as soon as the gap is known to exceed `enough`; then `distance` is a lower bound.
+CoreDistance core_distance(const PlacedConvex& a, const PlacedConvex& b, double enough = 1e300);
+
+/// Direction in which overlapping cores part soonest, unit, from a to b; false if no volume was found to search.
+bool penetration_normal(const PlacedConvex& a, const PlacedConvex& b, const CoreDistance& overlap, Vec3& normal);
+
+}  // namespace embody::physics

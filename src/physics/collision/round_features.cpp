@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+#include "physics/collision/round_features.h"
+
+#include <array>
+#include <cmath>
+
+#include "physics/collision/rim.h"
+
+namespace embody::physics {
+
+namespace {
+
+// Names of the features of round shapes; those of polytopes are their indices.
+constexpr std::uint32_t top_cap = 0x10000, bottom_cap = 0x10001, side_line = 0x10002;
+constexpr double aligned_cosine = 1 - 1e-9;
+constexpr double across = 3e-5;
+
+struct UnitCircle {
+    std::array<double, rim_corners> cosine{}, sine{};
+    // Built by one rotation after another, not by the library's sin and cos, whose last digits differ by system.
+    UnitCircle() {
+        constexpr double c = 0.96592582628906828675, s = 0.25881904510252076235;  // 15 degrees
+        static_assert(rim_corners == 24);
+        double x = 1, y = 0;
+        for (std::size_t i = 0; i < rim_corners; ++i) {
+            cosine[i] = x;
+            sine[i] = y;
+            const double next = x * c - y * s;
+            y = x * s + y * c;
+            x = next;
+        }
+    }
+};
+
+void get_cap(const PlacedConvex& convex, bool top, Vec3 local_direction, ContactFeature& feature) {
+    static const UnitCircle circle;
+    const double r = convex.shape->radius;
+    const double y = top ? convex.shape->half_height : -convex.shape->half_height;
+    const Vec3 normal{0, top ? 1.0 : -1.0, 0};
+    const RimStart start = rim_start(local_direction);
+    const Vec3 second = cross(normal, start.along);
+    feature.clear();
+    feature.id = top ? top_cap : bottom_cap;
+    feature.normal = convex.direction_to_frame(normal);
+    for (std::size_t i = 0; i < rim_corners; ++i) {
+        const Vec3 on_rim = start.along * (r * circle.cosine[i]) + second * (r * circle.sine[i]);
+        feature.points.push_back(convex.to_frame(on_rim + Vec3{0, y, 0}));
+    }
+}
+
+// The line of the side that lies farthest along the direction: rim to rim, or rim to apex.
+void get_side(const PlacedConvex& convex, Vec3 local_direction, ContactFeature& feature) {
+    const Convex& shape = *convex.shape;
+    const Vec3 outward = rim_start(local_direction).along * shape.radius;
+    const Vec3 top = shape.kind == ConvexKind::cone ? Vec3{} : outward;
+    feature.clear();
+    feature.id = side_line;
+    feature.points.push_back(convex.to_frame(outward - Vec3{0, shape.half_height, 0}));
+    feature.points.push_back(convex.to_frame(top + Vec3{0, shape.half_height, 0}));
+}
+
+void get_axis(const PlacedConvex& capsule, ContactFeature& feature) {
+    feature.clear();
+    feature.id = side_line;
+    feature.points.push_back(capsule.to_frame({0, -capsule.shape->half_height, 0}));
+    feature.points.push_back(capsule.to_frame({0, capsule.shape->half_height, 0}));
+}
+
+void get_polytope_face(const PlacedConvex& convex, std::uint32_t face, ContactFeature& feature) {
+    const Polytope& polytope = convex.shape->polytope;
+    const Polytope::Face& f = polytope.faces[face];
+    feature.clear();
+    feature.id = face;
+    feature.normal = convex.direction_to_frame(f.normal);
+    for (std::uint32_t i = 0; i < f.count; ++i) {
+        feature.points.push_back(convex.to_frame(polytope.vertices[polytope.loops[f.first + i]]));
+    }
+}
+
+// Normal of the side of a cylinder or cone nearest to the direction (local).
+Vec3 side_normal(const Convex& shape, Vec3 local_direction) {
+    const Vec3 outward = rim_start(local_direction).along;
+    if (shape.kind == ConvexKind::cylinder) return outward;
+    const ConeSlope slope = cone_slope(shape);
+    return outward * slope.radial + Vec3{0, slope.axial, 0};
+}
+
+bool get_polytope_edge(const PlacedConvex& convex, Vec3 d, ContactFeature& feature) {
+    // Of the edges at the farthest vertex, the one most across the direction.
+    const Polytope& polytope = convex.shape->polytope;
+    const std::uint32_t vertex = support_vertex(polytope, d);
+    double least = across;
+    std::uint32_t best = Polytope::no_face;
+    for (std::uint32_t i = 0; i < polytope.edges.size(); ++i) {
+        const Polytope::Edge& edge = polytope.edges[i];
+        if (edge.from != vertex && edge.to != vertex) continue;
+        const double slope = std::fabs(dot(normalized(polytope.vertices[edge.to] - polytope.vertices[edge.from]), d));
+        if (slope >= least) continue;
+        least = slope;
+        best = i;
+    }
+    if (best == Polytope::no_face) return false;
+    feature.clear();
+    feature.id = best;
+    feature.points.push_back(convex.to_frame(polytope.vertices[polytope.edges[best].from]));
+    feature.points.push_back(convex.to_frame(polytope.vertices[polytope.edges[best].to]));
+    return true;
+}
+
+}  // namespace
+
+bool get_aligned_face(const PlacedConvex& convex, Vec3 direction, ContactFeature& feature) {
+    const Vec3 d = convex.direction_to_local(direction);
+    const Convex& shape = *convex.shape;
+    if (shape.kind == ConvexKind::polytope) {
+        const std::uint32_t face = support_face(shape.polytope, d);
+        if (dot(shape.polytope.faces[face].normal, d) < aligned_cosine) return false;
+        get_polytope_face(convex, face, feature);
+        return true;
+    }
+    const bool has_top = shape.kind == ConvexKind::cylinder;
+    const bool has_bottom = has_top || shape.kind == ConvexKind::cone;
+    if (!(has_top && d.y > aligned_cosine) && !(has_bottom && d.y < -aligned_cosine)) return false;
+    get_cap(convex, d.y > 0, d, feature);
+    return true;
+}
+
+bool get_aligned_line(const PlacedConvex& convex, Vec3 direction, ContactFeature& feature) {
+    const Vec3 d = convex.direction_to_local(direction);
+    const Convex& shape = *convex.shape;
+    switch (shape.kind) {
+        case ConvexKind::sphere:
+            return false;
+        case ConvexKind::capsule:
+            // Its round ends keep the far end honest: at any slope the separations of both ends are right.
+            if (std::fabs(d.y) > 0.1) return false;
+            get_axis(convex, feature);
+            return true;
+        case ConvexKind::polytope:
+            return get_polytope_edge(convex, d, feature);
+        case ConvexKind::cylinder:
+        case ConvexKind::cone:
+            break;
+    }
+    const Vec3 normal = side_normal(shape, d);
+    if (length(normal - d) > across) return false;
+    get_side(convex, d, feature);
+    return true;
+}
+
+void get_facing(const PlacedConvex& convex, Vec3 direction, ContactFeature& feature) {
+    const Vec3 d = convex.direction_to_local(direction);
+    const Convex& shape = *convex.shape;
+    switch (shape.kind) {
+        case ConvexKind::sphere:
+            feature.clear();
+            feature.points.push_back(convex.position);
+            return;
+        case ConvexKind::capsule:
+            get_axis(convex, feature);
+            return;
+        case ConvexKind::polytope:
+            get_polytope_face(convex, support_face(shape.polytope, d), feature);
+            return;
+        case ConvexKind::cylinder:
+        case ConvexKind::cone:
+            break;
+    }
+    const bool cap_exists = shape.kind == ConvexKind::cylinder || d.y < 0;
+    if (cap_exists && std::fabs(d.y) >= dot(side_normal(shape, d), d)) {
+        get_cap(convex, d.y > 0, d, feature);
+    } else {
+        get_side(convex, d, feature);
+    }
+}
+
+void add_own_normals(const PlacedConvex& convex, Vec3 direction, bool all_faces, std::vector<Vec3>& normals) {
+    const Vec3 d = convex.direction_to_local(direction);
+    const Convex& shape = *convex.shape;
+    if (shape.kind == ConvexKind::polytope) {
+        if (!all_faces) {
+            const std::uint32_t face = support_face(shape.polytope, d);
+            normals.push_back(convex.direction_to_frame(shape.polytope.faces[face].normal));
+            return;
+        }
+        for (const Polytope::Face& face : shape.polytope.faces)
+            normals.push_back(convex.direction_to_frame(face.normal));
+        return;
+    }
+    if (shape.kind != ConvexKind::cylinder && shape.kind != ConvexKind::cone) return;
+    const bool cap_exists = shape.kind == ConvexKind::cylinder || d.y < 0;
+    if (cap_exists) normals.push_back(convex.direction_to_frame({0, d.y < 0 ? -1.0 : 1.0, 0}));
+    normals.push_back(convex.direction_to_frame(side_normal(shape, d)));
+}
+
+void add_line_directions(const PlacedConvex& convex, Vec3 direction, std::vector<Vec3>& lines) {
+    constexpr std::size_t few = 6;
+    const Convex& shape = *convex.shape;
+    const Vec3 d = convex.direction_to_local(direction);
+    switch (shape.kind) {
+        case ConvexKind::sphere:
+            return;
+        case ConvexKind::capsule:
+        case ConvexKind::cylinder:
+            lines.push_back(convex.rotation.y);
+            return;
+        case ConvexKind::cone: {
+            const Vec3 outward = rim_start(d).along * shape.radius;
+            lines.push_back(normalized(convex.direction_to_frame(Vec3{0, 2 * shape.half_height, 0} - outward)));
+            return;
+        }
+        case ConvexKind::polytope:
+            break;
+    }
+    // All of a simple polytope's; of a rich one those at the farthest vertex.
+    const Polytope& polytope = shape.polytope;
+    if (polytope.edge_directions.size() <= few) {
+        for (const Vec3& e : polytope.edge_directions) lines.push_back(convex.direction_to_frame(e));
+        return;
+    }
+    const std::uint32_t vertex = support_vertex(polytope, d);
+    for (const Polytope::Edge& edge : polytope.edges) {
+        if (edge.from != vertex && edge.to != vertex) continue;
+        const Vec3 e = normalized(polytope.vertices[edge.to] - polytope.vertices[edge.from]);
+        lines.push_back(convex.direction_to_frame(e));
+    }
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+// Any two convexes, for pairs with a round side and for single triangles. GJK gives the normal of separated cores and
+// EPA that of overlapping ones; both are then held against the exact normals nearby (faces, caps, sides, crossing
+// lines). Every normal's separation is measured by the support functions and never exceeds the true one, so the largest
+// is the best, and a face that is as good as EPA's answer replaces it: a cylinder on a box stands on the box's exact
+// normal. (D. Gregorius's remark that GJK and EPA alone give noisy face contacts, GDC 2015.)
+#include <algorithm>
+#include <cmath>
+
+#include "physics/collision/convex_pairs.h"
+#include "physics/collision/gjk.h"
+#include "physics/collision/round_features.h"
+
+namespace embody::physics {
+
+namespace {
+
+/// The parting direction of a pair and how it was found.
+struct PartingAxis {
+    bool found = false;
+    Vec3 normal;  ///< unit, a to b
+    double separation = 0;
+    bool has_witness = false;  ///< on_a and on_b are the nearest points of the cores
+    Vec3 on_a, on_b;
+};
+
+double smaller_size(const PlacedConvex& a, const PlacedConvex& b) {
+    const Vec3 extent_a = a.shape->bounds.size(), extent_b = b.shape->bounds.size();
+    const double size_a = std::max({extent_a.x, extent_a.y, extent_a.z});
+    const double size_b = std::max({extent_b.x, extent_b.y, extent_b.z});
+    return std::min(size_a, size_b);
+}
+
+void gather_candidates(const PlacedConvex& a, const PlacedConvex& b, Vec3 normal, bool overlap,
+                       std::vector<Vec3>& candidates) {
+    thread_local std::vector<Vec3> lines_a, lines_b, normals_b;
+    candidates.clear();
+    normals_b.clear();
+    lines_a.clear();
+    lines_b.clear();
+    add_own_normals(a, normal, overlap, candidates);
+    add_own_normals(b, -normal, overlap, normals_b);
+    for (const Vec3& n : normals_b) candidates.push_back(-n);
+
+    // Lines that cross part along what is perpendicular to both.
+    add_line_directions(a, normal, lines_a);
+    add_line_directions(b, -normal, lines_b);
+    for (const Vec3& u : lines_a) {
+        for (const Vec3& v : lines_b) {
+            const Vec3 n = cross(u, v);
+            const double sine = length(n);
+            if (sine < 1e-4) continue;
+            candidates.push_back(n * ((dot(n, normal) < 0 ? -1 : 1) / sine));
+        }
+    }
+}
+
+PartingAxis find_axis(const PlacedConvex& a, const PlacedConvex& b, double margin) {
+    thread_local std::vector<Vec3> candidates;
+    PartingAxis axis;
+    const double radii = rounding(*a.shape) + rounding(*b.shape);
+    const double size = smaller_size(a, b);
+    const CoreDistance gap = core_distance(a, b, margin + radii);
+    if (!gap.overlap && gap.distance - radii > margin) return axis;
+
+    // Below this gap the difference of the witness points has no direction left.
+    const bool apart = !gap.overlap && gap.distance > 1e-9 * size;
+    if (apart) {
+        axis = {true, (gap.on_b - gap.on_a) / gap.distance, gap.distance - radii, true, gap.on_a, gap.on_b};
+    } else {
+        if (!penetration_normal(a, b, gap, axis.normal)) {
+            axis.normal = normalized(interior_point(b) - interior_point(a), {0, 1, 0});
+        }
+        axis.separation = separation_along(a, b, axis.normal);
+        axis.found = true;
+    }
+
+    // An exact normal that is better, or as good within a hair.
+    gather_candidates(a, b, axis.normal, !apart, candidates);
+    const double hair = 1e-7 * size;
+    Vec3 best_normal;
+    double best = axis.separation - hair;
+    for (const Vec3& n : candidates) {
+        const double separation = separation_along(a, b, n);
+        if (separation <= best) continue;
+        best = separation;
+        best_normal = n;
+    }
+    if (length_squared(best_normal) > 0) {
+        axis.normal = best_normal;
+        axis.separation = best;
+    }
+    return axis;
+}
+
+struct FeatureScratch {
+    ContactFeature face_a, face_b, other, line_a, line_b;
+};
+
+// A face of one against what the other turns to it.
+void add_face_region(const PlacedConvex& a, const PlacedConvex& b, bool is_face_a, double margin, FeatureScratch& f,
+                     ContactRegion& region) {
+    const PlacedConvex& incident = is_face_a ? b : a;
+    get_facing(incident, is_face_a ? -region.normal : region.normal, f.other);
+    clip_to_region(is_face_a ? f.face_a : f.face_b, f.other, is_face_a, rounding(*incident.shape), margin, region);
+}
+
+// One point, where a corner or a rim of one meets the other.
+void add_point(const PlacedConvex& a, const PlacedConvex& b, const PartingAxis& axis, bool is_point_a,
+               ContactRegion& region) {
+    const double radius_a = rounding(*a.shape);
+    const bool witness = axis.has_witness;
+    Vec3 on_a = witness ? axis.on_a + axis.normal * radius_a : core_support(a, axis.normal) + axis.normal * radius_a;
+    if (!witness && !is_point_a) {
+        on_a = core_support(b, -axis.normal) - axis.normal * (axis.separation + rounding(*b.shape));
+    }
+    region.add(on_a, axis.separation, 0);
+}
+
+}  // namespace
+
+void collide_round(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region) {
+    thread_local FeatureScratch f;
+    const PartingAxis axis = find_axis(a, b, margin);
+    if (!axis.found || axis.separation > margin) return;
+    region.normal = axis.normal;
+
+    // A flat face on either side: a region. A polytope's own face is exact, a rim is a polygon: the former first.
+    const bool is_face_a = get_aligned_face(a, axis.normal, f.face_a);
+    const bool is_face_b = get_aligned_face(b, -axis.normal, f.face_b);
+    if (is_face_a || is_face_b) {
+        const bool prefer_a = is_face_a && (!is_face_b || a.shape->kind == ConvexKind::polytope);
+        add_face_region(a, b, prefer_a, margin, f, region);
+        if (!region.points.empty()) return;
+    }
+    // Two straight lines, else a point.
+    const bool is_line_a = get_aligned_line(a, axis.normal, f.line_a);
+    const bool is_line_b = get_aligned_line(b, -axis.normal, f.line_b);
+    if (is_line_a && is_line_b) {
+        cross_segments(f.line_a, f.line_b, rounding(*a.shape), rounding(*b.shape), margin, region);
+    }
+    if (region.points.empty()) add_point(a, b, axis, !is_line_a && !is_face_a, region);
+}
+
+}  // namespace embody::physics
