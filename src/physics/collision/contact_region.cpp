@@ -134,39 +134,56 @@ void cross_segments(const ContactFeature& a, const ContactFeature& b, double rad
 
 void reduce_to_four(ContactRegion& region) {
     auto& points = region.points;
-    if (points.size() <= Manifold::max_points) return;
+    if (points.size() < 3) return;
     const Vec3 normal = region.normal;
-    const auto take_best = [&points](std::size_t slot, auto&& score) {
-        std::size_t best = slot;
-        double highest = -std::numeric_limits<double>::infinity();
-        for (std::size_t i = slot; i < points.size(); ++i) {
+    std::size_t kept = 0;
+    // Moves the best of the points not yet kept behind those kept, unless its score is below `least`.
+    const auto keep_best = [&](double least, auto&& score) {
+        std::size_t best = points.size();
+        double highest = least;
+        for (std::size_t i = kept; i < points.size(); ++i) {
             const double value = score(points[i]);
             // Ties by a hair go to the earlier point, so that rounding does not choose.
-            if (value > highest + 1e-9 * std::fabs(highest)) {
-                highest = value;
-                best = i;
-            }
+            if (value <= highest + (best == points.size() ? 0 : 1e-9 * std::fabs(highest))) continue;
+            highest = value;
+            best = i;
         }
-        std::rotate(points.begin() + static_cast<std::ptrdiff_t>(slot),
-                    points.begin() + static_cast<std::ptrdiff_t>(best),
-                    points.begin() + static_cast<std::ptrdiff_t>(best) + 1);
+        if (best == points.size()) return false;
+        const auto at = [&points](std::size_t i) { return points.begin() + static_cast<std::ptrdiff_t>(i); };
+        std::rotate(at(kept), at(best), at(best + 1));
+        ++kept;
+        return true;
     };
 
-    // The deepest, the farthest from it, the farthest from their line, then the largest area on the other side.
-    take_best(0, [](const ManifoldPoint& p) { return -p.separation; });
-    const Vec3 first = points[0].position;
-    take_best(1, [&](const ManifoldPoint& p) { return length_squared(p.position - first); });
-    const Vec3 second = points[1].position;
-    const auto area = [&](Vec3 from, Vec3 to, Vec3 p) { return dot(normal, cross(to - from, p - from)); };
-    take_best(2, [&](const ManifoldPoint& p) { return std::fabs(area(first, second, p.position)); });
-    const Vec3 third = points[2].position;
-    const double turn = area(first, second, third) < 0 ? -1.0 : 1.0;
-    take_best(3, [&](const ManifoldPoint& p) {
-        // How far outside of the triangle: the largest of the areas beyond its three sides.
-        return std::max({-turn * area(first, second, p.position), -turn * area(second, third, p.position),
-                         -turn * area(third, first, p.position)});
+    // The outermost of the deepest (within a small part of the size).
+    Vec3 middle;
+    double lowest = std::numeric_limits<double>::infinity(), size = 0;
+    for (const ManifoldPoint& p : points) {
+        middle += p.position / static_cast<double>(points.size());
+        lowest = std::min(lowest, p.separation);
+    }
+    for (const ManifoldPoint& p : points) size = std::max(size, distance(p.position, middle));
+    keep_best(-1, [&](const ManifoldPoint& p) {
+        return p.separation <= lowest + 1e-4 * size ? distance(p.position, middle) : -2.0;
     });
-    points.resize(Manifold::max_points);
+
+    // The farthest from it, the farthest from their line, the farthest beyond the triangle; what adds no area is
+    // dropped.
+    const double no_area = 1e-5 * size * size;
+    const auto area = [&](Vec3 from, Vec3 to, Vec3 p) { return dot(normal, cross(to - from, p - from)); };
+    const Vec3 first = points[0].position;
+    if (keep_best(1e-6 * size, [&](const ManifoldPoint& p) { return distance(p.position, first); })) {
+        const Vec3 second = points[1].position;
+        if (keep_best(no_area, [&](const ManifoldPoint& p) { return std::fabs(area(first, second, p.position)); })) {
+            const Vec3 third = points[2].position;
+            const double turn = area(first, second, third) < 0 ? -1.0 : 1.0;
+            keep_best(no_area, [&](const ManifoldPoint& p) {
+                return std::max({-turn * area(first, second, p.position), -turn * area(second, third, p.position),
+                                 -turn * area(third, first, p.position)});
+            });
+        }
+    }
+    points.resize(kept);
 }
 
 void append_manifold(ContactRegion& region, Vec3 origin, std::vector<Manifold>& manifolds) {

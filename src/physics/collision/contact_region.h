@@ -47,7 +47,8 @@ void clip_to_region(const ContactFeature& reference, const ContactFeature& incid
 void cross_segments(const ContactFeature& a, const ContactFeature& b, double radius_a, double radius_b, double margin,
                     ContactRegion& region);
 
-/// Keeps at most four points: the deepest, then those that span the largest area (paper, III.B), in a fixed order.
+/// Keeps at most four points: the deepest, then those that span the largest area (paper, III.B), in a fixed order;
+/// points that add no area (twins, or inner ones of a line) go.
 void reduce_to_four(ContactRegion& region);
 
 /// Appends the region as manifold, moved by `origin` into the world; nothing for an empty region.
