@@ -20,6 +20,8 @@ namespace embody::scene {
 
 /// Names an entity of a document for as long as the document lives; never used twice.
 using EntityIndex = std::uint32_t;
+/// Higher ones are for what actions spawn in a running simulation.
+inline constexpr EntityIndex last_document_index = 0x7FFFFFFF;
 
 /// A model of the database, by its key.
 struct ModelReference {
@@ -42,6 +44,7 @@ struct Entity {
     Vec3 torque;            ///< constant, N m
     bool enabled = true;
     bool start_asleep = false;
+    bool allow_sleep = true;
     bool continuous = false;                     ///< sweep fast motion
     std::string category;                        ///< of primitives, for actions; models bring theirs
     std::optional<std::array<double, 3>> color;  ///< of primitives, linear RGB 0 … 1
@@ -72,5 +75,8 @@ struct Document {
     /// One more than the highest index ever used here.
     EntityIndex next_index = 1;
 };
+
+/// Whether both would be saved as the same file.
+bool operator==(const Document& a, const Document& b);
 
 }  // namespace embody::scene

@@ -30,6 +30,11 @@ public:
 
     /// One time step: due actions, physics, triggers of what happened.
     const physics::StepReport& step();
+    /// What actions brought into the world and took from it in the last step.
+    [[nodiscard]] const std::vector<EntityIndex>& spawned() const;
+    [[nodiscard]] const std::vector<EntityIndex>& despawned() const;
+    /// Effects of the last step that could not be carried out, and why.
+    [[nodiscard]] const std::vector<Error>& problems() const;
     /// An action asked for a pause in the last step.
     [[nodiscard]] bool pause_requested() const;
     [[nodiscard]] const std::vector<ActionFired>& fired() const;
@@ -43,13 +48,22 @@ public:
     /// Null for an entity that is not (any more) in the world.
     [[nodiscard]] physics::BodyHandle body(EntityIndex entity) const;
     [[nodiscard]] EntityIndex entity(physics::BodyHandle body) const;  ///< 0 if none
+    /// The entity as it is now, but for pose and velocities; null for one that is not in the world.
+    [[nodiscard]] const Entity* definition(EntityIndex entity) const;
+    /// Null for a joint that is not in the world.
+    [[nodiscard]] physics::JointHandle joint(std::uint32_t joint) const;
     /// The attributes as they act: model's, entity's manual ones, what actions set.
     [[nodiscard]] Result<attributes::AttributeSet> attributes(EntityIndex entity) const;
 
     /// Edits while running; the same checks as create().
     Result<void> add(const Entity& entity);
+    /// With `keep_motion` pose and velocities stay as they are now, else they become the entity's.
     Result<void> update(const Entity& entity, bool keep_motion);
-    Result<void> remove(EntityIndex entity);
+    Result<void> remove(EntityIndex entity);  ///< its joints go with it
+    Result<void> add_joint(const SceneJoint& joint);
+    Result<void> remove_joint(std::uint32_t joint);
+    /// Actions that were there go on where they are; new ones start.
+    void set_actions(const std::vector<Action>& actions);
 
 private:
     Simulation();

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+#include "scene/entity_body.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "attributes/assemble.h"
+#include "attributes/registry.h"
+#include "attributes/resolver.h"
+#include "attributes/to_physics.h"
+#include "physics/inter/world.h"
+#include "scene/json/parts.h"
+
+namespace embody::scene {
+
+using attributes::AttributeEntry;
+using attributes::AttributeLevel;
+using attributes::AttributeSet;
+using attributes::ModelFacts;
+
+namespace {
+
+Error at_field(Error error, const std::string& field) {
+    error.where = error.where.empty() ? field : field + ": " + error.where;
+    return error;
+}
+
+// The entity's own attributes, checked: a document made by a program has not been through the file's reader.
+Result<std::vector<AttributeEntry>> own_entries(const Entity& entity) {
+    std::vector<AttributeEntry> entries;
+    for (const auto& [name, value] : entity.attributes) {
+        if (const Result<void> valid = attributes::validate(name, value); !valid.ok())
+            return Error{"attributes." + name, valid.error().why, valid.error().remedy};
+        entries.push_back({name, value, {}, {}, "set for this entity", AttributeLevel::manual});
+    }
+    return entries;
+}
+
+// Lengths grow with s, areas with s², volumes with s³, moments of volume with s⁵.
+ModelFacts scaled(ModelFacts facts, double s) {
+    attributes::GeometryFacts& geometry = facts.geometry;
+    geometry.size *= s;
+    geometry.volume *= s * s * s;
+    geometry.center_of_volume *= s;
+    geometry.unit_inertia = geometry.unit_inertia * std::pow(s, 5);
+    geometry.hull_volume *= s * s * s;
+    geometry.surface_area *= s * s;
+    geometry.fitted_dimensions *= s;
+    geometry.fitted_pose.position *= s;
+    geometry.fitted_error *= s;
+    return facts;
+}
+
+// The same material in another size.
+AttributeSet scaled(const AttributeSet& set, double s) {
+    struct Power {
+        const char* name;
+        int power;
+    };
+    constexpr Power powers[] = {{"mass", 3},    {"volume", 3},         {"center_of_mass", 1},
+                                {"inertia", 5}, {"wall_thickness", 1}, {"drag_area", 2}};
+    AttributeSet out = set;
+    for (const Power& row : powers) {
+        const AttributeEntry* held = set.find(row.name);
+        if (!held) continue;
+        AttributeEntry entry = *held;
+        const double factor = std::pow(s, row.power);
+        if (auto* number = std::get_if<double>(&entry.value)) *number *= factor;
+        if (auto* vector = std::get_if<Vec3>(&entry.value)) *vector *= factor;
+        if (auto* tensor = std::get_if<Mat3>(&entry.value)) *tensor = *tensor * factor;
+        if (entry.low) *entry.low *= factor;
+        if (entry.high) *entry.high *= factor;
+        entry.source += ", scaled";
+        out.erase(row.name);
+        out.put(std::move(entry));
+    }
+    return out;
+}
+
+void put_measured(AttributeSet& set, const char* name, attributes::AttributeValue value, std::string source) {
+    if (attributes::validate(name, value).ok())
+        set.put({name, std::move(value), {}, {}, std::move(source), AttributeLevel::measured});
+}
+
+// A primitive is solid, of the default density, and its form is known exactly.
+AttributeSet primitive_attributes(const Entity& entity, const physics::ShapeDefinition& shape,
+                                  const ModelFacts& facts) {
+    AttributeSet set;
+    const std::string name = physics::shape_name(shape);
+    if (!entity.category.empty())
+        set.put({"category", entity.category, {}, {}, "the entity's category", AttributeLevel::category});
+    if (physics::is_static_only(shape)) {
+        set.put({"kind", std::string("static"), {}, {}, "a " + name + " can't move", AttributeLevel::kind});
+    } else {
+        const double density = std::get<double>(attributes::describe("density")->standard);
+        const std::string solid = "homogeneous " + name;
+        const attributes::GeometryFacts& form = facts.geometry;
+        put_measured(set, "volume", form.volume, "volume of the " + name);
+        put_measured(set, "fill_fraction", 1.0, solid);
+        put_measured(set, "mass", density * form.volume, "density × volume of the " + name);
+        put_measured(set, "center_of_mass", form.center_of_volume, solid);
+        put_measured(set, "inertia", form.unit_inertia * density, solid);
+    }
+    attributes::complete_for_kind(set);
+    // What collides is the primitive itself.
+    set.erase("collision_shape");
+    return set;
+}
+
+// Large shapes have no short name to be found by.
+std::string short_text(const physics::ShapeDefinition& shape) {
+    if (physics::is_static_only(shape) || std::holds_alternative<physics::CompoundShape>(shape)) return {};
+    return shape_to_json(shape).dump();
+}
+
+// Hull and triangles of a model of the catalogue, scaled.
+class CatalogGeometry final : public attributes::ModelGeometry {
+public:
+    CatalogGeometry(const catalog::Catalog& catalog, std::int64_t id, double scale)
+        : catalog_(catalog), id_(id), scale_(scale) {}
+
+    Result<std::vector<Vec3>> hull_points() override {
+        Result<std::vector<Vec3>> points = catalog_.hull_points(id_);
+        if (points.ok())
+            for (Vec3& point : points.value()) point *= scale_;
+        return points;
+    }
+
+    Result<physics::MeshShape> mesh() override {
+        Result<geometry::TriangleMesh> read = catalog_.mesh(id_);
+        if (!read.ok()) return read.error();
+        physics::MeshShape shape;
+        shape.positions.reserve(read.value().positions.size());
+        for (const auto& position : read.value().positions)
+            shape.positions.push_back(to_vec3f(to_vec3(position) * scale_));
+        shape.triangles = read.value().triangles;
+        return shape;
+    }
+
+private:
+    const catalog::Catalog& catalog_;
+    std::int64_t id_;
+    double scale_;
+};
+
+}  // namespace
+
+ModelFacts primitive_facts(const physics::ShapeDefinition& shape) {
+    ModelFacts facts;
+    attributes::GeometryFacts& form = facts.geometry;
+    form.volume_method = "closed form";
+    form.closed = true;
+    if (physics::is_static_only(shape)) return facts;
+
+    // The physics itself says what a body of unit density would be.
+    Result<std::unique_ptr<physics::World>> world = physics::World::create();
+    if (!world.ok()) return facts;
+    const Result<physics::ShapeHandle> handle = world.value()->create_shape(shape);
+    if (!handle.ok()) return facts;
+    physics::BodyDefinition definition;
+    definition.shape = handle.value();
+    definition.mass.density = 1;
+    definition.mass.mass = 1;
+    const Result<physics::BodyHandle> body = world.value()->create_body(definition);
+    form.volume = world.value()->volume(handle.value()).value_or(0);
+    if (!body.ok()) return facts;
+    form.center_of_volume = world.value()->center_of_mass(body.value());
+    form.unit_inertia = world.value()->inertia(body.value()) * form.volume;
+    form.size = world.value()->bounds(body.value()).size();
+    form.hull_volume = form.volume;
+    return facts;
+}
+
+const ModelFacts& EntityBodies::primitive(const physics::ShapeDefinition& shape) {
+    const std::string text = short_text(shape);
+    if (text.empty()) return last_primitive_ = primitive_facts(shape);
+    const auto found = primitives_.find(text);
+    if (found != primitives_.end()) return found->second;
+    return primitives_.emplace(text, primitive_facts(shape)).first->second;
+}
+
+Result<const EntityBodies::Model*> EntityBodies::find(const std::string& key) {
+    if (const auto found = models_.find(key); found != models_.end()) return &found->second;
+    if (!catalog_) return Error{"model", "\"" + key + "\" is in no database: none is open", "open one with --database"};
+    Result<catalog::ModelSummary> summary = catalog_->model(key);
+    if (!summary.ok()) return Error{"model", summary.error().message(), "import it, or take another key"};
+    Result<ModelFacts> facts = catalog_->facts(summary.value().id);
+    if (!facts.ok()) return at_field(facts.error(), "model");
+    Result<AttributeSet> set = catalog_->attributes(summary.value().id);
+    if (!set.ok()) return at_field(set.error(), "model");
+    Model model{std::move(summary).value(), std::move(facts).value(), std::move(set).value()};
+    return &models_.emplace(key, std::move(model)).first->second;
+}
+
+Result<catalog::ModelSummary> EntityBodies::model(const Entity& entity) {
+    const auto* reference = std::get_if<ModelReference>(&entity.geometry);
+    if (!reference) return Error{"model", "this entity is a primitive"};
+    const Result<const Model*> found = find(reference->key);
+    if (!found.ok()) return found.error();
+    return found.value()->summary;
+}
+
+Result<AttributeSet> EntityBodies::automatic_attributes(const Entity& entity) {
+    if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry))
+        return primitive_attributes(entity, *shape, primitive(*shape));
+    const Result<const Model*> model = find(std::get<ModelReference>(entity.geometry).key);
+    if (!model.ok()) return model.error();
+    return entity.scale == 1 ? model.value()->attributes : scaled(model.value()->attributes, entity.scale);
+}
+
+Result<AttributeSet> EntityBodies::attributes(const Entity& entity) {
+    Result<std::vector<AttributeEntry>> own = own_entries(entity);
+    if (!own.ok()) return own.error();
+    if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry)) {
+        const ModelFacts& facts = primitive(*shape);
+        AttributeSet set = attributes::with_manual(primitive_attributes(entity, *shape, facts), own.value(), facts);
+        set.erase("collision_shape");
+        return set;
+    }
+    Result<AttributeSet> automatic = automatic_attributes(entity);
+    if (!automatic.ok() || own.value().empty()) return automatic;
+    const Model& model = *find(std::get<ModelReference>(entity.geometry).key).value();
+    return attributes::with_manual(automatic.value(), own.value(), scaled(model.facts, entity.scale));
+}
+
+Result<physics::BodyDefinition> EntityBodies::body(const Entity& entity, const AttributeSet& attributes) {
+    physics::BodyDefinition body;
+    if (attributes.word("kind", "rigid") == "visual") {
+        body.kind = physics::BodyKind::static_body;
+        body.enabled = false;
+    } else {
+        Result<physics::BodyDefinition> made = attributes::body_from_attributes(attributes);
+        if (!made.ok()) return at_field(made.error(), "attributes");
+        body = std::move(made).value();
+        body.enabled = entity.enabled;
+    }
+
+    // The physics knows a primitive's centre and moments itself, and its mass from the density.
+    if (std::holds_alternative<physics::ShapeDefinition>(entity.geometry)) {
+        if (!attributes::is_manual(attributes, "mass")) body.mass.mass.reset();
+        if (!attributes::is_manual(attributes, "center_of_mass")) body.mass.center_of_mass.reset();
+        if (!attributes::is_manual(attributes, "inertia")) body.mass.inertia.reset();
+        body.mass.density *= attributes.number("fill_fraction", 1);
+    }
+
+    // Where it is and how it starts.
+    body.position = entity.pose.position;
+    body.rotation = entity.pose.rotation;
+    body.linear_velocity = entity.linear_velocity;
+    body.angular_velocity = entity.angular_velocity;
+    body.force = entity.force;
+    body.torque = entity.torque;
+    body.start_asleep = entity.start_asleep;
+    body.allow_sleep = entity.allow_sleep;
+    body.continuous = body.continuous || entity.continuous;
+    body.user_data = entity.index;
+    return body;
+}
+
+Result<physics::ShapeDefinition> EntityBodies::shape(const Entity& entity, const AttributeSet& attributes) {
+    if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry)) return *shape;
+    const Result<const Model*> model = find(std::get<ModelReference>(entity.geometry).key);
+    if (!model.ok()) return model.error();
+    CatalogGeometry geometry(*catalog_, model.value()->summary.id, entity.scale);
+    Result<physics::ShapeDefinition> shape =
+        attributes::shape_from_attributes(attributes, scaled(model.value()->facts, entity.scale).geometry, geometry);
+    if (!shape.ok()) return at_field(shape.error(), "model");
+    return shape;
+}
+
+std::string EntityBodies::shape_key(const Entity& entity, const AttributeSet& attributes) {
+    if (const auto* model = std::get_if<ModelReference>(&entity.geometry))
+        return model->key + '\n' + attributes.word("collision_shape", "") + '\n' + nlohmann::json(entity.scale).dump();
+    return short_text(std::get<physics::ShapeDefinition>(entity.geometry));
+}
+
+}  // namespace embody::scene

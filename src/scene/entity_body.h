@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "attributes/attribute.h"
+#include "attributes/model_facts.h"
+#include "catalog/catalog.h"
+#include "foundation/result.h"
+#include "physics/inter/definitions/body_definition.h"
+#include "physics/inter/definitions/shape_definition.h"
+#include "scene/document.h"
+
+namespace embody::scene {
+
+/// Makes bodies of entities: the way from geometric and physical attributes to what the physics needs. Remembers the
+/// models it has looked up.
+class EntityBodies {
+public:
+    /// `catalog` may be null; it outlives this.
+    explicit EntityBodies(catalog::Catalog* catalog) : catalog_(catalog) {}
+
+    /// The attributes as they act: the model's or the primitive's, with the entity's own over them. Errors name the
+    /// field of the entity.
+    Result<attributes::AttributeSet> attributes(const Entity& entity);
+    /// What they would be without the entity's own.
+    Result<attributes::AttributeSet> automatic_attributes(const Entity& entity);
+    /// Everything but the shape's handle. What is only drawn becomes a disabled static body.
+    Result<physics::BodyDefinition> body(const Entity& entity, const attributes::AttributeSet& attributes);
+    Result<physics::ShapeDefinition> shape(const Entity& entity, const attributes::AttributeSet& attributes);
+    /// Entities with the same key have the same shape; empty: nobody else has it.
+    static std::string shape_key(const Entity& entity, const attributes::AttributeSet& attributes);
+    /// The model's summary; fails for what is not a model.
+    Result<catalog::ModelSummary> model(const Entity& entity);
+
+    /// Forgets a model whose attributes were changed.
+    void forget(const std::string& key) { models_.erase(key); }
+
+private:
+    struct Model {
+        catalog::ModelSummary summary;
+        attributes::ModelFacts facts;
+        attributes::AttributeSet attributes;
+    };
+    Result<const Model*> find(const std::string& key);
+    const attributes::ModelFacts& primitive(const physics::ShapeDefinition& shape);
+
+    catalog::Catalog* catalog_;
+    std::map<std::string, Model> models_;
+    std::map<std::string, attributes::ModelFacts> primitives_;  ///< by their text
+    attributes::ModelFacts last_primitive_;                     ///< of one without a short text
+};
+
+/// What the physics knows of a primitive's form; zero volume for planes, heightfields and meshes.
+attributes::ModelFacts primitive_facts(const physics::ShapeDefinition& shape);
+
+}  // namespace embody::scene

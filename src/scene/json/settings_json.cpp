@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include <nlohmann/json.hpp>
+
+#include "scene/json/field_reader.h"
+#include "scene/json/parts.h"
+
+namespace embody::scene {
+
+using nlohmann::json;
+
+Result<physics::WorldSettings> settings_from_json(const json& value, const std::string& where,
+                                                  const physics::WorldSettings& start) {
+    physics::WorldSettings settings = start;
+    std::optional<Error> error;
+    FieldReader reader(value, where, error);
+    reader.vector("gravity", settings.gravity);
+    reader.number("time_step", settings.time_step);
+    reader.whole("substeps", settings.substeps, 1, 64);
+    reader.number("time_to_sleep", settings.time_to_sleep);
+    reader.truth("sleeping", settings.sleeping);
+    reader.truth("shock_propagation", settings.shock_propagation);
+    reader.number("max_linear_speed", settings.max_linear_speed);
+    reader.finish();
+    if (error) return *error;
+    if (const Result<void> valid = physics::validate(settings); !valid.ok()) {
+        Error refused = valid.error();
+        refused.where = reader.path(refused.where);
+        return refused;
+    }
+    return settings;
+}
+
+json settings_to_json(const physics::WorldSettings& settings) {
+    return {{"gravity", vector_to_json(settings.gravity)},
+            {"time_step", settings.time_step},
+            {"substeps", settings.substeps},
+            {"time_to_sleep", settings.time_to_sleep},
+            {"sleeping", settings.sleeping},
+            {"shock_propagation", settings.shock_propagation},
+            {"max_linear_speed", settings.max_linear_speed}};
+}
+
+}  // namespace embody::scene

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "scene/scene_file.h"
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "scene/json/print.h"
+#include "scene/whole_file.h"
+
+namespace embody::scene {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr std::uintmax_t largest_file = std::uintmax_t{512} << 20;
+constexpr int deepest_nesting = 64;
+
+std::string line_and_column(const std::string& text, std::size_t byte) {
+    const std::size_t end = std::min(byte, text.size());
+    const auto begin = text.begin();
+    const auto stop = begin + static_cast<std::ptrdiff_t>(end);
+    const auto line = std::count(begin, stop, '\n') + 1;
+    const std::size_t newline = end == 0 ? std::string::npos : text.rfind('\n', end - 1);
+    const std::size_t column = newline == std::string::npos ? end : end - newline - 1;
+    return "line " + std::to_string(line) + ", column " + std::to_string(std::max<std::size_t>(column, 1));
+}
+
+// A scene nests a few levels deep. A file of a million brackets would exhaust the stack of whoever walks it.
+bool nests_too_deep(const std::string& text) {
+    int depth = 0;
+    bool quoted = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (quoted) {
+            if (c == '\\') ++i;
+            if (c == '"') quoted = false;
+            continue;
+        }
+        if (c == '"') quoted = true;
+        if (c == '[' || c == '{') ++depth;
+        if (c == ']' || c == '}') --depth;
+        if (depth > deepest_nesting) return true;
+    }
+    return false;
+}
+
+Result<json> parse(const std::string& text, const std::string& name) {
+    if (nests_too_deep(text)) return Error{name, "lists and objects nest more than 64 deep: this is no scene"};
+    try {
+        return json::parse(text);
+    } catch (const json::parse_error& broken) {
+        return Error{name + ", " + line_and_column(text, broken.byte), "is not JSON", broken.what()};
+    } catch (const json::exception& broken) {
+        return Error{name, std::string("is not JSON: ") + broken.what()};
+    }
+}
+
+Result<std::string> read_text(const std::filesystem::path& file) {
+    std::error_code problem;
+    if (std::filesystem::is_directory(file, problem)) return Error{file.string(), "is a folder, not a scene"};
+    const std::uintmax_t size = std::filesystem::file_size(file, problem);
+    if (problem) return Error{file.string(), "can't be read: " + problem.message()};
+    if (size > largest_file) return Error{file.string(), "is larger than 512 MiB"};
+    std::string text(static_cast<std::size_t>(size), '\0');
+    std::ifstream in(file, std::ios::binary);
+    in.read(text.data(), static_cast<std::streamsize>(size));
+    if (!in || static_cast<std::uintmax_t>(in.gcount()) != size) return Error{file.string(), "can't be read"};
+    return text;
+}
+
+}  // namespace
+
+Result<Document> load_document(const std::filesystem::path& file) {
+    Result<std::string> text = read_text(file);
+    if (!text.ok()) return text.error();
+    Result<json> parsed = parse(text.value(), file.string());
+    if (!parsed.ok()) return parsed.error();
+    Result<Document> document = document_from_json(parsed.value());
+    if (document.ok()) return document;
+    Error error = document.error();
+    error.where = file.string() + (error.where.empty() ? "" : ": " + error.where);
+    return error;
+}
+
+Result<void> save_document(const Document& document, const std::filesystem::path& file) {
+    return write_whole_file(file, print_json(document_to_json(document)));
+}
+
+}  // namespace embody::scene

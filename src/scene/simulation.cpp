@@ -1,0 +1,404 @@
+// SPDX-License-Identifier: MIT
+#include "scene/simulation.h"
+
+#include <algorithm>
+#include <map>
+
+#include "scene/action_runner.h"
+#include "scene/entity_body.h"
+
+namespace embody::scene {
+
+using attributes::AttributeSet;
+using physics::BodyHandle;
+using physics::JointHandle;
+using physics::ShapeHandle;
+
+namespace {
+
+// Beyond this an action that spawns whenever something touches would fill the memory.
+constexpr std::size_t most_spawned = 20'000;
+
+Error of_entity(const Entity& entity, Error error) {
+    std::string who = "entity " + std::to_string(entity.index);
+    if (!entity.name.empty()) who += " (" + entity.name + ")";
+    error.where = error.where.empty() ? who : who + ": " + error.where;
+    return error;
+}
+
+struct LiveEntity {
+    Entity definition;
+    AttributeSet attributes;
+    BodyHandle body;
+    ShapeHandle shape;
+    std::string shape_key;
+};
+
+struct SharedShape {
+    ShapeHandle shape;
+    int users = 0;
+};
+
+struct LiveJoint {
+    SceneJoint definition;
+    JointHandle joint;
+};
+
+// A push that an action gave, until a moment.
+struct TimedForce {
+    EntityIndex entity = 0;
+    Vec3 force;
+    double until = 0;
+};
+
+}  // namespace
+
+struct Simulation::State {
+    std::unique_ptr<physics::World> world;
+    EntityBodies bodies;
+    std::map<EntityIndex, Entity> templates;  // the document's entities, for actions that spawn
+    std::map<EntityIndex, LiveEntity> live;
+    std::vector<EntityIndex> indices;
+    std::map<std::string, SharedShape> shared_shapes;
+    std::map<std::uint32_t, LiveJoint> joints;
+    std::vector<TimedForce> timed_forces;
+    std::vector<EntityIndex> spawned, despawned;
+    EntityIndex next_spawned = last_document_index + 1;
+    std::unique_ptr<ActionRunner> actions;
+
+    explicit State(catalog::Catalog* catalog) : bodies(catalog) {}
+
+    // Shapes -----------------------------------------------------------------------------------------------------
+
+    Result<void> take_shape(LiveEntity& entity) {
+        const auto shared = shared_shapes.find(entity.shape_key);
+        if (!entity.shape_key.empty() && shared != shared_shapes.end()) {
+            ++shared->second.users;
+            entity.shape = shared->second.shape;
+            return {};
+        }
+        Result<physics::ShapeDefinition> definition = bodies.shape(entity.definition, entity.attributes);
+        if (!definition.ok()) return definition.error();
+        const Result<ShapeHandle> shape = world->create_shape(definition.value());
+        if (!shape.ok()) return Error{"shape: " + shape.error().where, shape.error().why, shape.error().remedy};
+        entity.shape = shape.value();
+        if (!entity.shape_key.empty()) shared_shapes[entity.shape_key] = {entity.shape, 1};
+        return {};
+    }
+
+    // Only after the body that used it is gone or has another.
+    void give_shape_back(const LiveEntity& entity) {
+        if (entity.shape.is_null()) return;
+        const auto shared = shared_shapes.find(entity.shape_key);
+        if (!entity.shape_key.empty() && shared != shared_shapes.end()) {
+            if (--shared->second.users > 0) return;
+            shared_shapes.erase(shared);
+        }
+        // Nobody else has it, so the world does not refuse.
+        const Result<void> destroyed = world->destroy_shape(entity.shape);
+        (void)destroyed;
+    }
+
+    // Entities -----------------------------------------------------------------------------------------------------
+
+    Result<LiveEntity> prepare(const Entity& entity, physics::BodyDefinition& body) {
+        LiveEntity prepared;
+        prepared.definition = entity;
+        Result<AttributeSet> set = bodies.attributes(entity);
+        if (!set.ok()) return of_entity(entity, set.error());
+        prepared.attributes = std::move(set).value();
+        Result<physics::BodyDefinition> made = bodies.body(entity, prepared.attributes);
+        if (!made.ok()) return of_entity(entity, made.error());
+        body = std::move(made).value();
+        prepared.shape_key = EntityBodies::shape_key(entity, prepared.attributes);
+        if (const Result<void> taken = take_shape(prepared); !taken.ok()) return of_entity(entity, taken.error());
+        body.shape = prepared.shape;
+        return prepared;
+    }
+
+    Result<void> add(const Entity& entity) {
+        if (live.contains(entity.index)) return of_entity(entity, {"index", "is in the world already"});
+        physics::BodyDefinition body;
+        Result<LiveEntity> prepared = prepare(entity, body);
+        if (!prepared.ok()) return prepared.error();
+        const Result<BodyHandle> handle = world->create_body(body);
+        if (!handle.ok()) {
+            give_shape_back(prepared.value());
+            return of_entity(entity, handle.error());
+        }
+        prepared.value().body = handle.value();
+        live.emplace(entity.index, std::move(prepared).value());
+        indices.insert(std::lower_bound(indices.begin(), indices.end(), entity.index), entity.index);
+        return {};
+    }
+
+    Result<void> update(const Entity& entity, bool keep_motion) {
+        const auto found = live.find(entity.index);
+        if (found == live.end()) return of_entity(entity, {"index", "is not in the world"});
+        LiveEntity& before = found->second;
+        physics::BodyDefinition body;
+        Result<LiveEntity> prepared = prepare(entity, body);
+        if (!prepared.ok()) return prepared.error();
+        prepared.value().body = before.body;
+        if (keep_motion) {
+            const Transform pose = world->pose(before.body);
+            body.position = pose.position;
+            body.rotation = pose.rotation;
+            body.linear_velocity = world->linear_velocity(before.body);
+            body.angular_velocity = world->angular_velocity(before.body);
+            body.start_asleep = false;
+        }
+        if (const Result<void> changed = world->set_body(before.body, body); !changed.ok()) {
+            give_shape_back(prepared.value());
+            return of_entity(entity, changed.error());
+        }
+        give_shape_back(before);
+        before = std::move(prepared).value();
+        return {};
+    }
+
+    Result<void> remove(EntityIndex entity) {
+        const auto found = live.find(entity);
+        if (found == live.end()) return Error{"index", "entity " + std::to_string(entity) + " is not in the world"};
+        std::erase_if(joints, [entity](const auto& item) {
+            const SceneJoint& joint = item.second.definition;
+            return joint.entity_b == entity || joint.entity_a == entity;
+        });
+        if (const Result<void> gone = world->destroy_body(found->second.body); !gone.ok()) return gone.error();
+        give_shape_back(found->second);
+        live.erase(found);
+        indices.erase(std::lower_bound(indices.begin(), indices.end(), entity));
+        std::erase_if(timed_forces, [entity](const TimedForce& push) { return push.entity == entity; });
+        return {};
+    }
+
+    Result<void> add_joint(const SceneJoint& joint) {
+        const std::string who = "joint " + std::to_string(joint.index);
+        if (joints.contains(joint.index)) return Error{who, "is in the world already"};
+        physics::JointDefinition definition = joint.definition;
+        const auto b = live.find(joint.entity_b);
+        if (b == live.end()) return Error{who + ": entity_b", "is not in the world"};
+        definition.body_b = b->second.body;
+        definition.body_a = {};
+        if (joint.entity_a) {
+            const auto a = live.find(*joint.entity_a);
+            if (a == live.end()) return Error{who + ": entity_a", "is not in the world"};
+            definition.body_a = a->second.body;
+        }
+        const Result<JointHandle> handle = world->create_joint(definition);
+        if (!handle.ok()) return Error{who + ": " + handle.error().where, handle.error().why, handle.error().remedy};
+        joints.emplace(joint.index, LiveJoint{joint, handle.value()});
+        return {};
+    }
+
+    // Effects of actions ---------------------------------------------------------------------------------------------
+
+    Result<void> set_attribute(LiveEntity& entity, const SetAttribute& set) {
+        Entity changed = entity.definition;
+        changed.attributes[set.name] = set.value;
+        return update(changed, true);
+    }
+
+    Result<void> push(const LiveEntity& entity, const ApplyForce& push) {
+        timed_forces.push_back({entity.definition.index, push.force, world->last_report().time + push.duration});
+        return {};
+    }
+
+    Result<void> change(EntityIndex index, const Effect& effect) {
+        const auto found = live.find(index);
+        if (found == live.end()) return Error{"receiver", "entity " + std::to_string(index) + " is not in the world"};
+        LiveEntity& entity = found->second;
+        if (const auto* set = std::get_if<SetAttribute>(&effect)) return set_attribute(entity, *set);
+        if (const auto* impulse = std::get_if<ApplyImpulse>(&effect))
+            return world->apply_impulse(entity.body, impulse->impulse, impulse->at);
+        if (const auto* force = std::get_if<ApplyForce>(&effect)) return push(entity, *force);
+        if (const auto* velocity = std::get_if<SetVelocity>(&effect))
+            return world->set_velocity(entity.body, velocity->linear, velocity->angular);
+        if (const auto* enable = std::get_if<SetEnabled>(&effect)) {
+            entity.definition.enabled = enable->enabled;
+            return world->set_enabled(entity.body, enable->enabled);
+        }
+        const Result<void> removed = remove(index);
+        if (removed.ok()) despawned.push_back(index);
+        return removed;
+    }
+
+    Result<EntityIndex> spawn(EntityIndex like, const Spawn& spawn) {
+        if (next_spawned - last_document_index > most_spawned)
+            return Error{"spawn", "20000 entities were spawned in this run", "let the action fire less often"};
+        const Entity* original = definition(like);
+        if (const auto found = templates.find(like); found != templates.end()) original = &found->second;
+        if (!original) return Error{"receiver", "entity " + std::to_string(like) + " is not there any more"};
+        Entity copy = *original;
+        copy.index = next_spawned;
+        copy.pose = spawn.pose;
+        copy.linear_velocity = spawn.linear_velocity;
+        copy.angular_velocity = {};
+        copy.enabled = true;
+        copy.start_asleep = false;
+        if (const Result<void> added = add(copy); !added.ok()) return added.error();
+        spawned.push_back(next_spawned);
+        return next_spawned++;
+    }
+
+    // Questions of actions -------------------------------------------------------------------------------------------
+
+    [[nodiscard]] const Entity* definition(EntityIndex index) const {
+        const auto found = live.find(index);
+        return found == live.end() ? nullptr : &found->second.definition;
+    }
+
+    // A primitive's own category, or what the taxonomy says of a model.
+    [[nodiscard]] std::string category(EntityIndex index) const {
+        const auto found = live.find(index);
+        if (found == live.end()) return {};
+        const LiveEntity& entity = found->second;
+        return entity.definition.category.empty() ? entity.attributes.word("category", "") : entity.definition.category;
+    }
+
+    [[nodiscard]] std::vector<EntityIndex> meant(const Target& target) const {
+        std::vector<EntityIndex> found;
+        for (const auto& [index, entity] : templates) {
+            const bool is_meant = target.by == Target::By::any ||
+                                  (target.by == Target::By::index && target.index == index) ||
+                                  (target.by == Target::By::name && target.word == entity.name) ||
+                                  (target.by == Target::By::category &&
+                                   (entity.category == target.word || category(index) == target.word));
+            if (is_meant) found.push_back(index);
+        }
+        return found;
+    }
+
+    void start_actions(const std::vector<Action>& list) {
+        ActionRunner::World face;
+        face.entities = [this]() -> const std::vector<EntityIndex>& { return indices; };
+        face.definition = [this](EntityIndex index) { return definition(index); };
+        face.category = [this](EntityIndex index) { return category(index); };
+        face.center_of_mass = [this](EntityIndex index) { return world->center_of_mass(live.at(index).body); };
+        face.change = [this](EntityIndex index, const Effect& effect) { return change(index, effect); };
+        face.spawn = [this](EntityIndex like, const Spawn& what) { return spawn(like, what); };
+        face.templates = [this](const Target& target) { return meant(target); };
+        actions = std::make_unique<ActionRunner>(list, std::move(face));
+    }
+
+    // A push lasts at least one step.
+    void apply_timed_forces() {
+        const double time = world->last_report().time;
+        for (const TimedForce& push : timed_forces) {
+            const auto found = live.find(push.entity);
+            if (found == live.end()) continue;
+            const Result<void> pushed = world->apply_force(found->second.body, push.force);
+            if (!pushed.ok()) actions->problems.push_back(pushed.error());
+        }
+        const double next = time + world->settings().time_step;
+        std::erase_if(timed_forces, [next](const TimedForce& push) { return push.until <= next * (1 + 1e-12); });
+    }
+};
+
+Simulation::Simulation() = default;
+Simulation::~Simulation() = default;
+
+Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document, catalog::Catalog* catalog) {
+    std::unique_ptr<Simulation> simulation(new Simulation);
+    simulation->state_ = std::make_unique<State>(catalog);
+    State& state = *simulation->state_;
+    Result<std::unique_ptr<physics::World>> world = physics::World::create(document.settings);
+    if (!world.ok()) return Error{"settings." + world.error().where, world.error().why, world.error().remedy};
+    state.world = std::move(world).value();
+
+    // In the document's order, so that the same document is the same world.
+    for (const Entity& entity : document.entities) {
+        state.templates[entity.index] = entity;
+        if (Result<void> added = state.add(entity); !added.ok()) return added.error();
+    }
+    for (const SceneJoint& joint : document.joints)
+        if (Result<void> added = state.add_joint(joint); !added.ok()) return added.error();
+    state.start_actions(document.actions);
+    return simulation;
+}
+
+const physics::StepReport& Simulation::step() {
+    State& state = *state_;
+    state.spawned.clear();
+    state.despawned.clear();
+    state.actions->fired.clear();
+    state.actions->problems.clear();
+    state.actions->pause_requested = false;
+
+    // Due actions, physics, what the physics set off.
+    state.actions->before_step(state.world->last_report().time);
+    state.apply_timed_forces();
+    const physics::StepReport& report = state.world->step();
+    const auto contacts = state.world->contact_events();
+    const auto sleeps = state.world->sleep_events();
+    state.actions->after_step({contacts.begin(), contacts.end()}, {sleeps.begin(), sleeps.end()});
+    return report;
+}
+
+bool Simulation::pause_requested() const { return state_->actions->pause_requested; }
+const std::vector<ActionFired>& Simulation::fired() const { return state_->actions->fired; }
+const std::vector<Error>& Simulation::problems() const { return state_->actions->problems; }
+const std::vector<EntityIndex>& Simulation::spawned() const { return state_->spawned; }
+const std::vector<EntityIndex>& Simulation::despawned() const { return state_->despawned; }
+
+std::size_t Simulation::signal(const std::string& key, const std::string& button) {
+    return state_->actions->signal(key, button);
+}
+
+physics::World& Simulation::world() { return *state_->world; }
+const physics::World& Simulation::world() const { return *state_->world; }
+const std::vector<EntityIndex>& Simulation::entities() const { return state_->indices; }
+
+BodyHandle Simulation::body(EntityIndex entity) const {
+    const auto found = state_->live.find(entity);
+    return found == state_->live.end() ? BodyHandle{} : found->second.body;
+}
+
+EntityIndex Simulation::entity(BodyHandle body) const {
+    const std::optional<physics::BodyDefinition> definition = state_->world->body(body);
+    return definition ? static_cast<EntityIndex>(definition->user_data) : 0;
+}
+
+const Entity* Simulation::definition(EntityIndex entity) const { return state_->definition(entity); }
+
+JointHandle Simulation::joint(std::uint32_t joint) const {
+    const auto found = state_->joints.find(joint);
+    return found == state_->joints.end() ? JointHandle{} : found->second.joint;
+}
+
+Result<AttributeSet> Simulation::attributes(EntityIndex entity) const {
+    const auto found = state_->live.find(entity);
+    if (found == state_->live.end()) return Error{"index", "entity " + std::to_string(entity) + " is not in the world"};
+    return found->second.attributes;
+}
+
+Result<void> Simulation::add(const Entity& entity) {
+    if (Result<void> added = state_->add(entity); !added.ok()) return added;
+    state_->templates[entity.index] = entity;
+    return {};
+}
+
+Result<void> Simulation::update(const Entity& entity, bool keep_motion) {
+    if (Result<void> updated = state_->update(entity, keep_motion); !updated.ok()) return updated;
+    state_->templates[entity.index] = entity;
+    return {};
+}
+
+Result<void> Simulation::remove(EntityIndex entity) {
+    state_->templates.erase(entity);
+    return state_->remove(entity);
+}
+
+Result<void> Simulation::add_joint(const SceneJoint& joint) { return state_->add_joint(joint); }
+
+Result<void> Simulation::remove_joint(std::uint32_t joint) {
+    const auto found = state_->joints.find(joint);
+    if (found == state_->joints.end()) return Error{"index", "joint " + std::to_string(joint) + " is not in the world"};
+    const Result<void> removed = state_->world->destroy_joint(found->second.joint);
+    state_->joints.erase(found);
+    return removed;
+}
+
+void Simulation::set_actions(const std::vector<Action>& actions) { state_->actions->set_actions(actions); }
+
+}  // namespace embody::scene
