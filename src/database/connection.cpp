@@ -118,7 +118,7 @@ Result<void> Connection::configure(const ConnectionOptions& options) {
     // NORMAL: a killed process loses nothing that was committed, a power cut at most the last commits, never the file.
     return execute(
         "PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = ON; PRAGMA cache_size = -32768; PRAGMA temp_store = MEMORY;"
-        "PRAGMA journal_size_limit = 67108864; PRAGMA trusted_schema = OFF");
+        "PRAGMA journal_size_limit = 67108864");
 }
 
 Result<void> Connection::switch_to_write_ahead_log(int wait_milliseconds) {

@@ -14,7 +14,7 @@ namespace embody::database {
 
 struct ConnectionOptions {
     std::uint32_t application_id = 0;  ///< marks our files; a file with another mark is refused, never written to
-    std::string content;               ///< what such a file is, for errors: "a model database of Embody"
+    std::string content = {};          ///< what such a file is, for errors: "a model database of Embody"
     int wait_milliseconds = 20000;     ///< how long to wait for another process that writes
 };
 

@@ -37,11 +37,29 @@ Result<void> ImportTable::put(const ImportSource& source) {
     return statement->bind(source.file_hash).bind(source.prepare_hash).bind(source.item_hash).run();
 }
 
-Result<std::int64_t> ImportTable::count_locations(std::int64_t model) {
-    auto statement = connection_.prepare("SELECT count(*) FROM import_source WHERE model = ?");
+Result<std::vector<std::string>> ImportTable::locations_of(std::int64_t model) {
+    auto statement = connection_.prepare("SELECT location FROM import_source WHERE model = ? ORDER BY location");
     if (!statement) return statement.error();
-    if (const auto row = statement->bind(model).step(); !row) return row.error();
-    return statement->integer(0);
+    statement->bind(model);
+    std::vector<std::string> locations;
+    while (true) {
+        const auto row = statement->step();
+        if (!row) return row.error();
+        if (!*row) return locations;
+        locations.push_back(statement->text(0));
+    }
+}
+
+Result<bool> ImportTable::has_preparation(std::int64_t model, std::uint64_t prepare_hash) {
+    auto statement = connection_.prepare("SELECT 1 FROM import_source WHERE model = ? AND prepare_hash = ?");
+    if (!statement) return statement.error();
+    return statement->bind(model).bind(prepare_hash).step();
+}
+
+Result<void> ImportTable::forget_other_preparations(std::int64_t model, std::uint64_t prepare_hash) {
+    auto statement = connection_.prepare("DELETE FROM import_source WHERE model = ? AND prepare_hash <> ?");
+    if (!statement) return statement.error();
+    return statement->bind(model).bind(prepare_hash).run();
 }
 
 Result<std::string> SettingTable::get(std::string_view name) {

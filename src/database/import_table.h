@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "database/connection.h"
 
@@ -27,7 +28,11 @@ public:
     Result<std::optional<ImportSource>> find_in_archive(std::string_view archive);
     Result<void> put(const ImportSource& source);
     /// Places from which this model was imported.
-    Result<std::int64_t> count_locations(std::int64_t model);
+    Result<std::vector<std::string>> locations_of(std::int64_t model);
+    /// Whether the model was imported from any place with this preparation.
+    Result<bool> has_preparation(std::int64_t model, std::uint64_t prepare_hash);
+    /// After a model was stored anew: places that held something else no longer count as its.
+    Result<void> forget_other_preparations(std::int64_t model, std::uint64_t prepare_hash);
 
 private:
     Result<std::optional<ImportSource>> first(Statement& statement);

@@ -36,8 +36,8 @@ struct ModelBlobs {
 };
 
 struct ModelSearch {
-    std::string words;     ///< as a person typed them; empty: all models
-    std::string category;  ///< exact; empty: all
+    std::string words = {};     ///< as a person typed them; empty: all models
+    std::string category = {};  ///< exact; empty: all
     int limit = 50, offset = 0;
 };
 struct ModelMatches {

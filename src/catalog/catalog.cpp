@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: MIT
+#include "catalog/catalog.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cstdlib>
+
+#include "attributes/registry.h"
+#include "catalog/describe_model.h"
+#include "catalog/import/importer.h"
+#include "catalog/knowledge_json.h"
+#include "catalog/prepare/confined_pool.h"
+#include "database/model_schema.h"
+#include "database/transaction.h"
+#include "interchange/compact/compact_geometry.h"
+
+namespace embody::catalog {
+namespace {
+
+constexpr const char* taxonomy_setting = "taxonomy_hash";
+
+GeometryKind kind_from_name(const std::string& name) {
+    if (name == "point_cloud") return GeometryKind::point_cloud;
+    if (name == "voxel") return GeometryKind::voxel;
+    return name == "analytical" ? GeometryKind::analytical : GeometryKind::mesh;
+}
+
+ModelSummary summary_of(database::ModelRow row) {
+    ModelSummary model;
+    model.id = row.id;
+    model.key = std::move(row.key);
+    model.name = std::move(row.name);
+    model.source = std::move(row.source);
+    model.licence = std::move(row.licence);
+    model.author = std::move(row.author);
+    model.category = std::move(row.category);
+    model.subcategory = std::move(row.subcategory);
+    model.physical_kind = std::move(row.physical_kind);
+    model.tags = std::move(row.tags);
+    model.size = {row.size[0], row.size[1], row.size[2]};
+    model.geometry_kind = kind_from_name(row.geometry_kind);
+    model.vertices = row.vertices;
+    model.triangles = row.triangles;
+    model.parts = row.parts;
+    model.quality = row.quality;
+    model.content_hash = row.geometry_hash;
+    return model;
+}
+
+/// Who sets an attribute: the login name, else the user's number.
+std::string current_person() {
+    const char* name = std::getenv("USER");
+    return name && *name ? valid_utf8(name) : "user " + std::to_string(geteuid());
+}
+
+}  // namespace
+
+struct Catalog::State {
+    State(std::unique_ptr<database::Connection> opened, std::unique_ptr<attributes::Taxonomy> loaded)
+        : connection(std::move(opened)), taxonomy(std::move(loaded)), models(*connection), manual(*connection) {}
+
+    std::unique_ptr<database::Connection> connection;
+    std::unique_ptr<attributes::Taxonomy> taxonomy;
+    database::ModelTable models;
+    database::ManualAttributeTable manual;
+
+    // What is known of one model, read from the database.
+    struct Known {
+        database::ModelRow row;
+        attributes::ModelFacts facts;
+        attributes::AttributeSet automatic;
+        std::vector<attributes::AttributeEntry> manual;
+    };
+    Result<database::ModelRow> row(std::int64_t id);
+    Result<Known> known(std::int64_t id);
+    Result<void> refresh_attributes(const std::string& hash);
+    Result<void> classify_again(std::int64_t id);
+};
+
+Catalog::Catalog() = default;
+Catalog::~Catalog() = default;
+
+Result<std::unique_ptr<Catalog>> Catalog::open(const std::filesystem::path& file,
+                                               const std::filesystem::path& taxonomy_folder) {
+    auto taxonomy = attributes::Taxonomy::load(taxonomy_folder);
+    if (!taxonomy) return taxonomy.error();
+    auto connection = database::open_model_database(file);
+    if (!connection) return connection.error();
+
+    std::unique_ptr<Catalog> catalog(new Catalog);
+    catalog->state_ = std::make_unique<State>(std::move(*connection), std::move(*taxonomy));
+
+    // Another taxonomy than the one that the stored attributes come from: resolve them all again.
+    const std::string hash = taxonomy_hash(taxonomy_folder);
+    const auto stored_hash = database::SettingTable(*catalog->state_->connection).get(taxonomy_setting);
+    if (!stored_hash) return stored_hash.error();
+    if (*stored_hash != hash) {
+        if (auto refreshed = catalog->state_->refresh_attributes(hash); !refreshed) return refreshed.error();
+    }
+    return catalog;
+}
+
+std::filesystem::path Catalog::default_file() {
+    // The XDG base directory specification: a relative XDG_DATA_HOME is to be ignored.
+    const char* data = std::getenv("XDG_DATA_HOME");
+    const char* home = std::getenv("HOME");
+    std::filesystem::path folder = data ? data : "";
+    if (!folder.is_absolute()) folder = std::filesystem::path(home ? home : ".") / ".local" / "share";
+    return folder / "embody" / "models.sqlite";
+}
+
+Result<SearchPage> Catalog::search(const SearchQuery& query) const {
+    auto matches = state_->models.search({.words = query.words,
+                                          .category = query.category,
+                                          .limit = std::clamp(query.limit, 1, 1000),
+                                          .offset = std::max(query.offset, 0)});
+    if (!matches) return matches.error();
+    SearchPage page;
+    page.total = matches->total;
+    for (database::ModelRow& row : matches->models) page.models.push_back(summary_of(std::move(row)));
+    return page;
+}
+
+Result<std::vector<CategoryCount>> Catalog::categories() const {
+    auto counts = state_->models.count_categories();
+    if (!counts) return counts.error();
+    std::vector<CategoryCount> categories;
+    for (auto& [category, models] : *counts) categories.push_back({std::move(category), models});
+    return categories;
+}
+
+Result<ModelSummary> Catalog::model(std::string_view key_or_id_or_name) const {
+    auto by_key = state_->models.find_key(key_or_id_or_name);
+    if (!by_key) return by_key.error();
+    if (*by_key) return summary_of(std::move(**by_key));
+
+    std::int64_t id = 0;
+    const char* end = key_or_id_or_name.data() + key_or_id_or_name.size();
+    const auto [parsed, problem] = std::from_chars(key_or_id_or_name.data(), end, id);
+    if (problem == std::errc() && parsed == end) {
+        auto by_id = state_->models.find(id);
+        if (!by_id) return by_id.error();
+        if (*by_id) return summary_of(std::move(**by_id));
+    }
+
+    auto by_name = state_->models.find_name(key_or_id_or_name);
+    if (!by_name) return by_name.error();
+    if (by_name->size() == 1) return summary_of(std::move(by_name->front()));
+    if (by_name->empty()) {
+        return Error{std::string(key_or_id_or_name), "no model has this key, id or name", "embody search finds models"};
+    }
+    return Error{std::string(key_or_id_or_name), "more than one model has this name",
+                 "name it by its key, such as " + by_name->front().key};
+}
+
+std::int64_t Catalog::model_count() const {
+    const auto count = state_->models.count();
+    return count ? *count : 0;
+}
+
+Result<database::ModelRow> Catalog::State::row(std::int64_t id) {
+    auto found = models.find(id);
+    if (!found) return found.error();
+    if (!*found) return Error{connection->file().string(), "has no model with id " + std::to_string(id), {}};
+    return std::move(**found);
+}
+
+Result<Catalog::State::Known> Catalog::State::known(std::int64_t id) {
+    Known known;
+    auto found = row(id);
+    if (!found) return found.error();
+    known.row = std::move(*found);
+    const auto knowledge = models.knowledge(id);
+    if (!knowledge) return knowledge.error();
+    auto facts = facts_from_json(knowledge->facts);
+    if (!facts) return facts.error();
+    known.facts = std::move(*facts);
+    auto automatic = set_from_json(knowledge->automatic);
+    if (!automatic) return automatic.error();
+    known.automatic = std::move(*automatic);
+    const auto stored = manual.of(known.row.key);
+    if (!stored) return stored.error();
+    known.manual = manual_entries(*stored);
+    return known;
+}
+
+Result<attributes::ModelFacts> Catalog::facts(std::int64_t id) const {
+    const auto knowledge = state_->models.knowledge(id);
+    if (!knowledge) return knowledge.error();
+    return facts_from_json(knowledge->facts);
+}
+
+Result<attributes::AttributeSet> Catalog::automatic_attributes(std::int64_t id) const {
+    const auto knowledge = state_->models.knowledge(id);
+    if (!knowledge) return knowledge.error();
+    return set_from_json(knowledge->automatic);
+}
+
+Result<attributes::AttributeSet> Catalog::attributes(std::int64_t id) const {
+    auto known = state_->known(id);
+    if (!known) return known.error();
+    if (known->manual.empty()) return std::move(known->automatic);
+    return attributes::with_manual(known->automatic, known->manual, known->facts);
+}
+
+Result<void> Catalog::set_attribute(std::int64_t id, std::string_view name, const attributes::AttributeValue& value) {
+    if (auto valid = attributes::validate(name, value); !valid) return valid;
+    auto transaction = database::Transaction::begin(*state_->connection);
+    if (!transaction) return transaction.error();
+    const auto row = state_->row(id);
+    if (!row) return row.error();
+    database::ManualAttribute entry{std::string(name), to_json(value), current_person()};
+    if (auto put = state_->manual.put(row->key, entry); !put) return put;
+    if (auto classified = state_->classify_again(id); !classified) return classified;
+    return transaction->commit();
+}
+
+Result<void> Catalog::reset_attribute(std::int64_t id, std::string_view name) {
+    auto transaction = database::Transaction::begin(*state_->connection);
+    if (!transaction) return transaction.error();
+    const auto row = state_->row(id);
+    if (!row) return row.error();
+    if (auto erased = state_->manual.erase(row->key, name); !erased) return erased;
+    if (auto classified = state_->classify_again(id); !classified) return classified;
+    return transaction->commit();
+}
+
+Result<void> Catalog::State::classify_again(std::int64_t id) {
+    // A person may have changed the category or the kind, by which the model is listed.
+    auto model = known(id);
+    if (!model) return model.error();
+    classify(model->row, model->facts, model->automatic, model->manual);
+    const auto knowledge = models.knowledge(id);
+    if (!knowledge) return knowledge.error();
+    return models.describe(model->row, *knowledge);
+}
+
+Result<void> Catalog::State::refresh_attributes(const std::string& hash) {
+    auto transaction = database::Transaction::begin(*connection);
+    if (!transaction) return transaction.error();
+    const auto ids = models.ids();
+    if (!ids) return ids.error();
+    for (const std::int64_t id : *ids) {
+        auto model = row(id);
+        if (!model) return model.error();
+        const auto knowledge = models.knowledge(id);
+        if (!knowledge) return knowledge.error();
+        const auto facts = facts_from_json(knowledge->facts);
+        if (!facts) return facts.error();
+        const auto stored = manual.of(model->key);
+        if (!stored) return stored.error();
+        const database::ModelKnowledge described = describe(*model, *facts, *taxonomy, manual_entries(*stored));
+        if (auto put = models.describe(*model, described); !put) return put;
+    }
+    if (auto noted = database::SettingTable(*connection).put(taxonomy_setting, hash); !noted) return noted;
+    return transaction->commit();
+}
+
+Result<std::vector<std::uint8_t>> Catalog::thumbnail(std::int64_t id) const { return state_->models.thumbnail(id); }
+
+Result<std::vector<Vec3>> Catalog::hull_points(std::int64_t id) const {
+    const auto bytes = state_->models.hull_points(id);
+    if (!bytes) return bytes.error();
+    if (bytes->size() % 12 != 0) {
+        return Error{state_->connection->file().string(), "hull of model " + std::to_string(id) + " is damaged",
+                     "import the model again"};
+    }
+    const auto number = [&](std::size_t at) {
+        std::uint32_t bits = 0;
+        for (std::size_t i = 0; i < 4; ++i) bits |= std::uint32_t{(*bytes)[at + i]} << (8 * i);
+        return static_cast<double>(std::bit_cast<float>(bits));
+    };
+    std::vector<Vec3> points;
+    points.reserve(bytes->size() / 12);
+    for (std::size_t at = 0; at < bytes->size(); at += 12)
+        points.push_back({number(at), number(at + 4), number(at + 8)});
+    return points;
+}
+
+Result<std::vector<std::uint8_t>> Catalog::geometry_glb(std::int64_t id) const {
+    const auto compact = state_->models.geometry(id);
+    if (!compact) return compact.error();
+    return interchange::to_glb(*compact);
+}
+
+Result<geometry::TriangleMesh> Catalog::mesh(std::int64_t id) const {
+    const auto compact = state_->models.geometry(id);
+    if (!compact) return compact.error();
+    return interchange::decode_mesh(*compact);
+}
+
+Result<ImportReport> Catalog::import(const std::vector<std::filesystem::path>& paths, const ImportOptions& options) {
+    ConfinedPoolOptions pool;
+    pool.workers = options.workers;
+    pool.worker_program = options.worker_program;
+    Importer importer(*state_->connection, *state_->taxonomy,
+                      [&pool](const auto& items, const auto& done) { return prepare_confined(items, pool, done); });
+    return importer.run(paths, options);
+}
+
+Result<void> Catalog::remove(std::int64_t id) { return state_->models.remove(id); }
+
+}  // namespace embody::catalog
