@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "catalog/prepare/geometry_measurement.h"
+
+#include <algorithm>
+
+#include "geometry/convex_hull.h"
+#include "geometry/topology.h"
+
+namespace embody::catalog {
+namespace {
+
+constexpr double weld_share = 1e-6;       // of the largest extent, as the volume estimate welds
+constexpr double least_thickness = 1e-3;  // m, of a flat model's box
+constexpr int most_hull_points = 256;
+
+geometry::TriangleMesh joined(const interchange::RawScene& scene) {
+    geometry::TriangleMesh mesh;
+    for (const auto& part : scene.meshes) {
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
+        for (const auto& t : part.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    return mesh;
+}
+
+std::string words_for(geometry::VolumeMethod method) {
+    switch (method) {
+        case geometry::VolumeMethod::closed_mesh:
+            return "polyhedral integration of the closed mesh (Mirtich 1996)";
+        case geometry::VolumeMethod::closed_parts:
+            return "polyhedral integration of closed parts, overlaps counted once";
+        case geometry::VolumeMethod::winding_number:
+            return "generalised winding number on a grid (Jacobson et al. 2013)";
+        case geometry::VolumeMethod::no_volume:
+            break;
+    }
+    return "none: the surface encloses nothing";
+}
+
+/// The corners of the bounds, thickened where they are flat.
+void add_box_as_hull(const Bounds& bounds, GeometryMeasurement& measured) {
+    const Vec3 half = max(bounds.half_extents(), Vec3{1, 1, 1} * (least_thickness / 2));
+    const Vec3 c = bounds.center();
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 signs{corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0};
+        measured.hull_points.push_back(to_vec3f(c + scale(signs, half)));
+    }
+    measured.facts.hull_volume = 8 * half.x * half.y * half.z;
+}
+
+}  // namespace
+
+GeometryMeasurement measure_geometry(const interchange::RawScene& scene) {
+    const geometry::TriangleMesh raw = joined(scene);
+    const Bounds bounds = geometry::bounds(raw);
+    const Vec3 size = bounds.size();
+    const geometry::TriangleMesh mesh = geometry::weld(raw, weld_share * std::max({size.x, size.y, size.z}));
+
+    GeometryMeasurement measured;
+    measured.triangles = raw.triangles.size();
+    measured.triangles_kept = mesh.triangles.size();
+    attributes::GeometryFacts& facts = measured.facts;
+    facts.size = size;
+    facts.surface_area = geometry::surface_area(mesh);
+    const geometry::Topology topology = geometry::find_topology(mesh);
+    measured.inconsistent_edges = topology.inconsistent_edges;
+
+    // What it encloses, by the surest method that applies.
+    const geometry::VolumeEstimate estimate = geometry::estimate_volume(mesh);
+    measured.volume_method = estimate.method;
+    facts.closed = estimate.method == geometry::VolumeMethod::closed_mesh;
+    facts.volume = estimate.solid.volume;
+    facts.volume_method = words_for(estimate.method);
+    facts.volume_relative_error = estimate.relative_error;
+    facts.center_of_volume = estimate.solid.center;
+    facts.unit_inertia = estimate.solid.inertia;
+
+    // Hull, or a box where the model is flat.
+    const auto hull = geometry::build_convex_hull(mesh, most_hull_points);
+    if (!hull) {
+        add_box_as_hull(bounds, measured);
+    } else {
+        for (const Vec3 p : hull->vertices) measured.hull_points.push_back(to_vec3f(p));
+        facts.hull_volume = geometry::integrate_hull(*hull).volume;
+    }
+    facts.fitted_shape = "convex_hull";
+    return measured;
+}
+
+}  // namespace embody::catalog

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "catalog/prepare/prepare.h"
+
+#include <filesystem>
+#include <optional>
+
+#include "catalog/prepare/geometry_measurement.h"
+#include "catalog/prepare/placement.h"
+#include "catalog/prepare/quality.h"
+#include "catalog/prepare/surface_finish.h"
+#include "catalog/prepare/thumbnail.h"
+#include "foundation/state_hash.h"
+#include "interchange/compact/compact_geometry.h"
+#include "interchange/read_model.h"
+
+namespace embody::catalog {
+namespace {
+
+std::uint64_t hash_of(const std::vector<std::uint8_t>& bytes) {
+    StateHash hash;
+    hash.add_bytes(bytes.data(), bytes.size());
+    return hash.value();
+}
+
+/// The last two folders of the model's path: often the only words that say what it is.
+std::string last_folders(const ImportItem& item) {
+    const std::filesystem::path folder = std::filesystem::path(item.path).parent_path();
+    const std::filesystem::path above = folder.parent_path().filename();
+    return (above / folder.filename()).generic_string();
+}
+
+Result<PreparedModel> prepare_from(const interchange::FileSource& source, const std::string& path,
+                                   const ImportItem& item) {
+    auto scene = interchange::read_model(source, path);
+    if (!scene) return scene.error();
+    const auto bytes = source.read(path);
+    if (!bytes) return bytes.error();
+
+    // Into the model's frame, and complete for drawing.
+    if (const auto placed = place(*scene, item); !placed) return Error{source.describe(path), placed.error().why};
+    finish_surfaces(*scene);
+
+    PreparedModel model;
+    model.content_hash = hash_of(*bytes);
+    model.facts = stated_facts(item);
+    model.facts.material_names = material_names_by_area(*scene);
+    const GeometryMeasurement measured = measure_geometry(*scene);
+    model.facts.geometry = measured.facts;
+    model.hull_points = measured.hull_points;
+    model.quality = grade_quality(measured);
+
+    const auto compact = interchange::encode(*scene);
+    if (!compact) return Error{source.describe(path), compact.error().message()};
+    model.geometry = compact->bytes;
+    model.vertices = compact->vertices;
+    model.triangles = compact->triangles;
+    model.parts = compact->parts;
+    model.materials = compact->materials;
+    model.images = compact->images;
+    model.warnings = scene->warnings;
+    model.warnings.insert(model.warnings.end(), compact->warnings.begin(), compact->warnings.end());
+
+    // The catalogue's own picture where it has one.
+    auto thumbnail = item.icon_path.empty() ? std::vector<std::uint8_t>() : thumbnail_of_icon(source, item.icon_path);
+    model.thumbnail = thumbnail.empty() ? render_thumbnail(*scene) : std::move(thumbnail);
+    return model;
+}
+
+}  // namespace
+
+struct Preparation::State {
+    std::string archive_path;
+    std::optional<interchange::Archive> archive;
+};
+
+Preparation::Preparation() : state_(std::make_unique<State>()) {}
+Preparation::~Preparation() = default;
+
+Result<PreparedModel> Preparation::prepare(const ImportItem& item) {
+    if (item.archive.empty()) {
+        const std::filesystem::path file(item.path);
+        return prepare_from(interchange::FolderSource(file.parent_path()), file.filename().string(), item);
+    }
+    if (!state_->archive || state_->archive_path != item.archive) {
+        auto archive = interchange::Archive::open(item.archive);
+        if (!archive) return archive.error();
+        state_->archive.emplace(std::move(*archive));
+        state_->archive_path = item.archive;
+    }
+    return prepare_from(interchange::ArchiveSource(*state_->archive, item.archive), item.path, item);
+}
+
+attributes::ModelFacts stated_facts(const ImportItem& item) {
+    attributes::ModelFacts facts;
+    facts.name = item.name.empty() ? std::filesystem::path(item.path).stem().string() : item.name;
+    facts.tags = item.tags;
+    facts.catalogue_category = item.category;
+    facts.folder = last_folders(item);
+    facts.movable = item.movable;
+    facts.door_or_window = item.door_or_window;
+    facts.size_is_stated = item.stated_size.has_value();
+    return facts;
+}
+
+}  // namespace embody::catalog
