@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "attributes/attribute.h"
@@ -30,6 +31,13 @@ private:
 /// All attributes of a model from what is known of it, each with source and level: category → kind → attribute set,
 /// then what geometry tells. Deterministic; never fails: what nothing tells gets the default.
 AttributeSet resolve(const Taxonomy& taxonomy, const ModelFacts& facts);
+
+/// Metres per unit that would make a model without stated size as large as things of its category usually are; nothing
+/// where it is that already, or where no usual unit does. The importer asks before it stores the geometry.
+std::optional<double> suggested_scale(const Taxonomy& taxonomy, const ModelFacts& facts);
+
+/// The first usual unit (mm, cm, inch, foot …) that brings the largest extent into its usual range, m.
+std::optional<double> likely_unit(double largest, double usual_low, double usual_high);
 
 /// `automatic` with the manual entries laid over it and what depends on them computed again (mass from density, …).
 AttributeSet with_manual(const AttributeSet& automatic, const std::vector<AttributeEntry>& manual,

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "attributes/assemble.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "attributes/registry.h"
+
+namespace embody::attributes {
+namespace {
+
+// Letter of a physical kind in AttributeDescription::applies_to.
+char letter_of(std::string_view physical_kind) {
+    constexpr std::array<std::pair<std::string_view, char>, 8> letters{{{"static", 'S'},
+                                                                        {"rigid", 'R'},
+                                                                        {"articulated", 'A'},
+                                                                        {"soft", 'V'},
+                                                                        {"cloth", 'C'},
+                                                                        {"rope", 'P'},
+                                                                        {"fluid", 'F'},
+                                                                        {"granular", 'G'}}};
+    for (const auto& [kind, letter] : letters) {
+        if (kind == physical_kind) return letter;
+    }
+    return '\0';
+}
+
+double within(const char* name, double value) {
+    const AttributeDescription& description = *describe(name);
+    if (description.low) value = std::max(value, *description.low);
+    if (description.high) value = std::min(value, *description.high);
+    return value;
+}
+
+void put_number(AttributeSet& set, const char* name, double value, std::string source, AttributeLevel level) {
+    replace(set, {name, within(name, value), {}, {}, std::move(source), level});
+}
+
+}  // namespace
+
+bool applies_to(std::string_view attribute, std::string_view physical_kind) {
+    const AttributeDescription* description = describe(attribute);
+    if (description == nullptr) return false;
+    const char letter = letter_of(physical_kind);
+    if (letter == '\0') return description->kind == "identity";
+    return description->applies_to.find(letter) != std::string::npos;
+}
+
+void complete_for_kind(AttributeSet& set) {
+    const std::string kind = set.word("kind", "rigid");
+    for (const AttributeDescription& description : registry()) {
+        const AttributeEntry* held = set.find(description.name);
+        const bool concerns = applies_to(description.name, kind);
+        if (held != nullptr && !concerns && held->level != AttributeLevel::manual) set.erase(description.name);
+        if (held == nullptr && concerns) {
+            set.put({description.name, description.standard, {}, {}, "default", AttributeLevel::standard});
+        }
+    }
+}
+
+bool is_manual(const AttributeSet& set, std::string_view name) {
+    const AttributeEntry* held = set.find(name);
+    return held != nullptr && held->level == AttributeLevel::manual;
+}
+
+void replace(AttributeSet& set, AttributeEntry entry) {
+    if (is_manual(set, entry.name)) return;
+    set.erase(entry.name);
+    set.put(std::move(entry));
+}
+
+void put_surface(AttributeSet& set, const MaterialData& material, const std::string& source, AttributeLevel level) {
+    const std::string why = material.name + " (" + source + "): " + material.source;
+    const auto interval = [&](const char* name, const Interval& i) {
+        replace(set, {name, i.typical, i.low, i.high, why, level});
+    };
+    replace(set, {"surface_material", material.name, {}, {}, source, level});
+    interval("friction_static", material.friction_static);
+    interval("friction_dynamic", material.friction_dynamic);
+    interval("restitution", material.restitution);
+    replace(set, {"friction_rolling", material.friction_rolling, {}, {}, why, level});
+}
+
+void put_mass_dependents(AttributeSet& set, const GeometryFacts& facts, const Form& form) {
+    const double mass = set.number("mass", 1);
+    const double density = set.number("density", 1000);
+    const double fill = set.number("fill_fraction", 1);
+    const double volume = set.number("volume", form.volume);
+    const AttributeLevel level = AttributeLevel::model;
+    put_number(set, "bulk_density", mass / form.box_volume, "mass / volume of the bounding box", level);
+
+    // A hollow thing's walls: material volume over the area of its surface.
+    if (facts.surface_area > 0 && fill < 0.9) {
+        put_number(set, "wall_thickness", fill * volume / facts.surface_area, "material volume / surface area", level);
+    }
+    // Mean projected area of a convex body is a quarter of its surface (Cauchy).
+    const Vec3 s = form.size;
+    put_number(set, "drag_area", (s.x * s.y + s.y * s.z + s.z * s.x) / 2, "mean projected area of the bounding box",
+               level);
+
+    const std::string kind = set.word("kind", "");
+    if (kind == "cloth")
+        put_number(set, "area_density", mass / form.face_area, "mass / largest face of the box", level);
+    if (kind == "rope") {
+        put_number(set, "linear_density", mass / std::max({s.x, s.y, s.z}), "mass / largest extent", level);
+    }
+    if (kind == "fluid") put_number(set, "rest_density", density, "density of the material", level);
+    if (kind == "granular") put_number(set, "grain_density", density, "density of the material", level);
+}
+
+}  // namespace embody::attributes

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string_view>
+
+#include "attributes/attribute.h"
+#include "attributes/form.h"
+#include "attributes/taxonomy_data.h"
+
+namespace embody::attributes {
+
+/// Whether an attribute concerns things of this physical kind; things that are only drawn have the identity attributes.
+bool applies_to(std::string_view attribute, std::string_view physical_kind);
+
+/// Defaults for what concerns the set's kind and is missing; what does not concern it goes, unless a person set it.
+void complete_for_kind(AttributeSet& set);
+
+/// Friction, rolling and bounciness of the material. Replaces what is there unless a person set it.
+void put_surface(AttributeSet& set, const MaterialData& material, const std::string& source, AttributeLevel level);
+
+/// What follows from mass, density and volume: fill, bulk density, wall thickness, area and line density.
+void put_mass_dependents(AttributeSet& set, const GeometryFacts& facts, const Form& form);
+
+/// Replaces the entry unless a person set it.
+void replace(AttributeSet& set, AttributeEntry entry);
+
+/// Whether a person set it.
+bool is_manual(const AttributeSet& set, std::string_view name);
+
+}  // namespace embody::attributes

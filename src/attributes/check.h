@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "attributes/attribute.h"
+#include "attributes/model_facts.h"
+
+namespace embody::attributes {
+
+/// One thing that does not hold together.
+struct Issue {
+    std::string attribute;
+    std::string why;
+};
+
+/// Rules that hold between attributes: every value in its range and interval, nothing missing, mass = density × fill ×
+/// volume within 1 %, bulk density not above density, sliding friction not above static, centre of mass in the box,
+/// moments of inertia of a body of that size. Empty for every set that resolve() makes; a person can contradict
+/// himself.
+std::vector<Issue> check(const AttributeSet& set, const ModelFacts& facts);
+
+}  // namespace embody::attributes

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "attributes/attribute.h"
+#include "attributes/model_facts.h"
+
+namespace embody::attributes {
+
+/// What of a model's form the mass depends on, made safe: every number finite and positive, also of an empty or flat
+/// model.
+struct Form {
+    Vec3 size;                  ///< extents of the box, each at least `least_extent`, m
+    bool size_known = false;    ///< from the model, not the category
+    double box_volume = 0;      ///< m³
+    double face_area = 0;       ///< of the box's largest face, m²
+    double volume = 0;          ///< inside the surface, the hull or the box, m³, at most the box's
+    std::string volume_source;  ///< which of them, and how it was computed
+    AttributeLevel volume_level = AttributeLevel::standard;
+    bool volume_is_own = false;  ///< of the surface itself, so that its moments can be used
+};
+
+/// A box this thin in all directions still holds the least mass at the greatest density; longer than this is taken for
+/// broken.
+inline constexpr double least_extent = 1e-3;
+inline constexpr double greatest_extent = 1e4;
+
+/// `usual_size` stands in for a model without one.
+Form form_of(const GeometryFacts& facts, Vec3 usual_size);
+
+struct CenterAndInertia {
+    Vec3 center;   ///< in the model's frame, inside the box
+    Mat3 inertia;  ///< about it, kg m², of a possible body
+    std::string source;
+    AttributeLevel level = AttributeLevel::standard;
+};
+
+/// Of the surface's own volume scaled to the mass, else of the homogeneous box.
+CenterAndInertia center_and_inertia(const GeometryFacts& facts, const Form& form, double mass);
+
+struct ShapeChoice {
+    std::string shape;
+    std::string source;
+    AttributeLevel level = AttributeLevel::standard;
+};
+
+/// Triangles for static things, the fitted primitive where it lies close to the hull, else the hull.
+ShapeChoice choose_collision_shape(const GeometryFacts& facts, bool is_static);
+
+/// A number for people: three digits.
+std::string short_number(double value);
+
+}  // namespace embody::attributes

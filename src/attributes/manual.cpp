@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+// What a person sets stays; what follows from it is computed again.
+#include <algorithm>
+
+#include "attributes/assemble.h"
+#include "attributes/form.h"
+#include "attributes/registry.h"
+#include "attributes/resolver.h"
+#include "attributes/taxonomy_data.h"
+
+namespace embody::attributes {
+namespace {
+
+bool in_range(const char* name, double value) { return validate(name, value).ok(); }
+
+void put_derived(AttributeSet& set, const char* name, AttributeValue value, std::string source) {
+    replace(set, {name, std::move(value), {}, {}, std::move(source), AttributeLevel::model});
+}
+
+// A given mass is explained by the density, or by the fill where the density is given too or would be impossible.
+void explain_mass(AttributeSet& set) {
+    const double mass = set.number("mass", 1);
+    const double volume = set.number("volume", 1);
+    const double fill = set.number("fill_fraction", 1);
+    const double density = set.number("density", 1000);
+    const double needed_density = mass / (fill * volume);
+    if (!is_manual(set, "density") && in_range("density", needed_density)) {
+        put_derived(set, "density", needed_density, "manual mass / (fill x volume)");
+        return;
+    }
+    const double needed_fill = mass / (density * volume);
+    if (!is_manual(set, "fill_fraction") && in_range("fill_fraction", needed_fill)) {
+        put_derived(set, "fill_fraction", needed_fill, "manual mass / (density x volume)");
+        return;
+    }
+    // Neither alone: filled up, the density takes the rest.
+    const double full_density = mass / volume;
+    if (!is_manual(set, "density") && !is_manual(set, "fill_fraction") && in_range("density", full_density)) {
+        put_derived(set, "fill_fraction", 1.0, "full, to hold the manual mass");
+        put_derived(set, "density", full_density, "manual mass / volume");
+    }
+}
+
+void update_mass(AttributeSet& set, const Form& form) {
+    if (is_manual(set, "mass")) return explain_mass(set);
+    if (is_manual(set, "bulk_density")) {
+        put_derived(set, "mass", set.number("bulk_density", 1) * form.box_volume, "manual bulk density x bounding box");
+        return explain_mass(set);
+    }
+    for (const char* name : {"density", "fill_fraction", "volume"}) {
+        if (!is_manual(set, name)) continue;
+        const double mass = set.number("density", 1000) * set.number("fill_fraction", 1) * set.number("volume", 1);
+        const AttributeDescription& range = *describe("mass");
+        put_derived(set, "mass", std::clamp(mass, *range.low, *range.high),
+                    std::string("density x fill x volume, with manual ") + name);
+        return;
+    }
+}
+
+// The same distribution of another mass.
+void scale_inertia(AttributeSet& set, double mass_before) {
+    const double mass = set.number("mass", mass_before);
+    const AttributeEntry* held = set.find("inertia");
+    if (held == nullptr || mass == mass_before || is_manual(set, "inertia")) return;
+    const Mat3 inertia = std::get<Mat3>(held->value) * (mass / mass_before);
+    put_derived(set, "inertia", inertia, held->source + ", scaled to a mass of " + short_number(mass) + " kg");
+}
+
+// Sliding never takes more than sticking: the one that nobody set gives way.
+void order_friction(AttributeSet& set) {
+    const double at_rest = set.number("friction_static", 0);
+    const double sliding = set.number("friction_dynamic", 0);
+    if (sliding <= at_rest) return;
+    if (is_manual(set, "friction_static")) {
+        put_derived(set, "friction_dynamic", at_rest, "lowered to the manual static friction");
+    } else {
+        put_derived(set, "friction_static", sliding, "raised to the manual sliding friction");
+    }
+}
+
+// Only static things collide with their triangles, and they do.
+void update_collision_shape(AttributeSet& set, const GeometryFacts& facts, const std::string& kind_before) {
+    const std::string kind = set.word("kind", "rigid");
+    if (kind == kind_before || set.find("collision_shape") == nullptr) return;
+    const ShapeChoice choice = choose_collision_shape(facts, kind == "static");
+    replace(set, {"collision_shape", choice.shape, {}, {}, choice.source, choice.level});
+}
+
+// What a manual entry was replaced by is lost at its level; the fallback of a mass that a cloth never had is 1 kg.
+AttributeSet lay_over(const AttributeSet& automatic, const std::vector<AttributeEntry>& manual) {
+    AttributeSet set = automatic;
+    for (AttributeEntry entry : manual) {
+        if (!validate(entry.name, entry.value)) continue;
+        entry.level = AttributeLevel::manual;
+        if (entry.source.empty()) entry.source = "set by a person";
+        set.put(std::move(entry));
+    }
+    return set;
+}
+
+// A person's material brings its density; the amount of material stays.
+void update_material(AttributeSet& set, const Taxonomy& taxonomy) {
+    if (!is_manual(set, "surface_material")) return;
+    const MaterialData* material = taxonomy.data().material(set.word("surface_material", ""));
+    if (material == nullptr) return;
+    const double mass_per_density = set.number("mass", 1) / set.number("density", 1000);
+    put_surface(set, *material, "manual surface material", AttributeLevel::model);
+    if (is_manual(set, "mass") || is_manual(set, "density") || is_manual(set, "bulk_density")) return;
+    const Interval& density = material->density;
+    const AttributeDescription& range = *describe("mass");
+    replace(set, {"density", density.typical, density.low, density.high, "manual surface material: " + material->source,
+                  AttributeLevel::model});
+    put_derived(set, "mass", std::clamp(density.typical * mass_per_density, *range.low, *range.high),
+                "the same amount of material, in " + material->name);
+}
+
+AttributeSet with_manual(const Taxonomy* taxonomy, const AttributeSet& automatic,
+                         const std::vector<AttributeEntry>& manual, const ModelFacts& facts) {
+    AttributeSet set = lay_over(automatic, manual);
+    complete_for_kind(set);
+    const Form form = form_of(facts.geometry, {0.5, 0.5, 0.5});
+    const double mass_before = automatic.number("mass", set.number("mass", 1));
+
+    // From the cause to what follows: material, mass, what depends on the mass.
+    if (taxonomy != nullptr) update_material(set, *taxonomy);
+    update_mass(set, form);
+    scale_inertia(set, mass_before);
+    if (set.number("mass", mass_before) != mass_before) put_mass_dependents(set, facts.geometry, form);
+    order_friction(set);
+    update_collision_shape(set, facts.geometry, automatic.word("kind", "rigid"));
+    complete_for_kind(set);
+    return set;
+}
+
+}  // namespace
+
+AttributeSet with_manual(const AttributeSet& automatic, const std::vector<AttributeEntry>& manual,
+                         const ModelFacts& facts) {
+    return with_manual(nullptr, automatic, manual, facts);
+}
+
+AttributeSet with_manual(const Taxonomy& taxonomy, const AttributeSet& automatic,
+                         const std::vector<AttributeEntry>& manual, const ModelFacts& facts) {
+    return with_manual(&taxonomy, automatic, manual, facts);
+}
+
+}  // namespace embody::attributes

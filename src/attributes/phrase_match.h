@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "attributes/taxonomy_data.h"
+
+namespace embody::attributes {
+
+struct PhraseMatch {
+    std::size_t entry = 0;
+    std::string phrase;               ///< the words that decided
+    std::vector<std::string> others;  ///< phrases of other entries in the same text that did not
+};
+
+/// Adds the phrase to the index; false where the very same words stand there already.
+bool add_phrase(PhraseIndex& index, std::string_view words, std::size_t entry);
+
+/// The phrase that says what a thing is: in the first part of the name that has one ("chair with cushion"), the last
+/// noun
+/// ("bedside lamp"), and of those the longest ("coffee table").
+std::optional<PhraseMatch> match_phrase(const PhraseIndex& index, std::size_t longest_phrase, std::string_view text);
+
+/// Stems of all words of the text, joined by one space.
+std::string stems_of(std::string_view text);
+
+}  // namespace embody::attributes

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+// The vocabulary: a superset of KHR_physics_rigid_bodies, UsdPhysics with its PhysX and OmniPhysics schemas, MJCF and
+// SDFormat. Letters of the physical kinds: S static, R rigid, A articulated, V soft volume, C cloth, P rope, F fluid, G
+// granular. Things that are only drawn have the identity attributes.
+#include "attributes/registry_table.h"
+
+#include <limits>
+#include <utility>
+
+namespace embody::attributes {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr const char* all_kinds = "SRAVCPFG";
+
+using Rows = std::vector<AttributeDescription>;
+
+// What most rows say of themselves; kind and type come from the group and the builder below.
+struct Text {
+    const char* name;
+    const char* applies_to;
+    const char* label;
+    const char* help;
+};
+
+// Appended to the help of what is kept, shown and exported, but does not yet change the simulation.
+std::string with_note(const char* help, bool simulated) {
+    return simulated ? std::string(help) : std::string(help) + " Stored and exported, not simulated yet.";
+}
+
+struct Group {
+    Rows& rows;
+    const char* kind;
+    bool simulated = true;
+
+    void number(const Text& text, const char* unit, double standard, double low, double high) const {
+        AttributeDescription row = start(text, ValueType::number, unit, standard);
+        row.low = low;
+        if (high < infinity) row.high = high;
+        rows.push_back(std::move(row));
+    }
+    void word(const Text& text, const char* standard, std::vector<std::string> choices) const {
+        AttributeDescription row = start(text, ValueType::word, "", std::string(standard));
+        row.choices = std::move(choices);
+        rows.push_back(std::move(row));
+    }
+    void truth(const Text& text, bool standard) const { rows.push_back(start(text, ValueType::truth, "", standard)); }
+    void vector(const Text& text, const char* unit, double low, double high) const {
+        AttributeDescription row = start(text, ValueType::vector, unit, Vec3{});
+        row.low = low;
+        row.high = high;
+        rows.push_back(std::move(row));
+    }
+    void tensor(const Text& text, const char* unit, double low, double high) const {
+        AttributeDescription row = start(text, ValueType::tensor, unit, Mat3::identity());
+        row.low = low;
+        row.high = high;
+        rows.push_back(std::move(row));
+    }
+
+private:
+    [[nodiscard]] AttributeDescription start(const Text& text, ValueType type, const char* unit,
+                                             AttributeValue standard) const {
+        AttributeDescription row;
+        row.name = text.name;
+        row.kind = kind;
+        row.type = type;
+        row.unit = unit;
+        row.standard = std::move(standard);
+        row.applies_to = text.applies_to;
+        row.label = text.label;
+        row.help = with_note(text.help, simulated);
+        return row;
+    }
+};
+
+void add_identity(Rows& rows) {
+    const Group group{rows, "identity"};
+    group.word({"kind", all_kinds, "Physical kind", "What the thing is for physics; static things never move."},
+               "rigid", {"static", "rigid", "articulated", "soft", "cloth", "rope", "fluid", "granular", "visual"});
+    group.word({"category", all_kinds, "Category", "What the thing is, from the taxonomy."}, "object", {});
+    group.word({"subcategory", all_kinds, "Subcategory", "What it is more exactly, where known."}, "", {});
+    group.word({"synset", all_kinds, "WordNet synset", "Meaning in WordNet 3.0, such as chair.n.01, where known."}, "",
+               {});
+    group.word({"placement", all_kinds, "Usual place", "Where such a thing usually stands or hangs."}, "floor",
+               {"floor", "wall", "ceiling", "table", "ground", "free"});
+    group.number({"scale_to_m", all_kinds, "Metres per unit", "Length of one unit of the stored geometry."}, "m", 1,
+                 1e-4, 1e3);
+}
+
+void add_mass(Rows& rows) {
+    const Group group{rows, "mass"};
+    group.number({"mass", "SRAVCPG", "Mass", "Mass of the whole thing; of a static one, what it would weigh if freed."},
+                 "kg", 1, 1e-5, 1e6);
+    group.number({"density", "SRAVFG", "Material density", "Density of the material itself, without hollows."}, "kg/m³",
+                 1000, 0.1, 22600);
+    // The lower ends of these two leave room for models that are kilometres long by mistake.
+    group.number({"bulk_density", "SRAV", "Bulk density", "Mass divided by the volume of the bounding box."}, "kg/m³",
+                 180, 1e-9, 22600);
+    group.number({"fill_fraction", "SRAV", "Fill", "Share of the volume that material takes up; the rest is hollow."},
+                 "1", 0.3, 1e-12, 1);
+    group.number({"volume", "SRAVFG", "Volume", "Volume inside the surface."}, "m³", 1, 1e-12, 1e12);
+    group.number({"wall_thickness", "SRA", "Wall thickness", "Mean thickness of the walls of a hollow thing."}, "m",
+                 0.003, 1e-4, 0.5);
+    group.vector(
+        {"center_of_mass", "SRAV", "Centre of mass", "In the model's frame: origin at the centre of its base, Y up."},
+        "m", -1e4, 1e4);
+    group.tensor({"inertia", "SRAV", "Moments of inertia", "About the centre of mass, in the model's axes."}, "kg m²",
+                 -1e15, 1e15);
+}
+
+void add_shape(Rows& rows) {
+    const Group group{rows, "shape"};
+    group.word({"collision_shape", "SRAVCPFG", "Collision shape",
+                "What collides: a primitive that fits, the convex hull, or the triangles of a static thing."},
+               "convex_hull", {"box", "sphere", "capsule", "cylinder", "convex_hull", "decomposition", "trimesh"});
+    const Group later{rows, "shape", false};
+    later.number({"max_hulls", "SRA", "Convex parts at most", "Limit on the parts of a decomposition."}, "1", 16, 1,
+                 256);
+    later.number({"hull_error", "SRA", "Decomposition error", "Concavity that a decomposition may leave."}, "m", 0.01,
+                 1e-4, 1);
+}
+
+void add_surface(Rows& rows) {
+    const Group group{rows, "surface"};
+    group.word(
+        {"surface_material", all_kinds, "Surface material", "Material outside; density and friction follow from it."},
+        "generic", {});
+    group.number({"friction_static", "SRAVCPG", "Static friction", "Coulomb coefficient while the surfaces stick."},
+                 "1", 0.5, 0, 2);
+    group.number({"friction_dynamic", "SRAVCPG", "Sliding friction", "Coulomb coefficient while the surfaces slide."},
+                 "1", 0.4, 0, 2);
+    group.number({"friction_rolling", "SRAG", "Rolling resistance", "Lever arm of the resistance to rolling."}, "m",
+                 5e-4, 0, 0.05);
+    group.number(
+        {"friction_torsional", "SRAG", "Spinning resistance", "Lever arm of the resistance to spinning on the spot."},
+        "m", 5e-3, 0, 0.1);
+    group.number(
+        {"restitution", "SRAVG", "Bounciness", "Energetic coefficient of restitution: 0 stays down, 1 loses nothing."},
+        "1", 0.3, 0, 1);
+    group.number({"restitution_threshold", "SRAVG", "Least bounce speed", "Slower impacts do not bounce."}, "m/s", 0, 0,
+                 10);
+    const std::vector<std::string> rules{"average", "geometric_mean", "minimum", "maximum", "multiply"};
+    group.word(
+        {"friction_combine", "SRA", "Friction of a pair", "How the friction of two touching things becomes one."},
+        "geometric_mean", rules);
+    group.word({"restitution_combine", "SRA", "Bounciness of a pair",
+                "How the bounciness of two touching things becomes one."},
+               "maximum", rules);
+}
+
+void add_motion(Rows& rows) {
+    const Group group{rows, "motion"};
+    group.number({"linear_damping", "RA", "Linear damping", "Share of the velocity lost a second."}, "1/s", 0, 0, 100);
+    group.number({"angular_damping", "RA", "Angular damping", "Share of the spin lost a second."}, "1/s", 0.05, 0, 100);
+    group.number({"gravity_factor", "RA", "Gravity factor", "1 falls, 0 floats, -1 rises."}, "1", 1, -10, 10);
+    group.number(
+        {"sleep_energy_per_mass", "RA", "Sleep energy", "Quieter than this for half a second may fall asleep."}, "J/kg",
+        4.5e-4, 0, 1);
+    group.truth({"kinematic", "RA", "Moves by command", "Moves as its velocity says; nothing pushes it."}, false);
+    group.truth({"continuous", "RA", "Continuous collision", "Swept against everything: for small fast things."},
+                false);
+    group.number({"collision_group", all_kinds, "Collision group", "Bits of the groups that it belongs to."}, "1", 1, 0,
+                 4294967295.0);
+    group.number({"collision_mask", all_kinds, "Collides with", "Bits of the groups that it collides with."}, "1",
+                 4294967295.0, 0, 4294967295.0);
+    const Group later{rows, "motion", false};
+    later.number({"drag_coefficient", "RAC", "Drag coefficient", "Of the drag of the air."}, "1", 1, 0, 3);
+    later.number({"drag_area", "RAC", "Drag area", "Area that meets the air."}, "m²", 1, 0, 1e8);
+    later.number({"break_impulse", "RA", "Breaking impulse", "An impulse above this breaks it."}, "N s", infinity, 0,
+                 infinity);
+    later.number({"break_energy", "RA", "Breaking energy", "An impact energy above this breaks it."}, "J", infinity, 0,
+                 infinity);
+}
+
+void add_soft_and_cloth(Rows& rows) {
+    const Group soft{rows, "soft", false};
+    soft.number({"youngs_modulus", "VC", "Young's modulus", "Stiffness of the material."}, "Pa", 1e5, 1e2, 1e12);
+    soft.number({"poisson_ratio", "VC", "Poisson's ratio", "Sideways shrinking when stretched."}, "1", 0.45, -0.999,
+                0.4999);
+    soft.number({"damping_rayleigh", "VCP", "Internal damping", "Stiffness-proportional Rayleigh damping."}, "s", 0.01,
+                0, 100);
+    soft.number({"yield_stress", "VCP", "Yield stress", "Stress from which it stays deformed."}, "Pa", infinity, 0,
+                infinity);
+    soft.number({"internal_pressure", "VC", "Internal pressure", "Above that of the air around."}, "Pa", 0, 0, 1e8);
+    const Group cloth{rows, "cloth", false};
+    cloth.number({"area_density", "C", "Area density", "Mass of a square metre."}, "kg/m²", 0.2, 1e-4, 1e3);
+    cloth.number({"thickness", "C", "Thickness", "Of the cloth."}, "m", 5e-4, 1e-6, 0.1);
+    cloth.number({"stretch_stiffness", "C", "Stretch stiffness", "Force per metre width and unit strain."}, "N/m", 500,
+                 1e-3, 1e9);
+    cloth.number({"shear_stiffness", "C", "Shear stiffness", "Force per metre width and unit shear."}, "N/m", 50, 1e-3,
+                 1e9);
+    cloth.number({"bend_stiffness", "C", "Bend stiffness", "Moment per metre width and curvature."}, "N m", 2e-5, 1e-9,
+                 1e6);
+    cloth.number({"tear_strength", "C", "Tear strength", "Tension that tears it."}, "N/m", infinity, 0, infinity);
+}
+
+void add_rope_fluid_and_grain(Rows& rows) {
+    const Group rope{rows, "rope", false};
+    rope.number({"linear_density", "P", "Linear density", "Mass of a metre."}, "kg/m", 0.07, 1e-6, 1e4);
+    rope.number({"axial_stiffness", "P", "Axial stiffness EA", "Force per unit strain."}, "N", 1e4, 1e-3, 1e12);
+    rope.number({"bend_rigidity", "P", "Bend rigidity EI", "Moment per curvature."}, "N m²", 1e-3, 1e-12, 1e9);
+    rope.number({"twist_rigidity", "P", "Twist rigidity GJ", "Moment per twist of a metre."}, "N m²", 1e-3, 1e-12, 1e9);
+    rope.number({"break_tension", "P", "Breaking tension", "Tension that breaks it."}, "N", infinity, 0, infinity);
+    const Group fluid{rows, "fluid", false};
+    fluid.number({"rest_density", "F", "Rest density", "Density of the liquid at rest."}, "kg/m³", 998, 0.01, 22600);
+    fluid.number({"dynamic_viscosity", "F", "Viscosity", "Dynamic viscosity."}, "Pa s", 1e-3, 1e-7, 1e9);
+    fluid.number({"yield_stress_fluid", "F", "Yield stress of the liquid", "Stress below which it does not flow."},
+                 "Pa", 0, 0, 1e9);
+    fluid.number({"surface_tension", "F", "Surface tension", "Against air."}, "N/m", 0.072, 0, 10);
+    fluid.number({"contact_angle", "F", "Contact angle", "On a solid wall."}, "deg", 60, 0, 180);
+    const Group grain{rows, "grain", false};
+    grain.number({"grain_density", "G", "Grain density", "Density of a single grain."}, "kg/m³", 2650, 0.1, 22600);
+    grain.number({"grain_diameter", "G", "Grain diameter", "Median diameter of a grain."}, "m", 0.002, 1e-6, 1);
+    grain.number({"friction_angle", "G", "Friction angle", "Internal friction angle of the heap."}, "deg", 34, 0, 80);
+    grain.number({"cohesion", "G", "Cohesion", "Shear strength without load."}, "Pa", 0, 0, 1e7);
+}
+
+}  // namespace
+
+std::vector<AttributeDescription> make_registry_table() {
+    Rows rows;
+    add_identity(rows);
+    add_mass(rows);
+    add_shape(rows);
+    add_surface(rows);
+    add_motion(rows);
+    add_soft_and_cloth(rows);
+    add_rope_fluid_and_grain(rows);
+    return rows;
+}
+
+}  // namespace embody::attributes

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// The paper's mapping (Fig. 4): words → category → physical kind → attribute set; then what geometry tells.
+#include "attributes/resolver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "attributes/assemble.h"
+#include "attributes/classify.h"
+#include "attributes/form.h"
+#include "attributes/registry.h"
+
+namespace embody::attributes {
+namespace {
+
+constexpr double heaviest_density = 22600;  // osmium, kg/m³
+
+// Size in metres as people write it.
+std::string size_text(Vec3 size) {
+    return short_number(size.x) + " x " + short_number(size.y) + " x " + short_number(size.z) + " m";
+}
+
+void put_identity(AttributeSet& set, const ModelFacts& facts, const Classification& what) {
+    const CategoryData& category = *what.category;
+    const bool is_sub = !category.parent.empty();
+    const auto word = [&](const char* name, const std::string& value, const std::string& source, AttributeLevel level) {
+        set.put({name, value, {}, {}, source, level});
+    };
+    word("category", is_sub ? category.parent : category.name, what.source, what.level);
+    if (is_sub) word("subcategory", category.name, what.source, what.level);
+    word("placement", category.placement, "usual for " + category.name, what.level);
+
+    // Who says whether it moves: the catalogue's flags before the category.
+    if (facts.door_or_window) {
+        word("kind", "static", "the catalogue says that it is a door or window", AttributeLevel::model);
+    } else if (facts.movable) {
+        const std::string verdict = *facts.movable ? "the catalogue says movable" : "the catalogue says not movable";
+        const bool agrees = *facts.movable == category.movable;
+        word("kind", *facts.movable ? category.kind : "static",
+             verdict + (agrees ? ", as usual for " : ", unlike what is usual for ") + category.name,
+             AttributeLevel::model);
+    } else {
+        word("kind", category.movable ? category.kind : "static", "usual for " + category.name, what.level);
+    }
+}
+
+// A length far outside what such things measure is a sign of a wrong unit: said here, mended by the person or the
+// importer.
+void put_scale(AttributeSet& set, const ModelFacts& facts, const CategoryData& category, const Form& form) {
+    std::string source = facts.size_is_stated ? "size stated by the catalogue" : "file taken to be in metres";
+    const double largest = std::max({form.size.x, form.size.y, form.size.z});
+    const bool usual = largest >= category.usual_low / 2 && largest <= category.usual_high * 2;
+    if (form.size_known && !usual) {
+        source += "; largest side " + short_number(largest) + " m is unusual for " + category.name + " (" +
+                  short_number(category.usual_low) + " to " + short_number(category.usual_high) + " m)";
+        if (const auto factor = likely_unit(largest, category.usual_low, category.usual_high);
+            factor && !facts.size_is_stated) {
+            source += "; it would fit at " + short_number(*factor) + " m a unit";
+        }
+    }
+    set.put({"scale_to_m", 1.0, {}, {}, source, AttributeLevel::model});
+}
+
+struct MassEstimate {
+    Interval mass;
+    std::string source;
+    AttributeLevel level = AttributeLevel::standard;
+};
+
+// Density × filled share × volume of a closed surface, for things that are not hollow.
+MassEstimate mass_of_solid(const CategoryData& category, const MaterialData& material, const Form& form) {
+    const auto product = [&](double density, double fill) { return density * fill * form.volume; };
+    const Interval mass{product(material.density.low, category.fill_fraction.low),
+                        product(material.density.typical, category.fill_fraction.typical),
+                        product(material.density.high, category.fill_fraction.high)};
+    return {mass,
+            "density of " + material.name + " (" + material.source + ") x " +
+                short_number(category.fill_fraction.typical) + " filled x volume of the " + form.volume_source,
+            AttributeLevel::model};
+}
+
+// The category's mass, carried over to this box.
+MassEstimate mass_of_box(const CategoryData& category, const Form& form, AttributeLevel level) {
+    const Form usual = form_of({}, category.at_size);
+    const bool by_area = category.scaling == MassScaling::area;
+    const double ratio = by_area ? form.face_area / usual.face_area : form.box_volume / usual.box_volume;
+    const double factor = std::pow(ratio, category.exponent);
+    const Interval mass{category.mass.low * factor, category.mass.typical * factor, category.mass.high * factor};
+    std::string source = category.name + " of " + size_text(category.at_size) + ": " +
+                         short_number(category.mass.typical) + " kg (" + category.source + ")";
+    if (form.size_known) {
+        source += ", x (" + short_number(ratio) + " times the " + (by_area ? "face" : "box") + ")^" +
+                  short_number(category.exponent);
+    }
+    return {mass, source, level};
+}
+
+void put_mass(AttributeSet& set, const ModelFacts& facts, const Classification& what, const MaterialChoice& surface,
+              const Form& form) {
+    const CategoryData& category = *what.category;
+    const bool by_volume = category.solid && facts.geometry.closed && form.volume_is_own;
+    const MassEstimate estimate =
+        by_volume ? mass_of_solid(category, *surface.material, form) : mass_of_box(category, form, what.level);
+
+    // Into the registry's range, and never denser than the densest element.
+    const AttributeDescription& range = *describe("mass");
+    const double most = std::min(*range.high, heaviest_density * form.volume);
+    const auto possible = [&](double mass) { return std::clamp(mass, std::min(*range.low, most), most); };
+    const Interval mass{possible(estimate.mass.low), possible(estimate.mass.typical), possible(estimate.mass.high)};
+    set.put({"mass", mass.typical, mass.low, mass.high, estimate.source, estimate.level});
+    set.put({"volume", form.volume, {}, {}, form.volume_source, form.volume_level});
+
+    // Mass = density × fill × volume: the material says the density, and fill is what remains, up to full.
+    const Interval& density = surface.material->density;
+    const double fill = mass.typical / (density.typical * form.volume);
+    if (fill <= 1) {
+        set.put({"density", density.typical, density.low, density.high,
+                 surface.material->name + " (" + surface.source + "): " + surface.material->source, surface.level});
+        set.put({"fill_fraction", fill, {}, {}, "mass / (density x volume)", AttributeLevel::model});
+    } else {
+        set.put({"density",
+                 mass.typical / form.volume,
+                 {},
+                 {},
+                 "mass / volume: " + surface.material->name + " would be too light for it",
+                 AttributeLevel::model});
+        set.put({"fill_fraction", 1.0, {}, {}, "full", AttributeLevel::model});
+    }
+}
+
+void put_form(AttributeSet& set, const ModelFacts& facts, const Form& form) {
+    const CenterAndInertia moments = center_and_inertia(facts.geometry, form, set.number("mass", 1));
+    set.put({"center_of_mass", moments.center, {}, {}, moments.source, moments.level});
+    set.put({"inertia", moments.inertia, {}, {}, moments.source, moments.level});
+    const ShapeChoice shape = choose_collision_shape(facts.geometry, set.word("kind", "") == "static");
+    set.put({"collision_shape", shape.shape, {}, {}, shape.source, shape.level});
+}
+
+}  // namespace
+
+std::optional<double> likely_unit(double largest, double usual_low, double usual_high) {
+    // Millimetre, centimetre, inch, foot, decimetre; then files that hold metres where they claim a smaller unit.
+    for (const double factor : {0.001, 0.01, 0.0254, 0.3048, 0.1, 1000.0, 100.0, 10.0}) {
+        if (largest * factor >= usual_low && largest * factor <= usual_high) return factor;
+    }
+    return std::nullopt;
+}
+
+std::optional<double> suggested_scale(const Taxonomy& taxonomy, const ModelFacts& facts) {
+    const CategoryData& category = *classify(taxonomy.data(), facts).category;
+    const Vec3 size = facts.geometry.size;
+    const double largest = std::max({size.x, size.y, size.z});
+    const bool usual = largest >= category.usual_low / 2 && largest <= category.usual_high * 2;
+    if (facts.size_is_stated || usual || !is_finite(size)) return std::nullopt;
+    return likely_unit(largest, category.usual_low, category.usual_high);
+}
+
+AttributeSet resolve(const Taxonomy& taxonomy, const ModelFacts& facts) {
+    // Words tell what it is and what it is made of.
+    const Taxonomy::Data& data = taxonomy.data();
+    const Classification what = classify(data, facts);
+    const MaterialChoice surface = choose_material(data, facts, what);
+    AttributeSet set;
+    put_identity(set, facts, what);
+    put_surface(set, *surface.material, surface.source, surface.level);
+
+    // Its form tells how much of that there is, and where.
+    const Form form = form_of(facts.geometry, what.category->at_size);
+    put_scale(set, facts, *what.category, form);
+    put_mass(set, facts, what, surface, form);
+    put_mass_dependents(set, facts.geometry, form);
+    put_form(set, facts, form);
+
+    // Defaults for the rest.
+    complete_for_kind(set);
+    return set;
+}
+
+}  // namespace embody::attributes

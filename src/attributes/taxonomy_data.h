@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "attributes/resolver.h"
+
+namespace embody::attributes {
+
+/// 80 % interval around a typical value.
+struct Interval {
+    double low = 0, typical = 0, high = 0;
+};
+
+/// A surface material of materials.json.
+struct MaterialData {
+    std::string name;
+    std::vector<std::string> words;
+    Interval density;          ///< kg/m³
+    Interval friction_static;  ///< against a like or a common dry partner
+    Interval friction_dynamic;
+    double friction_rolling = 0;  ///< m
+    Interval restitution;
+    std::string source;
+};
+
+/// How the mass of a thing grows with its size.
+enum class MassScaling { volume, area };
+
+/// A category or subcategory of taxonomy.json; what a subcategory leaves out is its category's.
+struct CategoryData {
+    std::string name;
+    std::string parent;  ///< of a subcategory: its category; else empty
+    std::vector<std::string> words;
+    std::vector<std::string> catalogue;  ///< names of catalogue categories that mean this where no word tells more
+    std::string kind;                    ///< when movable
+    std::string placement;
+    bool movable = true;
+    Interval mass;  ///< kg, of a thing of at_size
+    Vec3 at_size;   ///< extents of the box, m, in any order
+    MassScaling scaling = MassScaling::volume;
+    double exponent = 0.85;                ///< mass ∝ (box volume or area of the largest face)^exponent
+    double usual_low = 0, usual_high = 0;  ///< of the largest extent, m
+    bool solid = false;                    ///< the closed surface is filled to fill_fraction with the material
+    Interval fill_fraction;                ///< used where solid
+    std::string material;
+    std::string source;  ///< of the numbers
+};
+
+/// A phrase that names an entry, e.g. "coffee table".
+struct Phrase {
+    std::string text;        ///< its words as written, joined by one space
+    std::size_t length = 0;  ///< in words
+    std::size_t entry = 0;   ///< index in Data::categories or Data::materials
+};
+
+/// Phrases by the stems of their words, joined by one space.
+using PhraseIndex = std::multimap<std::string, Phrase, std::less<>>;
+
+struct Taxonomy::Data {
+    std::vector<MaterialData> materials;
+    std::vector<CategoryData> categories;
+    PhraseIndex category_phrases, material_phrases;
+    std::map<std::string, std::size_t, std::less<>> by_catalogue;  ///< stems of the catalogue's category → index
+    std::size_t unknown = 0;                                       ///< index of the category "object"
+    std::size_t longest_phrase = 1;
+
+    [[nodiscard]] const MaterialData* material(std::string_view name) const;
+    [[nodiscard]] const CategoryData* category(std::string_view name) const;
+};
+
+}  // namespace embody::attributes

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include "attributes/to_physics.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "attributes/form.h"
+#include "attributes/registry.h"
+
+namespace embody::attributes {
+namespace {
+
+physics::CombineRule combine_rule(const std::string& name, physics::CombineRule fallback) {
+    constexpr std::array<std::pair<std::string_view, physics::CombineRule>, 5> rules{
+        {{"average", physics::CombineRule::average},
+         {"geometric_mean", physics::CombineRule::geometric_mean},
+         {"minimum", physics::CombineRule::minimum},
+         {"maximum", physics::CombineRule::maximum},
+         {"multiply", physics::CombineRule::multiply}}};
+    for (const auto& [word, rule] : rules) {
+        if (word == name) return rule;
+    }
+    return fallback;
+}
+
+// The registry's default, for sets that a person or a file left incomplete.
+double number_or_standard(const AttributeSet& set, const char* name) {
+    return set.number(name, std::get<double>(describe(name)->standard));
+}
+
+physics::Material material_from(const AttributeSet& set) {
+    physics::Material material;
+    material.friction_static = number_or_standard(set, "friction_static");
+    material.friction_dynamic = std::min(number_or_standard(set, "friction_dynamic"), material.friction_static);
+    material.friction_rolling = number_or_standard(set, "friction_rolling");
+    material.friction_torsional = number_or_standard(set, "friction_torsional");
+    material.restitution = number_or_standard(set, "restitution");
+    material.restitution_threshold = number_or_standard(set, "restitution_threshold");
+    material.friction_combine = combine_rule(set.word("friction_combine", ""), physics::CombineRule::geometric_mean);
+    material.restitution_combine = combine_rule(set.word("restitution_combine", ""), physics::CombineRule::maximum);
+    return material;
+}
+
+physics::MassDefinition mass_from(const AttributeSet& set) {
+    physics::MassDefinition mass;
+    if (set.find("mass") != nullptr) mass.mass = set.number("mass", 1);
+    mass.density = number_or_standard(set, "density");
+    if (const AttributeEntry* center = set.find("center_of_mass")) {
+        if (const auto* value = std::get_if<Vec3>(&center->value)) mass.center_of_mass = *value;
+    }
+    if (const AttributeEntry* inertia = set.find("inertia")) {
+        if (const auto* value = std::get_if<Mat3>(&inertia->value)) mass.inertia = *value;
+    }
+    return mass;
+}
+
+// A primitive at its fitted place; a compound of one where that is not the origin.
+template <class Primitive>
+physics::ShapeDefinition placed(const Primitive& primitive, const Transform& pose) {
+    if (pose == Transform{}) return primitive;
+    physics::CompoundShape compound;
+    compound.children.push_back({primitive, pose});
+    return compound;
+}
+
+Vec3 safe_size(const GeometryFacts& facts) { return form_of(facts, {0.5, 0.5, 0.5}).size; }
+Transform box_pose(Vec3 size) { return {{0, size.y / 2, 0}, {}}; }
+
+// The primitive as fitted, or, where a person asks for another than was fitted, the one around the bounding box.
+physics::ShapeDefinition primitive_shape(const std::string& shape, const GeometryFacts& facts) {
+    const bool fitted =
+        facts.fitted_shape == shape && is_finite(facts.fitted_dimensions) && is_finite(facts.fitted_pose);
+    const Vec3 size = safe_size(facts);
+    const Transform pose = fitted ? facts.fitted_pose : box_pose(size);
+    const Vec3 d = max(facts.fitted_dimensions, Vec3{least_extent / 2, least_extent / 2, least_extent / 2});
+    const double radius = fitted ? d.x : std::max(size.x, size.z) / 2;
+    if (shape == "box") return placed(physics::BoxShape{fitted ? d : size * 0.5}, pose);
+    if (shape == "sphere") return placed(physics::SphereShape{fitted ? d.x : std::max(radius, size.y / 2)}, pose);
+    if (shape == "cylinder") return placed(physics::CylinderShape{radius, fitted ? d.y : size.y / 2}, pose);
+    const double half_height = fitted ? d.y : std::max(size.y / 2 - radius, least_extent / 2);
+    return placed(physics::CapsuleShape{radius, half_height}, pose);
+}
+
+// Points that span no volume (a sheet of paper, a road marking) make a thin box.
+Result<physics::ShapeDefinition> hull_shape(const GeometryFacts& facts, ModelGeometry& geometry) {
+    const Vec3 s = facts.size;
+    if (is_finite(s) && std::min({s.x, s.y, s.z}) < least_extent) return primitive_shape("box", facts);
+    auto points = geometry.hull_points();
+    if (!points) return points.error();
+    if (points->size() < 4) return primitive_shape("box", facts);
+    return physics::ShapeDefinition{physics::HullShape{std::move(*points)}};
+}
+
+}  // namespace
+
+Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attributes) {
+    const std::string kind = attributes.word("kind", "rigid");
+    if (kind == "visual") {
+        return Error{"kind", "a thing that is only drawn has no body", "set kind to rigid or static"};
+    }
+    physics::BodyDefinition body;
+    body.kind = physics::BodyKind::dynamic_body;
+    if (attributes.truth("kinematic", false)) body.kind = physics::BodyKind::kinematic_body;
+    if (kind == "static") body.kind = physics::BodyKind::static_body;
+    body.mass = mass_from(attributes);
+    body.material = material_from(attributes);
+    body.linear_damping = number_or_standard(attributes, "linear_damping");
+    body.angular_damping = number_or_standard(attributes, "angular_damping");
+    body.gravity_factor = number_or_standard(attributes, "gravity_factor");
+    body.sleep_energy_per_mass = number_or_standard(attributes, "sleep_energy_per_mass");
+    body.continuous = attributes.truth("continuous", false);
+    body.collision_group = static_cast<std::uint32_t>(number_or_standard(attributes, "collision_group"));
+    body.collision_mask = static_cast<std::uint32_t>(number_or_standard(attributes, "collision_mask"));
+    return body;
+}
+
+Result<physics::ShapeDefinition> shape_from_attributes(const AttributeSet& attributes, const GeometryFacts& facts,
+                                                       ModelGeometry& geometry) {
+    const std::string shape = attributes.word("collision_shape", "convex_hull");
+    if (shape == "trimesh") {
+        if (attributes.word("kind", "rigid") != "static") {
+            return Error{"collision_shape", "only static things collide with their triangles",
+                         "set kind to static or collision_shape to convex_hull"};
+        }
+        auto mesh = geometry.mesh();
+        if (!mesh) return mesh.error();
+        return physics::ShapeDefinition{std::move(*mesh)};
+    }
+    // A decomposition is not there yet: its hull stands in.
+    if (shape == "convex_hull" || shape == "decomposition") return hull_shape(facts, geometry);
+    if (auto valid = validate("collision_shape", shape); !valid) return valid.error();
+    return primitive_shape(shape, facts);
+}
+
+}  // namespace embody::attributes

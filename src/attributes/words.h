@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace embody::attributes {
+
+/// One word of a name, and how many separators ("with", "of", a comma, a bracket …) stand before it. What a thing is
+/// stands in front of the first separator: a "chair with cushion" is a chair.
+struct Token {
+    std::string text;  ///< lower case, accents folded
+    std::string stem;  ///< singular
+    int segment = 0;
+};
+
+/// Words of a name: split at everything that is neither letter nor digit, between letters and digits, and inside
+/// camelCase. Punctuation that separates stays as a token ",", so that no phrase reaches across it.
+std::vector<Token> tokens_of(std::string_view text);
+
+/// Singular of an English noun, well enough to compare two words that both went through it.
+std::string singular_of(std::string_view word);
+
+}  // namespace embody::attributes
