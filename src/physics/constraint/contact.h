@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "physics/collision/manifold.h"
+#include "physics/dynamic/body_state.h"
+#include "physics/inter/definitions/material.h"
+
+namespace embody::physics {
+
+/// Impulse of one half of a substep at a contact point: along the normal and along the two tangents, N s.
+struct PointImpulse {
+    double normal = 0;
+    double tangent_1 = 0, tangent_2 = 0;
+};
+
+struct ContactPoint {
+    Vec3 position;          ///< world, when found
+    Vec3 arm_a, arm_b;      ///< from the centres of mass, world, when found; fixed during the step
+    double separation = 0;  ///< when found, m
+    std::uint32_t feature = 0;
+
+    double normal_mass = 0;                                 ///< 1/(nᵀAn), kg
+    double tangent_11 = 0, tangent_12 = 0, tangent_22 = 0;  ///< inverse of the 2×2 tangent block, kg
+    bool sticks = true;                                     ///< holds by static friction until the cone is left
+
+    PointImpulse position_phase;  ///< of the last substep's first half; warm start of the next
+    PointImpulse velocity_phase;  ///< of its second half
+    PointImpulse total;           ///< of the whole step, impacts included
+};
+
+/// One contact region (paper, III.B) as a constraint between two bodies.
+struct Contact {
+    std::uint32_t a = 0, b = 0;              ///< body slots, a < b
+    std::uint32_t piece_a = 0, piece_b = 0;  ///< convex pieces; key of the region within the pair
+    Vec3 normal, tangent_1, tangent_2;       ///< world; normal from a to b
+    Material material;                       ///< of the pair
+    int count = 0;
+    std::array<ContactPoint, Manifold::max_points> points;
+
+    Vec3 turning_position_phase, turning_velocity_phase;  ///< torsion (along n) and rolling resistance, N m s
+    double torsional_mass = 0;
+    double approach_speed = 0;  ///< fastest point when found, m/s, >= 0
+    double inactive_until = 0;  ///< s in the step: before that an impact lets the bodies part
+    bool was_loaded = false;    ///< pressed in the last step
+    bool had_impact = false;    ///< solved by the impact stage in this step
+};
+
+/// Same bodies and pieces, in the order contacts are kept.
+inline std::array<std::uint32_t, 4> contact_key(const Contact& c) { return {c.a, c.b, c.piece_a, c.piece_b}; }
+
+/// Frame and arms from what the narrow phase found.
+Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold, std::span<const BodyState> bodies);
+
+/// Hands the last step's impulses to the new points that lie where an old one did (warm start; paper, contact caching).
+void match_points(const Contact& old_contact, Contact& new_contact);
+
+/// Velocity of b's matter relative to a's at the point.
+inline Vec3 relative_velocity(const Contact& contact, const ContactPoint& point, std::span<const BodyState> bodies) {
+    return velocity_at(bodies[contact.b], point.arm_b) - velocity_at(bodies[contact.a], point.arm_a);
+}
+
+/// Gap at the point now, m, from the bodies' motion since it was found.
+double current_separation(const Contact& contact, const ContactPoint& point, std::span<const BodyState> bodies);
+
+/// Whether it carried a load at the end of the last substep that solved it; impacts do not count.
+bool is_pressed(const Contact& contact);
+
+/// Whether the bodies touch: an impulse of the last step went through the region, or they overlapped when it was found.
+bool is_touching(const Contact& contact);
+
+/// A = J M⁻¹ Jᵀ of eq. (3) in the world axes: what a unit impulse on b (and its opposite on a) does to the relative
+/// velocity, 1/kg.
+Mat3 inverse_mass_at(const BodyState& a, Vec3 arm_a, const BodyState& b, Vec3 arm_b);
+
+}  // namespace embody::physics

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include "physics/constraint/substep_solver.h"
+
+#include <algorithm>
+
+namespace embody::physics {
+
+namespace {
+
+// Passes: a long list gets one, since the substeps and the warm start do the work; a short one costs nothing.
+int contact_passes(std::size_t contacts) {
+    constexpr std::size_t budget = 64;
+    return static_cast<int>(std::clamp<std::size_t>(budget / std::max<std::size_t>(contacts, 1), 1, 8));
+}
+int joint_passes(std::size_t joints) {
+    constexpr std::size_t budget = 512;
+    return static_cast<int>(std::clamp<std::size_t>(budget / std::max<std::size_t>(joints, 1), 4, 64));
+}
+
+// A joint list is done when no row has to change its speed by more than this, m/s or rad/s.
+constexpr double joint_tolerance = 1e-10;
+
+bool is_active(const Contact& contact, double time) { return time > contact.inactive_until; }
+
+}  // namespace
+
+void solve_phase(const ConstraintList& list, SolvePhase phase, const ContactSoftness& softness,
+                 std::span<BodyState> bodies) {
+    for (const std::uint32_t i : list.joint_order) warm_start_joint(list.joints[i], phase, bodies);
+    for (const std::uint32_t i : list.contact_order) {
+        if (is_active(list.contacts[i], list.time)) warm_start_contact(list.contacts[i], phase, bodies);
+    }
+
+    const int least = contact_passes(list.contact_order.size());
+    const int most = list.joint_order.empty() ? least : std::max(least, joint_passes(list.joint_order.size()));
+    for (int pass = 0; pass < most; ++pass) {
+        double error = 0;
+        for (const std::uint32_t i : list.joint_order) {
+            error = std::max(error, solve_joint(list.joints[i], phase, softness.substep, bodies));
+        }
+        for (const std::uint32_t i : list.contact_order) {
+            if (is_active(list.contacts[i], list.time)) solve_contact(list.contacts[i], phase, softness, bodies);
+        }
+        if (pass + 1 >= least && error <= joint_tolerance) break;
+    }
+    for (const std::uint32_t i : list.joint_order) add_to_totals(list.joints[i], phase);
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+
+#include "physics/constraint/contact_solver.h"
+#include "physics/constraint/joint.h"
+
+namespace embody::physics {
+
+/// Constraints that are solved together: indices into the arrays, in solve order. Knows no island; it is given one.
+struct ConstraintList {
+    std::span<Contact> contacts;
+    std::span<const std::uint32_t> contact_order;
+    std::span<Joint> joints;
+    std::span<const std::uint32_t> joint_order;
+    double time = 0;  ///< s since the step began, at the end of the substep: contacts that part are left alone
+};
+
+/// Passes over the list in one phase: few for long lists, more for short ones, until a joint's error is gone.
+void solve_phase(const ConstraintList& list, SolvePhase phase, const ContactSoftness& softness,
+                 std::span<BodyState> bodies);
+
+}  // namespace embody::physics

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/dynamic/body_state.h"
+#include "physics/inter/definitions/step_report.h"
+
+namespace embody::physics {
+
+/// T = ½ m v² + ½ ω·Iω (paper, III.A), J.
+double kinetic_energy(const BodyState& state, const BodyConstants& constants);
+
+/// Adds one body's energies and momenta; `gravity` with the body's gravity factor applied, m/s².
+void add_conserved(Conserved& sum, const BodyState& state, const BodyConstants& constants, Vec3 gravity);
+
+}  // namespace embody::physics

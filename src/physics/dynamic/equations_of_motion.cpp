@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+//
+// Lagrange's equations (paper, eq. 2) of a rigid body. With the position of the centre of mass as generalised
+// coordinates they are m dv/dt = F; with the rotation's quasi-coordinates they are Euler's equations, in body axes
+//     dL/dt = L × ω + τ,   L = I ω.
+// Source of the scheme: L. Verlet, "Computer experiments on classical fluids", 1967 (kick, drift, kick); J. Simo and
+// K. Wong, "Unconditionally stable algorithms for rigid body dynamics that exactly preserve energy and momentum", 1991.
+//
+//     L₁ = L₀ + h L_m × ω_m,   L_m = (L₀ + L₁)/2 = I ω_m       (implicit midpoint: keeps |L| and the energy)
+//     R₁ = R₀ cay(h ω_m)                                        (keeps R L, the momentum seen from the world)
+// The two belong together: cay(hω) = (1 − hω̂/2)⁻¹(1 + hω̂/2) gives R₁ L₁ = R₀ L₀ exactly. So during a drift the world
+// momentum stands still and only the inertia turns; and cay leaves ω_m itself fixed, so that R₀ω_m = R₁ω_m is the one
+// mean angular velocity for which constraints can be solved between the kick and the drift.
+#include "physics/dynamic/equations_of_motion.h"
+
+#include <cmath>
+
+namespace embody::physics {
+
+Quat cayley(Vec3 angle) { return normalized(Quat{angle.x / 2, angle.y / 2, angle.z / 2, 1}); }
+
+void refresh_inertia(BodyState& state, const BodyConstants& constants) {
+    state.inverse_inertia =
+        constants.is_isotropic ? constants.inverse_inertia : rotate_tensor(state.rotation, constants.inverse_inertia);
+}
+
+void kick(BodyState& state, const BodyConstants& constants, double time) {
+    state.linear_velocity += constants.acceleration * time;
+    state.angular_velocity += state.inverse_inertia * (constants.torque * time);
+
+    // Linear damping dv/dt = −c v, implicit so that any c is stable.
+    if (constants.linear_damping > 0) state.linear_velocity *= 1 / (1 + time * constants.linear_damping);
+    if (constants.angular_damping > 0) state.angular_velocity *= 1 / (1 + time * constants.angular_damping);
+}
+
+namespace {
+
+// Solves L_m = L₀ + h/2 L_m × I⁻¹L_m for ω_m = I⁻¹L_m by Newton's method: f(ω) = I ω − L₀ + h/2 ω × I ω.
+Vec3 solve_midpoint(const Mat3& inertia, Vec3 start_momentum, Vec3 guess, double time) {
+    constexpr int max_iterations = 8;
+    const double half = time / 2;
+    Vec3 omega = guess;
+    for (int i = 0; i < max_iterations; ++i) {
+        const Vec3 momentum = inertia * omega;
+        const Vec3 residual = momentum - start_momentum + half * cross(omega, momentum);
+        if (length_squared(residual) <= 1e-30 * length_squared(start_momentum)) break;
+        const Mat3 derivative = inertia + (skew(omega) * inertia - skew(momentum)) * half;
+        omega -= solve(derivative, residual);
+    }
+    return omega;
+}
+
+}  // namespace
+
+void split_gyroscopic(BodyState& state, const BodyConstants& constants, double time) {
+    state.hidden_momentum = {};
+    if (constants.is_isotropic || state.angular_velocity == Vec3{}) return;
+    const Vec3 omega = rotate_inverse(state.rotation, state.angular_velocity);
+    const Vec3 momentum = constants.inertia * omega;
+    const Vec3 mean = solve_midpoint(constants.inertia, momentum, omega, time);
+    state.angular_velocity = rotate(state.rotation, mean);
+    state.hidden_momentum = rotate(state.rotation, momentum - constants.inertia * mean);
+}
+
+void drift(BodyState& state, const BodyConstants& constants, double time) {
+    state.center += state.linear_velocity * time;
+    if (state.angular_velocity == Vec3{} && state.hidden_momentum == Vec3{}) return;
+
+    // The momentum at the start of the drift, with what the constraints added to it since split_gyroscopic().
+    Vec3 momentum;
+    if (!constants.is_isotropic) {
+        const Vec3 omega = rotate_inverse(state.rotation, state.angular_velocity);
+        momentum = rotate(state.rotation, constants.inertia * omega) + state.hidden_momentum;
+    }
+    state.rotation = normalized(cayley(state.angular_velocity * time) * state.rotation);
+    state.turn = state.rotation * conjugate(state.start_rotation);
+    refresh_inertia(state, constants);
+
+    // The same momentum in the turned body is another angular velocity.
+    if (!constants.is_isotropic) state.angular_velocity = state.inverse_inertia * momentum;
+}
+
+void drift_kinematic(BodyState& state, double time) {
+    state.center += state.linear_velocity * time;
+    if (state.angular_velocity == Vec3{}) return;
+    state.rotation = normalized(cayley(state.angular_velocity * time) * state.rotation);
+    state.turn = state.rotation * conjugate(state.start_rotation);
+}
+
+}  // namespace embody::physics

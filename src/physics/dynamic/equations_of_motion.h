@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/dynamic/body_state.h"
+
+namespace embody::physics {
+
+// One substep of a free body is kick(h/2), split_gyroscopic(h), drift(h), kick(h/2). Constraints act between the kick
+// and the drift, where the velocity is the substep's mean, and again after the last kick.
+
+/// Half of the substep's forces: gravity, constant force and torque, damping. `time` is h/2, s.
+void kick(BodyState& state, const BodyConstants& constants, double time);
+
+/// Turns the angular velocity into the mean over the coming drift of `time` (implicit midpoint of Euler's equations).
+void split_gyroscopic(BodyState& state, const BodyConstants& constants, double time);
+
+/// Moves the body by its mean velocities over `time` and turns the angular velocity into the one at the end.
+void drift(BodyState& state, const BodyConstants& constants, double time);
+
+/// As drift(), for a body that only its own velocity moves.
+void drift_kinematic(BodyState& state, double time);
+
+/// The world inverse inertia at the current rotation.
+void refresh_inertia(BodyState& state, const BodyConstants& constants);
+
+/// Rotation by the Cayley transform of `angle` (rad; 2 tan(θ/2) for the angle θ), as a unit quaternion.
+Quat cayley(Vec3 angle);
+
+}  // namespace embody::physics

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "physics/inter/definitions/material.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/inter/definitions/field_check.h"
+
+namespace embody::physics {
+
+namespace {
+
+Result<void> check_rule(const char* field, CombineRule rule) {
+    if (rule < CombineRule::average || rule > CombineRule::multiply) return Error{field, "is not a combine rule"};
+    return {};
+}
+
+double combine(CombineRule rule, double a, double b) {
+    switch (rule) {
+        case CombineRule::average:
+            return (a + b) / 2;
+        case CombineRule::geometric_mean:
+            return std::sqrt(a * b);
+        case CombineRule::minimum:
+            return std::min(a, b);
+        case CombineRule::maximum:
+            return std::max(a, b);
+        case CombineRule::multiply:
+            return a * b;
+    }
+    return 0;
+}
+
+}  // namespace
+
+Result<void> validate(const Material& material) {
+    auto result = first_error(check_number("friction_static", material.friction_static, 0, 2),
+                              check_number("friction_dynamic", material.friction_dynamic, 0, 2),
+                              check_number("friction_rolling", material.friction_rolling, 0, 0.05, "m"),
+                              check_number("friction_torsional", material.friction_torsional, 0, 0.1, "m"),
+                              check_number("restitution", material.restitution, 0, 1),
+                              check_number("restitution_threshold", material.restitution_threshold, 0, 10, "m/s"),
+                              check_rule("friction_combine", material.friction_combine),
+                              check_rule("restitution_combine", material.restitution_combine));
+    if (!result) return result;
+    if (material.friction_static < material.friction_dynamic) {
+        return Error{"friction_static", "must not be less than friction_dynamic"};
+    }
+    return {};
+}
+
+Material combine(const Material& a, const Material& b) {
+    const CombineRule friction = std::max(a.friction_combine, b.friction_combine);
+    const CombineRule restitution = std::max(a.restitution_combine, b.restitution_combine);
+    Material pair;
+    pair.friction_static = combine(friction, a.friction_static, b.friction_static);
+    pair.friction_dynamic = combine(friction, a.friction_dynamic, b.friction_dynamic);
+    pair.restitution = combine(restitution, a.restitution, b.restitution);
+    pair.friction_combine = friction;
+    pair.restitution_combine = restitution;
+
+    // A lever arm is a length of the softer of the two surfaces; the pair resists as the more resisting one does.
+    pair.friction_rolling = std::max(a.friction_rolling, b.friction_rolling);
+    pair.friction_torsional = std::max(a.friction_torsional, b.friction_torsional);
+    pair.restitution_threshold = std::max(a.restitution_threshold, b.restitution_threshold);
+    return pair;
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+#include "physics/inter/world.h"
+
+#include "foundation/state_hash.h"
+#include "physics/dynamic/conserved.h"
+#include "physics/step/body_setup.h"
+#include "physics/step/step.h"
+#include "physics/step/wake.h"
+
+namespace embody::physics {
+
+World::World() : state_(std::make_unique<WorldState>()) {}
+World::~World() = default;
+
+Result<std::unique_ptr<World>> World::create(const WorldSettings& settings) {
+    if (auto result = validate(settings); !result) return result.error();
+    std::unique_ptr<World> world(new World());
+    world->state_->settings = settings;
+    return world;
+}
+
+const WorldSettings& World::settings() const { return state_->settings; }
+
+Result<void> World::set_settings(const WorldSettings& settings) {
+    if (auto result = validate(settings); !result) return result;
+    state_->settings = settings;
+
+    // Another gravity or no sleeping moves everything.
+    for (std::uint32_t body = 0; body < state_->bodies.slot_count(); ++body) state_->to_wake.push_back(body);
+    return {};
+}
+
+// Shapes.
+
+Result<ShapeHandle> World::create_shape(const ShapeDefinition& definition) {
+    auto shape = CollisionShape::create(definition);
+    if (!shape) return shape.error();
+    return state_->shapes.insert({std::move(shape).value(), 0});
+}
+
+Result<void> World::destroy_shape(ShapeHandle shape) {
+    const ShapeRecord* record = state_->shapes.find(shape);
+    if (!record) return Error{"shape", "is not a shape of this world"};
+    if (record->users > 0) return Error{"shape", "is used by " + std::to_string(record->users) + " bodies"};
+    state_->shapes.remove(shape);
+    return {};
+}
+
+std::optional<double> World::volume(ShapeHandle shape) const {
+    const ShapeRecord* record = state_->shapes.find(shape);
+    if (!record) return std::nullopt;
+    return record->shape->mass_properties().volume;
+}
+
+// Joints.
+
+Result<JointHandle> World::create_joint(const JointDefinition& definition) {
+    auto joint = set_up_joint(*state_, definition);
+    if (!joint) return joint.error();
+    const JointHandle handle = state_->joints.insert({definition, std::move(joint).value()});
+    list_jointed_pairs(*state_);
+    wake_around(*state_, definition.body_b.index);
+    return handle;
+}
+
+Result<void> World::destroy_joint(JointHandle joint) {
+    const JointRecord* record = state_->joints.find(joint);
+    if (!record) return Error{"joint", "is not a joint of this world"};
+    wake_around(*state_, record->definition.body_b.index);
+    state_->joints.remove(joint);
+    list_jointed_pairs(*state_);
+    return {};
+}
+
+std::vector<JointHandle> World::joints() const {
+    std::vector<JointHandle> handles;
+    for (std::uint32_t slot = 0; slot < state_->joints.slot_count(); ++slot) {
+        if (state_->joints.used(slot)) handles.push_back(state_->joints.handle_at(slot));
+    }
+    return handles;
+}
+
+std::optional<JointDefinition> World::joint(JointHandle joint) const {
+    const JointRecord* record = state_->joints.find(joint);
+    if (!record) return std::nullopt;
+    return record->definition;
+}
+
+Result<void> World::set_joint(JointHandle joint, const JointDefinition& definition) {
+    JointRecord* record = state_->joints.find(joint);
+    if (!record) return Error{"joint", "is not a joint of this world"};
+    auto constraint = set_up_joint(*state_, definition);
+    if (!constraint) return constraint.error();
+    wake_around(*state_, record->definition.body_b.index);
+    *record = {definition, std::move(constraint).value()};
+    list_jointed_pairs(*state_);
+    wake_around(*state_, definition.body_b.index);
+    return {};
+}
+
+World::JointReaction World::joint_reaction(JointHandle joint) const {
+    const JointRecord* record = state_->joints.find(joint);
+    if (!record) return {};
+    const double dt = state_->settings.time_step;
+    return {record->constraint.total_linear / dt, record->constraint.total_angular / dt};
+}
+
+double World::joint_coordinate(JointHandle joint) const {
+    const JointRecord* record = state_->joints.find(joint);
+    return record ? physics::joint_coordinate(record->constraint, state_->motion) : 0;
+}
+
+// Stepping and what came of it.
+
+const StepReport& World::step() {
+    physics::step(*state_);
+    return state_->report;
+}
+
+const StepReport& World::last_report() const { return state_->report; }
+std::span<const ContactEvent> World::contact_events() const { return state_->contact_events; }
+std::span<const SleepEvent> World::sleep_events() const { return state_->sleep_events; }
+
+std::vector<ContactView> World::contacts() const {
+    std::vector<ContactView> views;
+    const auto add = [&](const Contact& contact) {
+        for (int i = 0; i < contact.count; ++i) {
+            const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+            const double separation = current_separation(contact, point, state_->motion);
+            if (point.total.normal <= 0 && separation > 0) continue;
+            const Vec3 impulse = point.total.normal * contact.normal + point.total.tangent_1 * contact.tangent_1 +
+                                 point.total.tangent_2 * contact.tangent_2;
+            views.push_back({state_->bodies.handle_at(contact.a), state_->bodies.handle_at(contact.b), point.position,
+                             contact.normal, separation, impulse});
+        }
+    };
+    for (const Contact& contact : state_->contacts) add(contact);
+    for (const auto& [group, sleepers] : state_->sleepers) {
+        for (const Contact& contact : sleepers.contacts) add(contact);
+    }
+    return views;
+}
+
+Conserved World::conserved() const {
+    Conserved sum;
+    for (std::uint32_t body = 0; body < state_->bodies.slot_count(); ++body) {
+        if (!state_->is_used(body) || !state_->is_dynamic(body)) continue;
+        const BodyDefinition& definition = state_->record(body).definition;
+        if (!definition.enabled) continue;
+        add_conserved(sum, state_->motion[body], state_->constants[body],
+                      state_->settings.gravity * definition.gravity_factor);
+    }
+    return sum;
+}
+
+std::uint64_t World::state_hash() const {
+    StateHash hash;
+    const auto add = [&](Vec3 v) {
+        for (int i = 0; i < 3; ++i) hash.add(v[i]);
+    };
+    for (std::uint32_t body = 0; body < state_->bodies.slot_count(); ++body) {
+        if (!state_->is_used(body)) continue;
+        const BodyState& motion = state_->motion[body];
+        hash.add(std::uint64_t{body});
+        hash.add(static_cast<std::uint64_t>(state_->sleep[body].state));
+        add(motion.center);
+        add(motion.linear_velocity);
+        add(motion.angular_velocity);
+        for (const double q : {motion.rotation.x, motion.rotation.y, motion.rotation.z, motion.rotation.w}) hash.add(q);
+    }
+    return hash.value();
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include <limits>
+
+#include "physics/inter/definitions/field_check.h"
+#include "physics/inter/world.h"
+#include "physics/step/body_setup.h"
+#include "physics/step/wake.h"
+
+namespace embody::physics {
+
+namespace {
+
+Error stale_body() { return {"body", "is not a body of this world"}; }
+
+// Counts who uses a shape, so that it is not destroyed under a body.
+void change_users(WorldState& world, ShapeHandle shape, int change) {
+    if (ShapeRecord* record = world.shapes.find(shape)) record->users += static_cast<std::uint32_t>(change);
+}
+
+// Joints keep their frames relative to the centre of mass, which a new definition may move.
+void set_up_joints_of(WorldState& world, BodyHandle body) {
+    for (std::uint32_t slot = 0; slot < world.joints.slot_count(); ++slot) {
+        if (!world.joints.used(slot)) continue;
+        JointRecord& record = world.joints.at(slot);
+        if (record.definition.body_a != body && record.definition.body_b != body) continue;
+        if (auto joint = set_up_joint(world, record.definition)) record.constraint = std::move(joint).value();
+    }
+}
+
+}  // namespace
+
+Result<BodyHandle> World::create_body(const BodyDefinition& definition) {
+    auto setup = set_up_body(*state_, definition);
+    if (!setup) return setup.error();
+    const BodyHandle handle = state_->bodies.insert({});
+    place_body(*state_, handle.index, std::move(setup).value());
+    change_users(*state_, definition.shape, 1);
+    return handle;
+}
+
+Result<void> World::destroy_body(BodyHandle body) {
+    if (!contains(body)) return stale_body();
+    lift_body(*state_, body.index);
+    for (const JointHandle joint : joints()) {
+        const JointDefinition& definition = state_->joints.find(joint)->definition;
+        if (definition.body_a == body || definition.body_b == body) state_->joints.remove(joint);
+    }
+    list_jointed_pairs(*state_);
+    change_users(*state_, state_->record(body.index).definition.shape, -1);
+    state_->motion[body.index] = {};
+    state_->bodies.remove(body);
+    return {};
+}
+
+bool World::contains(BodyHandle body) const { return state_->bodies.contains(body); }
+
+std::vector<BodyHandle> World::bodies() const {
+    std::vector<BodyHandle> handles;
+    for (std::uint32_t slot = 0; slot < state_->bodies.slot_count(); ++slot) {
+        if (state_->bodies.used(slot)) handles.push_back(state_->bodies.handle_at(slot));
+    }
+    return handles;
+}
+
+std::optional<BodyDefinition> World::body(BodyHandle body) const {
+    if (!contains(body)) return std::nullopt;
+    return current_definition(*state_, body.index);
+}
+
+Result<void> World::set_body(BodyHandle body, const BodyDefinition& definition) {
+    if (!contains(body)) return stale_body();
+    auto setup = set_up_body(*state_, definition);
+    if (!setup) return setup.error();
+    lift_body(*state_, body.index);
+    change_users(*state_, state_->record(body.index).definition.shape, -1);
+    place_body(*state_, body.index, std::move(setup).value());
+    change_users(*state_, definition.shape, 1);
+    set_up_joints_of(*state_, body);
+    return {};
+}
+
+Transform World::pose(BodyHandle body) const { return contains(body) ? state_->pose(body.index) : Transform{}; }
+
+Vec3 World::linear_velocity(BodyHandle body) const {
+    return contains(body) ? state_->motion[body.index].linear_velocity : Vec3{};
+}
+
+Vec3 World::angular_velocity(BodyHandle body) const {
+    return contains(body) ? state_->motion[body.index].angular_velocity : Vec3{};
+}
+
+SleepState World::sleep_state(BodyHandle body) const {
+    return contains(body) ? state_->sleep[body.index].state : SleepState::asleep;
+}
+
+double World::mass(BodyHandle body) const {
+    const bool is_movable = contains(body) && state_->is_dynamic(body.index);
+    return is_movable ? state_->constants[body.index].mass : std::numeric_limits<double>::infinity();
+}
+
+Vec3 World::center_of_mass(BodyHandle body) const {
+    return contains(body) ? state_->motion[body.index].center : Vec3{};
+}
+
+Mat3 World::inertia(BodyHandle body) const {
+    return contains(body) ? state_->constants[body.index].inertia : Mat3::zero();
+}
+
+Result<void> World::set_pose(BodyHandle body, const Transform& pose) {
+    if (!contains(body)) return stale_body();
+    auto result = first_error(check_vector("pose.position", pose.position, largest_coordinate, "m"),
+                              check_rotation("pose.rotation", pose.rotation));
+    if (!result) return result;
+    BodyDefinition definition = current_definition(*state_, body.index);
+    definition.position = pose.position;
+    definition.rotation = pose.rotation;
+    definition.start_asleep = false;
+    return set_body(body, definition);
+}
+
+Result<void> World::set_velocity(BodyHandle body, Vec3 linear, Vec3 angular) {
+    if (!contains(body)) return stale_body();
+    auto result = first_error(check_vector("linear", linear, largest_linear_speed, "m/s"),
+                              check_vector("angular", angular, largest_angular_speed, "rad/s"));
+    if (!result) return result;
+    if (state_->record(body.index).definition.kind == BodyKind::static_body) {
+        return Error{"body", "is static and has no velocity"};
+    }
+    wake_around(*state_, body.index);
+    wake_group_of(*state_, body.index);
+    state_->motion[body.index].linear_velocity = linear;
+    state_->motion[body.index].angular_velocity = angular;
+    return {};
+}
+
+Result<void> World::set_force(BodyHandle body, Vec3 force, Vec3 torque) {
+    if (!contains(body)) return stale_body();
+    auto result = first_error(check_vector("force", force, largest_force, "N"),
+                              check_vector("torque", torque, largest_force, "N m"));
+    if (!result) return result;
+    state_->record(body.index).definition.force = force;
+    state_->record(body.index).definition.torque = torque;
+    state_->to_wake.push_back(body.index);
+    return {};
+}
+
+Result<void> World::apply_impulse(BodyHandle body, Vec3 impulse, std::optional<Vec3> at_world_point) {
+    if (!contains(body)) return stale_body();
+    auto result = check_vector("impulse", impulse, largest_force, "N s");
+    if (result && at_world_point) {
+        result = check_vector("at_world_point", *at_world_point, largest_coordinate, "m");
+    }
+    if (!result) return result;
+    BodyState& motion = state_->motion[body.index];
+    const Vec3 arm = at_world_point ? *at_world_point - motion.center : Vec3{};
+    wake_group_of(*state_, body.index);
+    physics::apply_impulse(motion, impulse, arm);
+    return {};
+}
+
+Result<void> World::apply_angular_impulse(BodyHandle body, Vec3 impulse) {
+    if (!contains(body)) return stale_body();
+    if (auto result = check_vector("impulse", impulse, largest_force, "N m s"); !result) return result;
+    wake_group_of(*state_, body.index);
+    physics::apply_angular_impulse(state_->motion[body.index], impulse);
+    return {};
+}
+
+Result<void> World::apply_force(BodyHandle body, Vec3 force, std::optional<Vec3> at_world_point) {
+    if (!contains(body)) return stale_body();
+    auto result = check_vector("force", force, largest_force, "N");
+    if (result && at_world_point) {
+        result = check_vector("at_world_point", *at_world_point, largest_coordinate, "m");
+    }
+    if (!result) return result;
+    BodyRecord& record = state_->record(body.index);
+    record.next_force += force;
+    if (at_world_point) record.next_torque += cross(*at_world_point - state_->motion[body.index].center, force);
+    state_->to_wake.push_back(body.index);
+    return {};
+}
+
+Result<void> World::set_enabled(BodyHandle body, bool enabled) {
+    if (!contains(body)) return stale_body();
+    if (state_->record(body.index).definition.enabled == enabled) return {};
+    BodyDefinition definition = current_definition(*state_, body.index);
+    definition.enabled = enabled;
+    return set_body(body, definition);
+}
+
+Result<void> World::wake(BodyHandle body) {
+    if (!contains(body)) return stale_body();
+    state_->to_wake.push_back(body.index);
+    return {};
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "physics/dynamic/body_state.h"
+#include "physics/inter/definitions/body_definition.h"
+#include "physics/optimization/islands.h"
+
+namespace embody::physics {
+
+/// A body's way to sleep.
+struct SleepRecord {
+    SleepState state = SleepState::active;
+    double quiet_time = 0;  ///< s in which the body was below its threshold without a break
+    double threshold = 0;   ///< J/kg
+    bool allowed = true;
+    std::uint32_t group = 0;  ///< of sleepers; only where asleep
+};
+
+/// Follows one body: below the threshold it becomes quiet, above it active again. `time_step` in s.
+void track_quietness(SleepRecord& record, const BodyState& state, const BodyConstants& constants, double time_step);
+
+/// Whether all bodies of an island have been quiet for `time_to_sleep` (s) and may sleep.
+bool may_sleep(std::span<const std::uint32_t> bodies, std::span<const SleepRecord> records, double time_to_sleep);
+
+}  // namespace embody::physics

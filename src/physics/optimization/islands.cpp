@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+//
+// Islands by union-find (R. Tarjan, "Efficiency of a good but not linear set union algorithm", 1975), levels by breadth
+// first search from the ground (K. Erleben, "Velocity-based shock propagation for multibody dynamics animation", 2007).
+#include "physics/optimization/islands.h"
+
+#include <algorithm>
+
+namespace embody::physics {
+
+namespace {
+
+constexpr std::uint32_t none = 0xFFFFFFFFu;
+
+class DisjointSets {
+public:
+    explicit DisjointSets(std::size_t count) : parent_(count) {
+        for (std::size_t i = 0; i < count; ++i) parent_[i] = static_cast<std::uint32_t>(i);
+    }
+    std::uint32_t find(std::uint32_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+    // The smaller slot becomes the root: so roots do not depend on the order of unions.
+    void unite(std::uint32_t i, std::uint32_t j) {
+        i = find(i);
+        j = find(j);
+        if (i != j) parent_[std::max(i, j)] = std::min(i, j);
+    }
+
+private:
+    std::vector<std::uint32_t> parent_;
+};
+
+bool is_movable(const BodyState& body) { return body.inverse_mass > 0; }
+
+// Breadth first through the contacts, all immovable bodies first.
+void find_levels(std::span<const BodyState> bodies, std::span<const Contact> contacts,
+                 std::vector<std::uint32_t>& level) {
+    level.assign(bodies.size(), no_level);
+
+    // Neighbours of each body by counting sort.
+    std::vector<std::uint32_t> first(bodies.size() + 1, 0), neighbour(2 * contacts.size());
+    for (const Contact& c : contacts) {
+        ++first[c.a + 1];
+        ++first[c.b + 1];
+    }
+    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+    for (const Contact& c : contacts) {
+        neighbour[next[c.a]++] = c.b;
+        neighbour[next[c.b]++] = c.a;
+    }
+
+    std::vector<std::uint32_t> front;
+    for (const Contact& c : contacts) {
+        for (const std::uint32_t body : {c.a, c.b}) {
+            if (is_movable(bodies[body]) || level[body] == 0) continue;
+            level[body] = 0;
+            front.push_back(body);
+        }
+    }
+    for (std::size_t i = 0; i < front.size(); ++i) {
+        const std::uint32_t body = front[i];
+        for (std::uint32_t k = first[body]; k < first[body + 1]; ++k) {
+            if (level[neighbour[k]] != no_level) continue;
+            level[neighbour[k]] = level[body] + 1;
+            front.push_back(neighbour[k]);
+        }
+    }
+}
+
+// Sorts `count` items into islands by counting; `island_of(i)` tells the island of item i.
+template <class IslandOf, class SetFirst, class SetCount>
+void distribute(std::size_t count, std::vector<Island>& list, std::vector<std::uint32_t>& items, IslandOf island_of,
+                SetFirst first_of, SetCount count_of) {
+    for (std::size_t i = 0; i < count; ++i) ++count_of(list[island_of(i)]);
+    std::uint32_t sum = 0;
+    for (Island& island : list) {
+        first_of(island) = sum;
+        sum += count_of(island);
+        count_of(island) = 0;
+    }
+    items.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        Island& island = list[island_of(i)];
+        items[first_of(island) + count_of(island)++] = static_cast<std::uint32_t>(i);
+    }
+}
+
+}  // namespace
+
+void build_islands(std::span<const std::uint32_t> awake, std::span<const BodyState> bodies,
+                   std::span<const Contact> contacts, std::span<const Joint> joints, Islands& islands) {
+    // Immovable bodies do not connect: two boxes on one floor are two islands.
+    DisjointSets sets(bodies.size());
+    for (const Contact& c : contacts) {
+        if (is_movable(bodies[c.a]) && is_movable(bodies[c.b])) sets.unite(c.a, c.b);
+    }
+    for (const Joint& j : joints) {
+        if (!j.a_is_world && is_movable(bodies[j.a]) && is_movable(bodies[j.b])) sets.unite(j.a, j.b);
+    }
+
+    // Islands in the order of their smallest slot.
+    std::vector<std::uint32_t> island_of_root(bodies.size(), none);
+    islands.list.clear();
+    for (const std::uint32_t body : awake) {
+        std::uint32_t& island = island_of_root[sets.find(body)];
+        if (island != none) continue;
+        island = static_cast<std::uint32_t>(islands.list.size());
+        islands.list.push_back({});
+    }
+    const auto island_of = [&](std::uint32_t body) { return island_of_root[sets.find(body)]; };
+    distribute(
+        awake.size(), islands.list, islands.bodies, [&](std::size_t i) { return island_of(awake[i]); },
+        [](Island& i) -> std::uint32_t& { return i.first_body; },
+        [](Island& i) -> std::uint32_t& { return i.body_count; });
+    for (std::uint32_t& body : islands.bodies) body = awake[body];
+    distribute(
+        contacts.size(), islands.list, islands.contacts,
+        [&](std::size_t i) { return island_of(is_movable(bodies[contacts[i].a]) ? contacts[i].a : contacts[i].b); },
+        [](Island& i) -> std::uint32_t& { return i.first_contact; },
+        [](Island& i) -> std::uint32_t& { return i.contact_count; });
+    distribute(
+        joints.size(), islands.list, islands.joints,
+        [&](std::size_t i) {
+            const Joint& j = joints[i];
+            return island_of(is_movable(bodies[j.b]) ? j.b : j.a);
+        },
+        [](Island& i) -> std::uint32_t& { return i.first_joint; },
+        [](Island& i) -> std::uint32_t& { return i.joint_count; });
+
+    // Solve order: from the ground up; the contacts' own order breaks ties.
+    find_levels(bodies, contacts, islands.level);
+    const auto contact_level = [&](std::uint32_t i) {
+        const std::uint32_t a = islands.level[contacts[i].a], b = islands.level[contacts[i].b];
+        return std::min(a, b);
+    };
+    for (Island& island : islands.list) {
+        const auto begin = islands.contacts.begin() + island.first_contact;
+        std::stable_sort(begin, begin + island.contact_count,
+                         [&](std::uint32_t i, std::uint32_t j) { return contact_level(i) < contact_level(j); });
+        for (std::uint32_t k = 0; k < island.body_count; ++k) {
+            const std::uint32_t level = islands.level[islands.bodies[island.first_body + k]];
+            if (level != no_level) island.deepest_level = std::max(island.deepest_level, level);
+        }
+    }
+}
+
+}  // namespace embody::physics

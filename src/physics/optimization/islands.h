@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "physics/constraint/contact.h"
+#include "physics/constraint/joint.h"
+
+namespace embody::physics {
+
+/// Bodies that constraints connect, directly or through other movable bodies. Ranges into the arrays of Islands.
+struct Island {
+    std::uint32_t first_body = 0, body_count = 0;
+    std::uint32_t first_contact = 0, contact_count = 0;
+    std::uint32_t first_joint = 0, joint_count = 0;
+    std::uint32_t deepest_level = 0;  ///< levels of the contact graph above the ground
+};
+
+/// The contact graph cut into islands, and the order in which each is solved: from the ground up. Equal inputs give
+/// equal orders.
+struct Islands {
+    std::vector<Island> list;
+    std::vector<std::uint32_t> bodies;    ///< slots, island by island, ascending
+    std::vector<std::uint32_t> contacts;  ///< indices, island by island, lowest level first
+    std::vector<std::uint32_t> joints;    ///< indices, island by island
+    std::vector<std::uint32_t> level;     ///< by body slot: steps through contacts to an immovable body; 0 is immovable
+};
+
+inline constexpr std::uint32_t no_level = 0xFFFFFFFFu;  ///< hangs in the air
+
+/// `awake` lists the movable bodies, ascending; every contact and joint must touch at least one of them.
+void build_islands(std::span<const std::uint32_t> awake, std::span<const BodyState> bodies,
+                   std::span<const Contact> contacts, std::span<const Joint> joints, Islands& islands);
+
+}  // namespace embody::physics

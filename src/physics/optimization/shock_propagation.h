@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+
+#include "physics/optimization/islands.h"
+
+namespace embody::physics {
+
+/// Takes out the penetration that the solver left in a deep island, in one sweep from the ground up, in which a lower
+/// body is immovable for the ones above it. Changes positions only, never a velocity.
+void propagate_shock(const Island& island, const Islands& islands, std::span<const Contact> contacts,
+                     std::span<BodyState> bodies);
+
+}  // namespace embody::physics

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "physics/step/body_setup.h"
+
+#include <algorithm>
+
+#include "physics/dynamic/equations_of_motion.h"
+#include "physics/dynamic/mass.h"
+#include "physics/step/wake.h"
+
+namespace embody::physics {
+
+namespace {
+
+Result<void> set_up_shape(const WorldState& world, const BodyDefinition& definition, BodySetup& setup) {
+    if (definition.shape.is_null()) return {};
+    const ShapeRecord* shape = world.shapes.find(definition.shape);
+    if (!shape) return Error{"shape", "is not a shape of this world"};
+    setup.record.shape = shape->shape.get();
+    if (definition.kind != BodyKind::static_body && is_static_only(shape->shape->definition())) {
+        return Error{"shape", std::string("a ") + shape_name(shape->shape->definition()) + " can only be static"};
+    }
+    return {};
+}
+
+// Distances that bound how far the surface moves by turning and how thin it is.
+void set_up_sizes(BodySetup& setup) {
+    if (!setup.record.shape || is_static_only(setup.record.shape->definition())) return;
+    setup.record.reach = setup.record.shape->radius_about(setup.constants.local_center);
+    const Vec3 half = setup.record.shape->local_bounds().half_extents();
+    setup.record.inner_radius = std::min({half.x, half.y, half.z});
+}
+
+void remove_contacts_of(std::vector<Contact>& contacts, std::uint32_t body) {
+    std::erase_if(contacts, [&](const Contact& c) { return c.a == body || c.b == body; });
+}
+
+}  // namespace
+
+Result<BodySetup> set_up_body(const WorldState& world, const BodyDefinition& definition) {
+    if (auto result = validate(definition); !result) return result.error();
+    BodySetup setup;
+    setup.record.definition = definition;
+    if (auto result = set_up_shape(world, definition, setup); !result) return result.error();
+
+    const bool is_dynamic = definition.kind == BodyKind::dynamic_body;
+    if (is_dynamic) {
+        const geometry::MassProperties none{};
+        const auto& solid = setup.record.shape ? setup.record.shape->mass_properties() : none;
+        if (auto result = resolve_mass(definition.mass, solid, setup.constants); !result) return result.error();
+        setup.state.inverse_mass = 1 / setup.constants.mass;
+    } else if (definition.mass.center_of_mass) {
+        setup.constants.local_center = *definition.mass.center_of_mass;
+    }
+    setup.constants.linear_damping = definition.linear_damping;
+    setup.constants.angular_damping = definition.angular_damping;
+
+    BodyState& state = setup.state;
+    state.rotation = normalized(definition.rotation);
+    state.center = definition.position + rotate(state.rotation, setup.constants.local_center);
+    if (definition.kind != BodyKind::static_body) {
+        state.linear_velocity = definition.linear_velocity;
+        state.angular_velocity = definition.angular_velocity;
+    }
+    state.start_center = state.center;
+    state.start_rotation = state.rotation;
+    if (is_dynamic) refresh_inertia(state, setup.constants);
+
+    setup.record.last_center = state.center;
+    setup.record.last_rotation = state.rotation;
+    setup.sleep.threshold = definition.sleep_energy_per_mass;
+    setup.sleep.allowed = definition.allow_sleep;
+    set_up_sizes(setup);
+    return setup;
+}
+
+void place_body(WorldState& world, std::uint32_t body, BodySetup setup) {
+    const std::size_t slots = world.bodies.slot_count();
+    world.motion.resize(slots);
+    world.constants.resize(slots);
+    world.sleep.resize(slots);
+    world.record(body) = std::move(setup.record);
+    world.constants[body] = setup.constants;
+    world.motion[body] = setup.state;
+    world.sleep[body] = setup.sleep;
+
+    const BodyRecord& record = world.record(body);
+    const BodyDefinition& definition = record.definition;
+    if (!definition.enabled) return;
+    if (record.shape) {
+        world.broad_phase.insert(body, record.shape->bounds(world.pose(body)),
+                                 definition.kind != BodyKind::static_body);
+    }
+    if (definition.start_asleep && definition.allow_sleep && world.is_dynamic(body)) {
+        world.sleep[body].state = SleepState::asleep;
+        world.sleep[body].group = world.next_group;
+        world.motion[body].linear_velocity = world.motion[body].angular_velocity = {};
+        world.sleepers[world.next_group++].bodies.push_back(body);
+    } else {
+        wake_around(world, body);
+    }
+}
+
+void lift_body(WorldState& world, std::uint32_t body) {
+    wake_around(world, body);
+    wake_group_of(world, body);
+    for (const std::uint32_t other : std::vector<std::uint32_t>(world.to_wake)) {
+        if (world.is_used(other)) wake_group_of(world, other);
+    }
+    remove_contacts_of(world.contacts, body);
+    if (world.record(body).shape && world.record(body).definition.enabled) world.broad_phase.remove(body);
+}
+
+Result<Joint> set_up_joint(const WorldState& world, const JointDefinition& definition) {
+    if (auto result = validate(definition); !result) return result.error();
+    if (!world.bodies.contains(definition.body_b)) return Error{"body_b", "is not a body of this world"};
+    const bool a_is_world = definition.body_a.is_null();
+    if (!a_is_world && !world.bodies.contains(definition.body_a)) {
+        return Error{"body_a", "is not a body of this world"};
+    }
+    const auto frame_about_center = [&](const Transform& frame, std::uint32_t body) {
+        return Transform{frame.position - world.constants[body].local_center, normalized(frame.rotation)};
+    };
+    Joint joint;
+    joint.kind = definition.joint;
+    joint.a_is_world = a_is_world;
+    joint.b = definition.body_b.index;
+    joint.local_b = frame_about_center(definition.frame_b, joint.b);
+    if (a_is_world) {
+        joint.local_a = {definition.frame_a.position, normalized(definition.frame_a.rotation)};
+    } else {
+        joint.a = definition.body_a.index;
+        joint.local_a = frame_about_center(definition.frame_a, joint.a);
+    }
+    return joint;
+}
+
+void list_jointed_pairs(WorldState& world) {
+    world.jointed_pairs.clear();
+    for (std::uint32_t slot = 0; slot < world.joints.slot_count(); ++slot) {
+        if (!world.joints.used(slot)) continue;
+        const JointDefinition& joint = world.joints.at(slot).definition;
+        if (joint.bodies_collide || joint.body_a.is_null()) continue;
+        world.jointed_pairs.insert(std::minmax(joint.body_a.index, joint.body_b.index));
+    }
+}
+
+BodyDefinition current_definition(const WorldState& world, std::uint32_t body) {
+    BodyDefinition definition = world.record(body).definition;
+    const Transform pose = world.pose(body);
+    definition.position = pose.position;
+    definition.rotation = pose.rotation;
+    definition.linear_velocity = world.motion[body].linear_velocity;
+    definition.angular_velocity = world.motion[body].angular_velocity;
+    definition.start_asleep = world.is_asleep(body);
+    return definition;
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/step/world_state.h"
+
+namespace embody::physics {
+
+/// What a definition becomes: checked and computed before anything in the world changes.
+struct BodySetup {
+    BodyRecord record;
+    BodyConstants constants;
+    BodyState state;
+    SleepRecord sleep;
+};
+
+/// Fails where the definition is out of range, the shape handle is stale, a movable body has a static-only shape, or
+/// the mass is unknown.
+Result<BodySetup> set_up_body(const WorldState& world, const BodyDefinition& definition);
+
+/// Puts a set-up body into the slot's arrays and the broad phase.
+void place_body(WorldState& world, std::uint32_t body, BodySetup setup);
+
+/// Takes it out of the broad phase, its sleeping group and the contact lists; wakes what touched it.
+void lift_body(WorldState& world, std::uint32_t body);
+
+/// Start of the constraint of a joint record.
+Result<Joint> set_up_joint(const WorldState& world, const JointDefinition& definition);
+
+/// Rebuilds the list of pairs that joints keep from colliding.
+void list_jointed_pairs(WorldState& world);
+
+/// The definition as it stands now.
+BodyDefinition current_definition(const WorldState& world, std::uint32_t body);
+
+}  // namespace embody::physics

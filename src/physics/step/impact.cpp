@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: MIT
+//
+// When in the step bodies collide, and where. Source: B. Mirtich, "Timewarp rigid body simulation", 2000 (impacts in
+// the order of their times, each body with its own history); order of impacts before contacts: E. Guendelman et al.,
+// 2003.
+//
+// Each impact happens at its own time t within the step: there the velocities are v + a t, eq. (3) changes them by Δv,
+// and the motion goes on from there. To keep one step for all bodies, the body is put on the path that leads through
+// the place of impact with the new velocity:  x ← x − t Δv,  v ← v + Δv  at the start of the step. A ball with
+// restitution 1 so keeps its energy exactly, whatever the time step.
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+#include "physics/constraint/impact_group.h"
+#include "physics/dynamic/equations_of_motion.h"
+#include "physics/step/step.h"
+
+namespace embody::physics {
+
+namespace {
+
+constexpr double never = 1e300;
+constexpr double touch_gap = 1e-6;       // m: bodies this near touch
+constexpr double patch_gap = 5e-4;       // m: corners this near to the first one collide together with it
+constexpr double slowest_impact = 0.02;  // m/s: slower contacts rest
+
+// A predicted impact. Outdated once one of the bodies has had another one (its version has moved on).
+struct Event {
+    double time;
+    std::uint32_t contact;
+    std::uint32_t version;
+    bool operator>(const Event& other) const {
+        return time != other.time ? time > other.time : contact > other.contact;
+    }
+};
+
+class ImpactStage {
+public:
+    explicit ImpactStage(WorldState& world)
+        : world_(world), step_(world.settings.time_step), substep_(step_ / world.settings.substeps) {}
+
+    void run();
+
+private:
+    double next_impact(const Contact& contact) const;
+    double slowest_speed(const Contact& contact, double acceleration) const;
+    Vec3 free_acceleration(std::uint32_t body) const;
+    double earliest_time(const Contact& contact) const;
+    void prepare();
+    void push(std::uint32_t contact);
+    bool refine(const Contact& contact, double& time, Manifold& manifold);
+    void collide_at(const Contact& contact, double time, std::vector<Manifold>& manifolds) const;
+    Transform pose_at(std::uint32_t body, double time) const;
+    Vec3 center_at(std::uint32_t body, double time) const;
+    void handle(std::uint32_t contact, double time, const Manifold& manifold);
+    void add_manifold_sites(const Contact& contact, const Manifold& manifold, double time);
+    void add_neighbour_sites(std::uint32_t contact, double time);
+    void note_impulse(Contact& contact, Vec3 position, Vec3 impulse, double time);
+
+    WorldState& world_;
+    const double step_, substep_;
+    std::vector<double> last_time_;               // by body: its last impact in this step, s
+    std::vector<std::uint8_t> is_supported_;      // by body: a contact carried it in the last step
+    std::vector<std::uint32_t> first_, of_body_;  // contacts of each body
+    std::vector<std::uint32_t> version_;          // by contact
+    std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
+    std::vector<ImpactSite> sites_;
+    std::vector<std::uint32_t> site_contact_;  // contact of each site
+    std::vector<Manifold> manifolds_;
+};
+
+// What carries a body cancels its weight: only bodies in free motion gain speed before the impact.
+Vec3 ImpactStage::free_acceleration(std::uint32_t body) const {
+    return world_.motion[body].inverse_mass > 0 && !is_supported_[body] ? world_.constants[body].acceleration : Vec3{};
+}
+
+double ImpactStage::earliest_time(const Contact& contact) const {
+    return std::max(last_time_[contact.a], last_time_[contact.b]);
+}
+
+// Classification (paper, eq. 4): slower contacts rest. A loaded one must be far faster to count as a collision.
+double ImpactStage::slowest_speed(const Contact& contact, double acceleration) const {
+    const double slowest = std::max(slowest_impact, 2 * std::fabs(acceleration) * substep_);
+    return contact.was_loaded ? 5 * slowest : slowest;
+}
+
+// The first time at which a point of the contact closes fast enough to be an impact; `never` if none does.
+double ImpactStage::next_impact(const Contact& contact) const {
+    const double start = earliest_time(contact);
+    const double acceleration = dot(contact.normal, free_acceleration(contact.b) - free_acceleration(contact.a));
+    const double slowest = slowest_speed(contact, dot(contact.normal, world_.settings.gravity));
+    double first = never;
+    for (int i = 0; i < contact.count; ++i) {
+        // Gap s + u t + a t²/2 and its rate.
+        const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        const double s = current_separation(contact, point, world_.motion);
+        const double u = dot(relative_velocity(contact, point, world_.motion), contact.normal);
+        const double gap = s + start * (u + acceleration * start / 2);
+        double time = start;
+        if (gap > touch_gap) {
+            const double speed = u + acceleration * start;
+            const double discriminant = speed * speed - 2 * acceleration * gap;
+            if (discriminant < 0) continue;
+            const double denominator = -speed + std::sqrt(discriminant);
+            if (denominator <= 0) continue;
+            time = start + 2 * gap / denominator;
+        }
+        if (time <= step_ && u + acceleration * time < -slowest) first = std::min(first, time);
+    }
+    return first;
+}
+
+void ImpactStage::prepare() {
+    const auto& contacts = world_.contacts;
+    is_supported_.assign(world_.motion.size(), 0);
+    for (const Contact& contact : contacts) {
+        if (contact.was_loaded) is_supported_[contact.a] = is_supported_[contact.b] = 1;
+    }
+    last_time_.assign(world_.motion.size(), 0);
+    version_.assign(contacts.size(), 0);
+    first_.assign(world_.motion.size() + 1, 0);
+    for (const Contact& contact : contacts) {
+        ++first_[contact.a + 1];
+        ++first_[contact.b + 1];
+    }
+    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+    of_body_.resize(2 * contacts.size());
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (std::uint32_t i = 0; i < contacts.size(); ++i) {
+        of_body_[next[contacts[i].a]++] = i;
+        of_body_[next[contacts[i].b]++] = i;
+    }
+}
+
+void ImpactStage::push(std::uint32_t contact) {
+    const double time = next_impact(world_.contacts[contact]);
+    if (time <= step_) events_.push({time, contact, version_[contact]});
+}
+
+Vec3 ImpactStage::center_at(std::uint32_t body, double time) const {
+    const BodyState& state = world_.motion[body];
+    return state.center + state.linear_velocity * time + free_acceleration(body) * (time * time / 2);
+}
+
+Transform ImpactStage::pose_at(std::uint32_t body, double time) const {
+    BodyState state = world_.motion[body];
+    state.center = center_at(body, time);
+    state.rotation = normalized(cayley(state.angular_velocity * time) * state.rotation);
+    return body_pose(state, world_.constants[body].local_center);
+}
+
+void ImpactStage::collide_at(const Contact& contact, double time, std::vector<Manifold>& manifolds) const {
+    manifolds.clear();
+    collide(*world_.record(contact.a).shape, pose_at(contact.a, time), *world_.record(contact.b).shape,
+            pose_at(contact.b, time), 0.02, manifolds);
+}
+
+double least_separation(const Manifold& manifold) {
+    double least = never;
+    for (int i = 0; i < manifold.count; ++i) {
+        least = std::min(least, manifold.points[static_cast<std::size_t>(i)].separation);
+    }
+    return least;
+}
+
+// The contact region at the moment of impact, found at the bodies' places then: the prediction used the normal of the
+// start of the step. Follows the closing surfaces (secant) for a few rounds. False: they pass each other.
+bool ImpactStage::refine(const Contact& contact, double& time, Manifold& manifold) {
+    constexpr int most_rounds = 8;
+    const double start = earliest_time(contact);
+    for (int round = 0; round < most_rounds; ++round) {
+        collide_at(contact, time, manifolds_);
+        const Manifold* found = nullptr;
+        for (const Manifold& m : manifolds_) {
+            if (m.piece_a == contact.piece_a && m.piece_b == contact.piece_b) found = &m;
+        }
+        if (!found || found->count == 0) return false;
+        manifold = *found;
+
+        // Gap and closing speed of the nearest point.
+        const double gap = least_separation(manifold);
+        double speed = 0;
+        for (int i = 0; i < manifold.count; ++i) {
+            const ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
+            if (point.separation > gap + patch_gap) continue;
+            const auto velocity = [&](std::uint32_t body) {
+                return velocity_at(world_.motion[body], point.position - center_at(body, time)) +
+                       free_acceleration(body) * time;
+            };
+            speed = std::max(speed, -dot(velocity(contact.b) - velocity(contact.a), manifold.normal));
+        }
+        if (speed < slowest_impact) return false;
+        const bool is_touching = std::fabs(gap) <= touch_gap || (gap < 0 && time <= start);
+        if (is_touching || (round + 1 == most_rounds && gap < 10 * patch_gap)) return true;
+        time = std::max(start, time + gap / speed);
+        if (time > step_) return false;
+    }
+    return false;
+}
+
+ImpactCoefficients coefficients_of(const Material& material, double restitution) {
+    return {material.friction_dynamic, material.friction_static, restitution};
+}
+
+// A flat region collides as one patch at its middle and, where it tilts, at its corners.
+void ImpactStage::add_manifold_sites(const Contact& contact, const Manifold& manifold, double time) {
+    const double nearest = least_separation(manifold);
+    const auto add = [&](Vec3 position) {
+        ImpactSite site;
+        site.a = contact.a;
+        site.b = contact.b;
+        site.arm_a = position - center_at(contact.a, time);
+        site.arm_b = position - center_at(contact.b, time);
+        site.normal = manifold.normal;
+        const Vec3 velocity =
+            velocity_at(world_.motion[site.b], site.arm_b) - velocity_at(world_.motion[site.a], site.arm_a);
+        const bool bounces = -dot(velocity, site.normal) >= contact.material.restitution_threshold;
+        site.coefficients = coefficients_of(contact.material, bounces ? contact.material.restitution : 0);
+        sites_.push_back(site);
+    };
+    Vec3 sum;
+    int count = 0;
+    for (int i = 0; i < manifold.count; ++i) {
+        const ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
+        if (point.separation > nearest + patch_gap) continue;
+        sum += point.position;
+        ++count;
+    }
+    if (count > 1) add(sum / count);
+    for (int i = 0; i < manifold.count; ++i) {
+        const ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
+        if (point.separation <= nearest + patch_gap) add(point.position);
+    }
+}
+
+// Contacts of the colliding bodies that are closed at that time take part; the resting ones without a bounce.
+void ImpactStage::add_neighbour_sites(std::uint32_t contact, double time) {
+    const Contact& first = world_.contacts[contact];
+    for (const std::uint32_t body : {first.a, first.b}) {
+        if (world_.motion[body].inverse_mass == 0) continue;
+        for (std::uint32_t k = first_[body]; k < first_[body + 1]; ++k) {
+            const std::uint32_t other = of_body_[k];
+            const Contact& c = world_.contacts[other];
+            if (other == contact ||
+                std::find(site_contact_.begin(), site_contact_.end(), other) != site_contact_.end()) {
+                continue;
+            }
+            for (int i = 0; i < c.count; ++i) {
+                const ContactPoint& point = c.points[static_cast<std::size_t>(i)];
+                const double speed = dot(relative_velocity(c, point, world_.motion), c.normal);
+                const double gap = current_separation(c, point, world_.motion) + speed * time;
+                if (gap > patch_gap) continue;
+                const bool collides = speed < -slowest_speed(c, dot(c.normal, world_.settings.gravity));
+                sites_.push_back({c.a, c.b, point.arm_a, point.arm_b, c.normal,
+                                  coefficients_of(c.material, collides ? c.material.restitution : 0), Vec3{}});
+                site_contact_.push_back(other);
+            }
+        }
+    }
+}
+
+// The report wants each impulse at a point: the nearest of the region found at the start.
+void ImpactStage::note_impulse(Contact& contact, Vec3 position, Vec3 impulse, double time) {
+    ContactPoint* nearest = &contact.points[0];
+    for (int i = 1; i < contact.count; ++i) {
+        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        if (length_squared(point.position - position) < length_squared(nearest->position - position)) nearest = &point;
+    }
+    nearest->total.normal += dot(impulse, contact.normal);
+    nearest->total.tangent_1 += dot(impulse, contact.tangent_1);
+    nearest->total.tangent_2 += dot(impulse, contact.tangent_2);
+    if (!contact.had_impact) ++world_.report.impacts;
+    contact.had_impact = true;
+
+    // Until then the bodies' new paths overlap at this contact.
+    const double parting = dot(relative_velocity(contact, *nearest, world_.motion), contact.normal);
+    if (parting > 0) contact.inactive_until = time;
+}
+
+void ImpactStage::handle(std::uint32_t contact, double time, const Manifold& manifold) {
+    sites_.clear();
+    site_contact_.clear();
+    add_manifold_sites(world_.contacts[contact], manifold, time);
+    site_contact_.assign(sites_.size(), contact);
+    add_neighbour_sites(contact, time);
+
+    // Velocities at the time of impact, the collision, and back to the start of the step on the new path.
+    std::vector<std::uint32_t> bodies;
+    for (const ImpactSite& site : sites_) {
+        for (const std::uint32_t body : {site.a, site.b}) {
+            if (world_.motion[body].inverse_mass > 0) bodies.push_back(body);
+        }
+    }
+    std::sort(bodies.begin(), bodies.end());
+    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+    std::vector<BodyState> before;
+    for (const std::uint32_t body : bodies) {
+        world_.motion[body].linear_velocity += free_acceleration(body) * time;
+        before.push_back(world_.motion[body]);
+    }
+    const ImpactReport report = solve_impact_group(sites_, world_.motion);
+    if (!report.converged) {
+        world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
+    }
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        BodyState& state = world_.motion[bodies[i]];
+        const bool changed =
+            state.linear_velocity != before[i].linear_velocity || state.angular_velocity != before[i].angular_velocity;
+        state.center -= (state.linear_velocity - before[i].linear_velocity) * time;
+        if (state.angular_velocity != before[i].angular_velocity) {
+            state.rotation = normalized(cayley(-time * state.angular_velocity) *
+                                        (cayley(time * before[i].angular_velocity) * state.rotation));
+            state.turn = state.rotation * conjugate(state.start_rotation);
+        }
+        state.linear_velocity -= free_acceleration(bodies[i]) * time;
+        if (changed) last_time_[bodies[i]] = time;
+    }
+    for (std::size_t i = 0; i < sites_.size(); ++i) {
+        if (sites_[i].impulse == Vec3{}) continue;
+        note_impulse(world_.contacts[site_contact_[i]], sites_[i].arm_b + center_at(sites_[i].b, time),
+                     sites_[i].impulse, time);
+    }
+
+    // What these bodies touch next is to be predicted anew.
+    for (const std::uint32_t body : bodies) {
+        for (std::uint32_t k = first_[body]; k < first_[body + 1]; ++k) {
+            ++version_[of_body_[k]];
+            push(of_body_[k]);
+        }
+    }
+}
+
+void ImpactStage::run() {
+    if (world_.contacts.empty()) return;
+    prepare();
+    for (std::uint32_t i = 0; i < world_.contacts.size(); ++i) push(i);
+    std::size_t left = 64 + 8 * world_.contacts.size();
+    while (!events_.empty()) {
+        const Event event = events_.top();
+        events_.pop();
+        if (event.version != version_[event.contact]) continue;
+        if (left-- == 0) {
+            world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
+            return;
+        }
+        Contact& contact = world_.contacts[event.contact];
+        double time = event.time;
+        Manifold manifold;
+        if (!refine(contact, time, manifold)) {
+            // They pass each other: the region found at the start must not hold them up.
+            if (!contact.was_loaded) contact.inactive_until = step_;
+        } else if (!events_.empty() && time > events_.top().time + 1e-12) {
+            ++version_[event.contact];
+            events_.push({time, event.contact, version_[event.contact]});
+        } else {
+            handle(event.contact, time, manifold);
+        }
+    }
+}
+
+}  // namespace
+
+void solve_impacts(WorldState& world) { ImpactStage(world).run(); }
+
+}  // namespace embody::physics

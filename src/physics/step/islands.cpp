@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "physics/optimization/islands.h"
+
+#include "physics/step/step.h"
+
+namespace embody::physics {
+
+namespace {
+
+bool is_active(const WorldState& world, const JointDefinition& joint) {
+    const auto moves = [&](std::uint32_t body) {
+        return world.record(body).definition.enabled && world.is_dynamic(body) && !world.is_asleep(body);
+    };
+    const auto is_there = [&](std::uint32_t body) { return world.record(body).definition.enabled; };
+    if (!is_there(joint.body_b.index)) return false;
+    if (joint.body_a.is_null()) return moves(joint.body_b.index);
+    return is_there(joint.body_a.index) && (moves(joint.body_a.index) || moves(joint.body_b.index));
+}
+
+}  // namespace
+
+void find_islands(WorldState& world) {
+    // Joints between sleepers stay where they are.
+    world.active_joints.clear();
+    world.active_joint_slots.clear();
+    for (std::uint32_t slot = 0; slot < world.joints.slot_count(); ++slot) {
+        if (!world.joints.used(slot)) continue;
+        JointRecord& record = world.joints.at(slot);
+        if (!is_active(world, record.definition)) continue;
+        record.constraint.total_linear = record.constraint.total_angular = {};
+        world.active_joints.push_back(record.constraint);
+        world.active_joint_slots.push_back(slot);
+    }
+
+    // Kinematic bodies are awake, but no island holds them.
+    std::vector<std::uint32_t> movable;
+    movable.reserve(world.awake.size());
+    for (const std::uint32_t body : world.awake) {
+        if (world.motion[body].inverse_mass > 0) movable.push_back(body);
+    }
+    build_islands(movable, world.motion, world.contacts, world.active_joints, world.islands);
+    world.report.islands = static_cast<std::uint32_t>(world.islands.list.size());
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include "physics/step/step.h"
+
+namespace embody::physics {
+
+namespace {
+
+constexpr double deep_penetration = 0.05;  // m
+
+std::uint64_t user_data_of(const WorldState& world, BodyHandle body) {
+    const BodyRecord* record = world.bodies.find(body);
+    return record ? record->definition.user_data : 0;
+}
+
+// Where, along what normal and how fast a pair began to touch: by its first touching region and its fastest one.
+ContactEvent begin_event(const WorldState& world, const TouchingPair& pair) {
+    const std::array<std::uint32_t, 4> key{pair.a.index, pair.b.index, 0, 0};
+    auto contact = std::lower_bound(world.contacts.begin(), world.contacts.end(), key,
+                                    [](const Contact& c, const auto& k) { return contact_key(c) < k; });
+    const Contact* first = nullptr;
+    double approach = 0;
+    for (; contact != world.contacts.end() && contact->a == pair.a.index && contact->b == pair.b.index; ++contact) {
+        if (!is_touching(*contact)) continue;
+        if (!first) first = &*contact;
+        approach = std::max(approach, contact->approach_speed);
+    }
+    return {ContactEvent::Kind::begin, pair.a,        pair.b,  user_data_of(world, pair.a), user_data_of(world, pair.b),
+            first->points[0].position, first->normal, approach};
+}
+
+// Compares the pairs that touch now with those of the last step; both lists are sorted.
+void write_contact_events(WorldState& world) {
+    std::vector<TouchingPair> now;
+    for (const Contact& contact : world.contacts) {
+        if (!is_touching(contact)) continue;
+        const TouchingPair pair{world.bodies.handle_at(contact.a), world.bodies.handle_at(contact.b)};
+        if (now.empty() || now.back() != pair) now.push_back(pair);
+    }
+    std::sort(now.begin(), now.end());
+    now.erase(std::unique(now.begin(), now.end()), now.end());
+
+    // Pairs that fell asleep touch on, without an event.
+    for (const TouchingPair& pair : world.touching) {
+        const auto sleeps = [&](BodyHandle body) { return world.bodies.contains(body) && world.is_asleep(body.index); };
+        if (sleeps(pair.a) || sleeps(pair.b) || std::binary_search(now.begin(), now.end(), pair)) continue;
+        world.contact_events.push_back({ContactEvent::Kind::end, pair.a, pair.b, user_data_of(world, pair.a),
+                                        user_data_of(world, pair.b), Vec3{}, Vec3{}, 0});
+    }
+    for (const TouchingPair& pair : now) {
+        if (std::binary_search(world.touching.begin(), world.touching.end(), pair)) continue;
+        world.contact_events.push_back(begin_event(world, pair));
+    }
+    world.touching = std::move(now);
+}
+
+void count_bodies(WorldState& world) {
+    for (std::uint32_t body = 0; body < world.bodies.slot_count(); ++body) {
+        if (!world.is_used(body) || !world.is_dynamic(body) || !world.record(body).definition.enabled) continue;
+        switch (world.sleep[body].state) {
+            case SleepState::active:
+                ++world.report.bodies_active;
+                break;
+            case SleepState::wants_to_sleep:
+                ++world.report.bodies_wanting_to_sleep;
+                break;
+            case SleepState::asleep:
+                ++world.report.bodies_asleep;
+                break;
+        }
+    }
+}
+
+}  // namespace
+
+void write_report(WorldState& world) {
+    world.contact_events.clear();
+    write_contact_events(world);
+    count_bodies(world);
+    for (const Contact& contact : world.contacts) {
+        if (is_touching(contact)) ++world.report.contacts;
+        for (int i = 0; i < contact.count; ++i) {
+            if (contact.points[static_cast<std::size_t>(i)].separation > -deep_penetration) continue;
+            world.report.limits |= static_cast<std::uint32_t>(StepLimit::deep_penetration);
+        }
+    }
+    for (const std::uint32_t body : world.awake) {
+        world.record(body).next_force = world.record(body).next_torque = {};
+    }
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#include "physics/step/step.h"
+
+#include <chrono>
+
+namespace embody::physics {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Runs one stage and notes its time.
+void run(WorldState& world, StepStage stage, void (*work)(WorldState&)) {
+    const auto start = Clock::now();
+    work(world);
+    world.report.stage_milliseconds[static_cast<std::size_t>(stage)] = milliseconds_since(start);
+}
+
+}  // namespace
+
+void step(WorldState& world) {
+    const auto start = Clock::now();
+    world.report = {.step = world.report.step + 1, .time = world.report.time + world.settings.time_step};
+    run(world, StepStage::wake, wake_bodies);       // apply commands, wake touched islands
+    run(world, StepStage::find_pairs, find_pairs);  // broad phase
+    run(world, StepStage::touch, find_contacts);    // narrow phase → contact regions, warm start
+    run(world, StepStage::impact, solve_impacts);   // new, fast contacts by eq. (3)
+    run(world, StepStage::islands, find_islands);   // contact graph → islands, levels, solve order
+    run(world, StepStage::substeps, run_substeps);  // kick → solve → drift → kick → solve, shock propagation
+    run(world, StepStage::continuous, stop_tunnelling);  // bodies that would pass through others
+    run(world, StepStage::sleep, put_to_sleep);          // quiet islands leave the awake set
+    write_report(world);                                 // events, counts
+    world.report.milliseconds = milliseconds_since(start);
+}
+
+}  // namespace embody::physics

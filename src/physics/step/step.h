@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/step/world_state.h"
+
+namespace embody::physics {
+
+/// Advances the world by one time step.
+void step(WorldState& world);
+
+// The stages, in their order; each in the file of its name.
+void wake_bodies(WorldState& world);
+void find_pairs(WorldState& world);
+void find_contacts(WorldState& world);
+void solve_impacts(WorldState& world);
+void find_islands(WorldState& world);
+void run_substeps(WorldState& world);
+void stop_tunnelling(WorldState& world);
+void put_to_sleep(WorldState& world);
+void write_report(WorldState& world);
+
+}  // namespace embody::physics

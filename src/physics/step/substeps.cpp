@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+
+#include "physics/constraint/substep_solver.h"
+#include "physics/dynamic/equations_of_motion.h"
+#include "physics/optimization/shock_propagation.h"
+#include "physics/step/step.h"
+
+namespace embody::physics {
+
+namespace {
+
+void solve_islands(WorldState& world, SolvePhase phase, const ContactSoftness& softness, double time) {
+    const Islands& islands = world.islands;
+    for (const Island& island : islands.list) {
+        const ConstraintList list{
+            .contacts = world.contacts,
+            .contact_order = std::span(islands.contacts).subspan(island.first_contact, island.contact_count),
+            .joints = world.active_joints,
+            .joint_order = std::span(islands.joints).subspan(island.first_joint, island.joint_count),
+            .time = time};
+        solve_phase(list, phase, softness, world.motion);
+    }
+}
+
+void kick_all(WorldState& world, double time) {
+    for (const std::uint32_t body : world.islands.bodies) kick(world.motion[body], world.constants[body], time);
+}
+
+void drift_all(WorldState& world, double time) {
+    for (const std::uint32_t body : world.awake) {
+        if (world.motion[body].inverse_mass > 0) {
+            drift(world.motion[body], world.constants[body], time);
+        } else {
+            drift_kinematic(world.motion[body], time);
+        }
+    }
+}
+
+void prepare_joints(WorldState& world) {
+    for (Joint& joint : world.active_joints) prepare_joint(joint, world.motion);
+}
+
+bool is_state_finite(const BodyState& state) {
+    return is_finite(state.center) && is_finite(state.rotation) && is_finite(state.linear_velocity) &&
+           is_finite(state.angular_velocity);
+}
+
+// A body that left the finite numbers would take all it touches along: it is put back and switched off.
+void freeze_lost_bodies(WorldState& world) {
+    for (const std::uint32_t body : world.awake) {
+        BodyState& state = world.motion[body];
+        BodyRecord& record = world.record(body);
+        if (is_state_finite(state) && length(state.center) < 1e15) {
+            record.last_center = state.center;
+            record.last_rotation = state.rotation;
+            continue;
+        }
+        state.center = record.last_center;
+        state.rotation = record.last_rotation;
+        state.linear_velocity = state.angular_velocity = {};
+        record.definition.enabled = false;
+        world.broad_phase.remove(body);
+        world.report.limits |= static_cast<std::uint32_t>(StepLimit::not_finite_body_frozen);
+    }
+}
+
+void clamp_speeds(WorldState& world) {
+    for (const std::uint32_t body : world.islands.bodies) {
+        Vec3& velocity = world.motion[body].linear_velocity;
+        const double speed = length(velocity);
+        if (!(speed > world.settings.max_linear_speed)) continue;
+        velocity *= world.settings.max_linear_speed / speed;
+        world.report.limits |= static_cast<std::uint32_t>(StepLimit::linear_speed_clamped);
+    }
+}
+
+}  // namespace
+
+void run_substeps(WorldState& world) {
+    const double h = world.settings.time_step / world.settings.substeps;
+    const ContactSoftness softness = contact_softness(h);
+    for (Contact& contact : world.contacts) prepare_contact(contact, world.motion);
+    prepare_joints(world);
+
+    for (int k = 1; k <= world.settings.substeps; ++k) {
+        // Half the forces, constraints on the mean velocity, motion.
+        kick_all(world, h / 2);
+        for (const std::uint32_t body : world.islands.bodies) {
+            split_gyroscopic(world.motion[body], world.constants[body], h);
+        }
+        solve_islands(world, SolvePhase::position, softness, k * h);
+        drift_all(world, h);
+
+        // The other half, constraints on the velocity itself.
+        prepare_joints(world);
+        kick_all(world, h / 2);
+        solve_islands(world, SolvePhase::velocity, softness, k * h);
+        for (Contact& contact : world.contacts) add_to_totals(contact);
+    }
+
+    if (world.settings.shock_propagation) {
+        for (const Island& island : world.islands.list) {
+            propagate_shock(island, world.islands, world.contacts, world.motion);
+        }
+    }
+    clamp_speeds(world);
+    freeze_lost_bodies(world);
+    for (std::size_t i = 0; i < world.active_joints.size(); ++i) {
+        world.joints.at(world.active_joint_slots[i]).constraint = world.active_joints[i];
+    }
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "physics/step/wake.h"
+
+#include <algorithm>
+
+#include "physics/step/step.h"
+
+namespace embody::physics {
+
+namespace {
+
+// The pairs that touched when they fell asleep still do: no event begins or ends.
+void add_touching(std::vector<TouchingPair>& touching, const WorldState& world, const std::vector<Contact>& contacts) {
+    for (const Contact& c : contacts) {
+        if (is_touching(c)) touching.push_back({world.bodies.handle_at(c.a), world.bodies.handle_at(c.b)});
+    }
+    std::sort(touching.begin(), touching.end());
+    touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
+}
+
+// Gravity and forces of the coming step.
+void refresh_forces(WorldState& world, std::uint32_t body) {
+    const BodyRecord& record = world.record(body);
+    BodyConstants& constants = world.constants[body];
+    const double inverse_mass = world.motion[body].inverse_mass;
+    constants.acceleration = world.settings.gravity * record.definition.gravity_factor +
+                             (record.definition.force + record.next_force) * inverse_mass;
+    constants.torque = record.definition.torque + record.next_torque;
+}
+
+}  // namespace
+
+void wake_group_of(WorldState& world, std::uint32_t body) {
+    if (!world.is_asleep(body)) return;
+    const auto found = world.sleepers.find(world.sleep[body].group);
+    for (const std::uint32_t member : found->second.bodies) {
+        SleepRecord& record = world.sleep[member];
+        record.state = SleepState::active;
+        record.quiet_time = 0;
+        world.sleep_events.push_back(
+            {SleepEvent::Kind::woke, world.bodies.handle_at(member), world.record(member).definition.user_data});
+    }
+    add_touching(world.touching, world, found->second.contacts);
+    auto& contacts = world.contacts;
+    contacts.insert(contacts.end(), found->second.contacts.begin(), found->second.contacts.end());
+    std::sort(contacts.begin(), contacts.end(),
+              [](const Contact& a, const Contact& b) { return contact_key(a) < contact_key(b); });
+    world.sleepers.erase(found);
+}
+
+void wake_around(WorldState& world, std::uint32_t body) {
+    world.to_wake.push_back(body);
+    if (world.record(body).shape) {
+        const Bounds bounds = enlarged(world.record(body).shape->bounds(world.pose(body)), 0.01);
+        world.broad_phase.query(bounds, [&](std::uint32_t other) { world.to_wake.push_back(other); });
+    }
+    for (std::uint32_t i = 0; i < world.joints.slot_count(); ++i) {
+        if (!world.joints.used(i)) continue;
+        const JointDefinition& joint = world.joints.at(i).definition;
+        const bool is_partner = joint.body_b.index == body || (!joint.body_a.is_null() && joint.body_a.index == body);
+        if (!is_partner) continue;
+        world.to_wake.push_back(joint.body_b.index);
+        if (!joint.body_a.is_null()) world.to_wake.push_back(joint.body_a.index);
+    }
+}
+
+void wake_bodies(WorldState& world) {
+    world.sleep_events.clear();
+    for (const std::uint32_t body : world.to_wake) {
+        if (world.is_used(body) && world.is_asleep(body)) wake_group_of(world, body);
+        if (world.is_used(body)) world.sleep[body].quiet_time = 0;
+    }
+    world.to_wake.clear();
+    gather_awake(world);
+}
+
+void gather_awake(WorldState& world) {
+    world.awake.clear();
+    for (std::uint32_t body = 0; body < world.bodies.slot_count(); ++body) {
+        if (!world.is_used(body) || !world.record(body).definition.enabled) continue;
+        if (world.record(body).definition.kind == BodyKind::static_body || world.is_asleep(body)) continue;
+        world.awake.push_back(body);
+        if (world.is_dynamic(body)) refresh_forces(world, body);
+    }
+}
+
+}  // namespace embody::physics

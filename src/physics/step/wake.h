@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/step/world_state.h"
+
+namespace embody::physics {
+
+/// Wakes the sleeping group of a body, if it sleeps; its contacts serve as warm start of the next step.
+void wake_group_of(WorldState& world, std::uint32_t body);
+
+/// Lists the bodies that move and takes their forces from what they were told.
+void gather_awake(WorldState& world);
+
+/// Asks for everything that touches the body, its jointed partners and itself to be awake in the next step.
+void wake_around(WorldState& world, std::uint32_t body);
+
+}  // namespace embody::physics

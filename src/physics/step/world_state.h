@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "foundation/handle_table.h"
+#include "physics/collision/broad_phase.h"
+#include "physics/collision/collision_shape.h"
+#include "physics/constraint/contact.h"
+#include "physics/constraint/joint.h"
+#include "physics/inter/definitions/events.h"
+#include "physics/inter/definitions/step_report.h"
+#include "physics/inter/definitions/world_settings.h"
+#include "physics/optimization/island_sleep.h"
+#include "physics/optimization/islands.h"
+
+namespace embody::physics {
+
+struct ShapeRecord {
+    std::unique_ptr<CollisionShape> shape;
+    std::uint32_t users = 0;
+};
+
+/// What a body was told to be. Pose and velocities in it are stale: BodyState has them.
+struct BodyRecord {
+    BodyDefinition definition;
+    const CollisionShape* shape = nullptr;  ///< nullptr: none
+    double reach = 0;                       ///< farthest surface point from the centre of mass, m
+    double inner_radius = 0;       ///< half the thinnest extent: a body that moves farther in a step may tunnel, m
+    Vec3 next_force, next_torque;  ///< for the next step only, cleared by report; N, N m about the centre of mass
+    Vec3 last_center;              ///< last finite pose, to freeze the body at
+    Quat last_rotation;
+};
+
+struct JointRecord {
+    JointDefinition definition;
+    Joint constraint;  ///< written by substeps; sleeps with its bodies
+};
+
+/// An island that sleeps: its bodies and the contacts that it fell asleep with.
+struct SleepingGroup {
+    std::vector<std::uint32_t> bodies;
+    std::vector<Contact> contacts;
+};
+
+/// Two touching bodies as the contact events know them.
+struct TouchingPair {
+    BodyHandle a, b;
+    friend auto operator<=>(const TouchingPair&, const TouchingPair&) = default;
+};
+
+/// Everything a world remembers. Arrays over bodies are indexed by slot. Each array names the stage that writes it;
+/// "face" is World, between steps.
+struct WorldState {
+    WorldSettings settings;
+
+    HandleTable<struct ShapeTag, ShapeRecord> shapes;                 // face
+    HandleTable<struct BodyTag, BodyRecord> bodies;                   // face
+    HandleTable<struct JointTag, JointRecord> joints;                 // face; impulses: substeps
+    std::set<std::pair<std::uint32_t, std::uint32_t>> jointed_pairs;  // face: slots whose bodies must not collide
+
+    std::vector<BodyState> motion;         // impact, substeps, continuous
+    std::vector<BodyConstants> constants;  // face; acceleration, torque: wake
+    std::vector<SleepRecord> sleep;        // sleep, wake
+
+    BroadPhase broad_phase;                                // find pairs
+    const std::vector<BroadPhase::Pair>* pairs = nullptr;  // find pairs
+    std::vector<std::uint32_t> awake;                      // wake: slots of moving bodies, ascending
+    std::vector<Contact> contacts;                         // touch; impulses: impact, substeps
+    std::vector<Contact> last_contacts;                    // touch: those of the step before, for the warm start
+    std::vector<Joint> active_joints;                      // islands; impulses: substeps
+    std::vector<std::uint32_t> active_joint_slots;         // islands
+    Islands islands;                                       // islands
+
+    std::map<std::uint32_t, SleepingGroup> sleepers;  // sleep, wake
+    std::uint32_t next_group = 1;                     // sleep
+    std::vector<std::uint32_t> to_wake;               // face, touch: slots
+
+    std::vector<TouchingPair> touching;        // report: awake pairs that touch, sorted
+    std::vector<ContactEvent> contact_events;  // report
+    std::vector<SleepEvent> sleep_events;      // wake, sleep
+    StepReport report;                         // all
+
+    [[nodiscard]] bool is_used(std::uint32_t body) const { return bodies.used(body); }
+    [[nodiscard]] const BodyRecord& record(std::uint32_t body) const { return bodies.at(body); }
+    [[nodiscard]] BodyRecord& record(std::uint32_t body) { return bodies.at(body); }
+    [[nodiscard]] Transform pose(std::uint32_t body) const {
+        return body_pose(motion[body], constants[body].local_center);
+    }
+    [[nodiscard]] bool is_dynamic(std::uint32_t body) const {
+        return bodies.at(body).definition.kind == BodyKind::dynamic_body;
+    }
+    [[nodiscard]] bool is_asleep(std::uint32_t body) const { return sleep[body].state == SleepState::asleep; }
+};
+
+}  // namespace embody::physics
