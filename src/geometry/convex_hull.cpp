@@ -177,7 +177,8 @@ std::vector<QhullRun::Side> QhullRun::sides_of(facetT* facet) {
 Polygon link_loop(std::vector<std::pair<std::uint32_t, std::uint32_t>> sides) {
     Polygon loop;
     if (sides.size() < 3) return loop;
-    auto [first, next] = sides.back();
+    const std::uint32_t first = sides.back().first;
+    std::uint32_t next = sides.back().second;
     sides.pop_back();
     loop.push_back(first);
     while (next != first) {
