@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "geometry/convex_hull.h"
+#include "geometry/fit.h"
 #include "geometry/topology.h"
 
 namespace embody::catalog {
@@ -48,6 +49,17 @@ void add_box_as_hull(const Bounds& bounds, GeometryMeasurement& measured) {
     measured.facts.hull_volume = 8 * half.x * half.y * half.z;
 }
 
+/// The primitive that stands well for the hull, else the hull itself.
+void add_fit(const geometry::ConvexHull& hull, attributes::GeometryFacts& facts) {
+    const auto fit = geometry::best_primitive(hull);
+    if (!fit) return;
+    facts.fitted_shape = geometry::name(fit->kind);
+    facts.fitted_dimensions =
+        fit->kind == geometry::PrimitiveKind::box ? fit->half_extents : Vec3{fit->radius, fit->half_height, 0};
+    facts.fitted_pose = fit->local;
+    facts.fitted_error = fit->deviation;
+}
+
 }  // namespace
 
 GeometryMeasurement measure_geometry(const interchange::RawScene& scene) {
@@ -76,14 +88,15 @@ GeometryMeasurement measure_geometry(const interchange::RawScene& scene) {
     facts.unit_inertia = estimate.solid.inertia;
 
     // Hull, or a box where the model is flat.
+    facts.fitted_shape = "convex_hull";
     const auto hull = geometry::build_convex_hull(mesh, most_hull_points);
     if (!hull) {
         add_box_as_hull(bounds, measured);
     } else {
         for (const Vec3 p : hull->vertices) measured.hull_points.push_back(to_vec3f(p));
         facts.hull_volume = geometry::integrate_hull(*hull).volume;
+        add_fit(*hull, facts);
     }
-    facts.fitted_shape = "convex_hull";
     return measured;
 }
 

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+#include "catalog/prepare/confined_pool.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <thread>
+
+#include "catalog/prepare/prepare.h"
+#include "catalog/prepare/worker_process.h"
+
+namespace embody::catalog {
+namespace {
+
+using Clock = WorkerProcess::Clock;
+
+constexpr auto start_time = std::chrono::seconds(20);  // for a worker to load, confine itself and say so
+constexpr int most_starts_in_vain = 3;
+constexpr int models_a_worker = 256;  // then a fresh one takes over, so that leaks of libraries do not add up
+
+std::filesystem::path worker_beside_this_program() {
+    std::error_code problem;
+    return std::filesystem::read_symlink("/proc/self/exe", problem).parent_path() / "embody-import-worker";
+}
+
+std::string place_of(const ImportItem& item) {
+    return item.archive.empty() ? item.path : item.archive + ": " + item.path;
+}
+
+std::string in_words(double seconds) {
+    const auto whole = static_cast<long>(seconds);
+    return static_cast<double>(whole) == seconds ? std::to_string(whole) : std::to_string(seconds);
+}
+
+/// One import: a fixed number of places, each with a worker or none, and the items in order.
+class Pool {
+public:
+    using Done = std::function<bool(std::size_t, Result<PreparedModel>)>;
+
+    Pool(const std::vector<ImportItem>& items, const ConfinedPoolOptions& options, const Done& done)
+        : items_(items), options_(options), done_(done) {
+        if (options_.worker_program.empty()) options_.worker_program = worker_beside_this_program();
+        const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+        const std::size_t wanted = options_.workers > 0 ? static_cast<std::size_t>(options_.workers) : cores;
+        places_.resize(std::min(wanted, items_.size()));
+    }
+
+    Result<void> run() {
+        while (!stopped_ && (next_ < items_.size() || is_busy())) {
+            for (Place& place : places_) {
+                if (place.worker == nullptr && next_ < items_.size()) start(place);
+            }
+            if (starts_in_vain_ >= most_starts_in_vain && !any_was_ready_) return start_error_;
+            // Workers that could start once and no longer can: what is left fails, by name.
+            if (starts_in_vain_ >= most_starts_in_vain && !is_busy()) {
+                finish_item(next_++, start_error_);
+                continue;
+            }
+            wait_and_serve();
+        }
+        return {};
+    }
+
+private:
+    struct Place {
+        std::unique_ptr<WorkerProcess> worker;
+        bool ready = false;
+        bool has_item = false;
+        std::size_t item = 0;
+        int served = 0;
+        Clock::time_point deadline;
+    };
+
+    [[nodiscard]] bool is_busy() const {
+        return std::any_of(places_.begin(), places_.end(), [](const Place& p) { return p.has_item; });
+    }
+
+    void start(Place& place) {
+        auto worker = WorkerProcess::start(options_.worker_program, options_.bytes_per_worker);
+        if (!worker) {
+            ++starts_in_vain_;
+            start_error_ = worker.error();
+            return;
+        }
+        place = Place{};
+        place.worker = std::make_unique<WorkerProcess>(std::move(*worker));
+        place.deadline = Clock::now() + start_time;
+    }
+
+    void wait_and_serve() {
+        // Until a worker speaks, can take more, or is due.
+        std::vector<pollfd> waits;
+        auto due = Clock::now() + std::chrono::seconds(1);
+        for (const Place& place : places_) {
+            if (place.worker == nullptr) continue;
+            waits.push_back({place.worker->output(), POLLIN, 0});
+            if (place.worker->has_unsent()) waits.push_back({place.worker->input(), POLLOUT, 0});
+            due = std::min(due, place.deadline);
+        }
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(due - Clock::now()).count();
+        poll(waits.data(), waits.size(), static_cast<int>(std::clamp<std::int64_t>(left, 0, 1000)));
+
+        // Results before deadlines: a slow `done` is not the worker's fault.
+        for (Place& place : places_) {
+            if (place.worker == nullptr || stopped_) continue;
+            place.worker->send_some();
+            const bool open = place.worker->receive_some();
+            if (!take_messages(place)) continue;
+            if (!open) {
+                lose(place, "the import worker " + place.worker->finish() + " while reading it");
+            } else if (Clock::now() >= place.deadline && (place.has_item || !place.ready)) {
+                lose(place, "took longer than " + in_words(options_.seconds_per_model) + " s");
+            }
+        }
+    }
+
+    /// False where the place lost its worker or changed its item, so that what was seen before no longer counts.
+    bool take_messages(Place& place) {
+        auto message = place.worker->take_message();
+        if (!message) {
+            lose(place, message.error().why);
+            return false;
+        }
+        if (!message->has_value()) return true;
+        if ((*message)->kind == FrameKind::ready && !place.ready) {
+            place.ready = any_was_ready_ = true;
+            starts_in_vain_ = 0;
+            give_next(place);
+        } else if (place.has_item &&
+                   ((*message)->kind == FrameKind::prepared || (*message)->kind == FrameKind::failed)) {
+            take_answer(place, **message);
+        } else {
+            lose(place, "the import worker spoke out of turn");
+        }
+        return false;
+    }
+
+    void take_answer(Place& place, const WorkerProcess::Message& message) {
+        Result<PreparedModel> result = error_from_bytes(message.payload);
+        if (message.kind == FrameKind::prepared) result = model_from_bytes(message.payload);
+        // The worker answers for the geometry only; what the catalogue stated is taken from the item itself.
+        const ImportItem& item = items_[place.item];
+        if (result) {
+            attributes::ModelFacts facts = stated_facts(item);
+            facts.material_names = std::move(result->facts.material_names);
+            facts.geometry = std::move(result->facts.geometry);
+            result->facts = std::move(facts);
+        }
+        const std::size_t answered = place.item;
+        place.has_item = false;
+        ++place.served;
+        // Work for the worker first, so that it is busy while `done` stores the model.
+        if (place.served >= models_a_worker) {
+            place.worker.reset();
+        } else {
+            give_next(place);
+        }
+        finish_item(answered, std::move(result));
+    }
+
+    void give_next(Place& place) {
+        while (next_ < items_.size()) {
+            const std::size_t number = next_++;
+            std::vector<std::uint8_t> payload = to_bytes(items_[number]);
+            // What the worker would refuse to read is refused here.
+            if (const auto readable = item_from_bytes(payload); !readable) {
+                finish_item(number, readable.error());
+                if (stopped_) return;
+                continue;
+            }
+            place.item = number;
+            place.has_item = true;
+            place.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                                std::chrono::duration<double>(options_.seconds_per_model));
+            place.worker->queue(frame(FrameKind::item, payload));
+            place.worker->send_some();
+            return;
+        }
+        // Nothing left to do: it may go.
+        place.worker.reset();
+    }
+
+    /// Ends a place's worker; the item it had fails with `why`.
+    void lose(Place& place, const std::string& why) {
+        if (!place.ready) {
+            ++starts_in_vain_;
+            start_error_ =
+                Error{options_.worker_program.string(), "did not start: the import worker " + place.worker->finish()};
+        }
+        place.worker.reset();
+        if (!place.has_item) return;
+        place.has_item = false;
+        finish_item(place.item, Error{place_of(items_[place.item]), why});
+    }
+
+    void finish_item(std::size_t item, Result<PreparedModel> result) {
+        if (!stopped_ && !done_(item, std::move(result))) stopped_ = true;
+    }
+
+    const std::vector<ImportItem>& items_;
+    ConfinedPoolOptions options_;
+    const Done& done_;
+    std::vector<Place> places_;
+    std::size_t next_ = 0;
+    bool stopped_ = false, any_was_ready_ = false;
+    int starts_in_vain_ = 0;
+    Error start_error_;
+};
+
+}  // namespace
+
+Result<void> prepare_confined(const std::vector<ImportItem>& items, const ConfinedPoolOptions& options,
+                              const std::function<bool(std::size_t item, Result<PreparedModel> prepared)>& done) {
+    if (!std::isfinite(options.seconds_per_model) || options.seconds_per_model <= 0 ||
+        options.seconds_per_model > 1e6) {
+        return Error{"seconds_per_model", "must be greater than 0 s and at most 1e6 s"};
+    }
+    return Pool(items, options, done).run();
+}
+
+}  // namespace embody::catalog

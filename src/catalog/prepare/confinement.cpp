@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// seccomp filters: Linux, Documentation/userspace-api/seccomp_filter.rst.
+#include "catalog/prepare/confinement.h"
+
+#include <fcntl.h>
+#include <sched.h>
+#include <seccomp.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <string>
+
+namespace embody::catalog {
+namespace {
+
+Error failure(const std::string& what, int code) { return {"import worker", what + ": " + std::strerror(code)}; }
+
+Result<void> limit(int resource, rlim_t value, const char* name) {
+    // Never above what the user already has.
+    rlimit now{};
+    if (getrlimit(static_cast<__rlimit_resource>(resource), &now) == 0 && now.rlim_max < value) value = now.rlim_max;
+    const rlimit wanted{value, value};
+    if (setrlimit(static_cast<__rlimit_resource>(resource), &wanted) != 0) return failure(name, errno);
+    return {};
+}
+
+Result<void> set_limits(const ConfinementOptions& options) {
+    for (const Result<void>& done :
+         {limit(RLIMIT_AS, options.address_space, "RLIMIT_AS"),
+          limit(RLIMIT_CPU, options.processor_seconds, "RLIMIT_CPU"), limit(RLIMIT_CORE, 0, "RLIMIT_CORE"),
+          limit(RLIMIT_FSIZE, 0, "RLIMIT_FSIZE"), limit(RLIMIT_NOFILE, 64, "RLIMIT_NOFILE")}) {
+        if (!done) return done.error();
+    }
+    return {};
+}
+
+Result<void> end_with(long parent) {
+    if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return failure("PR_SET_PDEATHSIG", errno);
+    // It may have died before that line.
+    if (getppid() != parent) return Error{"import worker", "its parent is gone"};
+    return {};
+}
+
+struct FilterRelease {
+    void operator()(void* filter) const { seccomp_release(filter); }
+};
+
+// Memory, threads of the own process, time, and what a file that is open allows.
+constexpr int allowed_calls[] = {SCMP_SYS(read),
+                                 SCMP_SYS(readv),
+                                 SCMP_SYS(pread64),
+                                 SCMP_SYS(write),
+                                 SCMP_SYS(writev),
+                                 SCMP_SYS(close),
+                                 SCMP_SYS(lseek),
+                                 SCMP_SYS(fstat),
+                                 SCMP_SYS(newfstatat),
+                                 SCMP_SYS(stat),
+                                 SCMP_SYS(lstat),
+                                 SCMP_SYS(statx),
+                                 SCMP_SYS(access),
+                                 SCMP_SYS(faccessat),
+                                 SCMP_SYS(faccessat2),
+                                 SCMP_SYS(readlink),
+                                 SCMP_SYS(readlinkat),
+                                 SCMP_SYS(getcwd),
+                                 SCMP_SYS(getdents64),
+                                 SCMP_SYS(fcntl),
+                                 SCMP_SYS(fadvise64),
+                                 SCMP_SYS(poll),
+                                 SCMP_SYS(ppoll),
+                                 SCMP_SYS(munmap),
+                                 SCMP_SYS(mremap),
+                                 SCMP_SYS(brk),
+                                 SCMP_SYS(madvise),
+                                 SCMP_SYS(futex),
+                                 SCMP_SYS(set_robust_list),
+                                 SCMP_SYS(rseq),
+                                 SCMP_SYS(sched_yield),
+                                 SCMP_SYS(sched_getaffinity),
+                                 SCMP_SYS(rt_sigaction),
+                                 SCMP_SYS(rt_sigprocmask),
+                                 SCMP_SYS(rt_sigreturn),
+                                 SCMP_SYS(sigaltstack),
+                                 SCMP_SYS(restart_syscall),
+                                 SCMP_SYS(clock_gettime),
+                                 SCMP_SYS(clock_nanosleep),
+                                 SCMP_SYS(nanosleep),
+                                 SCMP_SYS(gettimeofday),
+                                 SCMP_SYS(getrandom),
+                                 SCMP_SYS(getpid),
+                                 SCMP_SYS(gettid),
+                                 SCMP_SYS(sysinfo),
+                                 SCMP_SYS(exit),
+                                 SCMP_SYS(exit_group)};
+
+/// Adds the calls that are allowed for some arguments only; the first error code, or 0.
+int allow_in_part(scmp_filter_ctx filter) {
+    constexpr scmp_datum_t writing = O_ACCMODE | O_CREAT | O_TRUNC | O_APPEND | (O_TMPFILE & ~O_DIRECTORY);
+    const auto without_exec = SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0);
+    int code =
+        seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(openat), 1, SCMP_A2(SCMP_CMP_MASKED_EQ, writing, O_RDONLY));
+    if (code == 0)
+        code =
+            seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(open), 1, SCMP_A1(SCMP_CMP_MASKED_EQ, writing, O_RDONLY));
+    if (code == 0) code = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(mmap), 1, without_exec);
+    if (code == 0) code = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(mprotect), 1, without_exec);
+    // Threads, not processes; clone3 hides its flags from filters, and the C library falls back to clone without it.
+    if (code == 0)
+        code = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(clone), 1,
+                                SCMP_A0(SCMP_CMP_MASKED_EQ, CLONE_THREAD, CLONE_THREAD));
+    if (code == 0) code = seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0);
+    // Signals to itself: how abort() ends it.
+    const auto itself = SCMP_A0(SCMP_CMP_EQ, static_cast<scmp_datum_t>(getpid()));
+    if (code == 0) code = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(tgkill), 1, itself);
+    return code;
+}
+
+Result<void> filter_system_calls() {
+    const std::unique_ptr<void, FilterRelease> filter(seccomp_init(SCMP_ACT_ERRNO(EPERM)));
+    if (filter == nullptr) return Error{"import worker", "cannot make a system call filter"};
+    int code = 0;
+    for (const int call : allowed_calls) {
+        if (code == 0) code = seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, call, 0);
+    }
+    if (code == 0) code = allow_in_part(filter.get());
+    if (code == 0) code = seccomp_load(filter.get());
+    if (code != 0) return failure("cannot filter system calls", -code);
+    return {};
+}
+
+}  // namespace
+
+Result<void> confine_this_process(const ConfinementOptions& options) {
+    if (const auto bound = end_with(options.parent); !bound) return bound.error();
+    // Whatever the parent had open and forgot to close: sockets, databases.
+    if (close_range(3, ~0u, 0) != 0) return failure("close_range", errno);
+    if (const auto limited = set_limits(options); !limited) return limited.error();
+    return filter_system_calls();
+}
+
+}  // namespace embody::catalog
