@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+import { Signal } from "../signal";
+import type { Frame } from "./frame";
+import type { Commands, ServerError, ServerEvent } from "./messages";
+import type { FromWorker, ToWorker } from "./socket_worker";
+
+/** A command that the server refused; `where`, `why` and `remedy` are for the user. */
+export class CommandRefused extends Error {
+  constructor(readonly error: ServerError) {
+    super(error.why);
+  }
+}
+
+/** The command was not carried out because there is no connection. */
+export class NotConnected extends Error {
+  constructor() {
+    super("The server cannot be reached.");
+  }
+}
+
+type Waiting = { resolve: (result: never) => void; reject: (error: Error) => void };
+
+/** The page's end of the socket worker: commands as promises, events and frames as signals, reconnecting for ever. */
+export class Connection {
+  readonly opened = new Signal<void>();
+  readonly closed = new Signal<string>();
+  readonly event = new Signal<ServerEvent>();
+  readonly frame = new Signal<Frame>();
+  /** Something arrived that this Studio cannot read. */
+  readonly fault = new Signal<string>();
+  isOpen = false;
+
+  private readonly worker = new Worker(new URL("./socket_worker.ts", import.meta.url), { type: "module" });
+  private readonly waiting = new Map<number, Waiting>();
+  private nextId = 1;
+  /** Sent with every request to a server that listens on more than this machine. */
+  private readonly token = new URLSearchParams(location.search).get("token");
+
+  open(): void {
+    this.worker.onmessage = (event: MessageEvent<FromWorker>) => this.receive(event.data);
+    const address = new URL(this.address("ws"));
+    address.protocol = address.protocol === "https:" ? "wss:" : "ws:";
+    this.tell({ kind: "open", url: address.href });
+  }
+
+  /** The full address of one of the server's paths, with the token where there is one. */
+  address(path: string): string {
+    const address = new URL(path, location.href);
+    if (this.token) address.searchParams.set("token", this.token);
+    return address.href;
+  }
+
+  /** Sends a command; rejects with CommandRefused or NotConnected. */
+  request<Name extends keyof Commands>(command: Name, params: Commands[Name][0]): Promise<Commands[Name][1]> {
+    if (!this.isOpen) return Promise.reject(new NotConnected());
+    const id = this.nextId++;
+    return new Promise((resolve, reject) => {
+      this.waiting.set(id, { resolve, reject } as Waiting);
+      this.tell({ kind: "send", text: JSON.stringify({ id, command, params }) });
+    });
+  }
+
+  /** The last frame has been used; the worker may send the next. */
+  wantFrame(): void {
+    this.tell({ kind: "next_frame" });
+  }
+
+  private tell(message: ToWorker): void {
+    this.worker.postMessage(message);
+  }
+
+  private receive(message: FromWorker): void {
+    switch (message.kind) {
+      case "opened":
+        this.isOpen = true;
+        this.opened.emit();
+        break;
+      case "closed":
+        this.isOpen = false;
+        for (const { reject } of this.waiting.values()) reject(new NotConnected());
+        this.waiting.clear();
+        this.closed.emit(message.reason);
+        break;
+      case "text":
+        this.receiveText(message.text);
+        break;
+      case "frame":
+        this.frame.emit(message.frame);
+        break;
+      case "fault":
+        this.fault.emit(message.reason);
+        break;
+    }
+  }
+
+  private receiveText(text: string): void {
+    const message = JSON.parse(text) as { id?: number; ok?: boolean; result?: never; error?: ServerError } & Partial<ServerEvent>;
+    if (message.event !== undefined) {
+      this.event.emit(message as ServerEvent);
+      return;
+    }
+    const waiting = this.waiting.get(message.id ?? 0);
+    this.waiting.delete(message.id ?? 0);
+    if (message.ok) waiting?.resolve(message.result!);
+    else waiting?.reject(new CommandRefused(message.error ?? { where: "", why: "The server gave no reason.", remedy: "" }));
+  }
+}

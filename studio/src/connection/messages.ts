@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// The commands and events of docs/protocol.md as types. SI units, Y up, rotations x y z w.
+import type { Action, Entity, Joint, Scene, SceneSettings, Vector, Quaternion } from "../document/scene_types";
+
+export interface ModelSummary {
+  id: number;
+  key: string;
+  name: string;
+  source: string;
+  licence: string;
+  author: string;
+  category: string;
+  subcategory: string;
+  kind: string;
+  tags: string[];
+  size: Vector;
+  vertices: number;
+  triangles: number;
+  parts: number;
+  quality: number;
+  geometry_kind: string;
+  content_hash: string;
+}
+
+export type AttributeValue = number | string | boolean | number[] | number[][];
+
+export interface AttributeEntry {
+  name: string;
+  kind: string;
+  label: string;
+  value: AttributeValue;
+  unit: string;
+  low: number | null;
+  high: number | null;
+  source: string;
+  level: string;
+  help: string;
+  type: "number" | "word" | "truth" | "vector" | "tensor";
+  choices: string[];
+  range: [number | null, number | null] | null;
+  automatic: AttributeValue | null;
+  overridden: boolean;
+}
+
+export interface SceneListing {
+  name: string;
+  title: string;
+  kind: "saved" | "demo";
+  modified: string | number | null;
+}
+
+export type SimulationState = "stopped" | "playing" | "paused";
+export interface Simulation {
+  state: SimulationState;
+  time: number;
+  step: number;
+}
+
+export interface Statistics {
+  time: number;
+  step: number;
+  bodies: number;
+  active: number;
+  wants_to_sleep: number;
+  asleep: number;
+  contacts: number;
+  step_ms: number;
+  real_time_factor: number;
+}
+
+/** Where it went wrong, why, and what the user can do. */
+export interface ServerError {
+  where: string;
+  why: string;
+  remedy: string;
+}
+
+/** What one entity.add asks for; the server fills in the rest. */
+export type NewEntity = Partial<Omit<Entity, "index">>;
+
+export interface PoseEdit {
+  index: number;
+  position?: Vector;
+  rotation?: Quaternion;
+}
+
+export interface Ray {
+  origin: Vector;
+  direction: Vector;
+}
+
+/** Each command's parameters and result. */
+export interface Commands {
+  hello: [Record<string, never>, { version: string; scene: Scene; revision: number; simulation: Simulation; frame_version: number }];
+  "catalog.search": [{ words?: string; category?: string; limit?: number; offset?: number }, { models: ModelSummary[]; total: number }];
+  "catalog.categories": [Record<string, never>, { categories: { category: string; models: number }[] }];
+  "catalog.model": [{ key: string }, { model: ModelSummary; attributes: AttributeEntry[] }];
+  "scene.new": [{ name?: string }, unknown];
+  "scene.load": [{ name: string } | { scene: unknown }, unknown];
+  "scene.save": [{ name?: string }, { name: string; path: string }];
+  "scene.list": [Record<string, never>, { scenes: SceneListing[] }];
+  "scene.settings": [Partial<SceneSettings> & { title?: string }, unknown];
+  "entity.add": [{ entity: NewEntity; drop?: Ray }, { index: number }];
+  "entity.remove": [{ indices: number[] }, unknown];
+  "entity.transform": [{ poses: PoseEdit[]; merge?: string }, unknown];
+  "entity.update": [{ index: number; entity: NewEntity }, unknown];
+  "entity.set_attribute": [{ indices: number[]; name: string; value: AttributeValue }, unknown];
+  "entity.reset_attribute": [{ indices: number[]; name: string }, unknown];
+  "entity.duplicate": [{ indices: number[]; offset?: Vector }, { indices: number[] }];
+  "entity.drop_to_floor": [{ indices: number[] }, unknown];
+  "entity.attributes": [{ index: number }, { attributes: AttributeEntry[] }];
+  "edit.undo": [Record<string, never>, { undone: string | null }];
+  "edit.redo": [Record<string, never>, { redone: string | null }];
+  "simulation.play": [Record<string, never>, unknown];
+  "simulation.pause": [Record<string, never>, unknown];
+  "simulation.step": [{ count?: number }, unknown];
+  "simulation.reset": [Record<string, never>, unknown];
+  "simulation.keep": [Record<string, never>, unknown];
+  "simulation.grab": [{ index: number; point: Vector; target: Vector }, unknown];
+  "simulation.move_grab": [{ target: Vector }, unknown];
+  "simulation.release": [Record<string, never>, unknown];
+  "action.trigger": [{ key?: string; button?: string }, { started: number }];
+}
+
+export type DocumentChange =
+  | { op: "reset"; scene: Scene }
+  | { op: "entity"; entity: Entity }
+  | { op: "entity_removed"; index: number }
+  | ({ op: "settings" } & Record<string, unknown>)
+  | { op: "joint"; joint: Joint }
+  | { op: "joint_removed"; index: number }
+  | { op: "action"; action: Action }
+  | { op: "action_removed"; index: number };
+
+export interface DocumentEvent {
+  event: "document";
+  revision: number;
+  changes: DocumentChange[];
+  undo: string | null;
+  redo: string | null;
+  unsaved: boolean;
+  name: string | null;
+}
+
+export type ServerEvent =
+  | DocumentEvent
+  | ({ event: "simulation" } & Simulation)
+  | { event: "spawned"; entity: Entity }
+  | { event: "despawned"; index: number }
+  | ({ event: "statistics" } & Statistics)
+  | { event: "action"; name: string; id: number; sender: number; receiver: number }
+  | { event: "message"; level: "info" | "warning" | "error"; text: string };

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+import { Quaternion, Vector3 } from "three";
+import { POSE_FLOATS, type Frame } from "../connection/frame";
+
+/** The simulation's state of a body; the numbers are the protocol's. */
+export enum BodyState {
+  active = 0,
+  wantsToSleep = 1,
+  asleep = 2,
+  still = 3,
+}
+
+interface Track {
+  fromPosition: Vector3;
+  fromRotation: Quaternion;
+  toPosition: Vector3;
+  toRotation: Quaternion;
+  /** Milliseconds on the page's clock. */
+  start: number;
+  duration: number;
+  state: BodyState;
+}
+
+const LONGEST_BLEND_MS = 120;
+
+/**
+ * Where every entity is now. A frame's pose is reached over the time since the frame before, so that motion is smooth at any
+ * rate of frames; while nothing plays poses are taken over at once.
+ */
+export class Motion {
+  /** Entities whose picture is out of date. */
+  readonly moved = new Set<number>();
+  /** Entities whose state changed. */
+  readonly restated = new Set<number>();
+  private readonly tracks = new Map<number, Track>();
+  private readonly blending = new Set<number>();
+  private lastFrame = 0;
+
+  clear(): void {
+    this.tracks.clear();
+    this.blending.clear();
+    this.moved.clear();
+    this.restated.clear();
+  }
+
+  forget(index: number): void {
+    this.tracks.delete(index);
+    this.blending.delete(index);
+  }
+
+  /** Puts an entity somewhere at once. */
+  place(index: number, position: readonly number[], rotation: readonly number[]): void {
+    const track = this.track(index);
+    track.toPosition.fromArray(position);
+    track.toRotation.fromArray(rotation).normalize();
+    track.fromPosition.copy(track.toPosition);
+    track.fromRotation.copy(track.toRotation);
+    this.blending.delete(index);
+    this.moved.add(index);
+  }
+
+  take(frame: Frame, now: number, smooth: boolean): void {
+    const duration = smooth ? Math.min(now - this.lastFrame, LONGEST_BLEND_MS) : 0;
+    this.lastFrame = now;
+    for (let record = 0; record < frame.indices.length; ++record) {
+      const index = frame.indices[record]!;
+      const known = this.tracks.has(index);
+      const track = this.track(index);
+      const at = record * POSE_FLOATS;
+      this.blend(track, now, track.fromPosition, track.fromRotation);
+      track.toPosition.fromArray(frame.poses, at);
+      track.toRotation.fromArray(frame.poses, at + 3).normalize();
+      track.start = now;
+      track.duration = known ? duration : 0;
+      this.blending.add(index);
+      const state = frame.states[record]! as BodyState;
+      if (track.state !== state) this.restated.add(index);
+      track.state = state;
+    }
+  }
+
+  /** Marks as moved what is on its way; returns whether anything still is afterwards. */
+  advance(now: number): boolean {
+    for (const index of this.blending) {
+      this.moved.add(index);
+      const track = this.tracks.get(index)!;
+      if (now >= track.start + track.duration) this.blending.delete(index);
+    }
+    return this.blending.size > 0;
+  }
+
+  /** The pose to draw now; false for an entity nobody has placed. */
+  pose(index: number, now: number, position: Vector3, rotation: Quaternion): boolean {
+    const track = this.tracks.get(index);
+    if (!track) return false;
+    this.blend(track, now, position, rotation);
+    return true;
+  }
+
+  state(index: number): BodyState {
+    return this.tracks.get(index)?.state ?? BodyState.still;
+  }
+
+  private blend(track: Track, now: number, position: Vector3, rotation: Quaternion): void {
+    const part = track.duration > 0 ? Math.min((now - track.start) / track.duration, 1) : 1;
+    position.lerpVectors(track.fromPosition, track.toPosition, part);
+    rotation.slerpQuaternions(track.fromRotation, track.toRotation, part);
+  }
+
+  private track(index: number): Track {
+    let track = this.tracks.get(index);
+    if (!track) {
+      track = {
+        fromPosition: new Vector3(),
+        fromRotation: new Quaternion(),
+        toPosition: new Vector3(),
+        toRotation: new Quaternion(),
+        start: 0,
+        duration: 0,
+        state: BodyState.still,
+      };
+      this.tracks.set(index, track);
+    }
+    return track;
+  }
+}

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+import type { DocumentChange, DocumentEvent } from "../connection/messages";
+import { Signal } from "../signal";
+import type { Action, Entity, Joint, Pose, Quaternion, Scene, SceneSettings, Vector } from "./scene_types";
+
+export const DEFAULT_SETTINGS: SceneSettings = {
+  gravity: [0, -9.81, 0],
+  time_step: 1 / 60,
+  substeps: 4,
+  sleeping: true,
+  time_to_sleep: 0.5,
+  shock_propagation: true,
+};
+
+/** What of the document is new after an event. */
+export interface Changed {
+  /** Another scene: forget everything of the last one. */
+  all: boolean;
+  entities: number[];
+  removed: number[];
+  settings: boolean;
+  joints: boolean;
+  actions: boolean;
+}
+
+/** The client's copy of the open scene. It changes only by what the server tells. */
+export class SceneDocument {
+  readonly changed = new Signal<Changed>();
+  readonly entities = new Map<number, Entity>();
+  /** Entities that actions put into the running world; not part of the document. */
+  readonly spawned = new Map<number, Entity>();
+  readonly joints = new Map<number, Joint>();
+  readonly actions = new Map<number, Action>();
+  settings: SceneSettings = DEFAULT_SETTINGS;
+  camera: { position: Vector; target: Vector } | null = null;
+  title = "";
+  description = "";
+  name: string | null = null;
+  undo: string | null = null;
+  redo: string | null = null;
+  unsaved = false;
+
+  entity(index: number): Entity | undefined {
+    return this.entities.get(index) ?? this.spawned.get(index);
+  }
+
+  /** The whole scene, as the answer to hello brings it. */
+  reset(scene: Scene): void {
+    this.takeScene(scene);
+    this.changed.emit({ ...nothingChanged(), all: true, settings: true, joints: true, actions: true });
+  }
+
+  apply(event: DocumentEvent): void {
+    const changed = nothingChanged();
+    for (const change of event.changes) this.applyChange(change, changed);
+    this.undo = event.undo;
+    this.redo = event.redo;
+    this.unsaved = event.unsaved;
+    this.name = event.name;
+    this.changed.emit(changed);
+  }
+
+  /** An action put an entity into the running world. */
+  spawn(entity: Entity): void {
+    this.spawned.set(entity.index, entity);
+    this.changed.emit({ ...nothingChanged(), entities: [entity.index] });
+  }
+
+  /** An action took an entity out of the running world; one of the document stays in it and comes back with a reset. */
+  despawn(index: number): void {
+    this.spawned.delete(index);
+    this.changed.emit({ ...nothingChanged(), removed: [index] });
+  }
+
+  /** The running world is the document's again. */
+  forgetSpawned(): void {
+    const removed = [...this.spawned.keys()];
+    this.spawned.clear();
+    this.changed.emit({ ...nothingChanged(), removed, entities: [...this.entities.keys()] });
+  }
+
+  private takeScene(scene: Scene): void {
+    this.entities.clear();
+    this.spawned.clear();
+    this.joints.clear();
+    this.actions.clear();
+    for (const entity of scene.entities ?? []) this.entities.set(entity.index, entity);
+    for (const joint of scene.joints ?? []) this.joints.set(joint.index, joint);
+    for (const action of scene.actions ?? []) this.actions.set(action.id, action);
+    this.settings = { ...DEFAULT_SETTINGS, ...scene.settings };
+    this.camera = scene.camera ?? null;
+    this.title = scene.title ?? "Untitled";
+    this.description = scene.description ?? "";
+  }
+
+  private applyChange(change: DocumentChange, changed: Changed): void {
+    switch (change.op) {
+      case "reset":
+        this.takeScene(change.scene);
+        Object.assign(changed, { all: true, settings: true, joints: true, actions: true });
+        break;
+      case "entity":
+        this.entities.set(change.entity.index, change.entity);
+        changed.entities.push(change.entity.index);
+        break;
+      case "entity_removed":
+        this.entities.delete(change.index);
+        changed.removed.push(change.index);
+        break;
+      case "settings":
+        this.applySettings(change);
+        changed.settings = true;
+        break;
+      case "joint":
+        this.joints.set(change.joint.index, change.joint);
+        changed.joints = true;
+        break;
+      case "joint_removed":
+        this.joints.delete(change.index);
+        changed.joints = true;
+        break;
+      case "action":
+        this.actions.set(change.action.id, change.action);
+        changed.actions = true;
+        break;
+      case "action_removed":
+        this.actions.delete(change.index);
+        changed.actions = true;
+        break;
+    }
+  }
+
+  private applySettings(change: Record<string, unknown>): void {
+    // The settings lie beside `op`, or one level down under their own name.
+    const nested = change["settings"] as Record<string, unknown> | undefined;
+    const { op: _op, settings: _settings, title, ...beside } = change;
+    this.settings = { ...this.settings, ...beside, ...nested };
+    if (typeof title === "string") this.title = title;
+  }
+}
+
+export function nothingChanged(): Changed {
+  return { all: false, entities: [], removed: [], settings: false, joints: false, actions: false };
+}
+
+export function positionOf(pose: Pose | undefined): Vector {
+  return pose?.position ?? [0, 0, 0];
+}
+
+export function rotationOf(pose: Pose | undefined): Quaternion {
+  return pose?.rotation ?? [0, 0, 0, 1];
+}
+
+/** What a person calls the entity. */
+export function nameOf(entity: Entity): string {
+  if (entity.name) return entity.name;
+  const kind = entity.shape?.type ?? "model";
+  return `${kind[0]!.toUpperCase()}${kind.slice(1)} ${entity.index}`;
+}

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+import "./style/theme.css";
+import "./style/layout.css";
+import "./style/panels.css";
+import { AttributeList } from "./panels/attribute_list";
+import { newScene, openScenes, saveAs } from "./panels/dialogs";
+import { DragIn } from "./panels/drag_in";
+import { element, show } from "./panels/element";
+import { EntityFields } from "./panels/entity_fields";
+import { FileDrop } from "./panels/file_drop";
+import { openHelp } from "./panels/help";
+import { Hierarchy } from "./panels/hierarchy";
+import { ModelBrowser } from "./panels/model_browser";
+import { openOptions } from "./panels/options_menu";
+import { Overlays } from "./panels/overlays";
+import { openPalette } from "./panels/palette";
+import { SceneFields } from "./panels/scene_fields";
+import { StatusBar } from "./panels/status_bar";
+import { Toasts } from "./panels/toasts";
+import { Toolbar } from "./panels/toolbar";
+import { Studio } from "./studio";
+import { offerTestHook } from "./test_hook";
+import { makeActions, type UserAction } from "./tools/actions";
+import { Gizmo } from "./tools/gizmo";
+import { Keyboard } from "./tools/keys";
+import { Pointer } from "./tools/pointer";
+import { offerHeadset } from "./view/headset";
+
+const canvas = element("canvas", { tabindex: 0, "aria-label": "The scene", "data-testid": "canvas" });
+const scene = element("main", { id: "scene" }, canvas);
+const app = document.getElementById("app")!;
+app.append(scene);
+
+try {
+  start();
+} catch (error) {
+  // Without WebGL there is nothing to show but the reason.
+  scene.replaceChildren(
+    element("div", { class: "lost", role: "alert" }, element("strong", {}, "The Studio cannot draw here"), element("p", {}, `${(error as Error).message} The browser needs WebGL 2.`)),
+  );
+}
+
+function start(): void {
+  const studio = new Studio(canvas);
+  const gizmo = new Gizmo(studio);
+  const pointer = new Pointer(studio, gizmo);
+  const browser = new ModelBrowser(studio, new DragIn(studio));
+
+  const actions: UserAction[] = makeActions(studio, gizmo, {
+    scenes: () => void openScenes(studio),
+    saveAs: () => saveAs(studio),
+    newScene: () => void newScene(studio),
+    help: () => openHelp(studio, actions),
+    palette: () => openPalette(studio, actions),
+    search: () => browser.focusSearch(),
+  });
+  actions.push({ id: "view.options", label: "View options…", group: "View", keys: [], icon: "options", run: () => openOptions(studio, actions) });
+
+  new Keyboard(studio, actions, pointer);
+  new FileDrop(studio, () => browser.refresh());
+  const toolbar = new Toolbar(studio, gizmo, actions);
+  const entityFields = new EntityFields(studio);
+  const attributes = new AttributeList(studio);
+  show(entityFields.root, false);
+  show(attributes.root, false);
+  app.append(
+    toolbar.root,
+    leftPanel(browser, new Hierarchy(studio)),
+    element("aside", { class: "panel right", "aria-label": "Properties", "data-testid": "properties" }, new SceneFields(studio).root, entityFields.root, attributes.root),
+    new StatusBar(studio).root,
+  );
+  scene.append(new Overlays(studio).root);
+  document.body.append(new Toasts(studio).root);
+
+  const setTheme = () => (document.documentElement.dataset["theme"] = studio.preferences.get("theme"));
+  studio.preferences.changed.on(setTheme);
+  setTheme();
+  addEventListener("beforeunload", (event) => {
+    if (studio.document.unsaved) event.preventDefault();
+  });
+  void offerHeadset(studio.view, scene);
+  offerTestHook(studio);
+  studio.connection.open();
+}
+
+/** Models to choose from, and what is in the scene, behind two tabs. */
+function leftPanel(browser: ModelBrowser, hierarchy: Hierarchy): HTMLElement {
+  const pages = [
+    { name: "Models", root: browser.root },
+    { name: "In the scene", root: hierarchy.root },
+  ];
+  const choose = (chosen: HTMLElement): void => {
+    pages.forEach(({ root }, at) => {
+      show(root, root === chosen);
+      tabs[at]!.setAttribute("aria-selected", String(root === chosen));
+    });
+  };
+  const tabs = pages.map(({ name, root }) => element("button", { role: "tab", "data-testid": `tab-${name}`, onclick: () => choose(root) }, name));
+  choose(browser.root);
+  return element(
+    "aside",
+    { class: "panel left", "aria-label": "Models and entities" },
+    element("div", { class: "tabs", role: "tablist" }, ...tabs),
+    ...pages.map(({ root }) => root),
+  );
+}

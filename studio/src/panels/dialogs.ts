@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+import type { SceneListing } from "../connection/messages";
+import type { Studio } from "../studio";
+import { element, show } from "./element";
+import { icon } from "./icons";
+
+/** A modal dialog with a title; closes with Escape, its cross, or a click outside. */
+export function openDialog(title: string, testId: string, ...contents: (Node | null)[]): HTMLDialogElement {
+  const dialog = element(
+    "dialog",
+    { "aria-label": title, "data-testid": testId },
+    element(
+      "header",
+      {},
+      element("h2", {}, title),
+      element("button", { class: "plain", "aria-label": "Close", onclick: () => dialog.close() }, icon("close")),
+    ),
+    ...contents,
+  );
+  dialog.addEventListener("close", () => dialog.remove());
+  dialog.addEventListener("click", (event) => {
+    if (event.target === dialog) dialog.close();
+  });
+  document.body.append(dialog);
+  dialog.showModal();
+  return dialog;
+}
+
+/** Asks before work is lost; true at once where nothing would be. */
+export function mayLeave(studio: Studio): Promise<boolean> {
+  if (!studio.document.unsaved) return Promise.resolve(true);
+  return new Promise((resolve) => {
+    let answer = false;
+    const dialog = openDialog(
+      "The scene has unsaved changes",
+      "unsaved-dialog",
+      element("p", {}, "They will be lost when another scene is opened."),
+      element(
+        "div",
+        { class: "dialog-buttons" },
+        element("button", { onclick: () => dialog.close() }, "Cancel"),
+        element("button", { class: "danger", "data-testid": "discard", onclick: () => ((answer = true), dialog.close()) }, "Discard changes"),
+      ),
+    );
+    dialog.addEventListener("close", () => resolve(answer));
+  });
+}
+
+export async function newScene(studio: Studio): Promise<void> {
+  if (await mayLeave(studio)) await studio.command("scene.new", {});
+}
+
+/** Lists what the user saved and the scenes that come with Embody. */
+export async function openScenes(studio: Studio): Promise<void> {
+  const waiting = element("p", { class: "note" }, "Loading…");
+  const body = element("div", { class: "scene-lists" }, waiting);
+  const file = element("input", { type: "file", accept: ".json,application/json", hidden: true });
+  const fromFile = element("button", { onclick: () => file.click() }, "Open a scene file…");
+  const dialog = openDialog("Open a scene", "scenes-dialog", body, element("div", { class: "dialog-buttons" }, file, fromFile));
+
+  const load = async (params: { name: string } | { scene: unknown }): Promise<void> => {
+    dialog.close();
+    if (await mayLeave(studio)) await studio.command("scene.load", params);
+  };
+  file.addEventListener("change", async () => {
+    const chosen = file.files?.[0];
+    if (!chosen) return;
+    try {
+      await load({ scene: JSON.parse(await chosen.text()) });
+    } catch (error) {
+      studio.notice.emit({ level: "error", text: `${chosen.name}: ${(error as Error).message}`, remedy: "A scene file is JSON; see docs/scene-format.md." });
+    }
+  });
+
+  const answer = await studio.command("scene.list", {});
+  if (!answer) return dialog.close();
+  const list = (title: string, kind: SceneListing["kind"], none: string) => {
+    const scenes = answer.scenes.filter((scene) => scene.kind === kind);
+    const items = scenes.map((scene) =>
+      element(
+        "li",
+        {},
+        element(
+          "button",
+          { class: "scene-item", "data-testid": `scene-${scene.name}`, onclick: () => void load({ name: scene.name }) },
+          element("span", {}, scene.title || scene.name),
+          element("span", { class: "note" }, scene.title && scene.title !== scene.name ? scene.name : "", dateText(scene.modified)),
+        ),
+      ),
+    );
+    return element("section", {}, element("h3", {}, title), items.length > 0 ? element("ul", {}, ...items) : element("p", { class: "note" }, none));
+  };
+  body.replaceChildren(list("Saved", "saved", "Nothing saved yet. Ctrl+S saves."), list("Examples", "demo", "No examples found."));
+  body.querySelector<HTMLElement>("button")?.focus();
+}
+
+function dateText(modified: SceneListing["modified"]): string {
+  if (modified === null || modified === undefined || modified === "") return "";
+  // Seconds, or a date as text.
+  const date = new Date(typeof modified === "number" ? modified * 1000 : modified);
+  return Number.isNaN(date.getTime()) ? "" : ` ${date.toLocaleString()}`;
+}
+
+export function saveAs(studio: Studio): void {
+  const name = element("input", { type: "text", value: studio.document.name ?? studio.document.title, "aria-label": "Name", "data-testid": "save-name" });
+  const error = element("p", { class: "field-error", role: "alert" });
+  show(error, false);
+  const form = element(
+    "form",
+    {
+      onsubmit: async (event: Event) => {
+        event.preventDefault();
+        try {
+          const saved = await studio.connection.request("scene.save", { name: name.value.trim() });
+          dialog.close();
+          studio.notice.emit({ level: "info", text: `Saved “${saved.name}”`, remedy: saved.path });
+        } catch (reason) {
+          error.textContent = (reason as Error).message;
+          show(error, true);
+        }
+      },
+    },
+    element("label", {}, "Name", name),
+    error,
+    element("div", { class: "dialog-buttons" }, element("button", { type: "button", onclick: () => dialog.close() }, "Cancel"), element("button", { class: "primary", type: "submit" }, "Save")),
+  );
+  const dialog = openDialog("Save the scene", "save-dialog", form);
+  name.focus();
+  name.select();
+}

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+import type { ModelSummary, NewEntity } from "../connection/messages";
+import { Signal } from "../signal";
+import type { Studio } from "../studio";
+import { addUnder, Ghost } from "../tools/ghost";
+import { element } from "./element";
+
+/** A press that moves less than this is a click, px. */
+const DRAG_REACH = 5;
+
+export interface Carried {
+  entity: NewEntity;
+  model: ModelSummary | null;
+}
+
+/** Dragging from a panel into the scene: a picture at the pointer, and over the scene a ghost lying on what is under it. */
+export class DragIn {
+  readonly added = new Signal<ModelSummary>();
+  private readonly ghost: Ghost;
+  private readonly picture = element("div", { class: "carried", hidden: true });
+
+  constructor(private readonly studio: Studio) {
+    this.ghost = new Ghost(studio);
+    document.body.append(this.picture);
+  }
+
+  /** Lets `source` be dragged; `carry` says what it brings. */
+  from(source: HTMLElement, carry: () => Carried): void {
+    source.addEventListener("pointerdown", (down) => {
+      if (down.button !== 0 || (down.target as HTMLElement).closest(".favourite")) return;
+      const ended = new AbortController();
+      let carried: Carried | null = null;
+      const move = (event: PointerEvent): void => {
+        const far = Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) > DRAG_REACH;
+        if (!carried && far) carried = this.begin(source, carry());
+        if (carried) this.follow(event);
+      };
+      const end = (event: PointerEvent | null): void => {
+        ended.abort();
+        if (carried) this.end(carried, event);
+      };
+      addEventListener("pointermove", move, { signal: ended.signal });
+      addEventListener("pointerup", (event) => end(event), { signal: ended.signal });
+      addEventListener("pointercancel", () => end(null), { signal: ended.signal });
+      const cancel = (event: KeyboardEvent): void => {
+        if (event.key === "Escape") end(null);
+      };
+      addEventListener("keydown", cancel, { signal: ended.signal });
+    });
+  }
+
+  private begin(source: HTMLElement, carried: Carried): Carried {
+    this.picture.replaceChildren(...[...source.querySelectorAll("img, svg:not(.icon)")].map((each) => each.cloneNode(true)));
+    this.picture.hidden = false;
+    document.body.classList.add("carrying");
+    this.ghost.begin(carried.entity).catch((error: Error) => this.studio.report(error));
+    return carried;
+  }
+
+  private follow(event: PointerEvent): void {
+    this.picture.style.transform = `translate(${event.clientX}px, ${event.clientY}px)`;
+    const over = this.isOverScene(event);
+    this.picture.classList.toggle("over-scene", over);
+    if (over) this.ghost.moveTo(event.clientX, event.clientY);
+    else this.ghost.hide();
+  }
+
+  private end(carried: Carried, event: PointerEvent | null): void {
+    this.picture.hidden = true;
+    document.body.classList.remove("carrying");
+    this.ghost.end();
+    if (!event || !this.isOverScene(event)) return;
+    if (carried.model) this.added.emit(carried.model);
+    void addUnder(this.studio, carried.entity, event.clientX, event.clientY);
+    this.studio.view.canvas.focus();
+  }
+
+  private isOverScene(event: PointerEvent): boolean {
+    return document.elementFromPoint(event.clientX, event.clientY)?.closest("#scene") !== null;
+  }
+}

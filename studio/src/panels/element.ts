@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// The whole of our user interface library: makes elements. Panels keep references to what they change.
+
+type Child = Node | string | null | undefined | false;
+type Listener = (event: never) => void;
+/** Attributes; `on…` listeners, `class`, and booleans that are present or absent. */
+type Attributes = Record<string, string | number | boolean | undefined | Listener>;
+
+export function element<Tag extends keyof HTMLElementTagNameMap>(
+  tag: Tag,
+  attributes: Attributes = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[Tag] {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (typeof value === "function") made.addEventListener(name.replace(/^on/, ""), value as EventListener);
+    else if (value === true) made.setAttribute(name, "");
+    else if (value !== false && value !== undefined) made.setAttribute(name, String(value));
+  }
+  for (const child of children) if (child) made.append(child);
+  return made;
+}
+
+/** Shows or hides without leaving the document. */
+export function show(shown: HTMLElement, visible: boolean): void {
+  shown.hidden = !visible;
+}
+
+/** Text changes only when it is other text: cheaper, and screen readers stay quiet. */
+export function setText(target: HTMLElement, text: string): void {
+  if (target.textContent !== text) target.textContent = text;
+}

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+import { Euler, Matrix4, Quaternion, Vector3 } from "three";
+import type { NewEntity, PoseEdit } from "../connection/messages";
+import { nameOf } from "../document/scene_document";
+import type { Entity, Shape, Vector } from "../document/scene_types";
+import type { Studio } from "../studio";
+import { element, show } from "./element";
+import { type Field, numberField, textField, truthField, vectorField } from "./fields";
+
+const DEGREE = Math.PI / 180;
+const LIVE_EVERY_MS = 200;
+
+type Row = { root: HTMLElement; update(entities: Entity[]): void };
+
+/** Name, pose, size and start of the selected entities: what is theirs and not their material's. */
+export class EntityFields {
+  readonly root = element("section", { class: "entity", "data-testid": "entity-fields", "aria-label": "Entity" });
+  private rows: Row[] = [];
+  private lastLive = 0;
+
+  constructor(private readonly studio: Studio) {
+    studio.selection.changed.on(() => this.rebuild());
+    studio.document.changed.on(() => this.update());
+    studio.view.beforeFrame.on((now) => {
+      if (now - this.lastLive < LIVE_EVERY_MS) return;
+      this.lastLive = now;
+      this.update();
+    });
+  }
+
+  private entities(): Entity[] {
+    return this.studio.selection.indices.flatMap((index) => this.studio.document.entity(index) ?? []);
+  }
+
+  private rebuild(): void {
+    const entities = this.entities();
+    show(this.root, entities.length > 0);
+    if (entities.length === 0) return;
+    const single = entities.length === 1 ? entities[0]! : null;
+    const shown: Row[] = [...this.poseRows()];
+    if (single?.shape) shown.push(...this.shapeRows(single.shape));
+    if (entities.every((entity) => entity.model)) shown.push(this.scaleRow());
+    if (entities.every((entity) => entity.shape)) shown.push(this.colorRow());
+    const start = this.startRows();
+    this.rows = [...(single ? [this.nameRow()] : []), ...shown, ...start];
+    const head = single ? this.rows[0]!.root : element("h2", { "data-testid": "selection-count" }, `${entities.length} entities`);
+    this.root.replaceChildren(
+      head,
+      element("details", { class: "group", open: true }, element("summary", {}, "Place and size"), ...shown.map((row) => row.root)),
+      element("details", { class: "group" }, element("summary", {}, "Start and forces"), ...start.map((row) => row.root)),
+    );
+    this.update();
+  }
+
+  private update(): void {
+    const entities = this.entities();
+    if (entities.length > 0) for (const row of this.rows) row.update(entities);
+  }
+
+  private nameRow(): Row {
+    const field = textField("Name", (name) => this.change({ name }));
+    field.root.classList.add("name-field");
+    field.root.querySelector("input")!.dataset["testid"] = "entity-name";
+    return { root: field.root, update: ([entity]) => field.set(nameOf(entity!)) };
+  }
+
+  private poseRows(): Row[] {
+    const position = vectorField(["Position x", "Position y", "Position z"], "m", (value) => this.move(value as Vector, null), 0.01);
+    const rotation = vectorField(["Rotation x", "Rotation y", "Rotation z"], "°", (value) => this.move(null, value as Vector), 1);
+    const matrix = new Matrix4();
+    const [at, turn, size, euler] = [new Vector3(), new Quaternion(), new Vector3(), new Euler()];
+    const update = (entities: Entity[]): void => {
+      const last = entities.at(-1)!;
+      if (entities.length > 1 || !this.studio.entities.matrixOf(last.index, performance.now(), matrix)) {
+        position.set(null);
+        rotation.set(null);
+        return;
+      }
+      matrix.decompose(at, turn, size);
+      euler.setFromQuaternion(turn, "YXZ");
+      position.set(at.toArray().map(rounded));
+      rotation.set([euler.x, euler.y, euler.z].map((angle) => Math.round((angle / DEGREE) * 100) / 100));
+    };
+    return [
+      { root: row("Position", position.root), update },
+      { root: row("Rotation", rotation.root), update: () => {} },
+    ];
+  }
+
+  private move(position: Vector | null, degrees: Vector | null): void {
+    const edit: Omit<PoseEdit, "index"> = {};
+    if (position) edit.position = position;
+    if (degrees) {
+      const [x, y, z] = degrees.map((angle) => angle * DEGREE) as Vector;
+      edit.rotation = new Quaternion().setFromEuler(new Euler(x, y, z, "YXZ")).toArray() as [number, number, number, number];
+    }
+    const poses = this.studio.selection.indices.map((index) => ({ index, ...edit }));
+    void this.studio.command("entity.transform", { poses });
+  }
+
+  /** The lengths of a primitive, as whole widths and heights. */
+  private shapeRows(shape: Shape): Row[] {
+    const put = (next: Shape) => this.change({ shape: next });
+    const length = (label: string, read: (shape: never) => number, write: (shape: never, value: number) => Shape): Row => {
+      const present = () => this.entities()[0]?.shape ?? shape;
+      const field = numberField(label, "m", (value) => put(write(present() as never, value)), 0.01);
+      return { root: row(label, field.root), update: ([entity]) => field.set(read(entity!.shape as never)) };
+    };
+    type Round = Extract<Shape, { radius: number; half_height: number }>;
+    type Ball = Extract<Shape, { type: "sphere" }>;
+    type Box = Extract<Shape, { type: "box" }>;
+    const radius = length("Radius", (round: Ball) => round.radius, (round: Ball, value) => ({ ...round, radius: value }));
+    switch (shape.type) {
+      case "sphere":
+        return [radius];
+      case "capsule":
+      case "cylinder":
+      case "cone": {
+        const label = shape.type === "capsule" ? "Straight part" : "Height";
+        return [radius, length(label, (round: Round) => 2 * round.half_height, (round: Round, value) => ({ ...round, half_height: value / 2 }))];
+      }
+      case "box": {
+        const field = vectorField(["Width", "Height", "Depth"], "m", (value) => put({ type: "box", half_extents: value.map((each) => each / 2) as Vector }), 0.01);
+        return [{ root: row("Size", field.root), update: ([entity]) => field.set((entity!.shape as Box).half_extents.map((half) => 2 * half)) }];
+      }
+      default:
+        return [];
+    }
+  }
+
+  private scaleRow(): Row {
+    const field = numberField("Scale", "", (scale) => this.change({ scale }), 0.05);
+    return { root: row("Scale", field.root), update: (entities) => field.set(common(entities, (entity) => entity.scale ?? 1)) };
+  }
+
+  private colorRow(): Row {
+    const input = element("input", { type: "color", "aria-label": "Colour" });
+    input.addEventListener("change", () => this.change({ color: linearColor(input.value) }));
+    return {
+      root: row("Colour", element("span", { class: "field" }, input)),
+      update: ([entity]) => {
+        if (document.activeElement !== input && entity!.color) input.value = hexColor(entity!.color);
+      },
+    };
+  }
+
+  private startRows(): Row[] {
+    const vector = (label: string, unit: string, name: "linear_velocity" | "angular_velocity" | "force" | "torque"): Row => {
+      const field = vectorField([`${label} x`, `${label} y`, `${label} z`], unit, (value) => this.change({ [name]: value as Vector }));
+      return bound(label, field, (entity) => entity[name] ?? [0, 0, 0]);
+    };
+    const truth = (label: string, name: "enabled" | "start_asleep" | "continuous", standard: boolean): Row => {
+      const field = truthField(label, (value) => this.change({ [name]: value }));
+      return bound(label, field, (entity) => entity[name] ?? standard);
+    };
+    return [
+      vector("Velocity", "m/s", "linear_velocity"),
+      vector("Spin", "rad/s", "angular_velocity"),
+      vector("Force", "N", "force"),
+      vector("Torque", "N m", "torque"),
+      truth("In the world", "enabled", true),
+      truth("Starts asleep", "start_asleep", false),
+      truth("Fast: never tunnels", "continuous", false),
+    ];
+  }
+
+  private change(entity: NewEntity): void {
+    for (const index of this.studio.selection.indices) void this.studio.command("entity.update", { index, entity });
+  }
+}
+
+function row(label: string, field: HTMLElement): HTMLElement {
+  return element("div", { class: "attribute" }, element("span", { class: "attribute-label" }, label), field);
+}
+
+function bound<Value>(label: string, field: Field<Value>, read: (entity: Entity) => Value): Row {
+  return { root: row(label, field.root), update: (entities) => field.set(common(entities, read)) };
+}
+
+/** The value that all have, or null. */
+function common<Value>(entities: Entity[], read: (entity: Entity) => Value): Value | null {
+  const first = read(entities[0]!);
+  const text = JSON.stringify(first);
+  return entities.every((entity) => JSON.stringify(read(entity)) === text) ? first : null;
+}
+
+function rounded(length: number): number {
+  return Math.round(length * 1e4) / 1e4;
+}
+
+/** Scene files hold linear light, colour pickers sRGB. */
+function linearColor(hex: string): Vector {
+  return [1, 3, 5].map((at) => {
+    const part = parseInt(hex.slice(at, at + 2), 16) / 255;
+    return part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4;
+  }) as Vector;
+}
+
+function hexColor(linear: Vector): string {
+  const parts = linear.map((part) => (part <= 0.0031308 ? part * 12.92 : 1.055 * part ** (1 / 2.4) - 0.055));
+  return `#${parts.map((part) => Math.round(Math.min(Math.max(part, 0), 1) * 255).toString(16).padStart(2, "0")).join("")}`;
+}

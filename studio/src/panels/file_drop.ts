@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+import type { ServerError } from "../connection/messages";
+import type { Studio } from "../studio";
+import { addUnder } from "../tools/ghost";
+import { entityOf } from "./model_browser";
+
+const LARGEST_BYTES = 256 * 1024 * 1024;
+
+interface ImportAnswer {
+  added: number;
+  updated: number;
+  unchanged: number;
+  failures: { path: string; why: string }[];
+  keys: string[];
+}
+
+/** Files from the desktop: dropped on the page they are imported, dropped on the scene they are also added. */
+export class FileDrop {
+  constructor(
+    private readonly studio: Studio,
+    private readonly imported: () => void,
+  ) {
+    const hasFiles = (event: DragEvent) => event.dataTransfer?.types.includes("Files") ?? false;
+    addEventListener("dragover", (event) => {
+      if (!hasFiles(event)) return;
+      event.preventDefault();
+      document.body.classList.add("dropping");
+    });
+    addEventListener("dragleave", (event) => {
+      if (event.relatedTarget === null) document.body.classList.remove("dropping");
+    });
+    addEventListener("drop", (event) => {
+      document.body.classList.remove("dropping");
+      if (!hasFiles(event)) return;
+      event.preventDefault();
+      void this.take([...event.dataTransfer!.files], event.clientX, event.clientY);
+    });
+  }
+
+  private async take(files: File[], clientX: number, clientY: number): Promise<void> {
+    for (const file of files) {
+      const keys = await this.import(file);
+      this.imported();
+      const overScene = document.elementFromPoint(clientX, clientY)?.closest("#scene");
+      if (!overScene) continue;
+      for (const key of keys.slice(0, 1)) await addUnder(this.studio, entityOf(await this.studio.models.summary(key)), clientX, clientY);
+    }
+  }
+
+  /** Sends the file to the database; the keys of the models that came of it. */
+  private async import(file: File): Promise<string[]> {
+    const { notice, connection } = this.studio;
+    if (file.size > LARGEST_BYTES) {
+      notice.emit({ level: "error", text: `${file.name} is larger than 256 MiB`, remedy: "Import it with “embody import FILE”." });
+      return [];
+    }
+    notice.emit({ level: "info", text: `Importing ${file.name}…` });
+    try {
+      const answer = await fetch(connection.address(`import?name=${encodeURIComponent(file.name)}`), { method: "POST", body: file });
+      const report = (await answer.json()) as ImportAnswer & { error?: ServerError };
+      if (report.error) {
+        notice.emit({ level: "error", text: `${report.error.where}: ${report.error.why}`, remedy: report.error.remedy });
+        return [];
+      }
+      for (const failure of report.failures) notice.emit({ level: "error", text: `${failure.path}: ${failure.why}` });
+      if (report.failures.length === 0) notice.emit({ level: "info", text: `${file.name} is in the model database` });
+      return report.keys ?? [];
+    } catch (error) {
+      notice.emit({ level: "error", text: `${file.name} was not imported: ${(error as Error).message}` });
+      return [];
+    }
+  }
+}

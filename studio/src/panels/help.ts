@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+import type { Studio } from "../studio";
+import type { UserAction } from "../tools/actions";
+import { keyName, keysOf } from "../tools/keys";
+import { openDialog } from "./dialogs";
+import { element } from "./element";
+
+const MOUSE: readonly (readonly [string, string])[] = [
+  ["Left drag on empty space", "turn the view"],
+  ["Middle drag, or Shift + left drag", "move the view"],
+  ["Wheel", "nearer, farther"],
+  ["Right drag, with W A S D Q E", "look around and fly"],
+  ["Click", "select; Shift or Ctrl adds"],
+  ["Ctrl + drag", "select what is in the rectangle"],
+  ["Left drag on a body while playing", "pull it with a spring"],
+  ["Left drag with the move tool", "slide it along its level"],
+];
+
+/** Mouse and keys; a key can be changed by clicking on it. */
+export function openHelp(studio: Studio, actions: readonly UserAction[]): void {
+  const groups = new Map<string, UserAction[]>();
+  for (const action of actions) {
+    if (keysOf(studio, action).length === 0) continue;
+    groups.set(action.group, [...(groups.get(action.group) ?? []), action]);
+  }
+  const line = (keys: Node, what: string) => element("div", { class: "key-line" }, keys, element("span", {}, what));
+  const section = (title: string, lines: HTMLElement[]) => element("section", {}, element("h3", {}, title), ...lines);
+  const dialog = openDialog(
+    "Help and keys",
+    "help",
+    element(
+      "div",
+      { class: "help-columns" },
+      section("Mouse", MOUSE.map(([gesture, what]) => line(element("span", { class: "gesture" }, gesture), what))),
+      ...[...groups].map(([title, group]) => section(title, group.map((action) => line(keyButton(studio, action), action.label)))),
+    ),
+    element(
+      "div",
+      { class: "dialog-buttons" },
+      element("span", { class: "note" }, "Click on a key to change it."),
+      element("button", { onclick: () => (studio.preferences.set("keys", {}), dialog.close()) }, "All keys as they came"),
+    ),
+  );
+}
+
+function keyButton(studio: Studio, action: UserAction): HTMLElement {
+  const button = element("button", { class: "key", "aria-label": `Key of “${action.label}”` }, keysOf(studio, action).join(" or "));
+  button.addEventListener("click", () => {
+    button.textContent = "press a key";
+    button.addEventListener(
+      "keydown",
+      (event) => {
+        event.preventDefault();
+        event.stopPropagation();
+        if (["Shift", "Control", "Alt", "Meta"].includes(event.key)) return;
+        if (event.key !== "Escape") studio.preferences.set("keys", { ...studio.preferences.get("keys"), [action.id]: keyName(event) });
+        button.textContent = keysOf(studio, action).join(" or ");
+        button.blur();
+      },
+      { signal: untilBlur(button) },
+    );
+  });
+  return button;
+}
+
+function untilBlur(button: HTMLElement): AbortSignal {
+  const ended = new AbortController();
+  button.addEventListener("blur", () => ended.abort(), { once: true });
+  return ended.signal;
+}

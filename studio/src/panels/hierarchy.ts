@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+import { nameOf } from "../document/scene_document";
+import type { Entity } from "../document/scene_types";
+import type { Studio } from "../studio";
+import { element } from "./element";
+
+/** More rows than this are not made; the filter finds the rest. */
+const MOST_ROWS = 400;
+const DELAY_MS = 80;
+
+/** Every entity of the scene by name, to find and choose what is small, hidden or far away. */
+export class Hierarchy {
+  readonly root: HTMLElement;
+  private readonly list = element("ul", { role: "listbox", "aria-label": "Entities", "aria-multiselectable": "true", "data-testid": "hierarchy" });
+  private readonly filter = element("input", { type: "search", placeholder: "Find in the scene", "aria-label": "Find in the scene", oninput: () => this.fill() });
+  private timer = 0;
+
+  constructor(private readonly studio: Studio) {
+    this.root = element("div", { class: "hierarchy" }, element("div", { class: "browser-search" }, this.filter), this.list);
+    studio.document.changed.on(() => {
+      clearTimeout(this.timer);
+      this.timer = window.setTimeout(() => this.fill(), DELAY_MS);
+    });
+    studio.selection.changed.on(() => this.mark());
+  }
+
+  private fill(): void {
+    const words = this.filter.value.trim().toLowerCase();
+    const { entities, spawned } = this.studio.document;
+    const all = [...entities.values(), ...spawned.values()].filter((entity) => nameOf(entity).toLowerCase().includes(words));
+    const rows = all.slice(0, MOST_ROWS).map((entity) => this.row(entity));
+    if (all.length > MOST_ROWS) rows.push(element("li", { class: "note" }, `… and ${all.length - MOST_ROWS} more: type a part of a name`));
+    if (all.length === 0) rows.push(element("li", { class: "note" }, words ? "Nothing in the scene has that name" : "The scene is empty"));
+    this.list.replaceChildren(...rows);
+    this.mark();
+  }
+
+  private row(entity: Entity): HTMLElement {
+    const { studio } = this;
+    const kind = entity.shape?.type ?? "model";
+    const choose = (event: MouseEvent | KeyboardEvent): void => {
+      if (event.ctrlKey || event.shiftKey || event.metaKey) studio.selection.toggle(entity.index);
+      else studio.selection.set([entity.index]);
+    };
+    return element(
+      "li",
+      {
+        role: "option",
+        tabindex: 0,
+        class: entity.enabled === false ? "row disabled" : "row",
+        "data-index": entity.index,
+        onclick: choose,
+        ondblclick: () => studio.view.rig.focus(studio.entities.boundsOf([entity.index], performance.now()), performance.now()),
+        onkeydown: (event: KeyboardEvent) => this.key(event, choose),
+      },
+      element("span", {}, nameOf(entity)),
+      element("span", { class: "row-kind" }, studio.document.spawned.has(entity.index) ? `${kind}, spawned` : kind),
+    );
+  }
+
+  private key(event: KeyboardEvent, choose: (event: KeyboardEvent) => void): void {
+    const row = event.currentTarget as HTMLElement;
+    if (event.key === "Enter") choose(event);
+    else if (event.key === "ArrowDown") (row.nextElementSibling as HTMLElement | null)?.focus();
+    else if (event.key === "ArrowUp") (row.previousElementSibling as HTMLElement | null)?.focus();
+    else return;
+    event.preventDefault();
+  }
+
+  private mark(): void {
+    for (const row of this.list.querySelectorAll<HTMLElement>("[data-index]"))
+      row.setAttribute("aria-selected", String(this.studio.selection.has(Number(row.dataset["index"]))));
+  }
+}

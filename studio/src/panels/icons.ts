@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+
+/** Strokes on a 16 × 16 grid; a leading "!" means filled. */
+const ICONS = {
+  select: "M4 2l8 6.5-3.6.5L10.5 13l-1.6.8L7 9.8 4 12z",
+  move: "M8 1.5v13M1.5 8h13M8 1.5L6 3.5M8 1.5l2 2M8 14.5l-2-2M8 14.5l2-2M1.5 8l2-2M1.5 8l2 2M14.5 8l-2-2M14.5 8l-2 2",
+  rotate: "M13 8a5 5 0 1 1-1.6-3.7M13.2 1.8v3h-3",
+  scale: "M2.5 9.5v4h4v-4zM6.5 9.5L13 3M9 2.5h4.5V7",
+  world: "M8 2a6 6 0 1 0 0 12A6 6 0 0 0 8 2zM2 8h12M8 2c-4 3.5-4 8.5 0 12M8 2c4 3.5 4 8.5 0 12",
+  local: "M8 2l5.5 3v6L8 14l-5.5-3V5zM8 8v6M8 8L2.5 5M8 8l5.5-3",
+  snap: "M4 2v6a4 4 0 0 0 8 0V2M4 5h0M2.5 4.5h3M10.5 4.5h3",
+  play: "!M4 2.5v11l9-5.5z",
+  pause: "!M4 2.5h3v11H4zM9 2.5h3v11H9z",
+  step: "!M3 3v10l7-5zM11 3h2v10h-2z",
+  reset: "!M13 3v10L6 8zM3 3h2v10H3z",
+  keep: "M8 2v7M5 6.5L8 9.5l3-3M2.5 10v3.5h11V10",
+  undo: "M3 6.5h7a3.5 3.5 0 0 1 0 7H6M3 6.5l3-3M3 6.5l3 3",
+  redo: "M13 6.5H6a3.5 3.5 0 0 0 0 7h4M13 6.5l-3-3M13 6.5l-3 3",
+  fresh: "M4 1.5h5.5L12.5 5v9.5H4zM9 1.5V5.5h3.5",
+  open: "M1.5 13V3h4l1.5 2h6v2.5M1.5 13l2.5-5.5h11L12.5 13z",
+  save: "M2.5 2.5h9l2 2v9h-11zM5 2.5v3.5h5V2.5M4.5 13.5v-5h7v5",
+  tint: "M5 6.5a3 3 0 1 0 0 6 3 3 0 0 0 0-6zM11 6.5a3 3 0 1 0 0 6 3 3 0 0 0 0-6zM8 1.8a3 3 0 1 0 0 6 3 3 0 0 0 0-6z",
+  options: "M2 4h7M12 4h2M2 8h2M7 8h7M2 12h6M11 12h3M10.5 2.5v3M5.5 6.5v3M9.5 10.5v3",
+  help: "M5.5 6a2.5 2.5 0 1 1 3.6 2.2C8.3 8.6 8 9 8 10M8 12.6v.4",
+  palette: "M2.5 4.5L6 8l-3.5 3.5M8 12h5.5",
+  star: "M8 2l1.8 3.9 4.2.5-3.1 2.9.8 4.2L8 11.4l-3.7 2.1.8-4.2L2 6.4l4.2-.5z",
+  close: "M4 4l8 8M12 4l-8 8",
+  headset: "M2 5h12v6.5h-3.5L8 9.5l-2.5 2H2z",
+  bin: "M3 4.5h10M6 4.5V2.5h4v2M4.5 4.5l.5 9h6l.5-9M7 7v4M9 7v4",
+  camera: "M2 5h3l1.2-2h3.6L11 5h3v8H2zM8 6.5a2.4 2.4 0 1 0 0 4.8 2.4 2.4 0 0 0 0-4.8z",
+} as const;
+
+export type IconName = keyof typeof ICONS;
+
+export function icon(name: IconName): SVGSVGElement {
+  const drawing = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  const path = document.createElementNS("http://www.w3.org/2000/svg", "path");
+  const strokes: string = ICONS[name];
+  const filled = strokes.startsWith("!");
+  drawing.setAttribute("viewBox", "0 0 16 16");
+  drawing.setAttribute("aria-hidden", "true");
+  drawing.setAttribute("class", filled ? "icon icon-filled" : "icon");
+  path.setAttribute("d", filled ? strokes.slice(1) : strokes);
+  drawing.append(path);
+  return drawing;
+}

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+import type { ModelSummary, NewEntity } from "../connection/messages";
+import type { Studio } from "../studio";
+import { addInFront } from "../tools/ghost";
+import { PRIMITIVES, type Primitive } from "../tools/primitives";
+import type { DragIn } from "./drag_in";
+import { element, setText, show } from "./element";
+import { ModelGrid } from "./model_grid";
+
+const SEARCH_DELAY_MS = 150;
+const ALL = "";
+const FAVOURITES = " favourites";
+const RECENT = " recent";
+
+/** The left side: what can be put into the scene. */
+export class ModelBrowser {
+  readonly root: HTMLElement;
+  private readonly words = element("input", {
+    type: "search",
+    placeholder: "Search models",
+    "aria-label": "Search models",
+    "data-testid": "search",
+    oninput: () => this.searchSoon(),
+    onkeydown: (event: KeyboardEvent) => this.wordsKey(event),
+  });
+  private readonly category = element("select", {
+    "aria-label": "Category",
+    "data-testid": "category",
+    onchange: () => this.search(),
+  });
+  private readonly count = element("p", { class: "result-count", role: "status", "data-testid": "result-count" });
+  private readonly empty = element("div", { class: "empty", "data-testid": "empty-result" });
+  private readonly grid: ModelGrid;
+  private timer = 0;
+
+  constructor(
+    private readonly studio: Studio,
+    private readonly dragIn: DragIn,
+  ) {
+    this.grid = new ModelGrid(studio, dragIn);
+    this.grid.counted.on((total) => this.showCount(total));
+    this.grid.used.on((model) => this.remember(model));
+    dragIn.added.on((model) => this.remember(model));
+    this.root = element(
+      "div",
+      { class: "browser" },
+      element("div", { class: "browser-search" }, this.words, this.category),
+      this.primitives(),
+      this.count,
+      this.empty,
+      this.grid.root,
+    );
+    show(this.empty, false);
+    studio.connectionChanged.on(() => {
+      if (studio.connection.isOpen) this.refresh();
+    });
+  }
+
+  focusSearch(): void {
+    this.words.focus();
+    this.words.select();
+  }
+
+  /** Models may be new: asks again for categories and the present search. */
+  refresh(): void {
+    void this.loadCategories();
+    this.search();
+  }
+
+  private primitives(): HTMLElement {
+    const buttons = PRIMITIVES.map((primitive) => {
+      const button = element(
+        "button",
+        {
+          class: "primitive",
+          title: `${primitive.label}: drag into the scene, or double-click`,
+          "aria-label": `Add ${primitive.label.toLowerCase()}`,
+          "data-testid": `primitive-${primitive.name}`,
+          ondblclick: () => void addInFront(this.studio, primitive.entity()),
+          onkeydown: (event: KeyboardEvent) => {
+            if (event.key === "Enter") void addInFront(this.studio, primitive.entity());
+          },
+        },
+        primitiveDrawing(primitive),
+      );
+      this.dragIn.from(button, () => ({ entity: primitive.entity(), model: null }));
+      return button;
+    });
+    return element("div", { class: "primitives", role: "group", "aria-label": "Primitives" }, ...buttons);
+  }
+
+  private async loadCategories(): Promise<void> {
+    const answer = await this.studio.command("catalog.categories", {});
+    if (!answer) return;
+    const chosen = this.category.value;
+    const total = answer.categories.reduce((sum, each) => sum + each.models, 0);
+    const option = (value: string, label: string) => element("option", { value }, label);
+    this.category.replaceChildren(
+      option(ALL, `All categories (${total.toLocaleString("en")})`),
+      option(RECENT, "Recently used"),
+      option(FAVOURITES, "Favourites"),
+      ...answer.categories.map(({ category, models }) => option(category, `${category || "no category"} (${models.toLocaleString("en")})`)),
+    );
+    this.category.value = [...this.category.options].some(({ value }) => value === chosen) ? chosen : ALL;
+  }
+
+  private searchSoon(): void {
+    clearTimeout(this.timer);
+    this.timer = window.setTimeout(() => this.search(), SEARCH_DELAY_MS);
+  }
+
+  private search(): void {
+    const category = this.category.value;
+    if (category === FAVOURITES) void this.grid.showKeys(this.studio.preferences.get("favourites"));
+    else if (category === RECENT) void this.grid.showKeys(this.studio.preferences.get("recent"));
+    else this.grid.showSearch({ words: this.words.value.trim(), category });
+  }
+
+  private showCount(total: number): void {
+    setText(this.count, total === 1 ? "1 model" : `${total.toLocaleString("en")} models`);
+    show(this.empty, total === 0);
+    if (total > 0) return;
+    const searched = this.words.value.trim() !== "";
+    this.empty.replaceChildren(
+      element("strong", {}, searched ? `No model matches “${this.words.value.trim()}”` : "No models here yet"),
+      element("p", {}, searched ? "Try fewer or shorter words, or another category." : "Drop a model file onto the scene to import it, or run “embody import”."),
+    );
+    if (searched) this.empty.append(element("button", { class: "text-button", onclick: () => this.forgetSearch() }, "Show all models"));
+  }
+
+  private forgetSearch(): void {
+    this.words.value = "";
+    this.category.value = ALL;
+    this.search();
+    this.words.focus();
+  }
+
+  private wordsKey(event: KeyboardEvent): void {
+    if (event.key === "ArrowDown" || event.key === "Enter") {
+      event.preventDefault();
+      this.grid.focusFirst();
+    } else if (event.key === "Escape") this.forgetSearch();
+  }
+
+  private remember(model: ModelSummary): void {
+    const recent = this.studio.preferences.get("recent").filter((key) => key !== model.key);
+    this.studio.preferences.set("recent", [model.key, ...recent].slice(0, 60));
+  }
+}
+
+/** What a tile or file becomes in the scene. */
+export function entityOf(model: ModelSummary): NewEntity {
+  return { name: model.name, model: model.key };
+}
+
+function primitiveDrawing(primitive: Primitive): SVGSVGElement {
+  const drawing = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  const path = document.createElementNS("http://www.w3.org/2000/svg", "path");
+  drawing.setAttribute("viewBox", "0 0 32 32");
+  drawing.setAttribute("aria-hidden", "true");
+  path.setAttribute("d", primitive.drawing);
+  drawing.append(path);
+  return drawing;
+}

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+import type { ModelSummary } from "../connection/messages";
+import { Signal } from "../signal";
+import type { Studio } from "../studio";
+import { addInFront } from "../tools/ghost";
+import type { DragIn } from "./drag_in";
+import { element } from "./element";
+import { icon } from "./icons";
+import { entityOf } from "./model_browser";
+
+const PAGE = 60;
+const TILE_WIDTH = 92;
+const TILE_HEIGHT = 118;
+/** Rows kept ready above and below what is seen. */
+const SPARE_ROWS = 2;
+
+interface Search {
+  words: string;
+  category: string;
+}
+
+/** Thumbnails of any number of models: only the tiles in sight exist, and only the pages in sight are asked for. */
+export class ModelGrid {
+  readonly root: HTMLElement;
+  readonly counted = new Signal<number>();
+  readonly used = new Signal<ModelSummary>();
+  private readonly canvas = element("div", { class: "tiles" });
+  private search: Search = { words: "", category: "" };
+  private pages = new Map<number, ModelSummary[] | "asked">();
+  private readonly tiles = new Map<number, HTMLElement>();
+  private total = 0;
+  private active = 0;
+  private generation = 0;
+
+  constructor(
+    private readonly studio: Studio,
+    private readonly dragIn: DragIn,
+  ) {
+    this.root = element(
+      "div",
+      {
+        class: "tile-scroll",
+        role: "listbox",
+        "aria-label": "Models",
+        tabindex: 0,
+        "data-testid": "model-grid",
+        onscroll: () => this.lay(),
+        onkeydown: (event: KeyboardEvent) => this.key(event),
+        onfocus: () => this.lay(),
+      },
+      this.canvas,
+    );
+    new ResizeObserver(() => this.lay()).observe(this.root);
+  }
+
+  showSearch(search: Search): void {
+    this.search = search;
+    this.restart();
+    void this.loadPage(0);
+  }
+
+  /** Shows these models and no others; ones that are gone from the database are left out. */
+  async showKeys(keys: readonly string[]): Promise<void> {
+    this.restart();
+    const generation = this.generation;
+    const answers = await Promise.allSettled(keys.map((key) => this.studio.models.summary(key)));
+    if (generation !== this.generation) return;
+    const models = answers.flatMap((answer) => (answer.status === "fulfilled" ? [answer.value] : []));
+    for (let page = 0; page * PAGE < models.length; ++page) this.pages.set(page, models.slice(page * PAGE, (page + 1) * PAGE));
+    this.setTotal(models.length);
+  }
+
+  focusFirst(): void {
+    if (this.total === 0) return;
+    this.root.focus();
+    this.activate(0);
+  }
+
+  private restart(): void {
+    ++this.generation;
+    this.pages = new Map();
+    this.active = 0;
+    this.root.scrollTop = 0;
+  }
+
+  private async loadPage(page: number): Promise<void> {
+    if (this.pages.has(page)) return;
+    this.pages.set(page, "asked");
+    const generation = this.generation;
+    const { words, category } = this.search;
+    const answer = await this.studio.command("catalog.search", {
+      limit: PAGE,
+      offset: page * PAGE,
+      ...(words && { words }),
+      ...(category && { category }),
+    });
+    if (generation !== this.generation) return;
+    if (!answer) {
+      this.pages.delete(page);
+      return;
+    }
+    for (const model of answer.models) this.studio.models.learn(model);
+    this.pages.set(page, answer.models);
+    this.setTotal(answer.total);
+  }
+
+  private setTotal(total: number): void {
+    this.total = total;
+    this.clear();
+    this.lay();
+    this.counted.emit(total);
+  }
+
+  private clear(): void {
+    for (const tile of this.tiles.values()) tile.remove();
+    this.tiles.clear();
+  }
+
+  private get columns(): number {
+    return Math.max(1, Math.floor(this.root.clientWidth / TILE_WIDTH));
+  }
+
+  /** Makes the tiles that are in sight and drops the others. */
+  private lay(): void {
+    const columns = this.columns;
+    this.canvas.style.height = `${Math.ceil(this.total / columns) * TILE_HEIGHT}px`;
+    const top = Math.floor(this.root.scrollTop / TILE_HEIGHT) - SPARE_ROWS;
+    const bottom = Math.ceil((this.root.scrollTop + this.root.clientHeight) / TILE_HEIGHT) + SPARE_ROWS;
+    const first = Math.max(0, top * columns);
+    const last = Math.min(this.total, bottom * columns);
+    for (const [at, tile] of this.tiles) {
+      if (at >= first && at < last) continue;
+      tile.remove();
+      this.tiles.delete(at);
+    }
+    const width = this.root.clientWidth / columns;
+    for (let at = first; at < last; ++at) {
+      const tile = this.tiles.get(at) ?? this.makeTile(at);
+      if (!tile) continue;
+      tile.style.width = `${width - 6}px`;
+      tile.style.transform = `translate(${(at % columns) * width}px, ${Math.floor(at / columns) * TILE_HEIGHT}px)`;
+    }
+  }
+
+  private makeTile(at: number): HTMLElement | null {
+    const model = this.modelAt(at);
+    if (!model) {
+      void this.loadPage(Math.floor(at / PAGE));
+      return null;
+    }
+    const tile = element(
+      "div",
+      {
+        class: "tile",
+        role: "option",
+        id: `tile-${at}`,
+        "aria-label": model.name,
+        "aria-selected": at === this.active ? "true" : "false",
+        "aria-setsize": this.total,
+        "aria-posinset": at + 1,
+        title: describe(model),
+        "data-testid": "model-tile",
+        "data-key": model.key,
+        onclick: () => this.activate(at),
+        ondblclick: () => this.add(model),
+      },
+      element("img", { src: this.studio.models.thumbnail(model), alt: "", loading: "lazy", draggable: "false" }),
+      element("span", { class: "tile-name" }, model.name),
+      this.favouriteButton(model),
+    );
+    this.dragIn.from(tile, () => ({ entity: entityOf(model), model }));
+    this.tiles.set(at, tile);
+    this.canvas.append(tile);
+    return tile;
+  }
+
+  private favouriteButton(model: ModelSummary): HTMLElement {
+    const { preferences } = this.studio;
+    const isFavourite = () => preferences.get("favourites").includes(model.key);
+    const button = element(
+      "button",
+      {
+        class: "favourite",
+        tabindex: -1,
+        "aria-label": `Favourite: ${model.name}`,
+        "aria-pressed": String(isFavourite()),
+        onclick: (event: Event) => {
+          event.stopPropagation();
+          const others = preferences.get("favourites").filter((key) => key !== model.key);
+          preferences.set("favourites", isFavourite() ? others : [model.key, ...others]);
+          button.setAttribute("aria-pressed", String(isFavourite()));
+        },
+      },
+      icon("star"),
+    );
+    return button;
+  }
+
+  private modelAt(at: number): ModelSummary | undefined {
+    const page = this.pages.get(Math.floor(at / PAGE));
+    return page === "asked" ? undefined : page?.[at % PAGE];
+  }
+
+  private add(model: ModelSummary): void {
+    this.used.emit(model);
+    void addInFront(this.studio, entityOf(model));
+  }
+
+  private key(event: KeyboardEvent): void {
+    const move: Record<string, number> = { ArrowLeft: -1, ArrowRight: 1, ArrowUp: -this.columns, ArrowDown: this.columns };
+    const by = move[event.key];
+    if (by !== undefined) {
+      this.activate(Math.min(Math.max(this.active + by, 0), this.total - 1));
+    } else if (event.key === "Enter") {
+      const model = this.modelAt(this.active);
+      if (model) this.add(model);
+    } else return;
+    event.preventDefault();
+  }
+
+  /** Makes one tile the one that Enter adds, and brings it into sight. */
+  private activate(at: number): void {
+    this.tiles.get(this.active)?.setAttribute("aria-selected", "false");
+    this.active = at;
+    const top = Math.floor(at / this.columns) * TILE_HEIGHT;
+    if (top < this.root.scrollTop) this.root.scrollTop = top;
+    else if (top + TILE_HEIGHT > this.root.scrollTop + this.root.clientHeight) this.root.scrollTop = top + TILE_HEIGHT - this.root.clientHeight;
+    this.lay();
+    this.tiles.get(at)?.setAttribute("aria-selected", "true");
+    this.root.setAttribute("aria-activedescendant", `tile-${at}`);
+  }
+}
+
+function describe(model: ModelSummary): string {
+  const size = model.size.map((length) => length.toPrecision(3)).join(" × ");
+  const lines = [model.name, `${model.category}${model.subcategory ? ` / ${model.subcategory}` : ""}`, `${size} m`];
+  lines.push(`${model.triangles.toLocaleString("en")} triangles`);
+  if (model.author) lines.push(`by ${model.author}`);
+  if (model.licence) lines.push(model.licence);
+  return lines.join("\n");
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+import type { Studio } from "../studio";
+import type { UserAction } from "../tools/actions";
+import { openDialog } from "./dialogs";
+import { element } from "./element";
+import { numberField } from "./fields";
+
+/** How the picture looks and how snapping works; kept in the browser. */
+export function openOptions(studio: Studio, actions: readonly UserAction[]): void {
+  const { preferences } = studio;
+  const row = (label: string, field: HTMLElement) => element("label", { class: "option" }, field, element("span", {}, label));
+  const flip = (id: string): HTMLElement | null => {
+    const action = actions.find((each) => each.id === id);
+    if (!action) return null;
+    const box = element("input", { type: "checkbox", "data-testid": `option-${id}`, onchange: () => action.run() });
+    box.checked = action.on?.() ?? false;
+    return row(action.label, box);
+  };
+  const step = numberField("Snap to", "m", (value) => value > 0 && preferences.set("snapLength", value));
+  const angle = numberField("Snap to", "°", (value) => value > 0 && preferences.set("snapAngle", value));
+  step.set(preferences.get("snapLength"));
+  angle.set(preferences.get("snapAngle"));
+  openDialog(
+    "View options",
+    "options-dialog",
+    element(
+      "div",
+      { class: "options" },
+      flip("view.tint"),
+      flip("view.grid"),
+      flip("view.theme"),
+      flip("view.quality"),
+      flip("tool.snap"),
+      row("Step of snapping when moving", step.root),
+      row("Step of snapping when rotating", angle.root),
+    ),
+  );
+}

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+import type { SceneSettings } from "../document/scene_types";
+import type { Studio } from "../studio";
+import { element, setText, show } from "./element";
+import { numberField, textField, truthField, vectorField } from "./fields";
+
+/** The scene's own settings, shown while nothing is selected. */
+export class SceneFields {
+  readonly root: HTMLElement;
+  private readonly title = textField("Title", (title) => this.set({ title }));
+  private readonly gravity = vectorField(["Gravity x", "Gravity y", "Gravity z"], "m/s²", (value) => this.set({ gravity: value as SceneSettings["gravity"] }));
+  private readonly timeStep = numberField("Time step", "s", (time_step) => this.set({ time_step }));
+  private readonly substeps = numberField("Substeps", "", (substeps) => this.set({ substeps }), 1);
+  private readonly sleeping = truthField("Sleeping", (sleeping) => this.set({ sleeping }));
+  private readonly contents = element("p", { class: "note", "data-testid": "scene-contents" });
+
+  constructor(private readonly studio: Studio) {
+    const row = (label: string, field: HTMLElement, help: string) =>
+      element("div", { class: "attribute" }, element("span", { class: "attribute-label", title: help }, label), field);
+    this.root = element(
+      "section",
+      { class: "entity", "aria-label": "Scene", "data-testid": "scene-fields" },
+      element("h2", {}, "Scene"),
+      this.contents,
+      element(
+        "details",
+        { class: "group", open: true },
+        element("summary", {}, "World"),
+        row("Title", this.title.root, "What the scene is called"),
+        row("Gravity", this.gravity.root, "Acceleration of free fall"),
+        row("Time step", this.timeStep.root, "Simulated time of one step"),
+        row("Substeps", this.substeps.root, "Parts a step is solved in: more are stiffer and slower"),
+        row("Sleeping", this.sleeping.root, "Bodies at rest cost nothing until they are touched"),
+      ),
+      element("p", { class: "note" }, "Select an entity to see what it is made of. Drag models in from the left; they land on what is under the pointer."),
+    );
+    studio.document.changed.on(() => this.update());
+    studio.selection.changed.on(() => this.update());
+    this.update();
+  }
+
+  private set(settings: Partial<SceneSettings> & { title?: string }): void {
+    void this.studio.command("scene.settings", settings).then(() => this.update());
+  }
+
+  private update(): void {
+    const { document: scene, selection } = this.studio;
+    show(this.root, selection.indices.length === 0);
+    this.title.set(scene.title);
+    this.gravity.set(scene.settings.gravity);
+    this.timeStep.set(scene.settings.time_step);
+    this.substeps.set(scene.settings.substeps);
+    this.sleeping.set(scene.settings.sleeping);
+    const parts = [count(scene.entities.size, "entity", "entities"), count(scene.joints.size, "joint", "joints"), count(scene.actions.size, "action", "actions")];
+    setText(this.contents, [parts.join(", "), scene.description].filter(Boolean).join(". "));
+  }
+}
+
+function count(number: number, one: string, many: string): string {
+  return `${number} ${number === 1 ? one : many}`;
+}

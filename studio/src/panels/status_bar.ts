@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+import type { Studio } from "../studio";
+import { element, setText } from "./element";
+
+/** The line at the bottom: what the simulation does and costs, and whether the server is there. */
+export class StatusBar {
+  readonly root: HTMLElement;
+  private readonly connection = element("span", { class: "connection", role: "status", "data-testid": "connection" });
+  private readonly cells = new Map<string, HTMLElement>();
+  private lastFrames = 0;
+  private lastLook = performance.now();
+
+  constructor(private readonly studio: Studio) {
+    const cell = (name: string, title: string, kind = ""): HTMLElement => {
+      const made = element("span", { class: `cell ${kind}`, title, "data-testid": `stat-${name}` });
+      this.cells.set(name, made);
+      return made;
+    };
+    this.root = element(
+      "footer",
+      { class: "status-bar", "aria-label": "Statistics", "data-testid": "status-bar" },
+      cell("state", "State of the simulation", "wide"),
+      cell("time", "Simulated time"),
+      cell("bodies", "Bodies in the world"),
+      cell("active", "Active bodies", "active"),
+      cell("wants", "Bodies that want to sleep", "wants"),
+      cell("asleep", "Bodies asleep", "asleep"),
+      cell("contacts", "Contacts"),
+      cell("step", "Time the computer takes for a step"),
+      cell("rate", "Simulated seconds a second"),
+      cell("fps", "Pictures drawn in the last second; drawn only when something changes"),
+      element("span", { class: "spacer" }),
+      this.connection,
+    );
+    studio.statisticsChanged.on(() => this.update());
+    studio.simulationChanged.on(() => this.update());
+    studio.connectionChanged.on(() => this.update());
+    setInterval(() => this.countFrames(), 1000);
+    this.update();
+  }
+
+  private put(name: string, text: string): void {
+    setText(this.cells.get(name)!, text);
+  }
+
+  private update(): void {
+    const { statistics, simulation, connection, version } = this.studio;
+    this.put("state", { stopped: "Stopped", playing: "Playing", paused: "Paused" }[simulation.state]);
+    this.put("time", `${(simulation.state === "stopped" ? 0 : Math.max(simulation.time, 0)).toFixed(2)} s`);
+    this.put("bodies", `${statistics?.bodies ?? "–"} bodies`);
+    this.put("active", `${statistics?.active ?? "–"} active`);
+    this.put("wants", `${statistics?.wants_to_sleep ?? "–"} want sleep`);
+    this.put("asleep", `${statistics?.asleep ?? "–"} asleep`);
+    this.put("contacts", `${statistics?.contacts ?? "–"} contacts`);
+    this.put("step", statistics ? `${statistics.step_ms.toFixed(2)} ms/step` : "– ms/step");
+    this.put("rate", statistics ? `${statistics.real_time_factor.toFixed(2)}× real time` : "–× real time");
+    this.connection.dataset["state"] = connection.isOpen ? "open" : "closed";
+    setText(this.connection, connection.isOpen ? `Connected${version ? ` · Embody ${version}` : ""}` : "Not connected");
+  }
+
+  private countFrames(): void {
+    const { frames } = this.studio.view;
+    const now = performance.now();
+    this.put("fps", `${Math.round(((frames - this.lastFrames) * 1000) / (now - this.lastLook))} fps`);
+    this.lastFrames = frames;
+    this.lastLook = now;
+    if (this.studio.playing) this.put("time", `${this.studio.simulation.time.toFixed(2)} s`);
+  }
+}

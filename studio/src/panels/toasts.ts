@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+import type { Notice, Studio } from "../studio";
+import { element } from "./element";
+import { icon } from "./icons";
+
+const SHOWN_MS = { info: 3500, warning: 8000, error: 12000 };
+const MOST = 4;
+
+/** Short messages in the corner: what went wrong, why, and what to do. */
+export class Toasts {
+  readonly root = element("div", { class: "toasts", role: "log", "aria-live": "polite", "aria-label": "Messages" });
+
+  constructor(studio: Studio) {
+    studio.notice.on((notice) => this.show(notice));
+  }
+
+  private show(notice: Notice): void {
+    // The same message again only stays longer.
+    for (const other of this.root.children) if (other.getAttribute("data-text") === notice.text) other.remove();
+    const toast = element(
+      "div",
+      { class: `toast ${notice.level}`, "data-testid": `toast-${notice.level}`, "data-text": notice.text },
+      element("div", {}, element("p", {}, notice.text), notice.remedy ? element("p", { class: "remedy" }, notice.remedy) : null),
+      element("button", { class: "plain", "aria-label": "Close message", onclick: () => toast.remove() }, icon("close")),
+    );
+    this.root.append(toast);
+    while (this.root.children.length > MOST) this.root.firstElementChild!.remove();
+    setTimeout(() => toast.remove(), SHOWN_MS[notice.level]);
+  }
+}

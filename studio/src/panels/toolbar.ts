@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+import type { Studio } from "../studio";
+import type { UserAction } from "../tools/actions";
+import type { Gizmo } from "../tools/gizmo";
+import { keysOf } from "../tools/keys";
+import { element, setText, show } from "./element";
+import { icon } from "./icons";
+
+const GROUPS = [
+  ["scene.new", "scene.open", "scene.save"],
+  ["edit.undo", "edit.redo", "edit.delete"],
+  ["tool.select", "tool.move", "tool.rotate", "tool.scale"],
+  ["tool.space", "tool.snap"],
+  ["simulation.reset", "simulation.play", "simulation.step", "simulation.keep"],
+];
+const GROUPS_RIGHT = [["view.tint", "view.options", "view.screenshot", "view.palette", "view.help"]];
+
+/** The bar at the top: one button an action, and the scene's own buttons. */
+export class Toolbar {
+  readonly root: HTMLElement;
+  private readonly title = element("button", { class: "scene-title", title: "Rename: save under a name", "data-testid": "scene-title" });
+  private readonly sceneButtons = element("div", { class: "tool-group scene-buttons", role: "group", "aria-label": "The scene's buttons" });
+  private readonly buttons = new Map<UserAction, HTMLButtonElement>();
+
+  constructor(
+    private readonly studio: Studio,
+    gizmo: Gizmo,
+    private readonly actions: readonly UserAction[],
+  ) {
+    const find = (id: string) => actions.find((action) => action.id === id);
+    const group = (ids: string[]) =>
+      element("div", { class: "tool-group", role: "group" }, ...ids.flatMap((id) => find(id) ?? []).map((action) => this.button(action)));
+    this.title.addEventListener("click", () => find("scene.save_as")?.run());
+    this.root = element(
+      "header",
+      { class: "toolbar", role: "toolbar", "aria-label": "Tools" },
+      element("strong", { class: "brand" }, "Embody"),
+      this.title,
+      ...GROUPS.map(group),
+      this.sceneButtons,
+      element("span", { class: "spacer" }),
+      ...GROUPS_RIGHT.map(group),
+    );
+    studio.document.changed.on(() => this.refresh());
+    studio.simulationChanged.on(() => this.refresh());
+    studio.selection.changed.on(() => this.refresh());
+    studio.preferences.changed.on(() => this.refresh());
+    gizmo.changed.on(() => this.refresh());
+    studio.document.changed.on((changed) => changed.actions && this.showSceneButtons());
+    this.refresh();
+    this.showSceneButtons();
+  }
+
+  private button(action: UserAction): HTMLButtonElement {
+    const key = keysOf(this.studio, action)[0];
+    const button = element(
+      "button",
+      {
+        class: "tool-button",
+        title: key ? `${action.label} (${key})` : action.label,
+        "aria-label": action.label,
+        "data-testid": action.id,
+        onclick: () => action.run(),
+      },
+      icon(action.icon ?? "options"),
+    );
+    this.buttons.set(action, button);
+    return button;
+  }
+
+  private refresh(): void {
+    const { document: scene, playing } = this.studio;
+    for (const [action, button] of this.buttons) {
+      button.disabled = !(action.possible?.() ?? true);
+      if (action.on) button.setAttribute("aria-pressed", String(action.on()));
+    }
+    const play = this.actions.find(({ id }) => id === "simulation.play");
+    const playButton = play && this.buttons.get(play);
+    if (playButton) {
+      playButton.replaceChildren(icon(playing ? "pause" : "play"));
+      playButton.setAttribute("aria-label", playing ? "Pause" : "Play");
+      playButton.title = `${playing ? "Pause" : "Play"} (Space)`;
+    }
+    const undo = this.buttonOf("edit.undo");
+    if (undo) undo.title = scene.undo ? `Undo: ${scene.undo} (Ctrl+Z)` : "Nothing to undo";
+    const redo = this.buttonOf("edit.redo");
+    if (redo) redo.title = scene.redo ? `Redo: ${scene.redo} (Ctrl+Shift+Z)` : "Nothing to redo";
+    const name = scene.title || scene.name || "Untitled";
+    setText(this.title, scene.unsaved ? `${name} •` : name);
+    this.title.setAttribute("aria-label", `Scene ${name}${scene.unsaved ? ", not saved" : ""}`);
+    document.title = `${scene.unsaved ? "• " : ""}${name} – Embody Studio`;
+  }
+
+  private buttonOf(id: string): HTMLButtonElement | undefined {
+    const action = this.actions.find((each) => each.id === id);
+    return action && this.buttons.get(action);
+  }
+
+  /** One for each named button that an action of the scene waits for. */
+  private showSceneButtons(): void {
+    const names = new Set<string>();
+    for (const { trigger } of this.studio.document.actions.values()) if (trigger?.button) names.add(trigger.button);
+    this.sceneButtons.replaceChildren(
+      ...[...names].map((button) =>
+        element("button", { class: "scene-button", "data-testid": `scene-button-${button}`, onclick: () => void this.trigger(button) }, button),
+      ),
+    );
+    show(this.sceneButtons, names.size > 0);
+  }
+
+  private async trigger(button: string): Promise<void> {
+    const answer = await this.studio.command("action.trigger", { button });
+    if (answer?.started === 0) this.studio.notice.emit({ level: "info", text: `“${button}” does nothing now`, remedy: "Play the scene first; an action may also act only once a run." });
+  }
+}

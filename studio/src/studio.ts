@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+import { CommandRefused, Connection, NotConnected } from "./connection/connection";
+import type { Commands, ServerError, ServerEvent, Simulation, Statistics } from "./connection/messages";
+import { Motion } from "./document/motion";
+import { SceneDocument } from "./document/scene_document";
+import { Selection } from "./document/selection";
+import { Preferences } from "./preferences";
+import { Signal } from "./signal";
+import { EntityView } from "./view/entity_view";
+import { ModelStore } from "./view/model_store";
+import { View } from "./view/view";
+
+export interface Notice {
+  level: "info" | "warning" | "error";
+  text: string;
+  remedy?: string;
+}
+
+/** Everything that is one per page, and how news from the server reaches it. Panels and tools are built on this. */
+export class Studio {
+  readonly preferences = new Preferences();
+  readonly connection = new Connection();
+  readonly document = new SceneDocument();
+  readonly selection = new Selection();
+  readonly motion = new Motion();
+  readonly models = new ModelStore(this.connection);
+  readonly entities = new EntityView(this.document, this.motion, this.models, this.preferences.get("quality"));
+  readonly view: View;
+
+  simulation: Simulation = { state: "stopped", time: 0, step: 0 };
+  statistics: Statistics | null = null;
+  version = "";
+  readonly simulationChanged = new Signal<void>();
+  readonly statisticsChanged = new Signal<void>();
+  readonly connectionChanged = new Signal<void>();
+  /** For the user's eyes. */
+  readonly notice = new Signal<Notice>();
+  /** The document is here; false until the first answer to hello. */
+  ready = false;
+
+  constructor(canvas: HTMLCanvasElement) {
+    this.view = new View(canvas, this.motion, this.entities);
+    this.followDocument();
+    this.followConnection();
+    this.followPreferences();
+  }
+
+  get playing(): boolean {
+    return this.simulation.state === "playing";
+  }
+
+  /** Sends a command; a refusal is shown to the user and gives undefined. */
+  async command<Name extends keyof Commands>(name: Name, params: Commands[Name][0]): Promise<Commands[Name][1] | undefined> {
+    try {
+      return await this.connection.request(name, params);
+    } catch (error) {
+      this.report(error as Error);
+      return undefined;
+    }
+  }
+
+  /** Shows why something failed and what to do. */
+  report(error: Error): void {
+    if (error instanceof CommandRefused) this.notice.emit(noticeOf(error.error));
+    else if (error instanceof NotConnected)
+      this.notice.emit({ level: "error", text: "Not connected to the server", remedy: "Your change was not carried out; try again once connected." });
+    else this.notice.emit({ level: "error", text: error.message });
+  }
+
+  private followDocument(): void {
+    this.document.changed.on((changed) => {
+      if (changed.all) {
+        this.motion.clear();
+        this.selection.clear();
+      }
+      for (const index of changed.removed) if (!this.document.entity(index)) this.motion.forget(index);
+      this.entities.apply(changed);
+      this.selection.set(this.selection.indices.filter((index) => this.document.entity(index)));
+      this.view.outline.show(this.selection.indices);
+      this.view.invalidate();
+    });
+    this.selection.changed.on(() => {
+      this.view.outline.show(this.selection.indices);
+      this.view.invalidate();
+    });
+    this.entities.loaded.on(() => this.view.outline.show(this.selection.indices));
+    this.entities.failed.on(({ index, reason }) => {
+      const entity = this.document.entity(index);
+      this.notice.emit({ level: "warning", text: `“${entity?.name ?? index}” cannot be drawn: ${reason}` });
+    });
+  }
+
+  private followConnection(): void {
+    this.connection.opened.on(() => void this.greet());
+    this.connection.closed.on(() => this.connectionChanged.emit());
+    this.connection.fault.on((reason) => this.notice.emit({ level: "error", text: reason, remedy: "Reload the page." }));
+    this.connection.event.on((event) => this.take(event));
+    this.connection.frame.on((frame) => {
+      this.motion.take(frame, performance.now(), this.playing);
+      this.simulation.time = frame.time;
+      this.simulation.step = frame.step;
+      this.view.invalidate();
+      // The next frame is wanted when this one has been drawn; where nothing is drawn (a hidden page), at once.
+      if (document.hidden) this.connection.wantFrame();
+      else requestAnimationFrame(() => this.connection.wantFrame());
+    });
+  }
+
+  private followPreferences(): void {
+    const { preferences, view } = this;
+    view.setTheme(preferences.get("theme"));
+    view.setQuality(preferences.get("quality"));
+    view.environment.showGrid(preferences.get("grid"));
+    preferences.changed.on((name) => {
+      if (name === "theme") view.setTheme(preferences.get("theme"));
+      if (name === "quality") view.setQuality(preferences.get("quality"));
+      if (name === "grid") view.environment.showGrid(preferences.get("grid"));
+      if (name === "tint") this.retint();
+      view.invalidate();
+    });
+  }
+
+  /** After (re)connecting: the whole document and simulation as they are now. */
+  private async greet(): Promise<void> {
+    const hello = await this.command("hello", {});
+    if (!hello) return;
+    this.version = hello.version;
+    this.ready = true;
+    this.simulation = hello.simulation;
+    this.document.reset(hello.scene);
+    this.openCamera();
+    this.retint();
+    this.connectionChanged.emit();
+    this.simulationChanged.emit();
+  }
+
+  private take(event: ServerEvent): void {
+    switch (event.event) {
+      case "document":
+        this.document.apply(event);
+        if (event.changes.some((change) => change.op === "reset")) this.openCamera();
+        break;
+      case "simulation":
+        this.takeSimulation(event);
+        break;
+      case "spawned":
+        this.document.spawn(event.entity);
+        break;
+      case "despawned":
+        this.document.despawn(event.index);
+        break;
+      case "statistics":
+        this.statistics = event;
+        this.statisticsChanged.emit();
+        break;
+      case "message":
+        this.notice.emit(event);
+        break;
+      case "action":
+        break;
+    }
+  }
+
+  private takeSimulation({ state, time, step }: Simulation): void {
+    const restarted = state === "stopped" && this.simulation.state !== "stopped";
+    this.simulation = { state, time, step };
+    if (restarted) this.document.forgetSpawned();
+    this.retint();
+    this.simulationChanged.emit();
+  }
+
+  /** States are told apart while there is a simulation; a scene being built shows its own colours. */
+  private retint(): void {
+    this.entities.tinted = this.preferences.get("tint") && this.simulation.state !== "stopped";
+    this.entities.update(performance.now(), true);
+    this.view.invalidate();
+  }
+
+  private openCamera(): void {
+    const camera = this.document.camera;
+    if (camera) this.view.rig.place(camera.position, camera.target);
+  }
+}
+
+function noticeOf(error: ServerError): Notice {
+  const text = error.where ? `${error.where}: ${error.why}` : error.why;
+  return { level: "error", text, remedy: error.remedy };
+}

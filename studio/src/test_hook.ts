@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+import { Vector3 } from "three";
+import type { BodyState } from "./document/motion";
+import { nameOf } from "./document/scene_document";
+import type { Studio } from "./studio";
+import { presentPoses } from "./tools/poses";
+
+/** What tests and scripts in the page may look at: `window.embody`. It can change nothing but the drawing. */
+export interface TestHook {
+  connected(): boolean;
+  simulation(): { state: string; time: number; step: number };
+  statistics(): unknown;
+  selection(): number[];
+  entities(): { index: number; name: string; model: string | null; position: number[]; rotation: number[]; state: BodyState; drawn: boolean }[];
+  /** Models still on their way, and pictures drawn so far. */
+  loading(): number;
+  frames(): number;
+  /** Where on the page the middle of an entity's box is seen. */
+  seenAt(index: number): { x: number; y: number } | null;
+  pick(x: number, y: number): number | null;
+  /** Stops drawing, for screenshots; resume() goes on. */
+  halt(): void;
+  resume(): void;
+}
+
+export function offerTestHook(studio: Studio): void {
+  const hook: TestHook = {
+    connected: () => studio.connection.isOpen && studio.ready,
+    simulation: () => studio.simulation,
+    statistics: () => studio.statistics,
+    selection: () => [...studio.selection.indices],
+    entities: () =>
+      [...studio.document.entities.values(), ...studio.document.spawned.values()].map((entity) => {
+        const pose = presentPoses(studio, [entity.index]).get(entity.index);
+        return {
+          index: entity.index,
+          name: nameOf(entity),
+          model: entity.model ?? null,
+          position: pose?.position.toArray() ?? [],
+          rotation: pose?.rotation.toArray() ?? [],
+          state: studio.motion.state(entity.index),
+          drawn: studio.entities.drawableOf(entity.index) !== undefined,
+        };
+      }),
+    loading: () => studio.entities.loading,
+    frames: () => studio.view.frames,
+    seenAt: (index) => {
+      const bounds = studio.entities.boundsOf([index], performance.now());
+      if (bounds.isEmpty()) return null;
+      const { x, y } = studio.view.project(bounds.getCenter(new Vector3()));
+      return { x, y };
+    },
+    pick: (x, y) => studio.view.pick(x, y)?.index ?? null,
+    halt: () => studio.view.halt(),
+    resume: () => studio.view.resume(),
+  };
+  (window as unknown as { embody: TestHook }).embody = hook;
+}

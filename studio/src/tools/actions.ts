@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+import type { IconName } from "../panels/icons";
+import type { Studio } from "../studio";
+import { addInFront } from "./ghost";
+import type { Gizmo } from "./gizmo";
+import { PRIMITIVES } from "./primitives";
+
+/** Something the user can ask for: by button, key or command palette. */
+export interface UserAction {
+  id: string;
+  label: string;
+  group: string;
+  /** As keyName() writes them; the first is shown. */
+  keys: string[];
+  icon?: IconName;
+  /** Whether it makes sense now; always where missing. */
+  possible?: () => boolean;
+  /** For switches: whether it is on. */
+  on?: () => boolean;
+  run: () => void;
+}
+
+/** Opens what lies over the page; the panels give these. */
+export interface Openers {
+  scenes(): void;
+  saveAs(): void;
+  help(): void;
+  palette(): void;
+  search(): void;
+  newScene(): void;
+}
+
+export function makeActions(studio: Studio, gizmo: Gizmo, open: Openers): UserAction[] {
+  return [
+    ...sceneActions(studio, open),
+    ...editActions(studio),
+    ...toolActions(studio, gizmo),
+    ...simulationActions(studio),
+    ...viewActions(studio, open),
+    ...PRIMITIVES.map((primitive) => ({
+      id: `add.${primitive.name}`,
+      label: `Add ${primitive.label.toLowerCase()}`,
+      group: "Add",
+      keys: [],
+      run: () => void addInFront(studio, primitive.entity()),
+    })),
+  ];
+}
+
+function sceneActions(studio: Studio, open: Openers): UserAction[] {
+  return [
+    { id: "scene.new", label: "New scene", group: "Scene", keys: [], icon: "fresh", run: open.newScene },
+    { id: "scene.open", label: "Open scene…", group: "Scene", keys: ["Ctrl+O"], icon: "open", run: open.scenes },
+    { id: "scene.save", label: "Save", group: "Scene", keys: ["Ctrl+S"], icon: "save", run: () => void save(studio, open) },
+    { id: "scene.save_as", label: "Save as…", group: "Scene", keys: ["Ctrl+Shift+S"], run: open.saveAs },
+    {
+      id: "scene.download",
+      label: "Download scene file",
+      group: "Scene",
+      keys: [],
+      run: () => location.assign(studio.connection.address("scene.json")),
+    },
+  ];
+}
+
+async function save(studio: Studio, open: Openers): Promise<void> {
+  // A scene that has no name yet asks for one.
+  if (!studio.document.name) return open.saveAs();
+  const saved = await studio.command("scene.save", {});
+  if (saved) studio.notice.emit({ level: "info", text: `Saved “${saved.name}”` });
+}
+
+function editActions(studio: Studio): UserAction[] {
+  const { selection, document } = studio;
+  const some = () => selection.indices.length > 0;
+  const chosen = () => ({ indices: [...selection.indices] });
+  return [
+    { id: "edit.undo", label: "Undo", group: "Edit", keys: ["Ctrl+Z"], icon: "undo", possible: () => document.undo !== null, run: () => void studio.command("edit.undo", {}) },
+    { id: "edit.redo", label: "Redo", group: "Edit", keys: ["Ctrl+Shift+Z", "Ctrl+Y"], icon: "redo", possible: () => document.redo !== null, run: () => void studio.command("edit.redo", {}) },
+    { id: "edit.delete", label: "Delete", group: "Edit", keys: ["Delete"], icon: "bin", possible: some, run: () => void studio.command("entity.remove", chosen()) },
+    { id: "edit.duplicate", label: "Duplicate", group: "Edit", keys: ["Ctrl+D"], possible: some, run: () => void duplicate(studio) },
+    { id: "edit.select_all", label: "Select all", group: "Edit", keys: ["Ctrl+A"], run: () => selection.set(document.entities.keys()) },
+    { id: "edit.select_none", label: "Select nothing", group: "Edit", keys: ["Escape"], run: () => selection.clear() },
+    { id: "edit.drop", label: "Drop to floor", group: "Edit", keys: ["End", "PageDown"], possible: some, run: () => void studio.command("entity.drop_to_floor", chosen()) },
+  ];
+}
+
+async function duplicate(studio: Studio): Promise<void> {
+  const bounds = studio.entities.boundsOf(studio.selection.indices, performance.now());
+  const aside = bounds.isEmpty() ? 0.5 : bounds.max.x - bounds.min.x + 0.05;
+  const made = await studio.command("entity.duplicate", { indices: [...studio.selection.indices], offset: [aside, 0, 0] });
+  if (made) studio.selection.set(made.indices);
+}
+
+function toolActions(studio: Studio, gizmo: Gizmo): UserAction[] {
+  const { preferences } = studio;
+  const tool = (name: Gizmo["tool"], label: string, key: string): UserAction => ({
+    id: `tool.${name}`,
+    label,
+    group: "Tools",
+    keys: [key],
+    icon: name,
+    on: () => gizmo.tool === name,
+    run: () => gizmo.use(name),
+  });
+  return [
+    tool("select", "Select", "Q"),
+    tool("move", "Move", "W"),
+    tool("rotate", "Rotate", "E"),
+    tool("scale", "Scale", "R"),
+    {
+      id: "tool.space",
+      label: "Handles along the entity's own axes",
+      group: "Tools",
+      keys: ["X"],
+      icon: "local",
+      on: () => gizmo.space === "local",
+      run: () => gizmo.setSpace(gizmo.space === "local" ? "world" : "local"),
+    },
+    {
+      id: "tool.snap",
+      label: "Snap (Shift while dragging turns it over)",
+      group: "Tools",
+      keys: [],
+      icon: "snap",
+      on: () => preferences.get("snap"),
+      run: () => preferences.set("snap", !preferences.get("snap")),
+    },
+  ];
+}
+
+function simulationActions(studio: Studio): UserAction[] {
+  const begun = () => studio.simulation.state !== "stopped";
+  return [
+    {
+      id: "simulation.play",
+      label: "Play or pause",
+      group: "Simulation",
+      keys: ["Space"],
+      icon: "play",
+      on: () => studio.playing,
+      run: () => void studio.command(studio.playing ? "simulation.pause" : "simulation.play", {}),
+    },
+    { id: "simulation.step", label: "One step", group: "Simulation", keys: ["."], icon: "step", run: () => void studio.command("simulation.step", { count: 1 }) },
+    { id: "simulation.reset", label: "Back to the start", group: "Simulation", keys: ["Backspace"], icon: "reset", possible: begun, run: () => void studio.command("simulation.reset", {}) },
+    { id: "simulation.keep", label: "Keep these poses (settle)", group: "Simulation", keys: ["K"], icon: "keep", possible: begun, run: () => void keepPoses(studio) },
+  ];
+}
+
+async function keepPoses(studio: Studio): Promise<void> {
+  if (await studio.command("simulation.keep", {}))
+    studio.notice.emit({ level: "info", text: "The present poses are now the scene's; undo takes them back" });
+}
+
+function viewActions(studio: Studio, open: Openers): UserAction[] {
+  const { preferences, view } = studio;
+  const flip = <Name extends "tint" | "grid">(name: Name) => preferences.set(name, !preferences.get(name));
+  return [
+    { id: "view.focus", label: "Focus on the selection", group: "View", keys: ["F"], run: () => focus(studio) },
+    { id: "view.tint", label: "Colour by state", group: "View", keys: ["T"], icon: "tint", on: () => preferences.get("tint"), run: () => flip("tint") },
+    { id: "view.grid", label: "Grid", group: "View", keys: ["G"], on: () => preferences.get("grid"), run: () => flip("grid") },
+    {
+      id: "view.theme",
+      label: "Light theme",
+      group: "View",
+      keys: [],
+      on: () => preferences.get("theme") === "light",
+      run: () => preferences.set("theme", preferences.get("theme") === "light" ? "dark" : "light"),
+    },
+    {
+      id: "view.quality",
+      label: "Fast drawing (no shadows or reflections)",
+      group: "View",
+      keys: [],
+      on: () => preferences.get("quality") === "low",
+      run: () => preferences.set("quality", preferences.get("quality") === "low" ? "high" : "low"),
+    },
+    { id: "view.screenshot", label: "Save a picture", group: "View", keys: [], icon: "camera", run: () => view.savePicture(studio.document.title) },
+    { id: "view.search", label: "Search models", group: "View", keys: ["/", "Ctrl+F"], run: open.search },
+    { id: "view.palette", label: "All commands…", group: "View", keys: ["Ctrl+K"], icon: "palette", run: open.palette },
+    { id: "view.help", label: "Help and keys", group: "View", keys: ["?", "F1"], icon: "help", run: open.help },
+  ];
+}
+
+function focus(studio: Studio): void {
+  const { selection, document, entities, view } = studio;
+  const meant = selection.indices.length > 0 ? selection.indices : document.entities.keys();
+  view.rig.focus(entities.boundsOf(meant, performance.now()), performance.now());
+}

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+import { Matrix4, Object3D, Vector3 } from "three";
+import { TransformControls } from "three/examples/jsm/controls/TransformControls.js";
+import type { Shape } from "../document/scene_types";
+import { Signal } from "../signal";
+import type { Studio } from "../studio";
+import { PoseDrag } from "./poses";
+
+export type Tool = "select" | "move" | "rotate" | "scale";
+
+const ONE = new Vector3(1, 1, 1);
+
+/** The handles of the move, rotate and scale tools; they act on the whole selection about its last entity. */
+export class Gizmo {
+  readonly changed = new Signal<void>();
+  tool: Tool = "select";
+  space: "world" | "local" = "world";
+  private readonly pivot = new Object3D();
+  private readonly controls: TransformControls;
+  private drag: PoseDrag | null = null;
+  private readonly before = new Matrix4();
+  private readonly delta = new Matrix4();
+  private readonly matrix = new Matrix4();
+  private readonly size = new Vector3();
+  /** Shift turns snapping over for as long as it is held. */
+  private turned = false;
+
+  constructor(private readonly studio: Studio) {
+    const { view } = studio;
+    this.controls = new TransformControls(view.rig.camera, view.canvas);
+    this.controls.setSize(0.8);
+    view.scene.add(this.pivot, this.controls.getHelper());
+    this.controls.addEventListener("change", () => view.invalidate());
+    this.controls.addEventListener("dragging-changed", (event) => (event.value ? this.begin() : this.end()));
+    this.controls.addEventListener("objectChange", () => this.follow());
+    view.beforeFrame.on((now) => this.place(now));
+    studio.selection.changed.on(() => this.attach());
+    studio.entities.loaded.on(() => this.attach());
+    studio.document.changed.on(() => this.attach());
+    studio.preferences.changed.on(() => this.applySnap());
+    for (const kind of ["keydown", "keyup"] as const)
+      addEventListener(kind, (event) => {
+        if (event.key !== "Shift") return;
+        this.turned = kind === "keydown";
+        this.applySnap();
+      });
+    this.applySnap();
+  }
+
+  /** A handle is under the pointer or in the hand: the click is the gizmo's. */
+  get busy(): boolean {
+    return this.controls.dragging || (this.controls.axis !== null && this.controls.object !== undefined);
+  }
+
+  use(tool: Tool): void {
+    this.tool = tool;
+    this.attach();
+    this.changed.emit();
+  }
+
+  setSpace(space: "world" | "local"): void {
+    this.space = space;
+    this.controls.setSpace(space);
+    this.changed.emit();
+    this.studio.view.invalidate();
+  }
+
+  private attach(): void {
+    const drawn = this.studio.selection.indices.some((index) => this.studio.entities.drawableOf(index));
+    if (this.controls.dragging) return;
+    if (this.tool === "select" || !drawn) {
+      this.controls.detach();
+    } else {
+      this.place(performance.now());
+      this.controls.setMode(this.tool === "move" ? "translate" : this.tool);
+      // Only uniform scale keeps a model what it is.
+      const uniform = this.tool === "scale";
+      this.controls.showX = this.controls.showY = this.controls.showZ = !uniform;
+      this.controls.attach(this.pivot);
+    }
+    this.studio.view.invalidate();
+  }
+
+  /** Keeps the handles at the last chosen entity while it moves. */
+  private place(now: number): void {
+    const last = this.studio.selection.indices.at(-1);
+    if (last === undefined || this.controls.dragging) return;
+    if (!this.studio.entities.matrixOf(last, now, this.matrix)) return;
+    this.matrix.decompose(this.pivot.position, this.pivot.quaternion, this.size);
+    this.pivot.scale.copy(ONE);
+    this.pivot.updateMatrixWorld();
+  }
+
+  private begin(): void {
+    this.drag = new PoseDrag(this.studio, this.studio.selection.indices);
+    this.before.compose(this.pivot.position, this.pivot.quaternion, ONE).invert();
+  }
+
+  private follow(): void {
+    const drag = this.drag;
+    if (!drag) return;
+    const factor = this.tool === "scale" ? Math.max(this.pivot.scale.x, 0.01) : 1;
+    this.delta.compose(this.pivot.position, this.pivot.quaternion, ONE).multiply(this.before);
+    for (const index of drag.start.keys())
+      drag.hold(index, (pose, start) => {
+        this.matrix.compose(start.position, start.rotation, ONE).premultiply(this.delta);
+        this.matrix.decompose(pose.position, pose.rotation, this.size);
+        pose.scale = start.scale * factor;
+      });
+    // A scale is a change of the entity itself, sent once when the hand lets go.
+    if (this.tool !== "scale") drag.send();
+  }
+
+  private end(): void {
+    const drag = this.drag;
+    this.drag = null;
+    if (!drag) return;
+    if (this.tool === "scale") void this.scaleBy(this.pivot.scale.x, drag);
+    else void drag.end();
+  }
+
+  private async scaleBy(factor: number, drag: PoseDrag): Promise<void> {
+    for (const index of drag.start.keys()) {
+      const entity = this.studio.document.entity(index);
+      if (!entity) continue;
+      if (entity.model) await this.studio.command("entity.update", { index, entity: { scale: (entity.scale ?? 1) * factor } });
+      else if (entity.shape) {
+        const shape = scaledShape(entity.shape, factor);
+        if (shape) await this.studio.command("entity.update", { index, entity: { shape } });
+      }
+    }
+    await drag.end();
+  }
+
+  private applySnap(): void {
+    const { preferences } = this.studio;
+    const snap = preferences.get("snap") !== this.turned;
+    this.controls.setTranslationSnap(snap ? preferences.get("snapLength") : null);
+    this.controls.setRotationSnap(snap ? (preferences.get("snapAngle") * Math.PI) / 180 : null);
+    this.controls.setScaleSnap(snap ? 0.1 : null);
+  }
+}
+
+/** A primitive of another size; undefined for what cannot be scaled, such as planes. */
+export function scaledShape(shape: Shape, factor: number): Shape | undefined {
+  const times = (vector: readonly number[]) => vector.map((number) => number * factor) as [number, number, number];
+  switch (shape.type) {
+    case "sphere":
+      return { ...shape, radius: shape.radius * factor };
+    case "box":
+      return { ...shape, half_extents: times(shape.half_extents) };
+    case "capsule":
+    case "cylinder":
+    case "cone":
+      return { ...shape, radius: shape.radius * factor, half_height: shape.half_height * factor };
+    case "hull":
+      return { ...shape, points: shape.points.map(times) };
+    default:
+      return undefined;
+  }
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+import type { Studio } from "../studio";
+import type { UserAction } from "./actions";
+import type { Pointer } from "./pointer";
+
+/** How a key is called here and in scene files: "Ctrl+Shift+Z", "Space", ".", "W". */
+export function keyName(event: KeyboardEvent): string {
+  const key = event.key === " " ? "Space" : event.key.length === 1 ? event.key.toUpperCase() : event.key;
+  const letter = /^[A-Z]$/.test(key) || key.length > 1;
+  const modifiers = [event.ctrlKey || event.metaKey ? "Ctrl+" : "", event.altKey ? "Alt+" : "", event.shiftKey && letter ? "Shift+" : ""];
+  return modifiers.join("") + key;
+}
+
+/** The keys of an action: the user's own choice, or the ones it comes with. */
+export function keysOf(studio: Studio, action: UserAction): string[] {
+  const chosen = studio.preferences.get("keys")[action.id];
+  return chosen ? [chosen] : action.keys;
+}
+
+/** Keys on the page become actions. */
+export class Keyboard {
+  constructor(
+    private readonly studio: Studio,
+    private readonly actions: readonly UserAction[],
+    private readonly pointer: Pointer,
+  ) {
+    addEventListener("keydown", (event) => this.press(event));
+  }
+
+  private press(event: KeyboardEvent): void {
+    if (event.defaultPrevented || this.pointer.flying || isTyping(event) || document.querySelector("dialog[open]")) return;
+    const name = keyName(event);
+    if (this.triggerSceneAction(name, event)) return;
+    const action = this.actions.find((each) => keysOf(this.studio, each).includes(name));
+    if (!action || (event.repeat && action.id !== "simulation.step")) return;
+    // A focused button keeps its own Space and Enter.
+    if ((name === "Space" || name === "Enter") && event.target instanceof HTMLButtonElement) return;
+    event.preventDefault();
+    if (action.possible?.() ?? true) action.run();
+  }
+
+  /** While the scene plays, its own keys come first. */
+  private triggerSceneAction(name: string, event: KeyboardEvent): boolean {
+    if (!this.studio.playing || event.repeat) return false;
+    const known = [...this.studio.document.actions.values()].map((action) => action.trigger?.key).find((key) => key?.toUpperCase() === name.toUpperCase());
+    if (!known) return false;
+    event.preventDefault();
+    void this.studio.command("action.trigger", { key: known });
+    return true;
+  }
+}
+
+function isTyping(event: KeyboardEvent): boolean {
+  const target = event.target as HTMLElement;
+  if (target instanceof HTMLInputElement) return target.type !== "checkbox" && target.type !== "color";
+  return target instanceof HTMLTextAreaElement || target instanceof HTMLSelectElement;
+}

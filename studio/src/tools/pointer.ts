@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+import { Plane, Vector3 } from "three";
+import { BodyState } from "../document/motion";
+import type { Studio } from "../studio";
+import type { Hit } from "../view/view";
+import type { Gizmo } from "./gizmo";
+import { PoseDrag } from "./poses";
+
+/** A press that moves less than this is a click, px. */
+const CLICK_REACH = 4;
+
+type Gesture =
+  | { kind: "orbit" | "pan" | "look" }
+  | { kind: "press"; hit: Hit | null }
+  | { kind: "box"; frame: HTMLElement }
+  | { kind: "grab"; plane: Plane; sending: boolean; newer: Vector3 | null }
+  | { kind: "slide"; plane: Plane; from: Vector3; drag: PoseDrag };
+
+/** What the mouse does on the picture: choose, drag, pull bodies while they move, and move the camera. */
+export class Pointer {
+  /** The right button is down: letters fly instead of choosing tools. */
+  flying = false;
+  private gesture: Gesture | null = null;
+  private startX = 0;
+  private startY = 0;
+  private lastX = 0;
+  private lastY = 0;
+  private moved = false;
+  private readonly held = new Set<string>();
+
+  constructor(
+    private readonly studio: Studio,
+    private readonly gizmo: Gizmo,
+  ) {
+    const canvas = studio.view.canvas;
+    canvas.addEventListener("pointerdown", (event) => this.press(event));
+    canvas.addEventListener("pointermove", (event) => this.move(event));
+    canvas.addEventListener("pointerup", (event) => this.release(event));
+    canvas.addEventListener("pointercancel", (event) => this.release(event));
+    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+    canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
+    addEventListener("keydown", (event) => this.flightKey(event, true));
+    addEventListener("keyup", (event) => this.flightKey(event, false));
+    addEventListener("blur", () => this.stopFlight());
+  }
+
+  private press(event: PointerEvent): void {
+    const { view } = this.studio;
+    view.canvas.focus();
+    if (this.gesture || (event.button === 0 && this.gizmo.busy)) return;
+    view.canvas.setPointerCapture(event.pointerId);
+    [this.startX, this.startY] = [this.lastX, this.lastY] = [event.clientX, event.clientY];
+    this.moved = false;
+    if (event.button === 1) this.gesture = { kind: "pan" };
+    else if (event.button === 2) {
+      this.gesture = { kind: "look" };
+      this.flying = true;
+    } else this.gesture = { kind: "press", hit: view.pick(event.clientX, event.clientY) };
+  }
+
+  private move(event: PointerEvent): void {
+    const gesture = this.gesture;
+    if (!gesture) return;
+    const dx = event.clientX - this.lastX;
+    const dy = event.clientY - this.lastY;
+    if (Math.hypot(event.clientX - this.startX, event.clientY - this.startY) > CLICK_REACH) this.moved = true;
+    if (gesture.kind === "press") {
+      if (this.moved) this.beginDrag(gesture.hit, event);
+      return;
+    }
+    [this.lastX, this.lastY] = [event.clientX, event.clientY];
+    const { view } = this.studio;
+    if (gesture.kind === "orbit") view.rig.orbit(dx, dy);
+    else if (gesture.kind === "pan") view.rig.pan(dx, dy, view.canvas.clientHeight);
+    else if (gesture.kind === "look") view.rig.look(dx, dy);
+    else if (gesture.kind === "grab") this.pull(event);
+    else if (gesture.kind === "slide") this.slide(gesture, event);
+    else if (gesture.kind === "box") this.stretchBox(gesture.frame, event);
+  }
+
+  /** A press has become a drag; what it drags depends on what is under it. */
+  private beginDrag(hit: Hit | null, event: PointerEvent): void {
+    const { studio } = this;
+    const movable = hit !== null && this.isMovable(hit.index);
+    if (event.ctrlKey || event.metaKey) this.gesture = { kind: "box", frame: this.makeBox() };
+    else if (movable && studio.playing && !event.shiftKey) this.beginGrab(hit);
+    else if (movable && !studio.playing && this.gizmo.tool === "move" && !event.shiftKey) this.beginSlide(hit);
+    else this.gesture = { kind: event.shiftKey ? "pan" : "orbit" };
+  }
+
+  private isMovable(index: number): boolean {
+    const shape = this.studio.document.entity(index)?.shape?.type;
+    if (shape === "plane" || shape === "heightfield" || shape === "mesh") return false;
+    return !this.studio.playing || this.studio.motion.state(index) !== BodyState.still;
+  }
+
+  private beginGrab(hit: Hit): void {
+    const facing = this.studio.view.rig.camera.getWorldDirection(new Vector3()).negate();
+    const plane = new Plane().setFromNormalAndCoplanarPoint(facing, hit.point);
+    const point = hit.point.toArray();
+    this.gesture = { kind: "grab", plane, sending: false, newer: null };
+    void this.studio.command("simulation.grab", { index: hit.index, point, target: point });
+  }
+
+  private pull(event: PointerEvent): void {
+    const gesture = this.gesture;
+    if (gesture?.kind !== "grab") return;
+    gesture.newer = this.studio.view.meet(event.clientX, event.clientY, gesture.plane);
+    if (!gesture.sending) void this.sendPull(gesture);
+  }
+
+  private async sendPull(gesture: Extract<Gesture, { kind: "grab" }>): Promise<void> {
+    gesture.sending = true;
+    while (gesture.newer && this.gesture === gesture) {
+      const target = gesture.newer.toArray();
+      gesture.newer = null;
+      await this.studio.command("simulation.move_grab", { target });
+    }
+    gesture.sending = false;
+  }
+
+  /** Drags what is under the pointer along the level of its surface. */
+  private beginSlide(hit: Hit): void {
+    const { selection } = this.studio;
+    if (!selection.has(hit.index)) selection.set([hit.index]);
+    const plane = new Plane(new Vector3(0, 1, 0), -hit.point.y);
+    this.gesture = { kind: "slide", plane, from: hit.point.clone(), drag: new PoseDrag(this.studio, selection.indices) };
+  }
+
+  private slide(gesture: Extract<Gesture, { kind: "slide" }>, event: PointerEvent): void {
+    const { view, preferences } = this.studio;
+    const at = view.meet(event.clientX, event.clientY, gesture.plane);
+    if (!at || at.distanceTo(view.rig.camera.position) > 20 * view.rig.distance) return;
+    const shift = at.sub(gesture.from);
+    if (preferences.get("snap") !== event.shiftKey) {
+      const step = preferences.get("snapLength");
+      shift.divideScalar(step).round().multiplyScalar(step);
+    }
+    for (const index of gesture.drag.start.keys())
+      gesture.drag.hold(index, (pose, start) => pose.position.copy(start.position).add(shift));
+    gesture.drag.send();
+  }
+
+  private release(event: PointerEvent): void {
+    const gesture = this.gesture;
+    this.gesture = null;
+    if (!gesture) return;
+    if (gesture.kind === "press") this.click(gesture.hit, event);
+    else if (gesture.kind === "grab") void this.studio.command("simulation.release", {});
+    else if (gesture.kind === "slide") void gesture.drag.end();
+    else if (gesture.kind === "box") this.chooseInBox(gesture.frame);
+    else if (gesture.kind === "look") this.stopFlight();
+  }
+
+  private click(hit: Hit | null, event: PointerEvent): void {
+    const { selection } = this.studio;
+    if (event.shiftKey || event.ctrlKey || event.metaKey) {
+      if (hit) selection.toggle(hit.index);
+    } else if (hit) selection.set([hit.index]);
+    else selection.clear();
+  }
+
+  private makeBox(): HTMLElement {
+    const frame = document.createElement("div");
+    frame.className = "selection-box";
+    document.body.append(frame);
+    return frame;
+  }
+
+  private stretchBox(frame: HTMLElement, event: PointerEvent): void {
+    frame.style.left = `${Math.min(this.startX, event.clientX)}px`;
+    frame.style.top = `${Math.min(this.startY, event.clientY)}px`;
+    frame.style.width = `${Math.abs(event.clientX - this.startX)}px`;
+    frame.style.height = `${Math.abs(event.clientY - this.startY)}px`;
+  }
+
+  /** Adds every entity whose centre lies in the rectangle. */
+  private chooseInBox(frame: HTMLElement): void {
+    const { view, entities, document, selection } = this.studio;
+    const box = frame.getBoundingClientRect();
+    frame.remove();
+    const chosen = [...document.entities.keys()].filter((index) => {
+      const bounds = entities.boundsOf([index], performance.now());
+      if (bounds.isEmpty()) return false;
+      const centre = bounds.getCenter(new Vector3());
+      const depth = centre.clone().project(view.rig.camera).z;
+      const at = view.project(centre);
+      return depth < 1 && at.x >= box.left && at.x <= box.right && at.y >= box.top && at.y <= box.bottom;
+    });
+    selection.set([...selection.indices, ...chosen]);
+  }
+
+  private wheel(event: WheelEvent): void {
+    event.preventDefault();
+    // Wheels report lines or pixels; a notch is 3 lines or about 100 pixels.
+    const notches = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? event.deltaY / 3 : event.deltaY / 100;
+    this.studio.view.rig.zoom(Math.min(Math.max(notches, -3), 3));
+  }
+
+  private flightKey(event: KeyboardEvent, down: boolean): void {
+    if (!this.flying) return;
+    if (down) this.held.add(event.code);
+    else this.held.delete(event.code);
+    const along = (plus: string, minus: string) => Number(this.held.has(plus)) - Number(this.held.has(minus));
+    this.studio.view.rig.fly(along("KeyD", "KeyA"), along("KeyE", "KeyQ"), along("KeyS", "KeyW"));
+  }
+
+  private stopFlight(): void {
+    this.flying = false;
+    this.held.clear();
+    this.studio.view.rig.fly(0, 0, 0);
+  }
+}

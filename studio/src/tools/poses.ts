@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+import { Matrix4, Quaternion, Vector3 } from "three";
+import type { PoseEdit } from "../connection/messages";
+import type { Studio } from "../studio";
+
+export interface HeldPose {
+  position: Vector3;
+  rotation: Quaternion;
+  scale: number;
+}
+
+/** Where entities are drawn now. */
+export function presentPoses(studio: Studio, indices: Iterable<number>): Map<number, HeldPose> {
+  const poses = new Map<number, HeldPose>();
+  const matrix = new Matrix4();
+  const size = new Vector3();
+  for (const index of indices) {
+    if (!studio.entities.matrixOf(index, performance.now(), matrix)) continue;
+    const pose = { position: new Vector3(), rotation: new Quaternion(), scale: 1 };
+    matrix.decompose(pose.position, pose.rotation, size);
+    pose.scale = size.x;
+    poses.set(index, pose);
+  }
+  return poses;
+}
+
+/**
+ * One drag of entities by the user. They follow the pointer at once; the server hears of it as fast as it answers, all under
+ * one merge key, so that one undo takes the drag back.
+ */
+export class PoseDrag {
+  private static count = 0;
+  readonly start: ReadonlyMap<number, HeldPose>;
+  private readonly merge = `drag-${Date.now()}-${PoseDrag.count++}`;
+  private sending: Promise<unknown> | null = null;
+  private newer = false;
+
+  constructor(
+    private readonly studio: Studio,
+    indices: Iterable<number>,
+  ) {
+    this.start = presentPoses(studio, indices);
+    for (const [index, pose] of this.start)
+      studio.entities.held.set(index, { position: pose.position.clone(), rotation: pose.rotation.clone(), scale: pose.scale });
+  }
+
+
+  /** Draws an entity here. Call send() after all of them. */
+  hold(index: number, change: (pose: HeldPose, start: HeldPose) => void): void {
+    const held = this.studio.entities.held.get(index);
+    const start = this.start.get(index);
+    if (!held || !start) return;
+    change(held, start);
+    this.studio.motion.moved.add(index);
+    this.studio.view.invalidate();
+  }
+
+  /** Tells the server where they are now; at most one message is on its way. */
+  send(): void {
+    this.newer = true;
+    if (this.sending) return;
+    this.newer = false;
+    this.sending = this.studio.command("entity.transform", { poses: this.poses(), merge: this.merge }).then(() => {
+      this.sending = null;
+      if (this.newer) this.send();
+    });
+  }
+
+  /** Lets go once the server has the last pose, so that nothing jumps back in between. */
+  async end(): Promise<void> {
+    while (this.sending) await this.sending;
+    for (const [index] of this.start) {
+      const held = this.studio.entities.held.get(index);
+      if (held) this.studio.motion.place(index, held.position.toArray(), held.rotation.toArray());
+      this.studio.entities.held.delete(index);
+      this.studio.motion.moved.add(index);
+    }
+    this.studio.view.invalidate();
+  }
+
+  private poses(): PoseEdit[] {
+    return [...this.start.keys()].flatMap((index) => {
+      const held = this.studio.entities.held.get(index);
+      return held ? [{ index, position: held.position.toArray(), rotation: held.rotation.toArray() as [number, number, number, number] }] : [];
+    });
+  }
+}

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+import { BufferGeometry, type Color, DynamicDrawUsage, type Group, InstancedBufferAttribute, InstancedMesh, Matrix4 } from "three";
+import type { Drawable } from "./drawable";
+import { type Quality, tintable } from "./tint";
+
+const placed = new Matrix4();
+
+/** All entities that look the same, drawn with one call a part. */
+export class Batch {
+  private meshes: InstancedMesh[] = [];
+  private readonly slots: number[] = [];
+  private readonly slotOf = new Map<number, number>();
+  private capacity = 0;
+
+  constructor(
+    readonly drawable: Drawable,
+    private readonly group: Group,
+    private readonly quality: Quality,
+  ) {}
+
+  get empty(): boolean {
+    return this.slots.length === 0;
+  }
+
+  add(index: number, color: Color): void {
+    if (this.slots.length === this.capacity) this.grow(Math.max(4, 2 * this.capacity));
+    const slot = this.slots.length;
+    this.slots.push(index);
+    this.slotOf.set(index, slot);
+    for (const mesh of this.meshes) {
+      mesh.count = this.slots.length;
+      mesh.setColorAt(slot, color);
+      mesh.instanceColor!.needsUpdate = true;
+    }
+    this.setTint(index, [0, 0, 0, 0]);
+  }
+
+  /** The last instance moves into the free slot. */
+  remove(index: number): void {
+    const slot = this.slotOf.get(index);
+    if (slot === undefined) return;
+    const last = this.slots.length - 1;
+    for (const mesh of this.meshes) {
+      for (const attribute of attributesOf(mesh)) {
+        attribute.array.copyWithin(slot * attribute.itemSize, last * attribute.itemSize, (last + 1) * attribute.itemSize);
+        attribute.needsUpdate = true;
+      }
+      mesh.count = last;
+      mesh.boundingSphere = null;
+    }
+    this.slots[slot] = this.slots[last]!;
+    this.slotOf.set(this.slots[slot]!, slot);
+    this.slots.pop();
+    this.slotOf.delete(index);
+  }
+
+  setMatrix(index: number, matrix: Matrix4): void {
+    const slot = this.slotOf.get(index);
+    if (slot === undefined) return;
+    this.drawable.parts.forEach((part, at) => {
+      const mesh = this.meshes[at]!;
+      mesh.setMatrixAt(slot, placed.multiplyMatrices(matrix, part.matrix));
+      mesh.instanceMatrix.needsUpdate = true;
+      mesh.boundingSphere = null;
+    });
+  }
+
+  setTint(index: number, tint: readonly number[]): void {
+    const slot = this.slotOf.get(index);
+    if (slot === undefined) return;
+    for (const mesh of this.meshes) {
+      const attribute = mesh.geometry.getAttribute("tint") as InstancedBufferAttribute;
+      attribute.set(tint, slot * 4);
+      attribute.needsUpdate = true;
+    }
+  }
+
+  /** The entity behind an instance that a ray met. */
+  entityAt(instance: number): number | undefined {
+    return this.slots[instance];
+  }
+
+  dispose(): void {
+    for (const mesh of this.meshes) this.release(mesh);
+    this.meshes = [];
+  }
+
+  private grow(capacity: number): void {
+    const before = this.meshes;
+    this.meshes = this.drawable.parts.map((part, at) => {
+      // The instanced attributes lie in the geometry, so each batch has its own one around the shared buffers.
+      const geometry = sharing(part.geometry);
+      geometry.setAttribute("tint", new InstancedBufferAttribute(new Float32Array(capacity * 4), 4).setUsage(DynamicDrawUsage));
+      const mesh = new InstancedMesh(geometry, tintable(part.material, this.quality), capacity);
+      mesh.instanceColor = new InstancedBufferAttribute(new Float32Array(capacity * 3).fill(1), 3);
+      mesh.instanceMatrix.setUsage(DynamicDrawUsage);
+      const old = before[at];
+      if (old) {
+        const kept = attributesOf(old);
+        attributesOf(mesh).forEach((attribute, which) => attribute.array.set(kept[which]!.array));
+        this.release(old);
+      }
+      mesh.count = this.slots.length;
+      mesh.castShadow = this.drawable.castsShadow && !part.material.transparent;
+      mesh.receiveShadow = true;
+      // Bounds would have to be found again with every step; whole batches are rarely out of sight.
+      mesh.frustumCulled = false;
+      mesh.userData["batch"] = this;
+      this.group.add(mesh);
+      return mesh;
+    });
+    this.capacity = capacity;
+  }
+
+  private release(mesh: InstancedMesh): void {
+    this.group.remove(mesh);
+    mesh.geometry.dispose();
+    (mesh.material as { dispose(): void }).dispose();
+    mesh.dispose();
+  }
+}
+
+function attributesOf(mesh: InstancedMesh): InstancedBufferAttribute[] {
+  return [mesh.instanceMatrix, mesh.instanceColor!, mesh.geometry.getAttribute("tint") as InstancedBufferAttribute];
+}
+
+/** A geometry of its own around the same buffers. */
+export function sharing(original: BufferGeometry): BufferGeometry {
+  const geometry = new BufferGeometry();
+  geometry.setIndex(original.index);
+  for (const [name, attribute] of Object.entries(original.attributes)) geometry.setAttribute(name, attribute);
+  geometry.groups = original.groups;
+  geometry.boundingBox = original.boundingBox;
+  geometry.boundingSphere = original.boundingSphere;
+  return geometry;
+}

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+import { Box3, Color, Group, Matrix4, Quaternion, Vector3 } from "three";
+import { type Motion } from "../document/motion";
+import { type Changed, positionOf, rotationOf, type SceneDocument } from "../document/scene_document";
+import type { Entity } from "../document/scene_types";
+import { Signal } from "../signal";
+import { Batch } from "./batch";
+import { disposeDrawable, type Drawable } from "./drawable";
+import type { ModelStore } from "./model_store";
+import { drawShape, shapeKey } from "./shapes";
+import { type Quality, STATE_TINT } from "./tint";
+
+const WHITE = new Color(1, 1, 1);
+const STILL_COLOR = new Color(0.42, 0.43, 0.45);
+const PLACEHOLDER = shapeDrawable({ index: 0, shape: { type: "box", half_extents: [0.15, 0.15, 0.15] } });
+
+function shapeDrawable(entity: Entity): Drawable {
+  return drawShape(entity.shape!);
+}
+
+/** Pleasant and well apart: neighbours in the list differ in hue. */
+function colorOf(entity: Entity): Color {
+  if (entity.model) return WHITE;
+  if (entity.color) return new Color().setRGB(...entity.color);
+  if (entity.shape?.type === "plane" || entity.shape?.type === "heightfield" || entity.shape?.type === "mesh") return STILL_COLOR;
+  return new Color().setHSL((entity.index * 0.381966) % 1, 0.45, 0.55);
+}
+
+/** Draws every entity of the document where the motion says it is. */
+export class EntityView {
+  readonly group = new Group();
+  /** A model's picture arrived or could not be had. */
+  readonly loaded = new Signal<void>();
+  readonly failed = new Signal<{ index: number; reason: string }>();
+  tinted = true;
+  /** While something is dragged, where the user has it, and its scale; wins over what the server said. */
+  readonly held = new Map<number, { position: Vector3; rotation: Quaternion; scale: number }>();
+  private readonly batches = new Map<string, Batch>();
+  private readonly batchOf = new Map<number, { key: string; batch: Batch; entity: Entity }>();
+  private pending = 0;
+
+  private readonly position = new Vector3();
+  private readonly rotation = new Quaternion();
+  private readonly scale = new Vector3();
+  private readonly matrix = new Matrix4();
+
+  constructor(
+    private readonly document: SceneDocument,
+    private readonly motion: Motion,
+    private readonly models: ModelStore,
+    private quality: Quality,
+  ) {}
+
+  /** Models on their way. */
+  get loading(): number {
+    return this.pending;
+  }
+
+  apply(changed: Changed): void {
+    if (changed.all) {
+      for (const index of [...this.batchOf.keys()]) this.take(index);
+      for (const index of this.document.entities.keys()) this.put(index);
+      return;
+    }
+    for (const index of changed.removed) this.take(index);
+    for (const index of changed.entities) this.put(index);
+  }
+
+  setQuality(quality: Quality): void {
+    this.quality = quality;
+    for (const index of [...this.batchOf.keys()]) this.take(index);
+    for (const index of [...this.document.entities.keys(), ...this.document.spawned.keys()]) this.put(index);
+  }
+
+  /** Moves and tints what changed since the last call. */
+  update(now: number, everything = false): void {
+    const moved = everything ? this.batchOf.keys() : this.motion.moved;
+    for (const index of moved) this.place(index, now);
+    const restated = everything ? this.batchOf.keys() : this.motion.restated;
+    for (const index of restated) this.tint(index);
+    this.motion.moved.clear();
+    this.motion.restated.clear();
+  }
+
+  /** The entity's frame as drawn now; false when it is not drawn. */
+  matrixOf(index: number, now: number, matrix: Matrix4): boolean {
+    const shown = this.batchOf.get(index);
+    if (!shown) return false;
+    const held = this.held.get(index);
+    if (held) {
+      matrix.compose(held.position, held.rotation, this.scale.setScalar(held.scale));
+      return true;
+    }
+    if (!this.motion.pose(index, now, this.position, this.rotation)) return false;
+    matrix.compose(this.position, this.rotation, this.scale.setScalar(shown.entity.scale ?? 1));
+    return true;
+  }
+
+  drawableOf(index: number): Drawable | undefined {
+    return this.batchOf.get(index)?.batch.drawable;
+  }
+
+  /** The box around the entities; endless planes count as a point. Empty when none is drawn. */
+  boundsOf(indices: Iterable<number>, now: number): Box3 {
+    const bounds = new Box3();
+    const matrix = new Matrix4();
+    for (const index of indices) {
+      const shown = this.batchOf.get(index);
+      if (!shown || shown.entity.shape?.type === "plane" || !this.matrixOf(index, now, matrix)) continue;
+      bounds.union(shown.batch.drawable.bounds.clone().applyMatrix4(matrix));
+    }
+    return bounds;
+  }
+
+  private put(index: number): void {
+    const entity = this.document.entity(index);
+    if (!entity) return;
+    if (!this.motion.pose(index, 0, this.position, this.rotation))
+      this.motion.place(index, positionOf(entity.pose), rotationOf(entity.pose));
+    if (entity.enabled === false) {
+      this.take(index);
+      return;
+    }
+    if (entity.model) void this.putModel(entity, entity.model);
+    else if (entity.shape) this.putShape(entity);
+  }
+
+  private putShape(entity: Entity): void {
+    try {
+      this.join(entity, shapeKey(entity.shape!), () => shapeDrawable(entity));
+    } catch (error) {
+      this.join(entity, "placeholder", () => PLACEHOLDER);
+      this.failed.emit({ index: entity.index, reason: (error as Error).message });
+    }
+  }
+
+  private async putModel(entity: Entity, key: string): Promise<void> {
+    const shown = this.batchOf.get(entity.index);
+    if (shown?.key === key) {
+      shown.entity = entity;
+      this.motion.moved.add(entity.index);
+      return;
+    }
+    ++this.pending;
+    try {
+      const drawable = await this.models.drawable(key);
+      // It may have been removed or changed while the model was on its way.
+      if (this.document.entity(entity.index) === entity) this.join(entity, key, () => drawable);
+    } catch (error) {
+      if (this.document.entity(entity.index) === entity) this.join(entity, "placeholder", () => PLACEHOLDER);
+      this.failed.emit({ index: entity.index, reason: (error as Error).message });
+    }
+    --this.pending;
+    this.loaded.emit();
+  }
+
+  private join(entity: Entity, key: string, make: () => Drawable): void {
+    this.take(entity.index);
+    let batch = this.batches.get(key);
+    if (!batch) {
+      batch = new Batch(make(), this.group, this.quality);
+      this.batches.set(key, batch);
+    }
+    batch.add(entity.index, colorOf(entity));
+    this.batchOf.set(entity.index, { key, batch, entity });
+    this.motion.moved.add(entity.index);
+    this.motion.restated.add(entity.index);
+  }
+
+  private take(index: number): void {
+    const shown = this.batchOf.get(index);
+    if (!shown) return;
+    this.batchOf.delete(index);
+    shown.batch.remove(index);
+    if (!shown.batch.empty) return;
+    shown.batch.dispose();
+    this.batches.delete(shown.key);
+    // Models stay in the store, the placeholder is one for all.
+    if (!shown.entity.model && shown.batch.drawable !== PLACEHOLDER) disposeDrawable(shown.batch.drawable);
+  }
+
+  private place(index: number, now: number): void {
+    if (this.matrixOf(index, now, this.matrix)) this.batchOf.get(index)!.batch.setMatrix(index, this.matrix);
+  }
+
+  private tint(index: number): void {
+    const state = this.motion.state(index);
+    this.batchOf.get(index)?.batch.setTint(index, this.tinted ? STATE_TINT[state] : [0, 0, 0, 0]);
+  }
+}

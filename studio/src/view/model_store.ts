@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+import { Matrix4, Mesh } from "three";
+import { MeshoptDecoder } from "three/examples/jsm/libs/meshopt_decoder.module.js";
+import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
+import type { Connection } from "../connection/connection";
+import type { ModelSummary } from "../connection/messages";
+import { type Drawable, type DrawablePart, drawable } from "./drawable";
+
+/** Models of the database as the page knows them: summaries by key, pictures by id and content. */
+export class ModelStore {
+  private readonly loader = new GLTFLoader().setMeshoptDecoder(MeshoptDecoder);
+  private readonly summaries = new Map<string, Promise<ModelSummary>>();
+  private readonly drawables = new Map<string, Promise<Drawable>>();
+
+  constructor(private readonly connection: Connection) {}
+
+  /** Takes over what a search brought, so that it need not be asked for again. */
+  learn(model: ModelSummary): void {
+    this.summaries.set(model.key, Promise.resolve(model));
+  }
+
+  summary(key: string): Promise<ModelSummary> {
+    return keep(this.summaries, key, async () => (await this.connection.request("catalog.model", { key })).model);
+  }
+
+  async drawable(key: string): Promise<Drawable> {
+    const model = await this.summary(key);
+    const path = `models/${model.id}/geometry.glb?v=${model.content_hash}`;
+    return keep(this.drawables, path, () => this.load(this.connection.address(path)));
+  }
+
+  thumbnail(model: ModelSummary): string {
+    return this.connection.address(`models/${model.id}/thumbnail.png?v=${model.content_hash}`);
+  }
+
+  private async load(address: string): Promise<Drawable> {
+    const gltf = await this.loader.loadAsync(address);
+    gltf.scene.updateMatrixWorld(true);
+    const parts: DrawablePart[] = [];
+    gltf.scene.traverse((object) => {
+      if (!(object instanceof Mesh)) return;
+      const material = Array.isArray(object.material) ? object.material[0] : object.material;
+      parts.push({ geometry: object.geometry, material, matrix: new Matrix4().copy(object.matrixWorld) });
+    });
+    return drawable(parts);
+  }
+}
+
+/** The promise kept under the key; a failed one is forgotten, so that the next call tries again. */
+function keep<Value>(kept: Map<string, Promise<Value>>, key: string, make: () => Promise<Value>): Promise<Value> {
+  let promise = kept.get(key);
+  if (!promise) {
+    promise = make();
+    promise.catch(() => kept.delete(key));
+    kept.set(key, promise);
+  }
+  return promise;
+}

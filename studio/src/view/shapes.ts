@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+import {
+  BoxGeometry,
+  BufferAttribute,
+  BufferGeometry,
+  CapsuleGeometry,
+  ConeGeometry,
+  CylinderGeometry,
+  Matrix4,
+  MeshStandardMaterial,
+  PlaneGeometry,
+  Quaternion,
+  SphereGeometry,
+  Vector3,
+} from "three";
+import { ConvexGeometry } from "three/examples/jsm/geometries/ConvexGeometry.js";
+import { positionOf, rotationOf } from "../document/scene_document";
+import type { Shape } from "../document/scene_types";
+import { type Drawable, type DrawablePart, drawable } from "./drawable";
+
+/** Half the side of the square that stands for an endless plane, m. */
+const PLANE_REACH = 500;
+const UP = new Vector3(0, 1, 0);
+const ONE = new Vector3(1, 1, 1);
+const NONE = new Vector3();
+const UNTURNED = new Quaternion();
+
+/** The colour comes with each instance, so that all primitives share materials. */
+function material(): MeshStandardMaterial {
+  return new MeshStandardMaterial({ color: 0xffffff, roughness: 0.75, metalness: 0 });
+}
+
+function scaled(x: number, y: number, z: number): Matrix4 {
+  return new Matrix4().compose(NONE, UNTURNED, new Vector3(x, y, z));
+}
+
+function part(geometry: BufferGeometry, matrix = new Matrix4()): DrawablePart {
+  return { geometry, material: material(), matrix };
+}
+
+/** A picture of any shape of the scene format. Throws where the shape has no surface, such as a hull of three points. */
+export function drawShape(shape: Shape): Drawable {
+  const parts = shapeParts(shape);
+  return drawable(parts, shape.type !== "plane");
+}
+
+/** Entities whose shapes have the same key look alike. */
+export function shapeKey(shape: Shape): string {
+  return JSON.stringify(shape);
+}
+
+function shapeParts(shape: Shape): DrawablePart[] {
+  switch (shape.type) {
+    case "sphere":
+      return [part(new SphereGeometry(1, 32, 20), scaled(shape.radius, shape.radius, shape.radius))];
+    case "box": {
+      const [x, y, z] = shape.half_extents;
+      return [part(new BoxGeometry(2, 2, 2), scaled(x, y, z))];
+    }
+    case "capsule":
+      return [part(new CapsuleGeometry(shape.radius, 2 * shape.half_height, 10, 24, 1))];
+    case "cylinder":
+      return [part(new CylinderGeometry(1, 1, 2, 40), scaled(shape.radius, shape.half_height, shape.radius))];
+    case "cone":
+      return [part(new ConeGeometry(1, 2, 40), scaled(shape.radius, shape.half_height, shape.radius))];
+    case "hull":
+      return [part(new ConvexGeometry(shape.points.map((point) => new Vector3(...point))))];
+    case "plane":
+      return [planePart(shape.normal ?? [0, 1, 0], shape.offset ?? 0)];
+    case "heightfield":
+      return [part(heightfieldGeometry(shape))];
+    case "mesh":
+      return [part(meshGeometry(shape))];
+    case "compound":
+      return shape.children.flatMap((child) => {
+        const local = new Matrix4().compose(
+          new Vector3(...positionOf(child)),
+          new Quaternion(...rotationOf(child)),
+          ONE,
+        );
+        return shapeParts(child).map((each) => ({ ...each, matrix: local.clone().multiply(each.matrix) }));
+      });
+  }
+}
+
+function planePart(normal: readonly number[], offset: number): DrawablePart {
+  const up = new Vector3().fromArray(normal).normalize();
+  const matrix = new Matrix4().compose(up.clone().multiplyScalar(offset), new Quaternion().setFromUnitVectors(UP, up), ONE);
+  const geometry = new PlaneGeometry(2 * PLANE_REACH, 2 * PLANE_REACH);
+  geometry.rotateX(-Math.PI / 2);
+  return part(geometry, matrix);
+}
+
+function heightfieldGeometry(shape: Extract<Shape, { type: "heightfield" }>): BufferGeometry {
+  const { columns, rows, heights } = shape;
+  const positions = new Float32Array(columns * rows * 3);
+  for (let row = 0, at = 0; row < rows; ++row)
+    for (let column = 0; column < columns; ++column, at += 3) {
+      positions[at] = column * (shape.cell_x ?? 1);
+      positions[at + 1] = heights[row * columns + column] ?? 0;
+      positions[at + 2] = row * (shape.cell_z ?? 1);
+    }
+
+  // Each cell is split along the diagonal from (c, r) to (c+1, r+1), as the physics does.
+  const triangles = new Uint32Array((columns - 1) * (rows - 1) * 6);
+  for (let row = 0, at = 0; row + 1 < rows; ++row)
+    for (let column = 0; column + 1 < columns; ++column, at += 6) {
+      const corner = row * columns + column;
+      triangles.set([corner, corner + columns, corner + columns + 1, corner, corner + columns + 1, corner + 1], at);
+    }
+  return indexed(positions, triangles);
+}
+
+function meshGeometry(shape: Extract<Shape, { type: "mesh" }>): BufferGeometry {
+  const geometry = indexed(new Float32Array(shape.positions.flat()), new Uint32Array(shape.triangles.flat()));
+  // Flat shading shows the triangles that the physics sees.
+  const flat = geometry.toNonIndexed();
+  flat.computeVertexNormals();
+  return flat;
+}
+
+function indexed(positions: Float32Array, triangles: Uint32Array): BufferGeometry {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(positions, 3));
+  geometry.setIndex(new BufferAttribute(triangles, 1));
+  geometry.computeVertexNormals();
+  return geometry;
+}

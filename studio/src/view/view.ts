@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+import { type InstancedMesh, type Intersection, Matrix4, NeutralToneMapping, PCFShadowMap, Plane, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from "three";
+import type { Motion } from "../document/motion";
+import { Signal } from "../signal";
+import type { Batch } from "./batch";
+import { CameraRig } from "./camera_rig";
+import type { EntityView } from "./entity_view";
+import { Environment, type Theme } from "./environment";
+import { Outline } from "./outline";
+import type { Quality } from "./tint";
+
+/** Where a ray from the pointer met an entity. */
+export interface Hit {
+  index: number;
+  point: Vector3;
+  normal: Vector3;
+  distance: number;
+}
+
+const GROUND = new Plane(new Vector3(0, 1, 0), 0);
+const LONGEST_STEP_S = 0.1;
+
+/** The picture in the middle. It is drawn only when something changed. */
+export class View {
+  readonly scene = new Scene();
+  readonly rig = new CameraRig();
+  readonly renderer: WebGLRenderer;
+  readonly environment: Environment;
+  readonly outline: Outline;
+  /** Just before a picture is drawn, with the page's clock in milliseconds. */
+  readonly beforeFrame = new Signal<number>();
+  /** Pictures drawn so far. */
+  frames = 0;
+  private asked = false;
+  private halted = false;
+  private lastFrame = 0;
+  private readonly size = new Vector2();
+  private readonly raycaster = new Raycaster();
+  private readonly instance = new Matrix4();
+
+  constructor(
+    readonly canvas: HTMLCanvasElement,
+    private readonly motion: Motion,
+    readonly entities: EntityView,
+  ) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, stencil: true, powerPreference: "high-performance" });
+    this.renderer.toneMapping = NeutralToneMapping;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.environment = new Environment(this.scene, this.renderer);
+    this.outline = new Outline(entities);
+    this.scene.add(entities.group, this.outline.group);
+    this.rig.changed.on(() => this.invalidate());
+    entities.loaded.on(() => this.invalidate());
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
+  }
+
+  /** Asks for a new picture. */
+  invalidate(): void {
+    if (this.asked || this.halted || this.renderer.xr.isPresenting) return;
+    this.asked = true;
+    requestAnimationFrame((now) => this.draw(now));
+  }
+
+  /** Draws nothing any more until resume(): screenshots of a page that draws all the time may never end. */
+  halt(): void {
+    this.halted = true;
+  }
+
+  resume(): void {
+    this.halted = false;
+    this.invalidate();
+  }
+
+  setQuality(quality: Quality): void {
+    this.renderer.setPixelRatio(quality === "low" ? 1 : Math.min(devicePixelRatio, 2));
+    this.environment.setQuality(quality);
+    this.entities.setQuality(quality);
+    this.resize();
+  }
+
+  setTheme(theme: Theme): void {
+    this.environment.setTheme(theme);
+    this.invalidate();
+  }
+
+  /** Hands the present picture to the browser as a PNG file. */
+  savePicture(title: string): void {
+    this.renderer.render(this.scene, this.rig.camera);
+    this.canvas.toBlob((blob) => {
+      if (!blob) return;
+      const link = document.createElement("a");
+      link.href = URL.createObjectURL(blob);
+      link.download = `${title || "scene"}.png`;
+      link.click();
+      URL.revokeObjectURL(link.href);
+    });
+  }
+
+  /** In a headset the device asks for every picture. */
+  drawForHeadset(): void {
+    this.renderer.setAnimationLoop((now: number) => this.draw(now));
+  }
+
+  endHeadset(): void {
+    this.renderer.setAnimationLoop(null);
+    this.asked = false;
+    this.resize();
+  }
+
+  /** The nearest entity under a point of the page, or null; `ignore` is seen through. */
+  pick(clientX: number, clientY: number, ignore?: ReadonlySet<number>): Hit | null {
+    this.aim(clientX, clientY);
+    const hits: Intersection[] = this.raycaster.intersectObject(this.entities.group, true);
+    for (const hit of hits) {
+      const batch = hit.object.userData["batch"] as Batch | undefined;
+      const index = batch?.entityAt(hit.instanceId ?? -1);
+      if (index === undefined || ignore?.has(index)) continue;
+      return { index, point: hit.point, normal: this.worldNormal(hit), distance: hit.distance };
+    }
+    return null;
+  }
+
+  /** The ray from the eye through a point of the page. */
+  ray(clientX: number, clientY: number): { origin: Vector3; direction: Vector3 } {
+    this.aim(clientX, clientY);
+    return { origin: this.raycaster.ray.origin.clone(), direction: this.raycaster.ray.direction.clone() };
+  }
+
+  /** Where the pointer's ray meets a plane (the ground unless told), or null. */
+  meet(clientX: number, clientY: number, plane: Plane = GROUND): Vector3 | null {
+    this.aim(clientX, clientY);
+    return this.raycaster.ray.intersectPlane(plane, new Vector3());
+  }
+
+  /** A world point's place on the page in pixels. */
+  project(point: Vector3): Vector2 {
+    const seen = point.clone().project(this.rig.camera);
+    const frame = this.canvas.getBoundingClientRect();
+    return new Vector2(frame.left + (0.5 + 0.5 * seen.x) * frame.width, frame.top + (0.5 - 0.5 * seen.y) * frame.height);
+  }
+
+  private draw(now: number): void {
+    this.asked = false;
+    if (this.halted) return;
+    const seconds = Math.min((now - this.lastFrame) / 1000, LONGEST_STEP_S);
+    this.lastFrame = now;
+    const flying = this.rig.advance(now, seconds);
+    const moving = this.motion.advance(now);
+    this.beforeFrame.emit(now);
+    this.entities.update(now);
+    this.outline.update(now, this.renderer.getDrawingBufferSize(this.size));
+    this.environment.follow(this.rig.target, this.rig.distance);
+    this.renderer.render(this.scene, this.rig.camera);
+    ++this.frames;
+    if (flying || moving) this.invalidate();
+  }
+
+  private resize(): void {
+    const frame = this.canvas.parentElement!.getBoundingClientRect();
+    if (frame.width < 1 || frame.height < 1 || this.renderer.xr.isPresenting) return;
+    this.rig.camera.aspect = frame.width / frame.height;
+    this.rig.camera.updateProjectionMatrix();
+    this.renderer.setSize(frame.width, frame.height);
+    this.invalidate();
+  }
+
+  private aim(clientX: number, clientY: number): void {
+    const frame = this.canvas.getBoundingClientRect();
+    const x = (2 * (clientX - frame.left)) / frame.width - 1;
+    const y = 1 - (2 * (clientY - frame.top)) / frame.height;
+    this.rig.camera.updateMatrixWorld();
+    this.raycaster.setFromCamera(new Vector2(x, y), this.rig.camera);
+  }
+
+  private worldNormal(hit: Intersection): Vector3 {
+    const mesh = hit.object as InstancedMesh;
+    mesh.getMatrixAt(hit.instanceId ?? 0, this.instance);
+    return (hit.face?.normal.clone() ?? new Vector3(0, 1, 0)).transformDirection(this.instance);
+  }
+}
