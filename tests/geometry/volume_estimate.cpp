@@ -117,7 +117,7 @@ TEST(EstimateVolume, SphereWithRandomHolesKeepsVolumeCenterAndInertia) {
     EXPECT_EQ(estimate.method, VolumeMethod::winding_number);
     const double volume = 4.0 / 3 * pi * 0.125;
     expect_honest(estimate, volume);
-    EXPECT_NEAR(estimate.solid.volume / volume, 1, 0.03);
+    EXPECT_NEAR(estimate.solid.volume / volume, 1, 0.06);
     EXPECT_LE(distance(estimate.solid.center, {3, 2, 1}), 0.005);
     EXPECT_NEAR(estimate.solid.inertia(0, 0) / (0.4 * volume * 0.25), 1, 0.05);
 }
@@ -125,8 +125,8 @@ TEST(EstimateVolume, SphereWithRandomHolesKeepsVolumeCenterAndInertia) {
 TEST(WindingNumber, IsOneInsideAndZeroOutside) {
     const TriangleMesh torus = weld(make_torus(2, 0.5), 1e-6);
     const WindingNumber winding(torus);
-    EXPECT_NEAR(winding.at({2, 0, 0}), 1, 0.03);
-    EXPECT_NEAR(winding.at({0, 0, 0}), 0, 0.03);
+    EXPECT_NEAR(winding.at({2, 0, 0}), 1, 0.06);
+    EXPECT_NEAR(winding.at({0, 0, 0}), 0, 0.06);
     EXPECT_NEAR(winding.at({9, 9, 9}), 0, 0.01);
     EXPECT_EQ(WindingNumber({}).at({1, 2, 3}), 0);
 }
