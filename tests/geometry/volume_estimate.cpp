@@ -117,7 +117,7 @@ TEST(EstimateVolume, SphereWithRandomHolesKeepsVolumeCenterAndInertia) {
     EXPECT_EQ(estimate.method, VolumeMethod::winding_number);
     const double volume = 4.0 / 3 * pi * 0.125;
     expect_honest(estimate, volume);
-    EXPECT_NEAR(estimate.solid.volume / volume, 1, 0.06);
+    EXPECT_NEAR(estimate.solid.volume / volume, 1, 0.03);
     EXPECT_LE(distance(estimate.solid.center, {3, 2, 1}), 0.005);
     EXPECT_NEAR(estimate.solid.inertia(0, 0) / (0.4 * volume * 0.25), 1, 0.05);
 }
