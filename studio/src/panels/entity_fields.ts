@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-import { Euler, Matrix4, Quaternion, Vector3 } from "three";
+import { Color, Euler, Matrix4, Quaternion, Vector3 } from "three";
 import type { NewEntity, PoseEdit } from "../connection/messages";
 import { nameOf } from "../document/scene_document";
 import type { Entity, Shape, Vector } from "../document/scene_types";
 import type { Studio } from "../studio";
+import { colorOf } from "../view/entity_view";
 import { element, show } from "./element";
 import { type Field, numberField, textField, truthField, vectorField } from "./fields";
 
@@ -135,11 +136,11 @@ export class EntityFields {
 
   private colorRow(): Row {
     const input = element("input", { type: "color", "aria-label": "Colour" });
-    input.addEventListener("change", () => this.change({ color: linearColor(input.value) }));
+    input.addEventListener("change", () => this.change({ color: new Color(input.value).toArray() as Vector }));
     return {
       root: row("Colour", element("span", { class: "field" }, input)),
       update: ([entity]) => {
-        if (document.activeElement !== input && entity!.color) input.value = hexColor(entity!.color);
+        if (document.activeElement !== input) input.value = `#${colorOf(entity!).getHexString()}`;
       },
     };
   }
@@ -186,17 +187,4 @@ function common<Value>(entities: Entity[], read: (entity: Entity) => Value): Val
 
 function rounded(length: number): number {
   return Math.round(length * 1e4) / 1e4;
-}
-
-/** Scene files hold linear light, colour pickers sRGB. */
-function linearColor(hex: string): Vector {
-  return [1, 3, 5].map((at) => {
-    const part = parseInt(hex.slice(at, at + 2), 16) / 255;
-    return part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4;
-  }) as Vector;
-}
-
-function hexColor(linear: Vector): string {
-  const parts = linear.map((part) => (part <= 0.0031308 ? part * 12.92 : 1.055 * part ** (1 / 2.4) - 0.055));
-  return `#${parts.map((part) => Math.round(Math.min(Math.max(part, 0), 1) * 255).toString(16).padStart(2, "0")).join("")}`;
 }

@@ -11,7 +11,7 @@ import { drawShape, shapeKey } from "./shapes";
 import { type Quality, STATE_TINT } from "./tint";
 
 const WHITE = new Color(1, 1, 1);
-const STILL_COLOR = new Color(0.42, 0.43, 0.45);
+const STILL_COLOR = new Color(0.2, 0.21, 0.23);
 const PLACEHOLDER = shapeDrawable({ index: 0, shape: { type: "box", half_extents: [0.15, 0.15, 0.15] } });
 
 function shapeDrawable(entity: Entity): Drawable {
@@ -19,11 +19,11 @@ function shapeDrawable(entity: Entity): Drawable {
 }
 
 /** Pleasant and well apart: neighbours in the list differ in hue. */
-function colorOf(entity: Entity): Color {
+export function colorOf(entity: Entity): Color {
   if (entity.model) return WHITE;
   if (entity.color) return new Color().setRGB(...entity.color);
   if (entity.shape?.type === "plane" || entity.shape?.type === "heightfield" || entity.shape?.type === "mesh") return STILL_COLOR;
-  return new Color().setHSL((entity.index * 0.381966) % 1, 0.45, 0.55);
+  return new Color().setHSL((entity.index * 0.381966) % 1, 0.5, 0.45);
 }
 
 /** Draws every entity of the document where the motion says it is. */

@@ -24,8 +24,8 @@ const SHADOW_REACH_LEAST = 6;
 
 /** Light, air and ground grid: a calm studio that lets the models' own colours stand. */
 export class Environment {
-  private readonly sun = new DirectionalLight(0xfff4e6, 2.4);
-  private readonly sky = new HemisphereLight(0xdfe8f5, 0x6e6a64, 0.9);
+  private readonly sun = new DirectionalLight(0xfff4e6, 1.9);
+  private readonly sky = new HemisphereLight(0xdfe8f5, 0x6e6a64, 0.5);
   private readonly fog = new Fog(0, 50, 200);
   private readonly grid = gridMesh();
   private reflections: Texture | null = null;
@@ -60,7 +60,7 @@ export class Environment {
     this.scene.environment = high ? this.reflections : null;
     // State colours wash out under strong image-based light.
     this.scene.environmentIntensity = 0.35;
-    this.sky.intensity = high ? 0.9 : 1.6;
+    this.sky.intensity = high ? 0.5 : 1.1;
   }
 
   showGrid(shown: boolean): void {

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// A real, headless Chromium on the Studio.
+import { existsSync } from "node:fs";
+import { createRequire } from "node:module";
+import { fileURLToPath } from "node:url";
+
+// The packages lie beside the front-end, not beside its tests.
+const { chromium } = createRequire(fileURLToPath(new URL("../../studio/package.json", import.meta.url)))("playwright-core");
+
+const PROGRAMS = [process.env.EMBODY_CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+// Mesa's software WebGL through ANGLE is about four times as fast as Chromium's own SwiftShader.
+const FLAGS = [
+  "--no-sandbox",
+  "--disable-gpu-sandbox",
+  "--disable-quic",
+  "--no-first-run",
+  "--disable-background-networking",
+  "--disable-component-update",
+  "--disable-sync",
+  "--use-gl=angle",
+  "--use-angle=gl-egl",
+  "--ignore-gpu-blocklist",
+];
+
+export async function openBrowser() {
+  const executablePath = PROGRAMS.find((program) => program && existsSync(program));
+  if (!executablePath) throw new Error("no Chromium found: install the package chromium or set EMBODY_CHROMIUM");
+  return chromium.launch({ executablePath, args: FLAGS, headless: true });
+}
+
+/** A page on the Studio that is connected, with its models drawn. Errors of the page fail the test through `faults`. */
+export async function openStudio(browser, address, { width = 1280, height = 800, quality = "low" } = {}) {
+  const context = await browser.newContext({ viewport: { width, height } });
+  const page = await context.newPage();
+  page.faults = [];
+  page.on("pageerror", (error) => page.faults.push(error.message));
+  page.on("console", (message) => message.type() === "error" && page.faults.push(message.text()));
+  const url = new URL(address);
+  url.searchParams.set("quality", quality);
+  await page.goto(url.href);
+  await page.waitForFunction(() => window.embody?.connected() && window.embody.loading() === 0, null, { timeout: 60000 });
+  return page;
+}
+
+/** A screenshot; drawing rests meanwhile, as a page that always draws may never be still. */
+export async function takePicture(page, path) {
+  await page.waitForTimeout(300);
+  await page.evaluate(() => window.embody.halt());
+  await page.screenshot({ path });
+  await page.evaluate(() => window.embody.resume());
+}

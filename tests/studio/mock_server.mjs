@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: MIT
+// A stand-in for `embody serve` with as much of docs/protocol.md as the Studio's panels need, and as many models as a test
+// wants. What the real server decides (physics, attributes) is only pretended here; tests of that run the real one.
+import { createReadStream, existsSync } from "node:fs";
+import { createServer } from "node:http";
+import { createRequire } from "node:module";
+import { extname, join, normalize } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const studio = fileURLToPath(new URL("../../studio/", import.meta.url));
+const { WebSocketServer } = createRequire(join(studio, "package.json"))("ws");
+
+const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css" };
+const PIXEL = Buffer.from("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mPMaGj4DwAFhAKAjM1mJgAAAABJRU5ErkJggg==", "base64");
+const NOUNS = ["chair", "table", "lamp", "sofa", "shelf", "bed", "stool", "vase"];
+
+/** A glTF binary of a box of half a metre that stands on its origin. */
+function boxGlb() {
+  const corners = [];
+  for (const x of [-0.25, 0.25]) for (const y of [0, 0.5]) for (const z of [-0.25, 0.25]) corners.push(x, y, z);
+  const faces = [0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3];
+  const binary = Buffer.concat([Buffer.from(new Float32Array(corners).buffer), Buffer.from(new Uint16Array(faces).buffer)]);
+  const json = {
+    asset: { version: "2.0" },
+    scene: 0,
+    scenes: [{ nodes: [0] }],
+    nodes: [{ mesh: 0 }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1, material: 0 }] }],
+    materials: [{ pbrMetallicRoughness: { baseColorFactor: [0.6, 0.35, 0.15, 1], metallicFactor: 0 } }],
+    accessors: [
+      { bufferView: 0, componentType: 5126, count: 8, type: "VEC3", min: [-0.25, 0, -0.25], max: [0.25, 0.5, 0.25] },
+      { bufferView: 1, componentType: 5123, count: faces.length, type: "SCALAR" },
+    ],
+    bufferViews: [
+      { buffer: 0, byteOffset: 0, byteLength: 96 },
+      { buffer: 0, byteOffset: 96, byteLength: faces.length * 2 },
+    ],
+    buffers: [{ byteLength: binary.length }],
+  };
+  let text = JSON.stringify(json);
+  text += " ".repeat((4 - (text.length % 4)) % 4);
+  const chunk = (type, data) => {
+    const head = Buffer.alloc(8);
+    head.writeUInt32LE(data.length, 0);
+    head.write(type, 4, "latin1");
+    return Buffer.concat([head, data]);
+  };
+  const chunks = Buffer.concat([chunk("JSON", Buffer.from(text)), chunk("BIN\0", binary)]);
+  const head = Buffer.alloc(12);
+  head.write("glTF", 0, "latin1");
+  head.writeUInt32LE(2, 4);
+  head.writeUInt32LE(12 + chunks.length, 8);
+  return Buffer.concat([head, chunks]);
+}
+
+export class MockServer {
+  constructor({ models = 40, port = 0 } = {}) {
+    this.models = models;
+    this.port = port;
+    this.log = [];
+    this.past = [];
+    this.future = [];
+    this.simulation = { state: "stopped", time: 0, step: 0 };
+    this.scene = { title: "Mock", settings: {}, entities: [], joints: [], actions: [] };
+    this.next = 1;
+    this.put({ name: "Floor", shape: { type: "plane", normal: [0, 1, 0], offset: 0 } });
+    this.put({ name: "Crate", shape: { type: "box", half_extents: [0.2, 0.2, 0.2] }, pose: { position: [0, 1, 0] } });
+    this.bodies = new Map();
+    this.resetBodies();
+  }
+
+  async start() {
+    this.http = createServer((request, response) => this.answer(request, response));
+    this.sockets = new WebSocketServer({ server: this.http, path: "/ws" });
+    this.sockets.on("connection", (socket) => {
+      socket.on("message", (text) => this.receive(socket, JSON.parse(text)));
+    });
+    await new Promise((done) => this.http.listen(this.port, "127.0.0.1", done));
+    this.port = this.http.address().port;
+    this.timer = setInterval(() => this.simulation.state === "playing" && this.step(), 1000 / 60);
+    return `http://127.0.0.1:${this.port}/`;
+  }
+
+  async stop() {
+    clearInterval(this.timer);
+    for (const socket of this.sockets.clients) socket.terminate();
+    this.http.closeAllConnections();
+    await new Promise((done) => this.http.close(done));
+  }
+
+  put(entity) {
+    const made = { pose: {}, ...entity, index: this.next++ };
+    made.pose = { position: [0, 0, 0], rotation: [0, 0, 0, 1], ...entity.pose };
+    this.scene.entities.push(made);
+    return made;
+  }
+
+  entity(index) {
+    return this.scene.entities.find((each) => each.index === index);
+  }
+
+  model(id) {
+    const noun = NOUNS[id % NOUNS.length];
+    return {
+      id, key: `mock/${id}`, name: `${noun} ${id}`, source: "mock", licence: "CC0", author: "", category: noun, subcategory: "", kind: "rigid",
+      tags: [], size: [0.5, 0.5, 0.5], vertices: 8, triangles: 12, parts: 1, quality: 2, geometry_kind: "mesh", content_hash: "1",
+    };
+  }
+
+  attributes(index) {
+    const manual = this.entity(index)?.attributes ?? {};
+    const number = (name, kind, label, unit, value, source, level) => ({
+      name, kind, label, unit, type: "number", choices: [], range: [0, null], help: `${label} of the body.`, low: value * 0.7, high: value * 1.4,
+      value: manual[name] ?? value, automatic: value, overridden: name in manual,
+      source: name in manual ? "set by hand" : source, level: name in manual ? "manual" : level,
+    });
+    const word = (name, kind, label, value, choices) => ({
+      name, kind, label, unit: "", type: "word", choices, range: null, help: label, low: null, high: null, value: manual[name] ?? value,
+      automatic: value, overridden: name in manual, source: "the category's usual", level: "category",
+    });
+    return [
+      word("kind", "identity", "Physical kind", "rigid", ["static", "rigid", "soft"]),
+      number("mass", "mass", "Mass", "kg", 6.4, "bulk density of a wooden chair × its box", "subcategory"),
+      { ...number("center_of_mass", "mass", "Centre of mass", "m", 0, "computed", "measured"), type: "vector", value: manual.center_of_mass ?? [0, 0.25, 0], automatic: [0, 0.25, 0], low: null, high: null },
+      word("surface_material", "surface", "Surface", "wood", ["wood", "steel", "glass"]),
+      number("friction_dynamic", "surface", "Sliding friction", "1", 0.4, "wood on wood, handbook", "category"),
+    ];
+  }
+
+  // Commands by name; each returns its result and may edit the scene.
+  commands = {
+    hello: () => ({ version: "0.0-mock", scene: this.scene, revision: 1, simulation: this.simulation, frame_version: 1 }),
+    "catalog.categories": () => ({ categories: NOUNS.map((category) => ({ category, models: Math.ceil(this.models / NOUNS.length) })) }),
+    "catalog.model": ({ key }) => ({ model: this.model(Number(key.split("/")[1])), attributes: [] }),
+    "catalog.search": ({ words = "", category = "", limit = 50, offset = 0 }) => {
+      const wanted = NOUNS.findIndex((noun) => noun === category || (words && noun.startsWith(words.toLowerCase())));
+      if ((words || category) && wanted < 0) return { models: [], total: 0 };
+      const every = wanted < 0 ? 1 : NOUNS.length;
+      const total = Math.ceil(this.models / every);
+      const count = Math.max(0, Math.min(limit, total - offset));
+      return { models: Array.from({ length: count }, (_, at) => this.model((offset + at) * every + Math.max(wanted, 0))), total };
+    },
+    "scene.list": () => ({ scenes: [{ name: "mock", title: "Mock", kind: "demo", modified: null }] }),
+    "scene.save": ({ name }) => {
+      this.scene.title = name ?? this.scene.title;
+      this.unsaved = false;
+      this.tell([]);
+      return { name: this.scene.title, path: "mock.json" };
+    },
+    "scene.settings": (settings) => this.edit("change settings", () => Object.assign(this.scene.settings, settings), [{ op: "settings", ...settings }]),
+    "entity.add": ({ entity, drop }) => {
+      let added;
+      this.edit(`add ${entity.name}`, () => {
+        const t = drop && drop.direction[1] < 0 ? -drop.origin[1] / drop.direction[1] : 0;
+        const position = drop ? drop.origin.map((o, axis) => (axis === 1 ? 0.3 : o + t * drop.direction[axis])) : undefined;
+        added = this.put({ ...entity, pose: position ? { position } : entity.pose });
+      });
+      return { index: added.index };
+    },
+    "entity.remove": ({ indices }) => this.edit("delete", () => (this.scene.entities = this.scene.entities.filter(({ index }) => !indices.includes(index)))),
+    "entity.transform": ({ poses, merge }) => {
+      const begun = merge && merge === this.merge ? this.past.pop() : null;
+      this.merge = merge;
+      this.edit("move", () => poses.forEach(({ index, ...pose }) => Object.assign(this.entity(index).pose, pose)));
+      // One drag is one step: it goes back to where its first message began.
+      if (begun) this.past[this.past.length - 1] = begun;
+    },
+    "entity.update": ({ index, entity }) => this.edit("change", () => Object.assign(this.entity(index), entity)),
+    "entity.set_attribute": ({ indices, name, value }) => {
+      if (name === "mass" && !(value > 0)) throw { where: name, why: "the mass must be above 0 kg", remedy: "" };
+      this.edit(`set ${name}`, () => indices.forEach((index) => (this.entity(index).attributes = { ...this.entity(index).attributes, [name]: value })));
+    },
+    "entity.reset_attribute": ({ indices, name }) => this.edit(`reset ${name}`, () => indices.forEach((index) => delete this.entity(index).attributes?.[name])),
+    "entity.attributes": ({ index }) => ({ attributes: this.attributes(index) }),
+    "edit.undo": () => this.travel(this.past, this.future),
+    "edit.redo": () => this.travel(this.future, this.past),
+    "simulation.play": () => this.setState("playing"),
+    "simulation.pause": () => this.setState("paused"),
+    "simulation.step": () => (this.setState("paused"), this.step()),
+    "simulation.reset": () => {
+      this.resetBodies();
+      Object.assign(this.simulation, { time: 0, step: 0 });
+      this.setState("stopped");
+      this.sendFrame();
+    },
+  };
+
+  receive(socket, { id, command, params }) {
+    this.log.push({ command, params });
+    const carryOut = this.commands[command];
+    let reply;
+    try {
+      if (!carryOut) throw { where: "command", why: `unknown command ${command}`, remedy: "see docs/protocol.md" };
+      reply = { id, ok: true, result: carryOut(params) ?? {} };
+    } catch (error) {
+      if (error instanceof Error) throw error;
+      reply = { id, ok: false, error };
+    }
+    socket.send(JSON.stringify(reply));
+    if (command === "hello") this.sendFrame();
+  }
+
+  edit(label, change) {
+    this.past.push({ label, before: structuredClone(this.scene) });
+    this.future = [];
+    const before = structuredClone(this.scene.entities);
+    change();
+    this.tellDifference(before);
+  }
+
+  travel(from, to) {
+    const step = from.pop();
+    if (!step) return {};
+    const before = structuredClone(this.scene.entities);
+    to.push({ label: step.label, before: structuredClone(this.scene) });
+    this.scene = step.before;
+    this.tellDifference(before);
+    return {};
+  }
+
+  tellDifference(before) {
+    const changes = [];
+    for (const { index } of before) if (!this.entity(index)) changes.push({ op: "entity_removed", index });
+    const known = new Map(before.map((entity) => [entity.index, JSON.stringify(entity)]));
+    for (const entity of this.scene.entities) if (known.get(entity.index) !== JSON.stringify(entity)) changes.push({ op: "entity", entity });
+    this.unsaved = true;
+    this.tell(changes);
+    this.resetBodies();
+    this.sendFrame();
+  }
+
+  tell(changes) {
+    this.broadcast({ event: "document", revision: 1, changes, undo: this.past.at(-1)?.label ?? null, redo: this.future.at(-1)?.label ?? null, unsaved: this.unsaved ?? false, name: null });
+  }
+
+  broadcast(event) {
+    for (const socket of this.sockets.clients) socket.send(JSON.stringify(event));
+  }
+
+  setState(state) {
+    this.simulation.state = state;
+    this.broadcast({ event: "simulation", ...this.simulation });
+  }
+
+  resetBodies() {
+    this.bodies = new Map();
+    for (const { index, pose, shape } of this.scene.entities) {
+      const still = shape?.type === "plane";
+      this.bodies.set(index, { position: [...pose.position], rotation: pose.rotation, speed: 0, state: still ? 3 : 0, rest: shape ? 0.2 : 0, quiet: 0 });
+    }
+  }
+
+  step() {
+    Object.assign(this.simulation, { time: this.simulation.time + 1 / 60, step: this.simulation.step + 1 });
+    for (const body of this.bodies.values()) {
+      if (body.state === 3) continue;
+      body.speed += 9.81 / 60;
+      body.position[1] = Math.max(body.rest, body.position[1] - body.speed / 60);
+      if (body.position[1] > body.rest) continue;
+      body.speed = 0;
+      ++body.quiet;
+      body.state = body.quiet < 10 ? 0 : body.quiet < 40 ? 1 : 2;
+    }
+    this.sendFrame();
+    if (this.simulation.step % 15 === 0) this.sendStatistics();
+  }
+
+  sendStatistics() {
+    const count = (state) => [...this.bodies.values()].filter((body) => body.state === state).length;
+    this.broadcast({
+      event: "statistics", time: this.simulation.time, step: this.simulation.step, bodies: this.bodies.size, active: count(0), wants_to_sleep: count(1),
+      asleep: count(2), contacts: 4, step_ms: 0.21, real_time_factor: 1,
+    });
+  }
+
+  sendFrame() {
+    const frame = Buffer.alloc(32 + 36 * this.bodies.size);
+    frame.writeUInt32LE(0x46424d45, 0);
+    frame.writeUInt16LE(1, 4);
+    frame.writeUInt32LE(this.bodies.size, 8);
+    frame.writeDoubleLE(this.simulation.time, 16);
+    frame.writeBigUInt64LE(BigInt(this.simulation.step), 24);
+    let at = 32;
+    for (const [index, { position, rotation, state }] of this.bodies) {
+      frame.writeUInt32LE(index, at);
+      [...position, ...rotation].forEach((number, which) => frame.writeFloatLE(number, at + 4 + 4 * which));
+      frame.writeUInt8(state, at + 32);
+      at += 36;
+    }
+    for (const socket of this.sockets?.clients ?? []) socket.send(frame);
+  }
+
+  answer(request, response) {
+    const path = normalize(new URL(request.url, "http://mock").pathname);
+    if (path.endsWith("thumbnail.png")) return response.writeHead(200, { "content-type": "image/png" }).end(PIXEL);
+    if (path.endsWith("geometry.glb")) return response.writeHead(200, { "content-type": "model/gltf-binary" }).end(boxGlb());
+    const file = join(studio, "dist", path === "/" ? "index.html" : path);
+    if (!existsSync(file)) return response.writeHead(404).end();
+    response.writeHead(200, { "content-type": TYPES[extname(file)] ?? "application/octet-stream" });
+    createReadStream(file).pipe(response);
+  }
+}

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+// What the panels do with the protocol, against a stand-in for the server: fast, and with as many models as one likes.
+import assert from "node:assert/strict";
+import { after, before, beforeEach, describe, it } from "node:test";
+import { openBrowser, openStudio } from "./browser.mjs";
+import { MockServer } from "./mock_server.mjs";
+
+const CRATE = 2;
+
+describe("the Studio's panels", { timeout: 300000 }, () => {
+  let browser, mock, page, address;
+
+  before(async () => {
+    browser = await openBrowser();
+  });
+  after(async () => {
+    await browser?.close();
+  });
+  beforeEach(async () => {
+    await page?.context().close();
+    await mock?.stop();
+    mock = new MockServer({ models: 60000 });
+    address = await mock.start();
+    page = await openStudio(browser, address);
+  });
+  after(async () => {
+    await page?.context().close();
+    await mock?.stop();
+  });
+
+  const field = (name) => page.locator(`[data-testid=attribute-${name}] input`).first();
+  const select = (index) => page.locator(`[data-testid=hierarchy] [data-index="${index}"]`);
+  async function choose(...indices) {
+    await page.getByTestId("tab-In the scene").click();
+    for (const [at, index] of indices.entries()) await select(index).click(at > 0 ? { modifiers: ["Control"] } : {});
+  }
+  const sent = (command) => mock.log.filter((each) => each.command === command).map((each) => each.params);
+
+  it("says that no model matches, and shows all again", async () => {
+    await page.getByTestId("search").fill("zeppelin");
+    await page.getByTestId("empty-result").waitFor();
+    assert.match(await page.getByTestId("empty-result").innerText(), /No model matches “zeppelin”/);
+    assert.equal(await page.getByTestId("model-tile").count(), 0);
+    await page.getByText("Show all models").click();
+    await page.getByText("60,000 models").waitFor();
+  });
+
+  it("keeps few tiles alive among 60,000 and reaches the last", async () => {
+    await page.getByText("60,000 models").waitFor();
+    const grid = page.getByTestId("model-grid");
+    assert.ok((await page.getByTestId("model-tile").count()) < 80);
+    await grid.evaluate((element) => (element.scrollTop = element.scrollHeight));
+    await page.locator("[data-key='mock/59999']").waitFor();
+    assert.ok((await page.getByTestId("model-tile").count()) < 80);
+  });
+
+  it("adds the marked model with the keyboard alone", async () => {
+    await page.keyboard.press("/");
+    await page.keyboard.type("chair");
+    await page.getByText("7,500 models").waitFor();
+    await page.keyboard.press("Enter");
+    await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("Enter");
+    await page.waitForFunction(() => window.embody.entities().some((entity) => entity.model === "mock/8" && entity.drawn));
+  });
+
+  it("shows why the server refuses a value, beside the field", async () => {
+    await choose(CRATE);
+    await field("mass").fill("-3");
+    await field("mass").press("Enter");
+    await page.getByText("the mass must be above 0 kg").waitFor();
+    await field("mass").fill("three");
+    await field("mass").press("Enter");
+    await page.getByText("This is not a number").waitFor();
+    assert.equal(sent("entity.set_attribute").length, 1);
+    await field("mass").fill("3,5");
+    await field("mass").press("Enter");
+    await page.getByTestId("reset-mass").waitFor();
+    assert.deepEqual(sent("entity.set_attribute").at(-1), { indices: [CRATE], name: "mass", value: 3.5 });
+    assert.equal(await page.locator(".field-error").count(), 0);
+  });
+
+  it("edits several entities at once and says where they differ", async () => {
+    mock.commands["entity.add"]({ entity: { name: "Ball", shape: { type: "sphere", radius: 0.2 }, attributes: { mass: 2 } } });
+    await choose(CRATE, 3);
+    await page.getByText("2 entities", { exact: true }).waitFor();
+    await page.waitForFunction(() => document.querySelector("[data-testid=attribute-mass] input")?.placeholder === "differs");
+    await field("mass").fill("9");
+    await field("mass").press("Enter");
+    await page.getByTestId("reset-mass").waitFor();
+    assert.deepEqual(sent("entity.set_attribute").at(-1), { indices: [CRATE, 3], name: "mass", value: 9 });
+    await page.getByTestId("reset-mass").click();
+    await page.waitForFunction(() => document.querySelector("[data-testid=attribute-mass] input")?.value === "6.4");
+  });
+
+  it("moves with the handles as one step that undo takes back", async () => {
+    await choose(CRATE);
+    await page.getByTestId("tool.move").click();
+    const before = await page.evaluate((index) => window.embody.seenAt(index), CRATE);
+    // The middle handle moves in the plane of the picture.
+    await page.mouse.move(before.x, before.y);
+    await page.mouse.down();
+    for (let step = 1; step <= 8; ++step) await page.mouse.move(before.x + 10 * step, before.y - 2 * step);
+    await page.mouse.up();
+    await page.waitForFunction(() => !document.querySelector("[data-testid='edit.undo']").disabled);
+    const moved = mock.entity(CRATE).pose.position;
+    assert.notDeepEqual(moved, [0, 1, 0]);
+    await page.keyboard.press("Control+z");
+    await page.waitForFunction((index) => window.embody.entities().find((entity) => entity.index === index).position[1] === 1, CRATE);
+    assert.equal(mock.past.length, 0);
+  });
+
+  it("edits a pose by numbers, in degrees", async () => {
+    await choose(CRATE);
+    const y = page.getByLabel("Rotation y");
+    await y.fill("90");
+    await y.press("Enter");
+    await page.waitForFunction((index) => Math.abs(window.embody.entities().find((entity) => entity.index === index).rotation[1] - Math.SQRT1_2) < 1e-3, CRATE);
+  });
+
+  it("selects by clicking, adds with Shift, and nothing in the empty sky", async () => {
+    const at = await page.evaluate((index) => window.embody.seenAt(index), CRATE);
+    await page.mouse.click(at.x, at.y);
+    assert.deepEqual(await page.evaluate(() => window.embody.selection()), [CRATE]);
+    await page.keyboard.down("Shift");
+    await page.mouse.click(at.x, at.y + 200);
+    await page.keyboard.up("Shift");
+    assert.deepEqual(await page.evaluate(() => window.embody.selection()), [CRATE, 1]);
+    await page.keyboard.press("Escape");
+    assert.deepEqual(await page.evaluate(() => window.embody.selection()), []);
+  });
+
+  it("says that the server is gone, and takes up again when it is back", async () => {
+    await mock.stop();
+    await page.getByTestId("connection-lost").waitFor();
+    assert.equal(await page.getByTestId("connection").innerText(), "Not connected");
+    // A click meanwhile is not lost silently.
+    await page.getByTestId("simulation.play").click();
+    await page.getByText("Not connected to the server").waitFor();
+    mock = new MockServer({ models: 8, port: mock.port });
+    mock.put({ name: "Newcomer", shape: { type: "sphere", radius: 0.3 } });
+    await mock.start();
+    await page.getByTestId("connection-lost").waitFor({ state: "hidden", timeout: 20000 });
+    await page.waitForFunction(() => window.embody.entities().some((entity) => entity.name === "Newcomer"));
+    await page.getByText("8 models", { exact: true }).waitFor();
+  });
+
+  it("finds commands by words in the palette", async () => {
+    await page.keyboard.press("Control+k");
+    await page.getByTestId("palette-input").fill("light th");
+    await page.keyboard.press("Enter");
+    assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), "light");
+  });
+
+  it("asks before unsaved work is lost", async () => {
+    await choose(CRATE);
+    await page.keyboard.press("Delete");
+    await page.waitForFunction(() => document.title.startsWith("•"));
+    await page.getByTestId("scene.new").click();
+    await page.getByTestId("unsaved-dialog").waitFor();
+    await page.keyboard.press("Escape");
+    await page.getByTestId("unsaved-dialog").waitFor({ state: "detached" });
+    assert.equal(sent("scene.new").length, 0);
+  });
+
+  it("gives every control a name for screen readers", async () => {
+    await choose(CRATE);
+    await field("mass").waitFor();
+    const nameless = await page.evaluate(() =>
+      [...document.querySelectorAll("button, input, select")]
+        .filter((control) => control.checkVisibility() && !control.getAttribute("aria-label") && !control.textContent.trim() && !control.closest("label"))
+        .map((control) => control.outerHTML),
+    );
+    assert.deepEqual(nameless, []);
+    assert.deepEqual(page.faults, []);
+  });
+});
