@@ -37,7 +37,7 @@ struct Expansion {
         ExpandingFace face{{a, b, c}, cross(at(b) - at(a), at(c) - at(a)), 0, true};
         const double size = length(face.normal);
         // A face without area has no direction: it can never be the nearest.
-        if (!(size > 1e-30)) {
+        if (!(size > 0)) {
             face.distance = 1e300;
         } else {
             face.normal = face.normal / size;
@@ -49,29 +49,35 @@ struct Expansion {
     [[nodiscard]] int nearest_face() const {
         int best = -1;
         for (std::size_t i = 0; i < faces.size(); ++i) {
-            if (!faces[i].alive) continue;
             if (best < 0 || faces[i].distance < faces[static_cast<std::size_t>(best)].distance)
                 best = static_cast<int>(i);
         }
         return best;
     }
 
-    // Removes what the new point sees and closes the hole from its rim.
+    // Removes what the new point sees and closes the hole from its rim; false, with nothing changed, where rounding
+    // would tear the surface.
     bool grow(Vec3 point) {
         thread_local std::vector<HorizonEdge> horizon;
         horizon.clear();
-        const int apex = static_cast<int>(points.size());
-        points.push_back(point);
-        for (ExpandingFace& face : faces) {
-            if (!face.alive) continue;
-            const bool seen = face.distance > 1e299 || dot(face.normal, point - at(face.corner[0])) > 0;
-            if (!seen) continue;
-            face.alive = false;
+        std::size_t removed = 0;
+        for (const ExpandingFace& face : faces) {
+            if (!sees(point, face)) continue;
+            ++removed;
             for (std::size_t i = 0; i < 3; ++i) toggle_edge(horizon, face.corner[i], face.corner[(i + 1) % 3]);
         }
-        if (horizon.empty()) return false;
+        // One connected patch of triangles has two rim edges more than faces.
+        if (removed == 0 || horizon.size() != removed + 2) return false;
+        for (ExpandingFace& face : faces) face.alive = face.alive && !sees(point, face);
+        std::erase_if(faces, [](const ExpandingFace& face) { return !face.alive; });
+        const int apex = static_cast<int>(points.size());
+        points.push_back(point);
         for (const HorizonEdge& edge : horizon) add_face(edge.from, edge.to, apex);
         return true;
+    }
+
+    [[nodiscard]] bool sees(Vec3 point, const ExpandingFace& face) const {
+        return dot(face.normal, point - at(face.corner[0])) > 0;
     }
 
     // An edge between two removed faces is inside the hole; one met once is its rim.
