@@ -103,6 +103,13 @@ void clip_to_region(const ContactFeature& reference, const ContactFeature& incid
     }
 }
 
+void keep_deepest(Vec3 on_a, double separation, double tolerance, ContactRegion& region) {
+    for (const ManifoldPoint& point : region.points) {
+        if (point.separation <= separation + tolerance) return;
+    }
+    region.add(on_a, separation, 2);
+}
+
 void cross_segments(const ContactFeature& a, const ContactFeature& b, double radius_a, double radius_b, double margin,
                     ContactRegion& region) {
     const Vec3 p = a.points[0], q = b.points[0];

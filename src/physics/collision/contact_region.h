@@ -42,6 +42,10 @@ struct ContactRegion {
 void clip_to_region(const ContactFeature& reference, const ContactFeature& incident, bool reference_is_a, double lift,
                     double margin, ContactRegion& region);
 
+/// Adds the deepest point of the pair where clipping lost it: it can lie on another face than the one that faces most,
+/// or in the sliver between a rim and its polygon.
+void keep_deepest(Vec3 on_a, double separation, double tolerance, ContactRegion& region);
+
 /// Two segments: the overlap of nearly parallel ones (two points), else where they pass each other (one point).
 /// Separations are measured along region.normal less the radii.
 void cross_segments(const ContactFeature& a, const ContactFeature& b, double radius_a, double radius_b, double margin,

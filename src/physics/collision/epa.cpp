@@ -57,18 +57,18 @@ struct Expansion {
 
     // Removes what the new point sees and closes the hole from its rim; false, with nothing changed, where rounding
     // would tear the surface.
-    bool grow(Vec3 point) {
+    bool grow(Vec3 point, double clearance) {
         thread_local std::vector<HorizonEdge> horizon;
         horizon.clear();
         std::size_t removed = 0;
         for (const ExpandingFace& face : faces) {
-            if (!sees(point, face)) continue;
+            if (!sees(point, face, clearance)) continue;
             ++removed;
             for (std::size_t i = 0; i < 3; ++i) toggle_edge(horizon, face.corner[i], face.corner[(i + 1) % 3]);
         }
         // One connected patch of triangles has two rim edges more than faces.
         if (removed == 0 || horizon.size() != removed + 2) return false;
-        for (ExpandingFace& face : faces) face.alive = face.alive && !sees(point, face);
+        for (ExpandingFace& face : faces) face.alive = face.alive && !sees(point, face, clearance);
         std::erase_if(faces, [](const ExpandingFace& face) { return !face.alive; });
         const int apex = static_cast<int>(points.size());
         points.push_back(point);
@@ -76,8 +76,8 @@ struct Expansion {
         return true;
     }
 
-    [[nodiscard]] bool sees(Vec3 point, const ExpandingFace& face) const {
-        return dot(face.normal, point - at(face.corner[0])) > 0;
+    [[nodiscard]] bool sees(Vec3 point, const ExpandingFace& face, double clearance) const {
+        return dot(face.normal, point - at(face.corner[0])) > clearance;
     }
 
     // An edge between two removed faces is inside the hole; one met once is its rim.
@@ -155,7 +155,14 @@ bool penetration_normal(const PlacedConvex& a, const PlacedConvex& b, const Core
         normal = -face.normal;
         const Vec3 next = difference_support(a, b, face.normal).difference;
         const double gain = dot(next, face.normal) - face.distance;
-        if (gain <= converged * (std::fabs(face.distance) + length(next)) || !expansion.grow(next)) break;
+        const double size = std::fabs(face.distance) + length(next);
+        if (gain <= converged * size) break;
+        // Faces that the point lies in all but exactly may count as seen or not, as long as the surface stays whole.
+        bool grown = false;
+        for (const double clearance : {1e-12, 0.0, -1e-12, 1e-10, 1e-8, -1e-10}) {
+            grown = grown || expansion.grow(next, clearance * size);
+        }
+        if (!grown) break;
     }
     return length_squared(normal) > 0;
 }

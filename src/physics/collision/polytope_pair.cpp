@@ -161,6 +161,14 @@ void collide_polytopes(const PlacedConvex& a, const PlacedConvex& b, double marg
         incident.get_face(incident.face_along(-scratch.reference.normal), scratch.incident);
         region.normal = reference_is_a ? scratch.reference.normal : -scratch.reference.normal;
         clip_to_region(scratch.reference, scratch.incident, reference_is_a, 0, margin, region);
+
+        // Where they overlap the deepest corner is over the reference face; a little apart it may be beside it.
+        const double separation = reference_is_a ? face_a.separation : face_b.separation;
+        if (separation < 0) {
+            const Vec3 corner = core_support(reference_is_a ? b : a, -scratch.reference.normal);
+            const Vec3 on_a = reference_is_a ? corner - region.normal * separation : corner;
+            keep_deepest(on_a, separation, bias, region);
+        }
     }
     if (region.points.empty()) add_nearest_points(a, b, margin, region);
 }

@@ -97,12 +97,16 @@ struct FeatureScratch {
     ContactFeature face_a, face_b, other, line_a, line_b;
 };
 
-// A face of one against what the other turns to it.
-void add_face_region(const PlacedConvex& a, const PlacedConvex& b, bool is_face_a, double margin, FeatureScratch& f,
-                     ContactRegion& region) {
+// A face of one against what the other turns to it, and the other's deepest point whatever happens.
+void add_face_region(const PlacedConvex& a, const PlacedConvex& b, const PartingAxis& axis, bool is_face_a,
+                     double margin, FeatureScratch& f, ContactRegion& region) {
     const PlacedConvex& incident = is_face_a ? b : a;
-    get_facing(incident, is_face_a ? -region.normal : region.normal, f.other);
+    const Vec3 outwards = is_face_a ? -axis.normal : axis.normal;
+    get_facing(incident, outwards, f.other);
     clip_to_region(is_face_a ? f.face_a : f.face_b, f.other, is_face_a, rounding(*incident.shape), margin, region);
+    const Vec3 deepest = core_support(incident, outwards) + outwards * rounding(*incident.shape);
+    const Vec3 on_a = is_face_a ? deepest - axis.normal * axis.separation : deepest;
+    keep_deepest(on_a, axis.separation, 1e-6 * smaller_size(a, b), region);
 }
 
 // One point, where a corner or a rim of one meets the other.
@@ -130,16 +134,21 @@ void collide_round(const PlacedConvex& a, const PlacedConvex& b, double margin, 
     const bool is_face_b = get_aligned_face(b, -axis.normal, f.face_b);
     if (is_face_a || is_face_b) {
         const bool prefer_a = is_face_a && (!is_face_b || a.shape->kind == ConvexKind::polytope);
-        add_face_region(a, b, prefer_a, margin, f, region);
-        if (!region.points.empty()) return;
+        add_face_region(a, b, axis, prefer_a, margin, f, region);
+        return;
     }
     // Two straight lines, else a point.
     const bool is_line_a = get_aligned_line(a, axis.normal, f.line_a);
     const bool is_line_b = get_aligned_line(b, -axis.normal, f.line_b);
     if (is_line_a && is_line_b) {
         cross_segments(f.line_a, f.line_b, rounding(*a.shape), rounding(*b.shape), margin, region);
+        // Lines that pass each other beyond an end do not meet there: the end itself is the point.
+        const auto is_deepest = [&](const ManifoldPoint& p) {
+            return p.separation <= axis.separation + 1e-5 * smaller_size(a, b);
+        };
+        if (std::none_of(region.points.begin(), region.points.end(), is_deepest)) region.points.clear();
     }
-    if (region.points.empty()) add_point(a, b, axis, !is_line_a && !is_face_a, region);
+    if (region.points.empty()) add_point(a, b, axis, !is_line_a, region);
 }
 
 }  // namespace embody::physics
