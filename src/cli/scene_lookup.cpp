@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include "cli/scene_lookup.h"
+
+#include <filesystem>
+
+#include "cli/locations.h"
+#include "scene/scene_file.h"
+#include "scenes/scene_builders.h"
+
+namespace embody::cli {
+
+Result<scene::Document> find_scene(const std::string& file_or_name) {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    if (fs::exists(file_or_name, ignored)) return scene::load_document(file_or_name);
+    if (const scenes::SceneBuilder* builder = scenes::find_scene_builder(file_or_name)) return builder->build();
+    for (const fs::path& folder : {data_folder() / "scenes", saved_scenes_folder()}) {
+        const fs::path file = folder / (file_or_name + ".json");
+        if (fs::is_regular_file(file, ignored)) return scene::load_document(file);
+    }
+    return Error{file_or_name, "is neither a file nor the name of a scene", "embody scene lists the built-in ones"};
+}
+
+}  // namespace embody::cli

@@ -1,0 +1,188 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The program as a person or a script calls it.
+
+Usage: test_cli.py EMBODY   (the built program)
+"""
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+EMBODY = ""
+SOURCE = pathlib.Path(__file__).resolve().parent.parent.parent
+COMMANDS = ("serve", "import", "search", "show", "set", "reset", "simulate", "check", "scene", "bench")
+
+# A tetrahedron of 1 m, closed and outward.
+TETRAHEDRON = """v 0 0 0
+v 1 0 0
+v 0 1 0
+v 0 0 1
+f 1 3 2
+f 1 2 4
+f 1 4 3
+f 2 3 4
+"""
+
+
+def run(*words: str, **environment: str) -> subprocess.CompletedProcess:
+    return subprocess.run([EMBODY, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=240,
+                          env={**os.environ, **environment})
+
+
+class Help(unittest.TestCase):
+    def test_every_command_explains_itself_with_an_example(self):
+        for command in COMMANDS:
+            result = run(command, "--help")
+            self.assertEqual(result.returncode, 0, command)
+            self.assertIn("Example:", result.stdout, command)
+            self.assertIn(f"embody {command}", result.stdout, command)
+
+    def test_wrong_words_are_refused_by_name(self):
+        result = run("search", "--limti", "3")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("--limti", result.stderr)
+        self.assertEqual(run().returncode, 2)
+        self.assertEqual(run("fly").returncode, 2)
+        self.assertEqual(run("search", "--limit", "0").returncode, 2)
+
+
+class Database(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.path = pathlib.Path(self.folder.name)
+        self.database = str(self.path / "models.sqlite")
+        (self.path / "models").mkdir()
+        (self.path / "models" / "wooden chair.obj").write_text(TETRAHEDRON)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def test_a_search_in_an_empty_database_says_how_to_fill_it(self):
+        result = run("search", "--database", self.database, "chair")
+        self.assertNotIn("Traceback", result.stderr)
+        self.assertTrue("import" in result.stderr or "No model" in result.stdout, result)
+
+    def test_a_file_that_is_no_database_is_left_alone(self):
+        alien = self.path / "notes.txt"
+        alien.write_text("not a database, but dear to me\n" * 100)
+        result = run("search", "--database", str(alien), "chair")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("notes.txt", result.stderr)
+        self.assertIn("dear to me", alien.read_text())
+
+    def test_import_search_show_set_reset(self):
+        broken = self.path / "models" / "broken.glb"
+        broken.write_bytes(b"glTF but not really")
+        first = run("import", "--database", self.database, "--json", str(self.path / "models"))
+        self.assertEqual(first.returncode, 3, first.stderr)  # one file failed and is named
+        report = json.loads(first.stdout)
+        self.assertEqual(report["added"], 1)
+        self.assertIn("broken.glb", report["failures"][0]["path"])
+        self.assertIn("broken.glb", first.stderr)
+
+        again = json.loads(run("import", "--database", self.database, "--json", str(self.path / "models")).stdout)
+        self.assertEqual((again["added"], again["unchanged"]), (0, 1))
+
+        found = json.loads(run("search", "--database", self.database, "--json", "chair").stdout)
+        self.assertEqual(found["models"][0]["name"].lower(), "wooden chair")
+        model = str(found["models"][0]["id"])
+
+        shown = json.loads(run("show", "--database", self.database, "--json", model).stdout)
+        before = {a["name"]: a for a in shown["attributes"]}
+        self.assertTrue(all(a["source"] for a in shown["attributes"]))
+
+        refused = run("set", "--database", self.database, model, "mass=2", "friction_dynamic=9")
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("friction_dynamic", refused.stderr)
+        self.assertIn("2", refused.stderr)  # the range's upper end
+        unknown = run("set", "--database", self.database, model, "masss=2")
+        self.assertIn("mass", unknown.stderr)
+        self.assertEqual(json.loads(run("show", "--database", self.database, "--json", model).stdout), shown)
+
+        changed = json.loads(run("set", "--database", self.database, "--json", model, "mass=2.5").stdout)
+        mass = {a["name"]: a for a in changed["attributes"]}["mass"]
+        self.assertEqual((mass["value"], mass["level"]), (2.5, "manual"))
+
+        run("import", "--database", self.database, "--again", str(self.path / "models"))
+        kept = json.loads(run("show", "--database", self.database, "--json", model).stdout)
+        self.assertEqual({a["name"]: a for a in kept["attributes"]}["mass"]["value"], 2.5)
+
+        reset = json.loads(run("reset", "--database", self.database, "--json", model, "mass").stdout)
+        self.assertEqual({a["name"]: a for a in reset["attributes"]}["mass"]["value"], before["mass"]["value"])
+
+    def test_an_unknown_model_is_named(self):
+        result = run("show", "--database", self.database, "no such thing")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("no such thing", result.stderr)
+
+
+class Scenes(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.path = pathlib.Path(self.folder.name)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def test_a_wrong_field_is_refused_by_name(self):
+        listed = json.loads(run("scene", "--json").stdout)
+        name = listed["scenes"][0]["name"]
+        document = json.loads(run("scene", name).stdout)
+        document["entities"][0]["colour"] = [1, 0, 0]
+        wrong = self.path / "wrong.json"
+        wrong.write_text(json.dumps(document))
+        result = run("check", str(wrong))
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("colour", result.stdout + result.stderr)
+        self.assertIn("color", result.stdout + result.stderr)  # the nearest right name
+        simulated = run("simulate", str(wrong), "--seconds", "0.1")
+        self.assertEqual(simulated.returncode, 1)
+        self.assertIn("colour", simulated.stderr)
+
+    def test_the_scenes_that_come_with_embody_can_be_read(self):
+        primitives_only = [p for p in sorted((SOURCE / "data" / "scenes").glob("*.json"))
+                           if '"model"' not in p.read_text()]
+        self.assertTrue(primitives_only)
+        result = run("check", *map(str, primitives_only))
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+
+    def test_a_ball_falls_as_galileo_says(self):
+        scene = {"embody_scene": 1, "entities": [{"index": 1, "name": "ball", "shape": {"type": "sphere", "radius": 0.1},
+                                                  "pose": {"position": [0, 20, 0]}}]}
+        file = self.path / "fall.json"
+        file.write_text(json.dumps(scene))
+        record = self.path / "out.jsonl"
+        result = run("simulate", str(file), "--seconds", "2", "--record", str(record), "--rate", "10", "--energy", "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        lines = [json.loads(line) for line in record.read_text().splitlines()]
+        last = lines[-1]
+        self.assertTrue(math.isclose(last["t"], 2, abs_tol=1e-9))
+        self.assertTrue(math.isclose(last["entities"][0]["position"][1], 20 - 9.81 * 2, abs_tol=1e-3))
+        self.assertTrue(math.isclose(last["entities"][0]["linear_velocity"][1], -19.62, abs_tol=1e-3))
+        self.assertIn("energy", last)
+        self.assertGreaterEqual(len(lines), 20)
+
+    def test_a_recording_that_cannot_be_written_is_said(self):
+        listed = json.loads(run("scene", "--json").stdout)
+        result = run("simulate", listed["scenes"][0]["name"], "--seconds", "0.1", "--record", "/nowhere/out.jsonl")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("/nowhere/out.jsonl", result.stderr)
+
+    def test_bench_prints_the_papers_columns(self):
+        result = run("bench", "table1", "--scene", "table1_e", "--steps", "30", "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        row = json.loads(result.stdout)["scenes"][0]
+        self.assertEqual((row["paper"]["max_ms"], row["paper"]["min_ms"], row["paper"]["average_ms"]), (0.757, 0.013, 0.519))
+        self.assertGreater(row["max_ms"], 0)
+        self.assertLessEqual(row["min_ms"], row["average_ms"])
+        self.assertLessEqual(row["average_ms"], row["max_ms"])
+
+
+if __name__ == "__main__":
+    EMBODY = sys.argv.pop(1)
+    unittest.main(verbosity=2)
