@@ -13,6 +13,7 @@ namespace {
 constexpr double weld_share = 1e-6;       // of the largest extent, as the volume estimate welds
 constexpr double least_thickness = 1e-3;  // m, of a flat model's box
 constexpr int most_hull_points = 256;
+constexpr int volume_cells = 16384;  // half of the usual: the grid is two thirds of an import's time
 
 geometry::TriangleMesh joined(const interchange::RawScene& scene) {
     geometry::TriangleMesh mesh;
@@ -78,7 +79,7 @@ GeometryMeasurement measure_geometry(const interchange::RawScene& scene) {
     measured.inconsistent_edges = topology.inconsistent_edges;
 
     // What it encloses, by the surest method that applies.
-    const geometry::VolumeEstimate estimate = geometry::estimate_volume(mesh);
+    const geometry::VolumeEstimate estimate = geometry::estimate_volume(mesh, volume_cells);
     measured.volume_method = estimate.method;
     facts.closed = estimate.method == geometry::VolumeMethod::closed_mesh;
     facts.volume = estimate.solid.volume;

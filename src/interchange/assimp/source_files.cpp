@@ -37,12 +37,32 @@ private:
     size_t at_ = 0;
 };
 
+/// assimp 5.2 passes over numbers such as ".5" in OBJ files, and with them the whole vertex: writes "0.5" on v, vt and
+/// vn lines.
+std::vector<std::uint8_t> with_leading_zeros(const std::vector<std::uint8_t>& obj) {
+    std::vector<std::uint8_t> out;
+    out.reserve(obj.size() + obj.size() / 64);
+    bool coordinates = false;
+    std::uint8_t before = '\n';
+    for (const std::uint8_t c : obj) {
+        if (before == '\n' || before == '\r') coordinates = c == 'v';
+        if (coordinates && c == '.' && (before == ' ' || before == '\t' || before == '-' || before == '+'))
+            out.push_back('0');
+        out.push_back(c);
+        before = c;
+    }
+    return out;
+}
+
 }  // namespace
 
 Assimp::IOStream* SourceFiles::Open(const char* path, const char* mode) {
     if (std::strpbrk(mode, "wa+") != nullptr || source_->find(path).empty()) return nullptr;
     auto bytes = source_->read(path);
-    return bytes ? new MemoryStream(std::move(*bytes)) : nullptr;
+    if (!bytes) return nullptr;
+    const std::string extension = std::filesystem::path(path).extension().string();
+    return new MemoryStream(extension == ".obj" || extension == ".OBJ" ? with_leading_zeros(*bytes)
+                                                                       : std::move(*bytes));
 }
 
 void SourceFiles::Close(Assimp::IOStream* stream) { delete stream; }
