@@ -13,6 +13,7 @@
 #include "catalog/import/importer.h"
 #include "catalog/knowledge_json.h"
 #include "catalog/prepare/confined_pool.h"
+#include "catalog/primitives.h"
 #include "database/model_schema.h"
 #include "database/transaction.h"
 #include "interchange/compact/compact_geometry.h"
@@ -21,6 +22,7 @@ namespace embody::catalog {
 namespace {
 
 constexpr const char* taxonomy_setting = "taxonomy_hash";
+constexpr const char* primitives_setting = "primitives_revision";
 
 GeometryKind kind_from_name(const std::string& name) {
     if (name == "point_cloud") return GeometryKind::point_cloud;
@@ -77,6 +79,7 @@ struct Catalog::State {
     Result<database::ModelRow> row(std::int64_t id);
     Result<Known> known(std::int64_t id);
     Result<void> refresh_attributes(const std::string& hash);
+    Result<void> store_primitives();
     Result<void> classify_again(std::int64_t id);
 };
 
@@ -100,6 +103,7 @@ Result<std::unique_ptr<Catalog>> Catalog::open(const std::filesystem::path& file
     if (*stored_hash != hash) {
         if (auto refreshed = catalog->state_->refresh_attributes(hash); !refreshed) return refreshed.error();
     }
+    if (auto stored = catalog->state_->store_primitives(); !stored) return stored.error();
     return catalog;
 }
 
@@ -257,6 +261,24 @@ Result<void> Catalog::State::refresh_attributes(const std::string& hash) {
     }
     if (auto noted = database::SettingTable(*connection).put(taxonomy_setting, hash); !noted) return noted;
     return transaction->commit();
+}
+
+Result<void> Catalog::State::store_primitives() {
+    // Once a database: a person who removed one does not want it back at the next start.
+    database::SettingTable settings(*connection);
+    const auto stored_revision = settings.get(primitives_setting);
+    if (!stored_revision) return stored_revision.error();
+    if (*stored_revision == primitives_revision) return {};
+    const auto primitives = make_primitives();
+    if (!primitives) return primitives.error();
+    Importer importer(*connection, *taxonomy, nullptr);
+    for (const Primitive& primitive : *primitives) {
+        const auto stored =
+            importer.store(primitive.item, primitive.model, built_in_source(primitive.item, primitives_revision),
+                           GeometryKind::analytical);
+        if (!stored) return stored.error();
+    }
+    return settings.put(primitives_setting, primitives_revision);
 }
 
 Result<std::vector<std::uint8_t>> Catalog::thumbnail(std::int64_t id) const { return state_->models.thumbnail(id); }

@@ -35,9 +35,9 @@ struct ModelSummary {
 };
 
 struct SearchQuery {
-    std::string words;     ///< full text over name, tags, category, source; prefixes match; empty: all
-    std::string category;  ///< exact; empty: all
-    int limit = 50;        ///< 1 … 1000
+    std::string words = {};     ///< full text over name, tags, category, source; prefixes match; empty: all
+    std::string category = {};  ///< exact; empty: all
+    int limit = 50;             ///< 1 … 1000
     int offset = 0;
 };
 struct SearchPage {
@@ -65,10 +65,10 @@ struct ImportReport {
     bool stopped = false;  ///< the progress callback asked to stop; the next import goes on from there
 };
 struct ImportOptions {
-    int workers = 0;                                      ///< 0: one a core
-    bool again = false;                                   ///< prepare also what is in the database unchanged
-    std::filesystem::path worker_program;                 ///< empty: beside the running program
-    std::function<bool(const ImportProgress&)> progress;  ///< returns false to stop; may be empty
+    int workers = 0;                                           ///< 0: one a core
+    bool again = false;                                        ///< prepare also what is in the database unchanged
+    std::filesystem::path worker_program = {};                 ///< empty: beside the running program
+    std::function<bool(const ImportProgress&)> progress = {};  ///< returns false to stop; may be empty
 };
 
 /// The model database: what exists, what it looks like, what it is made of. One instance a thread; any number of

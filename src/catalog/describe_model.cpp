@@ -26,6 +26,13 @@ std::string day_of(std::int64_t seconds) {
     return day.data();
 }
 
+/// A plane is no aircraft and a box no furniture, whatever the words may mean elsewhere.
+void name_as_primitive(attributes::AttributeSet& set) {
+    const std::string source = "analytical primitive";
+    set.erase("subcategory");
+    set.put({"category", std::string("primitives"), {}, {}, source, attributes::AttributeLevel::model});
+}
+
 }  // namespace
 
 std::vector<attributes::AttributeEntry> manual_entries(const std::vector<database::ManualAttribute>& stored) {
@@ -82,7 +89,8 @@ void classify(database::ModelRow& row, const attributes::ModelFacts& facts, cons
 database::ModelKnowledge describe(database::ModelRow& row, const attributes::ModelFacts& facts,
                                   const attributes::Taxonomy& taxonomy,
                                   const std::vector<attributes::AttributeEntry>& manual) {
-    const attributes::AttributeSet automatic = attributes::resolve(taxonomy, facts);
+    attributes::AttributeSet automatic = attributes::resolve(taxonomy, facts);
+    if (row.geometry_kind == "analytical") name_as_primitive(automatic);
     classify(row, facts, automatic, manual);
     return {to_json(facts), to_json(automatic)};
 }

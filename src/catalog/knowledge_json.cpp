@@ -163,6 +163,7 @@ std::string to_json(const AttributeSet& set) {
 Result<AttributeSet> set_from_json(std::string_view text) {
     return read_text<AttributeSet>(text, "stored attributes", [](const Json& json) -> Result<AttributeSet> {
         AttributeSet set;
+        if (!json.is_array()) return Error{"stored attributes", "are no list", "import the model again"};
         for (const Json& element : json) {
             auto entry = to_entry(element);
             if (!entry) return entry.error();

@@ -124,12 +124,14 @@ database::ModelRow make_row(const ImportItem& item, const PreparedModel& prepare
 
 }  // namespace
 
-database::ImportSource built_in_source(const ImportItem& item) {
-    return {.location = "built-in!" + item.key,
-            .stamp = {},
-            .file_hash = 0,
-            .prepare_hash = hash_preparation(item, 0),
-            .item_hash = hash_words(item)};
+database::ImportSource built_in_source(const ImportItem& item, const std::string& revision) {
+    StateHash hash;
+    add_text(hash, revision);
+    database::ImportSource source;
+    source.location = "built-in!" + item.key;
+    source.prepare_hash = hash_preparation(item, hash.value());
+    source.item_hash = hash_words(item);
+    return source;
 }
 
 Importer::Importer(database::Connection& connection, const attributes::Taxonomy& taxonomy, PrepareModels prepare)
@@ -239,6 +241,7 @@ Result<void> Importer::plan_model(FoundModel model, database::ImportSource sourc
         if (!stored) return stored.error();
         if (*stored) {
             ++report_.unchanged;
+            name_in_report(identity->key);
             return keep(model.item, *identity->model, source);
         }
     }
@@ -361,6 +364,11 @@ bool Importer::needs_other_unit(const Planned& planned, const PreparedModel& pre
     return true;
 }
 
+void Importer::name_in_report(const std::string& key) {
+    constexpr std::size_t most = 1000;
+    if (report_.keys.size() < most) report_.keys.push_back(key);
+}
+
 Result<void> Importer::take(const Planned& planned, Result<PreparedModel> prepared) {
     if (!prepared) {
         report_.failures.push_back({planned.source.location, prepared.error()});
@@ -369,6 +377,7 @@ Result<void> Importer::take(const Planned& planned, Result<PreparedModel> prepar
     if (needs_other_unit(planned, *prepared)) return {};
     const auto stored = store(planned.item, *prepared, planned.source);
     if (!stored) return stored.error();
+    name_in_report(planned.item.key);
     switch (*stored) {
         case Stored::added:
             ++report_.added;

@@ -53,6 +53,7 @@ private:
     Result<bool> is_stored(std::int64_t model, const database::ImportSource& source);
     Result<void> prepare_planned(const std::vector<Planned>& planned, const ImportOptions& options);
     Result<void> take(const Planned& planned, Result<PreparedModel> prepared);
+    void name_in_report(const std::string& key);
     bool needs_other_unit(const Planned& planned, const PreparedModel& prepared);
     bool tell_progress(const ImportOptions& options, const std::string& name);
 
@@ -77,7 +78,7 @@ private:
     } last_file_;  ///< hashed last: a new archive is read once, not once a piece
 };
 
-/// A source that is no file: for models that the program brings along.
-database::ImportSource built_in_source(const ImportItem& item);
+/// A source that is no file, for models that the program brings along; another revision replaces the stored one.
+database::ImportSource built_in_source(const ImportItem& item, const std::string& revision);
 
 }  // namespace embody::catalog

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include "catalog/catalog.h"
+
+#include <limits>
+
+#include "catalog/import_fixture.h"
+#include "catalog/knowledge_json.h"
+
+namespace embody::catalog {
+namespace {
+
+using attributes::AttributeLevel;
+using attributes::AttributeValue;
+
+class CatalogTest : public ImportTest {
+protected:
+    void SetUp() override {
+        write_model("office_chair.obj", std::string(80, 'x'));
+        ASSERT_TRUE(import());
+    }
+    static double mass(const Catalog& catalog, std::int64_t id) {
+        const auto set = catalog.attributes(id);
+        EXPECT_TRUE(set);
+        return set ? set->number("mass", -1) : -1;
+    }
+};
+
+TEST_F(CatalogTest, RefusesAMissingTaxonomyAndAForeignFile) {
+    EXPECT_FALSE(Catalog::open(database(), folder_ / "no taxonomy"));
+    write_file(folder_ / "letter.sqlite", "Dear reader, this is no database at all." + std::string(2000, '.'));
+    EXPECT_FALSE(Catalog::open(folder_ / "letter.sqlite", taxonomy_folder));
+    EXPECT_FALSE(Catalog::open(folder_.path(), taxonomy_folder));
+}
+
+TEST_F(CatalogTest, TellsWhatIsNotThere) {
+    const auto catalog = open();
+    EXPECT_FALSE(catalog->model("nothing of this name"));
+    EXPECT_FALSE(catalog->model(""));
+    EXPECT_FALSE(catalog->model("999999"));
+    EXPECT_FALSE(catalog->model("99999999999999999999999"));
+    for (const std::int64_t id : {std::int64_t{0}, std::int64_t{-1}, std::int64_t{999'999}}) {
+        EXPECT_FALSE(catalog->facts(id));
+        EXPECT_FALSE(catalog->attributes(id));
+        EXPECT_FALSE(catalog->automatic_attributes(id));
+        EXPECT_FALSE(catalog->thumbnail(id));
+        EXPECT_FALSE(catalog->geometry_glb(id));
+        EXPECT_FALSE(catalog->hull_points(id));
+        EXPECT_FALSE(catalog->mesh(id));
+        EXPECT_FALSE(catalog->set_attribute(id, "mass", 1.0));
+        EXPECT_FALSE(catalog->reset_attribute(id, "mass"));
+        EXPECT_FALSE(catalog->remove(id));
+    }
+}
+
+TEST_F(CatalogTest, RefusesAWrongAttributeByName) {
+    const auto catalog = open();
+    const std::int64_t id = catalog->model("office chair")->id;
+    EXPECT_FALSE(catalog->set_attribute(id, "mas", 1.0));
+    EXPECT_FALSE(catalog->set_attribute(id, "mass", -1.0));
+    EXPECT_FALSE(catalog->set_attribute(id, "mass", std::string("heavy")));
+    EXPECT_FALSE(catalog->set_attribute(id, "mass", std::numeric_limits<double>::quiet_NaN()));
+    EXPECT_EQ(catalog->attributes(id)->find("mass")->level == AttributeLevel::manual, false);
+}
+
+TEST_F(CatalogTest, GivesBackWhatWasPrepared) {
+    const auto catalog = open();
+    const auto model = catalog->model("office chair");
+    ASSERT_TRUE(model);
+    EXPECT_EQ(model->size, (Vec3{0.8f, 0.8f, 0.8f}));
+    EXPECT_EQ(model->geometry_kind, GeometryKind::mesh);
+    EXPECT_EQ(model->source, "models");
+    EXPECT_EQ(catalog->model(model->key)->id, model->id);
+    EXPECT_EQ(catalog->model(std::to_string(model->id))->id, model->id);
+    EXPECT_EQ(catalog->hull_points(model->id)->size(), 8u);
+    EXPECT_EQ(catalog->hull_points(model->id)->back(), (Vec3{0.8f, 0.8f, 0.8f}));
+    EXPECT_EQ(catalog->mesh(model->id)->triangles.size(), 12u);
+    EXPECT_EQ(catalog->thumbnail(model->id)->size(), 4u);
+    EXPECT_EQ(catalog->geometry_glb(model->id)->at(0), 'g');
+    EXPECT_EQ(catalog->facts(model->id)->geometry.volume_method, "test");
+    EXPECT_GT(mass(*catalog, model->id), 0);
+    EXPECT_EQ(catalog->search({.words = "chair"})->total, 1);
+}
+
+TEST_F(CatalogTest, AManualAttributeSurvivesReimportRemovalAndReturn) {
+    std::string key;
+    {
+        const auto catalog = open();
+        const auto model = catalog->model("office chair");
+        key = model->key;
+        ASSERT_TRUE(catalog->set_attribute(model->id, "mass", 17.5));
+        EXPECT_EQ(mass(*catalog, model->id), 17.5);
+        EXPECT_NE(catalog->automatic_attributes(model->id)->number("mass", 0), 17.5);
+    }
+    ASSERT_TRUE(import({models()}, {.again = true}));
+    const auto catalog = open();
+    EXPECT_EQ(mass(*catalog, catalog->model(key)->id), 17.5);
+    write_model("office_chair.obj", std::string(90, 'x'));
+    ASSERT_TRUE(import());
+    EXPECT_EQ(mass(*catalog, catalog->model(key)->id), 17.5);
+
+    // Gone and back, with the first content and so under the first key.
+    ASSERT_TRUE(catalog->remove(catalog->model(key)->id));
+    EXPECT_FALSE(catalog->model(key));
+    write_model("office_chair.obj", std::string(80, 'x'));
+    ASSERT_EQ(import()->added, 1u);
+    const std::int64_t id = catalog->model(key)->id;
+    EXPECT_EQ(mass(*catalog, id), 17.5);
+    const auto set = catalog->attributes(id);
+    EXPECT_EQ(set->find("mass")->level, AttributeLevel::manual);
+    EXPECT_EQ(set->find("mass")->source.rfind("set by ", 0), 0u);
+
+    ASSERT_TRUE(catalog->reset_attribute(id, "mass"));
+    EXPECT_EQ(mass(*catalog, id), catalog->automatic_attributes(id)->number("mass", 0));
+}
+
+TEST_F(CatalogTest, AManualCategoryIsWhereTheModelIsListed) {
+    const auto catalog = open();
+    const auto before = catalog->model("office chair");
+    ASSERT_TRUE(catalog->set_attribute(before->id, "category", std::string("my things")));
+    EXPECT_EQ(catalog->model("office chair")->category, "my things");
+    EXPECT_EQ(catalog->search({.category = "my things"})->total, 1);
+    EXPECT_EQ(catalog->search({.words = "things"})->total, 1);
+    ASSERT_TRUE(catalog->reset_attribute(before->id, "category"));
+    EXPECT_EQ(catalog->model("office chair")->category, before->category);
+}
+
+TEST_F(CatalogTest, AChangedTaxonomyResolvesAllModelsAgain) {
+    const std::filesystem::path own = folder_ / "taxonomy";
+    std::filesystem::copy(taxonomy_folder, own, std::filesystem::copy_options::recursive);
+    {
+        auto catalog = Catalog::open(database(), own);
+        ASSERT_TRUE(catalog);
+        ASSERT_TRUE((*catalog)->set_attribute((*catalog)->model("office chair")->id, "mass", 17.5));
+    }
+    // Whatever was stored is replaced, as the damaged row shows.
+    auto connection = database::open_model_database(database());
+    ASSERT_TRUE(connection);
+    ASSERT_TRUE((*connection)->execute("UPDATE model_knowledge SET automatic = '[]'"));
+    {
+        auto same = Catalog::open(database(), own);
+        EXPECT_TRUE((*same)->automatic_attributes((*same)->model("office chair")->id)->entries().empty());
+    }
+    std::ofstream(own / "taxonomy.json", std::ios::app) << "\n\n";
+    auto changed = Catalog::open(database(), own);
+    ASSERT_TRUE(changed);
+    const std::int64_t id = (*changed)->model("office chair")->id;
+    EXPECT_GT((*changed)->automatic_attributes(id)->number("mass", 0), 0);
+    EXPECT_EQ(mass(**changed, id), 17.5);
+}
+
+TEST_F(CatalogTest, ANameOfTwoModelsIsNoName) {
+    write_model("other/office_chair.obj", std::string(85, 'x'));
+    ASSERT_TRUE(import());
+    const auto catalog = open();
+    const auto model = catalog->model("office chair");
+    ASSERT_FALSE(model);
+    EXPECT_NE(model.error().remedy.find("file:"), std::string::npos);
+}
+
+TEST_F(CatalogTest, ComesWithThePrimitivesAndTheirFormulas) {
+    auto catalog = Catalog::open(folder_ / "new.sqlite", taxonomy_folder);
+    ASSERT_TRUE(catalog) << catalog.error().message();
+    EXPECT_EQ((*catalog)->model_count(), 6);
+    EXPECT_EQ((*catalog)->search({.category = "primitives"})->total, 6);
+    for (const char* shape : {"box", "sphere", "capsule", "cylinder", "cone", "plane"}) {
+        const auto model = (*catalog)->model(std::string("primitive:") + shape);
+        ASSERT_TRUE(model) << shape;
+        EXPECT_EQ(model->geometry_kind, GeometryKind::analytical);
+        EXPECT_GT((*catalog)->thumbnail(model->id)->size(), 100u) << shape;
+        const auto mesh = (*catalog)->mesh(model->id);
+        ASSERT_TRUE(mesh);
+        EXPECT_NEAR(geometry::bounds(*mesh).lower.y, 0, 1e-4) << shape;
+        EXPECT_EQ(model->physical_kind, std::string(shape) == "plane" ? "static" : "rigid") << shape;
+        const auto facts = (*catalog)->facts(model->id);
+        ASSERT_TRUE(facts);
+        EXPECT_NEAR(geometry::bounds(*mesh).size().y, facts->geometry.size.y, 1e-3) << shape;
+    }
+    const auto volume = [&](const char* key) { return (*catalog)->facts((*catalog)->model(key)->id)->geometry.volume; };
+    EXPECT_DOUBLE_EQ(volume("primitive:box"), 1);
+    EXPECT_NEAR(volume("primitive:sphere"), 0.5235988, 1e-7);
+    EXPECT_NEAR(volume("primitive:cylinder"), 0.7853982, 1e-7);
+    EXPECT_NEAR(volume("primitive:cone"), 0.2617994, 1e-7);
+
+    // Removed by a person means removed.
+    ASSERT_TRUE((*catalog)->remove((*catalog)->model("primitive:cone")->id));
+    catalog = Catalog::open(folder_ / "new.sqlite", taxonomy_folder);
+    EXPECT_EQ((*catalog)->model_count(), 5);
+}
+
+TEST(KnowledgeJson, RefusesDamagedText) {
+    for (const char* text : {"", "{", "null", "3", "[1]", "[{}]", R"([{"name":"mass"}])", R"({"name":3})",
+                             R"([{"name":"mass","number":[],"source":"","level":"kind"}])",
+                             R"([{"name":"mass","number":1,"source":"","level":"best"}])",
+                             R"([{"name":"inertia","tensor":[[1,2,3],[1,2]],"source":"","level":"kind"}])"}) {
+        EXPECT_FALSE(set_from_json(text)) << text;
+        EXPECT_FALSE(facts_from_json(text)) << text;
+        EXPECT_FALSE(value_from_json(text)) << text;
+    }
+}
+
+TEST(KnowledgeJson, KeepsEveryBit) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const std::vector<AttributeValue> values{0.1,
+                                             1e-300,
+                                             infinity,
+                                             -infinity,
+                                             std::string("inf"),
+                                             std::string(),
+                                             true,
+                                             false,
+                                             Vec3{0.1, -infinity, 3},
+                                             Mat3{{1, 2, 3}, {4, 5, 6}, {7, 8, 1.0 / 3}}};
+    for (const AttributeValue& value : values) {
+        const auto back = value_from_json(to_json(value));
+        ASSERT_TRUE(back);
+        EXPECT_EQ(*back, value);
+    }
+    attributes::AttributeSet set;
+    set.put({"mass", 0.1, 0.05, infinity, "Marks' handbook, \"table 3\"", AttributeLevel::category});
+    const auto back = set_from_json(to_json(set));
+    ASSERT_TRUE(back);
+    ASSERT_EQ(back->entries().size(), 1u);
+    EXPECT_EQ(back->find("mass")->high, infinity);
+    EXPECT_EQ(back->find("mass")->source, "Marks' handbook, \"table 3\"");
+    EXPECT_EQ(back->find("mass")->level, AttributeLevel::category);
+}
+
+TEST(KnowledgeJson, TextThatIsNotUtf8IsReplaced) {
+    attributes::ModelFacts facts;
+    facts.material_names = {"Bo\xeete"};
+    const auto back = facts_from_json(to_json(facts));
+    ASSERT_TRUE(back);
+    EXPECT_EQ(back->material_names[0], "Bo\xef\xbf\xbdte");
+    EXPECT_EQ(valid_utf8("Boîte"), "Boîte");
+}
+
+}  // namespace
+}  // namespace embody::catalog

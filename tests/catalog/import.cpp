@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <thread>
+
+#include "catalog/import_fixture.h"
+
+namespace embody::catalog {
+namespace {
+
+TEST_F(ImportTest, NamesEachPathThatCannotBeImportedAndGoesOn) {
+    write_model("a.obj", "aaa");
+    write_model("b.obj", "broken");
+    write_model("letter.txt", "Dear reader");
+    write_file(folder_ / "fake.sh3f", "no zip");
+    std::filesystem::create_directories(folder_ / "empty");
+    const auto report = import(
+        {folder_ / "missing.obj", models() / "letter.txt", folder_ / "fake.sh3f", folder_ / "empty", models(), ""});
+    ASSERT_TRUE(report) << report.error().message();
+    EXPECT_EQ(report->added, 1u);
+    ASSERT_EQ(report->failures.size(), 6u);
+    for (const ImportFailure& failure : report->failures) {
+        EXPECT_FALSE(failure.error.why.empty());
+        EXPECT_EQ(failure.error.message().find('\n'), std::string::npos);
+    }
+    EXPECT_NE(report->failures[0].error.message().find("missing.obj"), std::string::npos);
+    EXPECT_EQ(report->failures.back().path, (models() / "b.obj").string());
+    EXPECT_EQ(report->failures.back().error.why, "is broken");
+}
+
+TEST_F(ImportTest, AnUnreadableDatabaseEndsTheImport) {
+    write_model("a.obj", "aaa");
+    write_file(database(), std::string(4096, 'x'));
+    EXPECT_FALSE(import());
+}
+
+TEST_F(ImportTest, FailsWhereNoWorkerCanBeStarted) {
+    write_model("a.obj", "aaa");
+    const auto report = import({models()}, {}, [](const auto&, const auto&) {
+        return Error{"worker", "is missing", {}};
+    });
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().why, "is missing");
+}
+
+TEST_F(ImportTest, FullDiskIsToldAndWhatWasStoredStays) {
+    for (int i = 0; i < 200; ++i) write_model("m" + std::to_string(i) + ".obj", std::string(200 + i, 'x'));
+    auto taxonomy = attributes::Taxonomy::load(taxonomy_folder);
+    auto connection = database::open_model_database(database());
+    ASSERT_TRUE(taxonomy && connection);
+    ASSERT_TRUE((*connection)->execute("PRAGMA max_page_count = 120"));
+    const auto report = Importer(**connection, **taxonomy, prepare_boxes).run({models()}, {});
+    ASSERT_FALSE(report);
+    EXPECT_NE(report.error().why.find("no space"), std::string::npos) << report.error().message();
+    const std::int64_t stored = stored_models();
+    EXPECT_GT(stored, 0);
+    EXPECT_LT(stored, 200);
+    EXPECT_TRUE((*connection)->check_integrity());
+}
+
+TEST_F(ImportTest, TheSameFileTwiceIsNotTwoModels) {
+    write_model("a.obj", "aaa");
+    write_model("copy of a.obj", "aaa");
+    const auto first = import();
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->added, 1u);
+    EXPECT_EQ(first->unchanged, 1u);
+
+    write_model("elsewhere/again.obj", "aaa");
+    const auto second = import({models(), models() / "a.obj"});
+    ASSERT_TRUE(second);
+    EXPECT_EQ(second->added + second->updated, 0u);
+    EXPECT_EQ(second->unchanged, 4u);
+    EXPECT_EQ(second->keys, std::vector<std::string>(4, first->keys.at(0)));
+    EXPECT_EQ(stored_models(), 1);
+}
+
+TEST_F(ImportTest, AChangedFileGoesOnBeingTheSameModel) {
+    write_model("chair.obj", std::string(80, 'x'));
+    ASSERT_TRUE(import());
+    const auto catalog = open();
+    const ModelSummary before = *catalog->model("chair");
+    write_model("chair.obj", std::string(90, 'x'));
+    const auto report = import();
+    ASSERT_TRUE(report);
+    EXPECT_EQ(report->updated, 1u);
+    const ModelSummary after = *catalog->model("chair");
+    EXPECT_EQ(after.key, before.key);
+    EXPECT_EQ(after.id, before.id);
+    EXPECT_NE(after.content_hash, before.content_hash);
+
+    // Back again: the old content is not taken for stored.
+    write_model("chair.obj", std::string(80, 'x'));
+    EXPECT_EQ(import()->updated, 1u);
+    EXPECT_EQ(catalog->model("chair")->content_hash, before.content_hash);
+    EXPECT_EQ(stored_models(), 1);
+}
+
+TEST_F(ImportTest, OfTwoEqualFilesAChangedOneBecomesAModelOfItsOwn) {
+    write_model("a.obj", std::string(80, 'x'));
+    write_model("b.obj", std::string(80, 'x'));
+    ASSERT_TRUE(import());
+    ASSERT_TRUE(import());  // now both places are known
+    write_model("b.obj", std::string(90, 'x'));
+    EXPECT_EQ(import()->added, 1u);
+    EXPECT_EQ(import()->unchanged, 2u);
+    EXPECT_EQ(stored_models(), 2);
+}
+
+TEST_F(ImportTest, AgainPreparesWhatIsUnchanged) {
+    write_model("a.obj", "aaa");
+    ASSERT_TRUE(import());
+    const auto report = import({models()}, {.again = true});
+    ASSERT_TRUE(report);
+    EXPECT_EQ(report->updated, 1u);
+}
+
+TEST_F(ImportTest, StopsWhenAskedAndGoesOnNextTime) {
+    for (int i = 0; i < 10; ++i) write_model("m" + std::to_string(i) + ".obj", std::string(10 + i, 'x'));
+    std::size_t calls = 0;
+    const auto stopped = import({models()}, {.progress = [&](const ImportProgress& progress) {
+                                    ++calls;
+                                    EXPECT_EQ(progress.total, 10u);
+                                    return progress.done < 4;
+                                }});
+    ASSERT_TRUE(stopped);
+    EXPECT_TRUE(stopped->stopped);
+    EXPECT_EQ(stopped->added, 4u);
+    EXPECT_EQ(calls, 5u);  // one before the first model
+    const auto rest = import();
+    EXPECT_EQ(rest->added, 6u);
+    EXPECT_EQ(rest->unchanged, 4u);
+    EXPECT_FALSE(rest->stopped);
+}
+
+TEST_F(ImportTest, AKillLosesNothingThatWasDone) {
+    for (int i = 0; i < 40; ++i) write_model("m" + std::to_string(i) + ".obj", std::string(10 + i, 'x'));
+    std::int64_t stored = 0;
+    for (const std::size_t last : {7u, 21u}) {
+        const pid_t child = fork();
+        ASSERT_GE(child, 0);
+        if (child == 0) {
+            // Dies without a word while it works on a model, in the middle of whatever the database does.
+            std::size_t count = 0;
+            (void)import({models()}, {}, [&](const auto& items, const auto& done) -> Result<void> {
+                for (std::size_t i = 0; i < items.size(); ++i) {
+                    if (count++ == last) kill(getpid(), SIGKILL);
+                    if (!done(i, prepare_box(items[i]))) break;
+                }
+                return {};
+            });
+            _exit(0);
+        }
+        int status = 0;
+        waitpid(child, &status, 0);
+        ASSERT_TRUE(WIFSIGNALED(status));
+        stored += static_cast<std::int64_t>(last);
+        EXPECT_EQ(stored_models(), stored);
+        auto connection = database::open_model_database(database());
+        ASSERT_TRUE(connection);
+        EXPECT_TRUE((*connection)->check_integrity());
+    }
+    const auto report = import();
+    ASSERT_TRUE(report);
+    EXPECT_EQ(report->added, 12u);
+    EXPECT_EQ(report->unchanged, 28u);
+    EXPECT_EQ(stored_models(), 40);
+}
+
+TEST_F(ImportTest, AKillAtAnyMomentLeavesAWholeDatabase) {
+    for (int i = 0; i < 60; ++i) write_model("m" + std::to_string(i) + ".obj", std::string(10 + i, 'x'));
+    for (int round = 0; round < 12; ++round) {
+        const pid_t child = fork();
+        ASSERT_GE(child, 0);
+        if (child == 0) {
+            (void)import({models()}, {.again = true});
+            _exit(0);
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(15 + 17 * round));
+        kill(child, SIGKILL);
+        waitpid(child, nullptr, 0);
+        auto connection = database::open_model_database(database());
+        ASSERT_TRUE(connection) << connection.error().message();
+        const auto whole = (*connection)->check_integrity();
+        ASSERT_TRUE(whole) << whole.error().message();
+    }
+    ASSERT_TRUE(import());
+    EXPECT_EQ(stored_models(), 60);
+}
+
+TEST_F(ImportTest, TwoImportsAtOnceMakeEachModelOnceWhileOthersRead) {
+    for (int i = 0; i < 60; ++i) write_model("chair" + std::to_string(i) + ".obj", std::string(10 + i, 'x'));
+    { ASSERT_TRUE(open()); }
+    std::vector<pid_t> children;
+    for (int i = 0; i < 2; ++i) {
+        children.push_back(fork());
+        ASSERT_GE(children.back(), 0);
+        if (children.back() == 0) {
+            const auto report = import();
+            _exit(report && report->failures.empty() ? 0 : 1);
+        }
+    }
+    // Two readers see a growing, always whole catalogue and are never turned away.
+    std::atomic<bool> importing = true;
+    std::atomic<int> refused = 0, shrunk = 0;
+    const auto read = [&] {
+        const auto catalog = Catalog::open(database(), taxonomy_folder);
+        if (!catalog) {
+            ++refused;
+            return;
+        }
+        std::int64_t seen = 0;
+        while (importing) {
+            const auto page = (*catalog)->search({.words = "chair", .limit = 1000});
+            if (!page) ++refused;
+            if (page && page->total < seen) ++shrunk;
+            if (page) seen = page->total;
+            for (const ModelSummary& model : page ? page->models : std::vector<ModelSummary>()) {
+                if (!(*catalog)->geometry_glb(model.id)) ++refused;
+            }
+        }
+    };
+    std::thread first(read), second(read);
+    for (const pid_t child : children) {
+        int status = 0;
+        waitpid(child, &status, 0);
+        EXPECT_EQ(status, 0);
+    }
+    importing = false;
+    first.join();
+    second.join();
+    EXPECT_EQ(refused, 0);
+    EXPECT_EQ(shrunk, 0);
+    EXPECT_EQ(stored_models(), 60);
+}
+
+}  // namespace
+}  // namespace embody::catalog
