@@ -127,7 +127,7 @@ export class Studio {
     this.version = hello.version;
     this.ready = true;
     this.simulation = hello.simulation;
-    this.document.reset(hello.scene);
+    this.document.reset(hello);
     this.openCamera();
     this.retint();
     this.connectionChanged.emit();

@@ -17,6 +17,8 @@ export interface TestHook {
   frames(): number;
   /** Where on the page the middle of an entity's box is seen. */
   seenAt(index: number): { x: number; y: number } | null;
+  /** Red, green, blue and amount of the state colour an entity is drawn with. */
+  tintOf(index: number): number[];
   pick(x: number, y: number): number | null;
   /** Stops drawing, for screenshots; resume() goes on. */
   halt(): void;
@@ -50,6 +52,7 @@ export function offerTestHook(studio: Studio): void {
       const { x, y } = studio.view.project(bounds.getCenter(new Vector3()));
       return { x, y };
     },
+    tintOf: (index) => studio.entities.tintOf(index),
     pick: (x, y) => studio.view.pick(x, y)?.index ?? null,
     halt: () => studio.view.halt(),
     resume: () => studio.view.resume(),

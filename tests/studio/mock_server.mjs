@@ -129,7 +129,7 @@ export class MockServer {
 
   // Commands by name; each returns its result and may edit the scene.
   commands = {
-    hello: () => ({ version: "0.0-mock", scene: this.scene, revision: 1, simulation: this.simulation, frame_version: 1 }),
+    hello: () => ({ version: "0.0-mock", scene: this.scene, revision: 1, simulation: this.simulation, frame_version: 1, undo: null, redo: null, unsaved: false, name: "", spawned: [], despawned: [] }),
     "catalog.categories": () => ({ categories: NOUNS.map((category) => ({ category, models: Math.ceil(this.models / NOUNS.length) })) }),
     "catalog.model": ({ key }) => ({ model: this.model(Number(key.split("/")[1])), attributes: [] }),
     "catalog.search": ({ words = "", category = "", limit = 50, offset = 0 }) => {
@@ -147,7 +147,7 @@ export class MockServer {
       this.tell([]);
       return { name: this.scene.title, path: "mock.json" };
     },
-    "scene.settings": (settings) => this.edit("change settings", () => Object.assign(this.scene.settings, settings), [{ op: "settings", ...settings }]),
+    "scene.settings": (settings) => this.edit("change settings", () => Object.assign(this.scene.settings, settings), [{ op: "settings", settings }]),
     "entity.add": ({ entity, drop }) => {
       let added;
       this.edit(`add ${entity.name}`, () => {
@@ -200,12 +200,12 @@ export class MockServer {
     if (command === "hello") this.sendFrame();
   }
 
-  edit(label, change) {
+  edit(label, change, further = []) {
     this.past.push({ label, before: structuredClone(this.scene) });
     this.future = [];
     const before = structuredClone(this.scene.entities);
     change();
-    this.tellDifference(before);
+    this.tellDifference(before, further);
   }
 
   travel(from, to) {
@@ -218,8 +218,8 @@ export class MockServer {
     return {};
   }
 
-  tellDifference(before) {
-    const changes = [];
+  tellDifference(before, further = []) {
+    const changes = [...further];
     for (const { index } of before) if (!this.entity(index)) changes.push({ op: "entity_removed", index });
     const known = new Map(before.map((entity) => [entity.index, JSON.stringify(entity)]));
     for (const entity of this.scene.entities) if (known.get(entity.index) !== JSON.stringify(entity)) changes.push({ op: "entity", entity });
@@ -230,7 +230,7 @@ export class MockServer {
   }
 
   tell(changes) {
-    this.broadcast({ event: "document", revision: 1, changes, undo: this.past.at(-1)?.label ?? null, redo: this.future.at(-1)?.label ?? null, unsaved: this.unsaved ?? false, name: null });
+    this.broadcast({ event: "document", revision: 1, changes, undo: this.past.at(-1)?.label ?? null, redo: this.future.at(-1)?.label ?? null, unsaved: this.unsaved ?? false, name: "" });
   }
 
   broadcast(event) {

@@ -45,8 +45,9 @@ export interface AttributeEntry {
 export interface SceneListing {
   name: string;
   title: string;
-  kind: "saved" | "demo";
-  modified: string | number | null;
+  /** `recovery`: an autosave of a scene that was not saved. */
+  kind: "saved" | "recovery" | "demo";
+  modified: string | null;
 }
 
 export type SimulationState = "stopped" | "playing" | "paused";
@@ -89,9 +90,25 @@ export interface Ray {
   direction: Vector;
 }
 
+/** The scene and its simulation as they are when a client comes. */
+export interface Hello {
+  version: string;
+  scene: Scene;
+  revision: number;
+  simulation: Simulation;
+  frame_version: number;
+  undo: string | null;
+  redo: string | null;
+  unsaved: boolean;
+  name: string;
+  /** What actions have put into the running world, and which of the document's entities they have taken out. */
+  spawned: Entity[];
+  despawned: number[];
+}
+
 /** Each command's parameters and result. */
 export interface Commands {
-  hello: [Record<string, never>, { version: string; scene: Scene; revision: number; simulation: Simulation; frame_version: number }];
+  hello: [Record<string, never>, Hello];
   "catalog.search": [{ words?: string; category?: string; limit?: number; offset?: number }, { models: ModelSummary[]; total: number }];
   "catalog.categories": [Record<string, never>, { categories: { category: string; models: number }[] }];
   "catalog.model": [{ key: string }, { model: ModelSummary; attributes: AttributeEntry[] }];
@@ -103,7 +120,7 @@ export interface Commands {
   "entity.add": [{ entity: NewEntity; drop?: Ray }, { index: number }];
   "entity.remove": [{ indices: number[] }, unknown];
   "entity.transform": [{ poses: PoseEdit[]; merge?: string }, unknown];
-  "entity.update": [{ index: number; entity: NewEntity }, unknown];
+  "entity.update": [{ index: number; entity: NewEntity; merge?: string }, unknown];
   "entity.set_attribute": [{ indices: number[]; name: string; value: AttributeValue }, unknown];
   "entity.reset_attribute": [{ indices: number[]; name: string }, unknown];
   "entity.duplicate": [{ indices: number[]; offset?: Vector }, { indices: number[] }];
@@ -126,7 +143,7 @@ export type DocumentChange =
   | { op: "reset"; scene: Scene }
   | { op: "entity"; entity: Entity }
   | { op: "entity_removed"; index: number }
-  | ({ op: "settings" } & Record<string, unknown>)
+  | { op: "settings"; settings: Partial<SceneSettings> & { title?: string; description?: string } }
   | { op: "joint"; joint: Joint }
   | { op: "joint_removed"; index: number }
   | { op: "action"; action: Action }
@@ -139,7 +156,8 @@ export interface DocumentEvent {
   undo: string | null;
   redo: string | null;
   unsaved: boolean;
-  name: string | null;
+  /** Under which it was saved; empty for a scene that never was. */
+  name: string;
 }
 
 export type ServerEvent =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import type { DocumentChange, DocumentEvent } from "../connection/messages";
+import type { DocumentChange, DocumentEvent, Hello } from "../connection/messages";
 import { Signal } from "../signal";
 import type { Action, Entity, Joint, Pose, Quaternion, Scene, SceneSettings, Vector } from "./scene_types";
 
@@ -27,48 +27,52 @@ export interface Changed {
 export class SceneDocument {
   readonly changed = new Signal<Changed>();
   readonly entities = new Map<number, Entity>();
-  /** Entities that actions put into the running world; not part of the document. */
+  /** Entities that actions put into the running world; they are not the document's, and hide one of it with the same index. */
   readonly spawned = new Map<number, Entity>();
+  /** Entities of the document that actions took out of the running world. */
+  readonly absent = new Set<number>();
   readonly joints = new Map<number, Joint>();
   readonly actions = new Map<number, Action>();
   settings: SceneSettings = DEFAULT_SETTINGS;
   camera: { position: Vector; target: Vector } | null = null;
   title = "";
   description = "";
-  name: string | null = null;
+  name = "";
   undo: string | null = null;
   redo: string | null = null;
   unsaved = false;
 
   entity(index: number): Entity | undefined {
-    return this.entities.get(index) ?? this.spawned.get(index);
+    return this.spawned.get(index) ?? this.entities.get(index);
   }
 
-  /** The whole scene, as the answer to hello brings it. */
-  reset(scene: Scene): void {
-    this.takeScene(scene);
+  /** Everything, as the answer to hello brings it. */
+  reset(hello: Hello): void {
+    this.takeScene(hello.scene);
+    for (const entity of hello.spawned ?? []) this.spawned.set(entity.index, entity);
+    for (const index of hello.despawned ?? []) this.absent.add(index);
+    this.takeHeading(hello);
     this.changed.emit({ ...nothingChanged(), all: true, settings: true, joints: true, actions: true });
   }
 
   apply(event: DocumentEvent): void {
     const changed = nothingChanged();
     for (const change of event.changes) this.applyChange(change, changed);
-    this.undo = event.undo;
-    this.redo = event.redo;
-    this.unsaved = event.unsaved;
-    this.name = event.name;
+    this.takeHeading(event);
     this.changed.emit(changed);
   }
 
   /** An action put an entity into the running world. */
   spawn(entity: Entity): void {
     this.spawned.set(entity.index, entity);
+    this.absent.delete(entity.index);
     this.changed.emit({ ...nothingChanged(), entities: [entity.index] });
   }
 
   /** An action took an entity out of the running world; one of the document stays in it and comes back with a reset. */
   despawn(index: number): void {
     this.spawned.delete(index);
+    if (this.entities.has(index)) this.absent.add(index);
     this.changed.emit({ ...nothingChanged(), removed: [index] });
   }
 
@@ -76,12 +80,21 @@ export class SceneDocument {
   forgetSpawned(): void {
     const removed = [...this.spawned.keys()];
     this.spawned.clear();
+    this.absent.clear();
     this.changed.emit({ ...nothingChanged(), removed, entities: [...this.entities.keys()] });
+  }
+
+  private takeHeading({ undo, redo, unsaved, name }: Pick<Hello, "undo" | "redo" | "unsaved" | "name">): void {
+    this.undo = undo ?? null;
+    this.redo = redo ?? null;
+    this.unsaved = unsaved ?? false;
+    this.name = name ?? "";
   }
 
   private takeScene(scene: Scene): void {
     this.entities.clear();
     this.spawned.clear();
+    this.absent.clear();
     this.joints.clear();
     this.actions.clear();
     for (const entity of scene.entities ?? []) this.entities.set(entity.index, entity);
@@ -108,7 +121,7 @@ export class SceneDocument {
         changed.removed.push(change.index);
         break;
       case "settings":
-        this.applySettings(change);
+        this.applySettings(change.settings);
         changed.settings = true;
         break;
       case "joint":
@@ -130,12 +143,10 @@ export class SceneDocument {
     }
   }
 
-  private applySettings(change: Record<string, unknown>): void {
-    // The settings lie beside `op`, or one level down under their own name.
-    const nested = change["settings"] as Record<string, unknown> | undefined;
-    const { op: _op, settings: _settings, title, ...beside } = change;
-    this.settings = { ...this.settings, ...beside, ...nested };
-    if (typeof title === "string") this.title = title;
+  private applySettings({ title, description, ...settings }: Partial<SceneSettings> & { title?: string; description?: string }): void {
+    this.settings = { ...this.settings, ...settings };
+    this.title = title ?? this.title;
+    this.description = description ?? this.description;
   }
 }
 

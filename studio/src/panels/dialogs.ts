@@ -90,19 +90,23 @@ export async function openScenes(studio: Studio): Promise<void> {
     );
     return element("section", {}, element("h3", {}, title), items.length > 0 ? element("ul", {}, ...items) : element("p", { class: "note" }, none));
   };
-  body.replaceChildren(list("Saved", "saved", "Nothing saved yet. Ctrl+S saves."), list("Examples", "demo", "No examples found."));
+  const recovered = answer.scenes.some((scene) => scene.kind === "recovery");
+  body.replaceChildren(
+    list("Saved", "saved", "Nothing saved yet. Ctrl+S saves."),
+    list("Examples", "demo", "No examples found."),
+    ...(recovered ? [list("Kept by itself, not saved", "recovery", "")] : []),
+  );
   body.querySelector<HTMLElement>("button")?.focus();
 }
 
 function dateText(modified: SceneListing["modified"]): string {
-  if (modified === null || modified === undefined || modified === "") return "";
-  // Seconds, or a date as text.
-  const date = new Date(typeof modified === "number" ? modified * 1000 : modified);
+  if (!modified) return "";
+  const date = new Date(modified);
   return Number.isNaN(date.getTime()) ? "" : ` ${date.toLocaleString()}`;
 }
 
 export function saveAs(studio: Studio): void {
-  const name = element("input", { type: "text", value: studio.document.name ?? studio.document.title, "aria-label": "Name", "data-testid": "save-name" });
+  const name = element("input", { type: "text", value: studio.document.name || studio.document.title, "aria-label": "Name", "data-testid": "save-name" });
   const error = element("p", { class: "field-error", role: "alert" });
   show(error, false);
   const form = element(

@@ -150,7 +150,7 @@ export class ModelBrowser {
 
 /** What a tile or file becomes in the scene. */
 export function entityOf(model: ModelSummary): NewEntity {
-  return { name: model.name, model: model.key };
+  return { model: model.key };
 }
 
 function primitiveDrawing(primitive: Primitive): SVGSVGElement {

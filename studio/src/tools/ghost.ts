@@ -6,7 +6,11 @@ import type { Drawable } from "../view/drawable";
 import { drawShape } from "../view/shapes";
 
 /** Distance from the eye at which things arrive where no surface is, m. */
-const REACH = 4;
+const REACH = 5;
+const FARTHEST_GROUND = 100;
+/** Cosine: up to 60° a surface is one to lie on. */
+const STEEPEST_FLOOR = 0.5;
+const UP = new Vector3(0, 1, 0);
 
 /** What will be added lies, half transparent, on the surface under the pointer. The server places the real one. */
 export class Ghost {
@@ -35,9 +39,18 @@ export class Ghost {
   /** Lies on what is under the pointer. */
   moveTo(clientX: number, clientY: number): void {
     const { view } = this.studio;
-    this.group.position.copy(this.landing(clientX, clientY));
-    if (this.drawable) this.group.position.y -= this.drawable.bounds.min.y;
-    this.group.visible = this.drawable !== null;
+    if (!this.drawable) return;
+    const { point, normal } = this.landing(clientX, clientY);
+    const { bounds } = this.drawable;
+    this.group.position.copy(point);
+    if (normal.y > STEEPEST_FLOOR) this.group.position.y -= bounds.min.y;
+    else {
+      // At a wall or ceiling it is pushed off by what of it would be behind the surface.
+      const half = bounds.getSize(new Vector3()).multiplyScalar(0.5);
+      const reach = Math.abs(normal.x) * half.x + Math.abs(normal.y) * half.y + Math.abs(normal.z) * half.z;
+      this.group.position.addScaledVector(normal, reach).sub(bounds.getCenter(new Vector3()));
+    }
+    this.group.visible = true;
     view.invalidate();
   }
 
@@ -52,14 +65,14 @@ export class Ghost {
     this.hide();
   }
 
-  private landing(clientX: number, clientY: number): Vector3 {
+  private landing(clientX: number, clientY: number): { point: Vector3; normal: Vector3 } {
     const { view } = this.studio;
     const hit = view.pick(clientX, clientY);
-    if (hit) return hit.point;
+    if (hit) return hit;
     const ground = view.meet(clientX, clientY);
-    if (ground && ground.distanceTo(view.rig.camera.position) < 20 * view.rig.distance) return ground;
+    if (ground && ground.distanceTo(view.rig.camera.position) < FARTHEST_GROUND) return { point: ground, normal: UP };
     const { origin, direction } = view.ray(clientX, clientY);
-    return origin.addScaledVector(direction, REACH);
+    return { point: origin.addScaledVector(direction, REACH), normal: UP };
   }
 }
 
@@ -67,7 +80,9 @@ export class Ghost {
 export async function addUnder(studio: Studio, entity: NewEntity, clientX: number, clientY: number): Promise<void> {
   const { origin, direction } = studio.view.ray(clientX, clientY);
   const drop = { origin: origin.toArray(), direction: direction.toArray() };
-  const added = await studio.command("entity.add", { entity, drop });
+  // A plane is endless: it has its own place and lies on nothing.
+  const params = entity.shape?.type === "plane" ? { entity } : { entity, drop };
+  const added = await studio.command("entity.add", params);
   if (added) studio.selection.set([added.index]);
 }
 

@@ -11,7 +11,7 @@ export interface Primitive {
 }
 
 function primitive(label: string, drawing: string, shape: Shape): Primitive {
-  return { name: shape.type, label, drawing, entity: () => ({ name: label, shape }) };
+  return { name: shape.type, label, drawing, entity: () => ({ shape }) };
 }
 
 /** The analytical models, at the size of things one holds in two hands. */

@@ -75,6 +75,12 @@ export class Batch {
     }
   }
 
+  tintOf(index: number): number[] {
+    const slot = this.slotOf.get(index);
+    const tint = this.meshes[0]?.geometry.getAttribute("tint");
+    return slot === undefined || !tint ? [] : [...tint.array.slice(slot * 4, slot * 4 + 4)];
+  }
+
   /** The entity behind an instance that a ray met. */
   entityAt(instance: number): number | undefined {
     return this.slots[instance];

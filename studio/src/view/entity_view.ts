@@ -11,7 +11,7 @@ import { drawShape, shapeKey } from "./shapes";
 import { type Quality, STATE_TINT } from "./tint";
 
 const WHITE = new Color(1, 1, 1);
-const STILL_COLOR = new Color(0.2, 0.21, 0.23);
+const STILL_COLOR = new Color(0.115, 0.12, 0.13);
 const PLACEHOLDER = shapeDrawable({ index: 0, shape: { type: "box", half_extents: [0.15, 0.15, 0.15] } });
 
 function shapeDrawable(entity: Entity): Drawable {
@@ -35,6 +35,8 @@ export class EntityView {
   tinted = true;
   /** While something is dragged, where the user has it, and its scale; wins over what the server said. */
   readonly held = new Map<number, { position: Vector3; rotation: Quaternion; scale: number }>();
+  /** Something was moved, added or removed since the shadows were drawn. */
+  shadowsAreOld = true;
   private readonly batches = new Map<string, Batch>();
   private readonly batchOf = new Map<number, { key: string; batch: Batch; entity: Entity }>();
   private pending = 0;
@@ -59,7 +61,7 @@ export class EntityView {
   apply(changed: Changed): void {
     if (changed.all) {
       for (const index of [...this.batchOf.keys()]) this.take(index);
-      for (const index of this.document.entities.keys()) this.put(index);
+      for (const index of this.known()) this.put(index);
       return;
     }
     for (const index of changed.removed) this.take(index);
@@ -69,12 +71,13 @@ export class EntityView {
   setQuality(quality: Quality): void {
     this.quality = quality;
     for (const index of [...this.batchOf.keys()]) this.take(index);
-    for (const index of [...this.document.entities.keys(), ...this.document.spawned.keys()]) this.put(index);
+    for (const index of this.known()) this.put(index);
   }
 
   /** Moves and tints what changed since the last call. */
   update(now: number, everything = false): void {
     const moved = everything ? this.batchOf.keys() : this.motion.moved;
+    if (everything || this.motion.moved.size > 0) this.shadowsAreOld = true;
     for (const index of moved) this.place(index, now);
     const restated = everything ? this.batchOf.keys() : this.motion.restated;
     for (const index of restated) this.tint(index);
@@ -100,6 +103,11 @@ export class EntityView {
     return this.batchOf.get(index)?.batch.drawable;
   }
 
+  /** Red, green and blue of the state colour as it is drawn, and how much it covers. */
+  tintOf(index: number): number[] {
+    return this.batchOf.get(index)?.batch.tintOf(index) ?? [];
+  }
+
   /** The box around the entities; endless planes count as a point. Empty when none is drawn. */
   boundsOf(indices: Iterable<number>, now: number): Box3 {
     const bounds = new Box3();
@@ -112,12 +120,16 @@ export class EntityView {
     return bounds;
   }
 
+  private known(): Set<number> {
+    return new Set([...this.document.entities.keys(), ...this.document.spawned.keys()]);
+  }
+
   private put(index: number): void {
     const entity = this.document.entity(index);
     if (!entity) return;
     if (!this.motion.pose(index, 0, this.position, this.rotation))
       this.motion.place(index, positionOf(entity.pose), rotationOf(entity.pose));
-    if (entity.enabled === false) {
+    if (entity.enabled === false || this.document.absent.has(index)) {
       this.take(index);
       return;
     }
@@ -171,6 +183,7 @@ export class EntityView {
     const shown = this.batchOf.get(index);
     if (!shown) return;
     this.batchOf.delete(index);
+    this.shadowsAreOld = true;
     shown.batch.remove(index);
     if (!shown.batch.empty) return;
     shown.batch.dispose();

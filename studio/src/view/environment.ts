@@ -67,22 +67,26 @@ export class Environment {
     this.grid.visible = shown;
   }
 
-  /** Keeps shadows sharp and air clear around what the camera looks at, `distance` metres away. */
-  follow(target: Vector3, distance: number): void {
+  /** Keeps shadows sharp and air clear around what the camera looks at, `distance` metres away; says whether the sun moved. */
+  follow(target: Vector3, distance: number): boolean {
     const reach = Math.max(SHADOW_REACH_LEAST, 1.4 * distance);
     const camera = this.sun.shadow.camera;
-    if (Math.abs(camera.right - reach) > 0.15 * reach) {
+    const resized = Math.abs(camera.right - reach) > 0.15 * reach;
+    if (resized) {
       camera.left = camera.bottom = -reach;
       camera.right = camera.top = reach;
       camera.near = 0.1;
       camera.far = 8 * reach;
       camera.updateProjectionMatrix();
     }
-    this.sun.target.position.copy(target);
-    this.sun.position.set(0.45, 1, 0.6).normalize().multiplyScalar(4 * camera.right).add(target);
+    // Shadows last while the view's middle stays about where it was.
+    const moved = resized || this.sun.target.position.distanceTo(target) > 0.1 * camera.right;
+    if (moved) this.sun.target.position.copy(target);
+    this.sun.position.set(0.45, 1, 0.6).normalize().multiplyScalar(4 * camera.right).add(this.sun.target.position);
     this.fog.near = 30 + 4 * distance;
     this.fog.far = 120 + 16 * distance;
     this.grid.position.set(Math.round(target.x), 0, Math.round(target.z));
+    return moved;
   }
 }
 
@@ -116,7 +120,7 @@ function gridMesh(): Mesh {
       }
       void main() {
         float fade = 1.0 - smoothstep(8.0, 60.0, distance(world, cameraPosition));
-        float strength = max(0.14 * lines(world.xz), 0.3 * lines(world.xz / 10.0));
+        float strength = max(0.2 * lines(world.xz), 0.4 * lines(world.xz / 10.0));
         gl_FragColor = vec4(color, strength * fade);
       }`,
   });

@@ -46,6 +46,7 @@ export class View {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, stencil: true, powerPreference: "high-performance" });
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.shadowMap.type = PCFShadowMap;
+    this.renderer.shadowMap.autoUpdate = false;
     this.environment = new Environment(this.scene, this.renderer);
     this.outline = new Outline(entities);
     this.scene.add(entities.group, this.outline.group);
@@ -149,7 +150,9 @@ export class View {
     this.beforeFrame.emit(now);
     this.entities.update(now);
     this.outline.update(now, this.renderer.getDrawingBufferSize(this.size));
-    this.environment.follow(this.rig.target, this.rig.distance);
+    const sunMoved = this.environment.follow(this.rig.target, this.rig.distance);
+    if (sunMoved || this.entities.shadowsAreOld) this.renderer.shadowMap.needsUpdate = true;
+    this.entities.shadowsAreOld = false;
     this.renderer.render(this.scene, this.rig.camera);
     ++this.frames;
     if (flying || moving) this.invalidate();

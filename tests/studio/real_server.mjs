@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// `embody serve` on a model database of real furniture, as a user has it.
+import { spawn, spawnSync } from "node:child_process";
+import { existsSync, mkdirSync, mkdtempSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const root = fileURLToPath(new URL("../../", import.meta.url));
+const CATALOGUES = "/usr/share/sweethome3d/furniture";
+
+/** The program: $EMBODY_PROGRAM, or the newest of the build folders. */
+export function findProgram() {
+  if (process.env.EMBODY_PROGRAM) return process.env.EMBODY_PROGRAM;
+  const builds = existsSync(join(root, "build")) ? readdirSync(join(root, "build")) : [];
+  const programs = ["build", ...builds.map((build) => join("build", build))]
+    .flatMap((build) => [join(root, build, "embody"), join(root, build, "src", "embody")])
+    .filter((program) => existsSync(program) && statSync(program).isFile());
+  return programs.sort((a, b) => statSync(b).mtimeMs - statSync(a).mtimeMs)[0] ?? null;
+}
+
+/**
+ * The file of a database with the furniture catalogues in it: $EMBODY_TEST_DATABASE as it is, or one in the build folder that
+ * the first run fills. Importing goes on where it stopped, so later runs cost little.
+ */
+export function prepareDatabase(program) {
+  if (process.env.EMBODY_TEST_DATABASE) return process.env.EMBODY_TEST_DATABASE;
+  const folder = join(root, "build", "studio-test");
+  const file = join(folder, "models.sqlite");
+  mkdirSync(folder, { recursive: true });
+  const catalogues = existsSync(CATALOGUES) ? readdirSync(CATALOGUES).map((name) => join(CATALOGUES, name)) : [];
+  if (catalogues.length === 0) throw new Error("no furniture catalogues: install the package sweethome3d-furniture");
+  const done = spawnSync(program, ["import", "--database", file, ...catalogues], { encoding: "utf8" });
+  // Single pieces may be unreadable; what counts is that there is a catalogue.
+  if (!existsSync(file)) throw new Error(`embody import failed: ${done.stderr || done.stdout}`);
+  return file;
+}
+
+/** A running server with a home folder of its own. */
+export class RealServer {
+  constructor(program, database) {
+    this.program = program;
+    this.database = database;
+    this.home = mkdtempSync(join(tmpdir(), "embody-studio-"));
+  }
+
+  /** Starts it on a scene (the document itself); resolves with its address. A second start takes the same port again. */
+  async start(scene) {
+    const file = join(this.home, "first.json");
+    writeFileSync(file, JSON.stringify(scene));
+    const words = ["serve", "--database", this.database, "--port", String(this.port ?? 0), "--scene", file];
+    this.process = spawn(this.program, words, { env: { ...process.env, XDG_DATA_HOME: this.home } });
+    let output = "";
+    const address = await new Promise((resolve, reject) => {
+      const read = (data) => {
+        output += data;
+        const printed = /^Studio: (http:\S+)/m.exec(output);
+        if (printed) resolve(printed[1]);
+      };
+      this.process.stdout.on("data", read);
+      this.process.stderr.on("data", read);
+      this.process.on("error", reject);
+      this.process.on("exit", (code) => reject(new Error(`embody serve ended with ${code}: ${output}`)));
+    });
+    this.port = Number(new URL(address).port);
+    return address;
+  }
+
+  async stop() {
+    if (!this.process || this.process.exitCode !== null) return;
+    const ended = new Promise((resolve) => this.process.once("exit", resolve));
+    this.process.kill("SIGTERM");
+    await ended;
+  }
+
+  async discard() {
+    await this.stop();
+    rmSync(this.home, { recursive: true, force: true });
+  }
+}
