@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "cli/commands.h"
+#include "cli/locations.h"
+#include "cli/output.h"
+#include "cli/scene_lookup.h"
+#include "scene/recording.h"
+#include "scene/simulation.h"
+
+namespace embody::cli {
+namespace {
+
+/// What a person wants to know at the end.
+struct Summary {
+    std::uint64_t steps = 0;
+    double simulated = 0, wall = 0;
+    double slowest_ms = 0;
+    std::uint32_t limits = 0;
+    bool paused = false;
+    std::size_t actions = 0;
+};
+
+nlohmann::json to_json(const Summary& summary, const scene::Simulation& simulation) {
+    const physics::StepReport& report = simulation.world().last_report();
+    const physics::Conserved sums = simulation.world().conserved();
+    return {{"steps", summary.steps},
+            {"simulated_seconds", summary.simulated},
+            {"wall_seconds", summary.wall},
+            {"average_ms", summary.steps > 0 ? 1000 * summary.wall / static_cast<double>(summary.steps) : 0},
+            {"slowest_ms", summary.slowest_ms},
+            {"active", report.bodies_active},
+            {"wants_to_sleep", report.bodies_wanting_to_sleep},
+            {"asleep", report.bodies_asleep},
+            {"contacts", report.contacts},
+            {"actions", summary.actions},
+            {"paused", summary.paused},
+            {"energy", sums.kinetic_energy + sums.potential_energy},
+            {"limits", summary.limits},
+            {"state_hash", std::to_string(simulation.world().state_hash())}};
+}
+
+void print(const Summary& summary, const scene::Simulation& simulation) {
+    const physics::StepReport& report = simulation.world().last_report();
+    fmt::print("{} steps, {:.3f} s simulated in {:.3f} s ({:.1f} times real time), slowest step {:.3f} ms\n",
+               summary.steps, summary.simulated, summary.wall,
+               summary.wall > 0 ? summary.simulated / summary.wall : 0.0, summary.slowest_ms);
+    fmt::print("bodies: {} active, {} want to sleep, {} asleep; {} contacts; {} actions carried out\n",
+               report.bodies_active, report.bodies_wanting_to_sleep, report.bodies_asleep, report.contacts,
+               summary.actions);
+    const auto reached = [&](physics::StepLimit limit) {
+        return (summary.limits & static_cast<std::uint32_t>(limit)) != 0;
+    };
+    using physics::StepLimit;
+    if (reached(StepLimit::linear_speed_clamped)) print_line("note: a body was slowed to settings.max_linear_speed");
+    if (reached(StepLimit::not_finite_body_frozen))
+        print_line("note: a body's state left the finite numbers; it was switched off where it last was");
+    if (reached(StepLimit::impact_rounds_exhausted))
+        print_line("note: an impact needed more rounds than allowed; a smaller settings.time_step helps");
+    if (reached(StepLimit::deep_penetration))
+        print_line("note: bodies overlapped deeply; place them apart or use a smaller settings.time_step");
+    if (summary.paused) print_line("an action paused the scene before the time was over");
+}
+
+}  // namespace
+
+int run_simulate(const SimulateArguments& arguments) {
+    const auto document = find_scene(arguments.scene);
+    if (!document) return report(document.error());
+    auto catalog = open_catalog(arguments.database);
+    if (!catalog) return report(catalog.error());
+    auto simulation = scene::Simulation::create(*document, catalog->get());
+    if (!simulation) return report(simulation.error());
+
+    std::unique_ptr<scene::Recorder> recorder;
+    if (!arguments.record.empty()) {
+        auto created = scene::Recorder::create(arguments.record, *document,
+                                               {arguments.rate, arguments.contacts, arguments.energy});
+        if (!created) return report(created.error());
+        recorder = std::move(*created);
+        if (auto sampled = recorder->sample(**simulation); !sampled) return report(sampled.error());
+    }
+
+    Summary summary;
+    const auto steps =
+        static_cast<std::uint64_t>(std::llround(arguments.seconds / (*simulation)->world().settings().time_step));
+    ProgressBar bar("Simulating");
+    const auto start = std::chrono::steady_clock::now();
+    while (summary.steps < steps && !summary.paused) {
+        const physics::StepReport& step = (*simulation)->step();
+        ++summary.steps;
+        summary.slowest_ms = std::max(summary.slowest_ms, step.milliseconds);
+        summary.limits |= step.limits;
+        summary.simulated = step.time;
+        summary.actions += (*simulation)->fired().size();
+        summary.paused = (*simulation)->pause_requested();
+        if (recorder) {
+            if (auto sampled = recorder->sample(**simulation); !sampled) return report(sampled.error());
+        }
+        if (summary.steps % 30 == 0) bar.show(summary.steps, steps, short_number(summary.simulated) + " s");
+    }
+    summary.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    bar.finish();
+    if (recorder) {
+        if (auto finished = recorder->finish(); !finished) return report(finished.error());
+    }
+    if (arguments.json)
+        print_json(to_json(summary, **simulation));
+    else
+        print(summary, **simulation);
+    return exit_ok;
+}
+
+}  // namespace embody::cli
