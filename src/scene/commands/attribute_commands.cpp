@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+
+#include "attributes/attribute_json.h"
+#include "attributes/registry.h"
+#include "scene/commands/commands.h"
+#include "scene/json/parts.h"
+
+namespace embody::scene {
+
+using attributes::AttributeDescription;
+using attributes::AttributeEntry;
+using attributes::AttributeSet;
+using nlohmann::json;
+
+json attribute_rows(const AttributeSet& acting, const AttributeSet& automatic, const std::vector<std::string>& own) {
+    constexpr std::array type_names{"number", "word", "truth", "vector", "tensor"};
+    json rows = json::array();
+    for (const AttributeEntry& entry : acting.entries()) {
+        json row = attributes::to_json(entry);
+        for (const char* field : {"low", "high"})
+            if (!row.contains(field)) row[field] = nullptr;
+
+        // What the panel needs to edit it, and to go back.
+        const AttributeDescription* description = attributes::describe(entry.name);
+        if (description) {
+            row["type"] = type_names[static_cast<std::size_t>(description->type)];
+            row["choices"] = description->choices;
+            row["range"] = nullptr;
+            const auto end = [](const std::optional<double>& value) {
+                return value ? attributes::to_json(*value) : json(nullptr);
+            };
+            if (description->low || description->high) row["range"] = {end(description->low), end(description->high)};
+        }
+        const AttributeEntry* before = automatic.find(entry.name);
+        row["automatic"] = before ? attributes::to_json(before->value) : json(nullptr);
+        row["overridden"] = std::find(own.begin(), own.end(), entry.name) != own.end();
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+namespace {
+
+// A new value for the name in each entity, or none.
+Result<json> change_attribute(SessionState& state, const std::vector<EntityIndex>& indices, const std::string& name,
+                              const std::optional<attributes::AttributeValue>& value, const std::string& merge) {
+    const AttributeDescription* description = attributes::describe(name);
+    const std::string label = description && !description->label.empty() ? description->label : name;
+    Edit edit = state.start_edit((value ? "Set " : "Reset ") + label + " of " + state.called(indices));
+    edit.merge = merge;
+    for (const EntityIndex index : indices) {
+        const Entity& before = *state.document.find(index);
+        EntityChange change = change_of(before, before);
+        if (value) {
+            change.after->attributes[name] = *value;
+        } else if (change.after->attributes.erase(name) == 0) {
+            continue;
+        }
+        edit.changes.emplace_back(std::move(change));
+    }
+    return done(state.commit(std::move(edit)));
+}
+
+Result<json> set_attribute(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    std::vector<EntityIndex> indices;
+    std::string name, merge;
+    need_indices(reader, state, indices);
+    need_text(reader, "name", "an attribute's name", name);
+    const json* value = reader.need("value", "the attribute's new value");
+    reader.text("merge", merge);
+    if (!reader.finish()) return *error;
+    Result<attributes::AttributeValue> read = attribute_from_json(name, *value, "value");
+    if (!read.ok()) return read.error();
+    return change_attribute(state, indices, name, read.value(), merge);
+}
+
+Result<json> reset_attribute(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    std::vector<EntityIndex> indices;
+    std::string name;
+    need_indices(reader, state, indices);
+    need_text(reader, "name", "an attribute's name", name);
+    if (!reader.finish()) return *error;
+    if (!attributes::describe(name)) return attribute_from_json(name, 0, "name").error();
+    return change_attribute(state, indices, name, std::nullopt, {});
+}
+
+Result<json> list_attributes(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    EntityIndex index = 0;
+    need_index(reader, "index", index);
+    if (!reader.finish()) return *error;
+
+    // As they act in the running world, spawned things too; else as the document says.
+    const Entity* entity = state.simulation->definition(index);
+    if (!entity) entity = state.document.find(index);
+    if (!entity) return state.entity(index, "index").error();
+    Result<AttributeSet> acting = state.simulation->attributes(index);
+    if (!acting.ok()) acting = state.bodies.attributes(*entity);
+    if (!acting.ok()) return acting.error();
+    Result<AttributeSet> automatic = state.bodies.automatic_attributes(*entity);
+    if (!automatic.ok()) return automatic.error();
+    std::vector<std::string> own;
+    for (const auto& [name, value] : entity->attributes) own.push_back(name);
+    return json{{"attributes", attribute_rows(acting.value(), automatic.value(), own)}};
+}
+
+constexpr Command commands[] = {{"entity.set_attribute", set_attribute},
+                                {"entity.reset_attribute", reset_attribute},
+                                {"entity.attributes", list_attributes}};
+
+}  // namespace
+
+std::span<const Command> attribute_commands() { return commands; }
+
+}  // namespace embody::scene

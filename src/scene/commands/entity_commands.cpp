@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include "scene/commands/commands.h"
+#include "scene/json/parts.h"
+#include "scene/scene_file.h"
+
+namespace embody::scene {
+
+using nlohmann::json;
+
+std::string free_name(const Document& document, const std::string& wanted) {
+    const auto is_taken = [&document](const std::string& name) {
+        return std::any_of(document.entities.begin(), document.entities.end(),
+                           [&name](const Entity& entity) { return entity.name == name; });
+    };
+    if (!is_taken(wanted)) return wanted;
+    for (int number = 2;; ++number) {
+        std::string name = wanted + " " + std::to_string(number);
+        if (!is_taken(name)) return name;
+    }
+}
+
+namespace {
+
+// What a person would call it.
+Result<std::string> usual_name(SessionState& state, const Entity& entity) {
+    if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry)) {
+        std::string name = physics::shape_name(*shape);
+        name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
+        return name;
+    }
+    Result<catalog::ModelSummary> model = state.bodies.model(entity);
+    if (!model.ok()) return model.error();
+    return model.value().name;
+}
+
+Result<json> add(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    const json* given = reader.need("entity", "the entity as in a scene file");
+    std::optional<Vec3> origin, direction;
+    if (const json* drop = reader.take("drop")) {
+        FieldReader ray(*drop, "drop", error);
+        ray.need("origin", "where the ray starts");
+        ray.need("direction", "where it goes");
+        ray.vector("origin", origin);
+        ray.vector("direction", direction);
+        ray.finish();
+    }
+    if (!reader.finish()) return *error;
+    Result<Entity> read = entity_from_json(*given, "entity");
+    if (!read.ok()) return read.error();
+
+    // Its own index and name.
+    Entity entity = std::move(read).value();
+    if (entity.index != 0) return Error{"entity.index", "is given by the session", "leave it out"};
+    if (state.document.next_index > last_document_index) return Error{"entity", "no index is left"};
+    entity.index = state.document.next_index;
+    if (entity.name.empty()) {
+        Result<std::string> name = usual_name(state, entity);
+        if (!name.ok()) return Error{"entity." + name.error().where, name.error().why, name.error().remedy};
+        entity.name = free_name(state.document, name.value());
+    }
+
+    // Where the pointer is.
+    if (origin) {
+        Result<Transform> pose = place_on_ray(state, entity, *origin, *direction);
+        if (!pose.ok()) return pose.error();
+        entity.pose = pose.value();
+    }
+    Edit edit = state.start_edit("Add " + entity.name);
+    edit.next_after = entity.index + 1;
+    const EntityIndex index = entity.index;
+    edit.changes.emplace_back(EntityChange{std::nullopt, std::move(entity)});
+    if (Result<void> added = state.commit(std::move(edit)); !added.ok()) return added.error();
+    return json{{"index", index}};
+}
+
+Result<json> remove(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    std::vector<EntityIndex> indices;
+    need_indices(reader, state, indices);
+    if (!reader.finish()) return *error;
+
+    // Joints first: undo runs backwards and needs their ends there.
+    Edit edit = state.start_edit("Delete " + state.called(indices));
+    const auto goes = [&indices](EntityIndex index) {
+        return std::binary_search(indices.begin(), indices.end(), index);
+    };
+    for (const SceneJoint& joint : state.document.joints)
+        if (goes(joint.entity_b) || (joint.entity_a && goes(*joint.entity_a)))
+            edit.changes.emplace_back(JointChange{joint, std::nullopt});
+    for (const EntityIndex index : indices)
+        edit.changes.emplace_back(EntityChange{*state.document.find(index), std::nullopt});
+    return done(state.commit(std::move(edit)));
+}
+
+Result<json> transform(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    const json* list = reader.need("poses", "a list of {index, position, rotation}");
+    Edit edit = state.start_edit({});
+    reader.text("merge", edit.merge);
+    if (list) read_array(*list, "poses", error);
+    std::vector<EntityIndex> indices;
+    for (std::size_t i = 0; list && !error && i < list->size(); ++i) {
+        FieldReader item((*list)[i], element_path("poses", i), error);
+        PoseChange change;
+        if (!need_index(item, "index", change.index)) break;
+        Result<const Entity*> entity = state.entity(change.index, item.path("index"));
+        if (!entity.ok()) return entity.error();
+        change.before = change.after = entity.value()->pose;
+        item.vector("position", change.after.position);
+        item.rotation("rotation", change.after.rotation);
+        if (!item.finish()) break;
+        if (std::find(indices.begin(), indices.end(), change.index) != indices.end())
+            return Error{item.path("index"), "is there twice"};
+        indices.push_back(change.index);
+        edit.changes.emplace_back(change);
+    }
+    if (!reader.finish()) return *error;
+    edit.label = "Move " + state.called(indices);
+    return done(state.commit(std::move(edit)));
+}
+
+Result<json> update(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    EntityIndex index = 0;
+    need_index(reader, "index", index);
+    const json* fields = reader.need("entity", "the fields to change");
+    Edit edit = state.start_edit({});
+    reader.text("merge", edit.merge);
+    if (!reader.finish()) return *error;
+    Result<const Entity*> found = state.entity(index, "index");
+    if (!found.ok()) return found.error();
+
+    Entity changed = *found.value();
+    if (Result<void> read = change_entity_from_json(changed, *fields, "entity", false); !read.ok()) return read.error();
+    const bool same_geometry = !fields->contains("model") && !fields->contains("shape");
+    edit.label = "Change " + state.called({index});
+    if (same_geometry) {
+        edit.changes.emplace_back(change_of(*found.value(), changed));
+    } else {
+        edit.changes.emplace_back(EntityChange{*found.value(), std::move(changed)});
+    }
+    return done(state.commit(std::move(edit)));
+}
+
+Result<json> duplicate(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    std::vector<EntityIndex> indices;
+    std::optional<Vec3> offset;
+    need_indices(reader, state, indices);
+    reader.vector("offset", offset);
+    if (!reader.finish()) return *error;
+
+    // Beside the originals, free of them.
+    if (!offset) {
+        Bounds all;
+        for (const EntityIndex index : indices) {
+            const physics::BodyHandle body = state.simulation->body(index);
+            const Bounds bounds = state.simulation->world().bounds(body);
+            if (!bounds.is_empty() && is_finite(bounds.size())) all.add(bounds);
+        }
+        offset = Vec3{all.is_empty() ? 1 : all.size().x + 0.1, 0, 0};
+    }
+    Edit edit = state.start_edit("Duplicate " + state.called(indices));
+    if (state.document.next_index > last_document_index - indices.size()) return Error{"indices", "no index is left"};
+    json copies = json::array();
+    for (const EntityIndex index : indices) {
+        Entity copy = *state.document.find(index);
+        copy.index = edit.next_after++;
+        copy.name = copy.name.empty() ? "" : free_name(state.document, copy.name);
+        copy.pose.position += *offset;
+        copies.push_back(copy.index);
+        edit.changes.emplace_back(EntityChange{std::nullopt, std::move(copy)});
+    }
+    if (Result<void> added = state.commit(std::move(edit)); !added.ok()) return added.error();
+    return json{{"indices", std::move(copies)}};
+}
+
+constexpr Command commands[] = {{"entity.add", add},
+                                {"entity.remove", remove},
+                                {"entity.transform", transform},
+                                {"entity.update", update},
+                                {"entity.duplicate", duplicate}};
+
+}  // namespace
+
+std::span<const Command> entity_commands() { return commands; }
+
+}  // namespace embody::scene

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include <filesystem>
+
+#include "scene/commands/commands.h"
+#include "scene/json/parts.h"
+#include "scene/scene_file.h"
+#include "scene/scene_folders.h"
+
+namespace embody::scene {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr const char* version = "0.1.0";
+constexpr int frame_version = 1;
+
+// Everything that a client needs to draw the scene and go on from there.
+Result<json> hello(SessionState& state, const json& params) {
+    if (!params.is_null() && !(params.is_object() && params.empty())) return Error{"params", "hello takes none"};
+    const auto label = [](const Edit* edit) { return edit ? json(edit->label) : json(nullptr); };
+
+    // What is in the world but not in the document, and the other way round.
+    json spawned = json::array(), despawned = json::array();
+    for (const EntityIndex index : state.simulation->entities())
+        if (!state.document.find(index)) spawned.push_back(entity_to_json(*state.simulation->definition(index)));
+    for (const Entity& entity : state.document.entities)
+        if (state.simulation->body(entity.index).is_null()) despawned.push_back(entity.index);
+    return json{{"version", version},
+                {"scene", document_to_json(state.document)},
+                {"revision", state.revision},
+                {"simulation", state.simulation_json()},
+                {"frame_version", frame_version},
+                {"undo", label(state.history.undoable())},
+                {"redo", label(state.history.redoable())},
+                {"unsaved", !state.history.is_saved()},
+                {"name", state.name},
+                {"spawned", std::move(spawned)},
+                {"despawned", std::move(despawned)}};
+}
+
+Result<json> make_new(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    std::string title = "Untitled";
+    reader.text("name", title);
+    if (!reader.finish()) return *error;
+    return done(state.open(new_document(title), ""));
+}
+
+Result<json> load(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    std::string name;
+    const bool by_name = reader.text("name", name);
+    const json* scene = reader.take("scene");
+    if (!reader.finish()) return *error;
+    if (by_name == (scene != nullptr)) return Error{"name", "say either a name or the scene itself"};
+
+    // The document itself is on no disk.
+    if (scene) {
+        Result<Document> document = document_from_json(*scene);
+        if (!document.ok()) {
+            Error refused = document.error();
+            refused.where = refused.where.empty() ? "scene" : "scene." + refused.where;
+            return refused;
+        }
+        return done(state.open(std::move(document).value(), ""));
+    }
+    const Result<std::filesystem::path> file = find_scene(state.options, name);
+    if (!file.ok()) return file.error();
+    Result<Document> document = load_document(file.value());
+    if (!document.ok()) return document.error();
+    const bool is_recovered = name.starts_with("autosave/");
+    const std::string plain = file.value().stem().string();
+    if (Result<void> opened = state.open(std::move(document).value(), plain); !opened.ok()) return opened.error();
+    if (is_recovered) state.history.mark_unsaved();
+    return json::object();
+}
+
+Result<json> save(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    std::string name = state.name.empty() ? state.document.title : state.name;
+    reader.text("name", name);
+    if (!reader.finish()) return *error;
+    name = file_name_of(name);
+    const std::filesystem::path file = saved_file(state.options, name);
+    if (Result<void> written = save_document(state.document, file); !written.ok()) return written.error();
+
+    // What the autosave kept is safe now.
+    std::error_code ignored;
+    std::filesystem::remove(autosave_file(state.options, state.name.empty() ? state.document.title : state.name),
+                            ignored);
+    std::filesystem::remove(autosave_file(state.options, name), ignored);
+    state.name = name;
+    state.history.mark_saved();
+    state.tell_document(json::array());
+    state.autosaved_revision = state.revision;
+    return json{{"name", name}, {"path", file.string()}};
+}
+
+Result<json> list(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    if (!reader.finish()) return *error;
+    json scenes = json::array();
+    for (const ListedScene& scene : list_scenes(state.options))
+        scenes.push_back(
+            {{"name", scene.name}, {"title", scene.title}, {"kind", scene.kind}, {"modified", scene.modified}});
+    return json{{"scenes", std::move(scenes)}};
+}
+
+// Title, description and camera are the document's own; the rest is the world's.
+Result<json> settings(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    HeadingChange change{heading_of(state.document), heading_of(state.document)};
+    json world = params;
+    if (world.is_object())
+        for (const char* own : {"title", "description", "camera", "merge"}) world.erase(own);
+    Result<physics::WorldSettings> read = settings_from_json(world, "", state.document.settings);
+    if (!read.ok()) return read.error();
+    change.after.settings = read.value();
+
+    json rest = json::object();
+    for (const char* own : {"title", "description", "camera", "merge"})
+        if (params.contains(own)) rest[own] = params[own];
+    FieldReader reader(rest, "", error);
+    Edit edit = state.start_edit("Change settings");
+    reader.text("title", change.after.title);
+    reader.text("description", change.after.description);
+    reader.text("merge", edit.merge);
+    if (const json* field = reader.take("camera")) {
+        Vec3 position, target;
+        FieldReader camera(*field, "camera", error);
+        need_vector(camera, "position", "where it is", position);
+        need_vector(camera, "target", "what it looks at", target);
+        if (camera.finish()) change.after.camera = {position, target};
+    }
+    if (!reader.finish()) return *error;
+    edit.changes.emplace_back(std::move(change));
+    return done(state.commit(std::move(edit)));
+}
+
+Result<json> undo(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    if (!reader.finish()) return *error;
+    const Result<std::string> label = state.undo();
+    if (!label.ok()) return label.error();
+    return json{{"undone", label.value().empty() ? json(nullptr) : json(label.value())}};
+}
+
+Result<json> redo(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    if (!reader.finish()) return *error;
+    const Result<std::string> label = state.redo();
+    if (!label.ok()) return label.error();
+    return json{{"redone", label.value().empty() ? json(nullptr) : json(label.value())}};
+}
+
+constexpr Command commands[] = {{"hello", hello},     {"scene.new", make_new}, {"scene.load", load},
+                                {"scene.save", save}, {"scene.list", list},    {"scene.settings", settings},
+                                {"edit.undo", undo},  {"edit.redo", redo}};
+
+}  // namespace
+
+std::span<const Command> scene_commands() { return commands; }
+
+}  // namespace embody::scene

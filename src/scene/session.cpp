@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "scene/session.h"
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "scene/commands/commands.h"
+#include "scene/scene_file.h"
+#include "scene/scene_folders.h"
+#include "scene/session_state.h"
+
+namespace embody::scene {
+
+using nlohmann::json;
+
+namespace {
+
+// All commands by name.
+const std::map<std::string, const Command*>& command_table() {
+    static const std::map<std::string, const Command*> table = [] {
+        std::map<std::string, const Command*> built;
+        for (const auto family : {catalog_commands(), scene_commands(), entity_commands(), placement_commands(),
+                                  attribute_commands(), joint_and_action_commands(), simulation_commands()})
+            for (const Command& command : family) built[command.name] = &command;
+        return built;
+    }();
+    return table;
+}
+
+Error unknown_command(const std::string& name) {
+    std::vector<std::string> known;
+    for (const auto& [command, entry] : command_table()) known.push_back(command);
+    const std::string near = nearest_word(name, known);
+    return {"command", "\"" + name.substr(0, 80) + "\" is not a command",
+            near.empty() ? "" : "did you mean \"" + near + "\"?"};
+}
+
+}  // namespace
+
+struct Session::State : SessionState {
+    using SessionState::SessionState;
+};
+
+Session::Session() = default;
+Session::~Session() = default;
+
+Result<std::unique_ptr<Session>> Session::create(catalog::Catalog* catalog, const SessionOptions& options) {
+    std::unique_ptr<Session> session(new Session);
+    session->state_ = std::make_unique<State>(catalog, options);
+    if (Result<void> opened = session->state_->open(new_document("Untitled"), ""); !opened.ok()) return opened.error();
+    session->state_->events = {};
+    return session;
+}
+
+Result<json> Session::execute(const std::string& command, const json& params) {
+    const auto found = command_table().find(command);
+    if (found == command_table().end()) return unknown_command(command);
+    // A command without parameters may leave them out.
+    static const json nothing = json::object();
+    return found->second->execute(*state_, params.is_null() ? nothing : params);
+}
+
+Events Session::take_events() { return std::exchange(state_->events, {}); }
+
+const Document& Session::document() const { return state_->document; }
+bool Session::playing() const { return state_->play_state == PlayState::playing; }
+double Session::time_step() const { return state_->document.settings.time_step; }
+void Session::step() { state_->step(); }
+
+void Session::read_states(std::vector<EntityState>& states) const {
+    const physics::World& world = state_->simulation->world();
+    states.clear();
+    for (const EntityIndex index : state_->simulation->entities()) {
+        const physics::BodyHandle body = state_->simulation->body(index);
+        EntityState& state = states.emplace_back();
+        state.entity = index;
+        state.pose = world.pose(body);
+        if (!std::isinf(world.mass(body))) state.state = static_cast<std::uint8_t>(world.sleep_state(body));
+    }
+}
+
+double Session::simulated_time() const { return state_->simulation->world().last_report().time; }
+std::uint64_t Session::simulated_steps() const { return state_->simulation->world().last_report().step; }
+
+json Session::statistics() const {
+    const physics::StepReport& report = state_->simulation->world().last_report();
+
+    // Simulated over real time, of the last steps.
+    double factor = 0;
+    if (state_->play_state == PlayState::playing && state_->step_times.size() > 1) {
+        const std::chrono::duration<double> passed = state_->step_times.back() - state_->step_times.front();
+        const double simulated = static_cast<double>(state_->step_times.size() - 1) * time_step();
+        if (passed.count() > 0) factor = simulated / passed.count();
+    }
+    return {{"event", "statistics"},
+            {"time", report.time},
+            {"step", report.step},
+            {"bodies", state_->simulation->entities().size()},
+            {"active", report.bodies_active},
+            {"wants_to_sleep", report.bodies_wanting_to_sleep},
+            {"asleep", report.bodies_asleep},
+            {"contacts", report.contacts},
+            {"step_ms", report.milliseconds},
+            {"real_time_factor", factor}};
+}
+
+Result<void> Session::autosave() {
+    SessionState& state = *state_;
+    if (state.revision == state.autosaved_revision || state.history.is_saved()) return {};
+    const std::string name = state.name.empty() ? state.document.title : state.name;
+    if (Result<void> written = save_document(state.document, autosave_file(state.options, name)); !written.ok())
+        return written;
+    state.autosaved_revision = state.revision;
+    return {};
+}
+
+}  // namespace embody::scene

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: MIT
+#include "scene/session_state.h"
+
+#include <array>
+
+#include "scene/json/parts.h"
+#include "scene/scene_file.h"
+
+namespace embody::scene {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr std::size_t timed_steps = 120;
+
+// What to say of each limit of a step.
+struct LimitText {
+    physics::StepLimit limit;
+    const char* text;
+};
+constexpr std::array<LimitText, 4> limit_texts = {{
+    {physics::StepLimit::linear_speed_clamped,
+     "Something was faster than the scene's greatest speed and was slowed down."},
+    {physics::StepLimit::not_finite_body_frozen,
+     "Something's motion left the finite numbers; it was frozen where it was."},
+    {physics::StepLimit::impact_rounds_exhausted,
+     "An impact was too complicated for one step; a smaller time step helps."},
+    {physics::StepLimit::deep_penetration, "Things overlap deeply; place them apart or use a smaller time step."},
+}};
+
+const char* state_name(PlayState state) {
+    return state == PlayState::stopped ? "stopped" : state == PlayState::playing ? "playing" : "paused";
+}
+
+}  // namespace
+
+Document new_document(const std::string& title) {
+    Document document;
+    document.title = title;
+    Entity floor;
+    floor.index = document.next_index++;
+    floor.name = "Floor";
+    floor.category = "floor";
+    floor.geometry = physics::ShapeDefinition{physics::BoxShape{{15, 0.25, 15}}};
+    floor.pose.position = {0, -0.25, 0};
+    floor.attributes["kind"] = std::string("static");
+    floor.color = {0.5, 0.5, 0.48};
+    document.entities.push_back(std::move(floor));
+    document.camera = {Vec3{4, 3, 6}, Vec3{0, 0.5, 0}};
+    return document;
+}
+
+SessionState::SessionState(catalog::Catalog* used_catalog, SessionOptions used_options)
+    : catalog(used_catalog), options(std::move(used_options)), bodies(used_catalog) {}
+
+// Simulation
+// -----------------------------------------------------------------------------------------------------------
+
+Result<void> SessionState::rebuild_simulation() {
+    Result<std::unique_ptr<Simulation>> made = Simulation::create(document, catalog);
+    if (!made.ok()) return made.error();
+    simulation = std::move(made).value();
+    simulation_is_pristine = true;
+    grab.reset();
+    step_times.clear();
+    told_limits = 0;
+    told_problems.clear();
+    return {};
+}
+
+json SessionState::simulation_json() const {
+    const physics::StepReport& report = simulation->world().last_report();
+    return {{"state", state_name(play_state)}, {"time", report.time}, {"step", report.step}};
+}
+
+json SessionState::simulation_event() const {
+    json message = simulation_json();
+    message["event"] = "simulation";
+    return message;
+}
+
+void SessionState::set_play_state(PlayState state) {
+    if (state == play_state) return;
+    play_state = state;
+    step_times.clear();
+    tell(simulation_event());
+}
+
+void SessionState::step() {
+    if (grab) pull(simulation->world(), *grab);
+    simulation_is_pristine = false;
+    simulation->step();
+    step_times.push_back(std::chrono::steady_clock::now());
+    if (step_times.size() > timed_steps) step_times.pop_front();
+    tell_step();
+    if (simulation->pause_requested()) set_play_state(PlayState::paused);
+}
+
+void SessionState::tell_step() {
+    // What actions did.
+    for (const EntityIndex index : simulation->spawned()) {
+        const Entity* entity = simulation->definition(index);
+        if (entity) tell({{"event", "spawned"}, {"entity", entity_to_json(*entity)}});
+    }
+    for (const EntityIndex index : simulation->despawned()) tell({{"event", "despawned"}, {"index", index}});
+    for (const ActionFired& fired : simulation->fired())
+        tell({{"event", "action"},
+              {"name", fired.name},
+              {"id", fired.id},
+              {"sender", fired.sender},
+              {"receiver", fired.receiver}});
+
+    // The same complaint once a run.
+    for (const Error& problem : simulation->problems())
+        if (told_problems.insert(problem.message()).second) tell_message("warning", problem.message());
+    const std::uint32_t limits = simulation->world().last_report().limits;
+    for (const LimitText& row : limit_texts) {
+        const auto bit = static_cast<std::uint32_t>(row.limit);
+        if ((limits & bit) == 0 || (told_limits & bit) != 0) continue;
+        told_limits |= bit;
+        tell_message("warning", row.text);
+    }
+}
+
+// Messages
+// -------------------------------------------------------------------------------------------------------------
+
+void SessionState::tell_message(const char* level, std::string text) {
+    tell({{"event", "message"}, {"level", level}, {"text", std::move(text)}});
+}
+
+void SessionState::tell_document(json changes) {
+    ++revision;
+    const auto label = [](const Edit* edit) { return edit ? json(edit->label) : json(nullptr); };
+    tell({{"event", "document"},
+          {"revision", revision},
+          {"changes", std::move(changes)},
+          {"undo", label(history.undoable())},
+          {"redo", label(history.redoable())},
+          {"unsaved", !history.is_saved()},
+          {"name", name}});
+}
+
+json SessionState::change_json(const Change& change) const {
+    if (const auto* entity = std::get_if<EntityChange>(&change)) {
+        if (!entity->after) return {{"op", "entity_removed"}, {"index", entity->before->index}};
+        return {{"op", "entity"}, {"entity", entity_to_json(*document.find(entity->after->index))}};
+    }
+    if (const auto* pose = std::get_if<PoseChange>(&change))
+        return {{"op", "entity"}, {"entity", entity_to_json(*document.find(pose->index))}};
+    if (const auto* joint = std::get_if<JointChange>(&change)) {
+        if (!joint->after) return {{"op", "joint_removed"}, {"index", joint->before->index}};
+        return {{"op", "joint"}, {"joint", joint_to_json(*joint->after)}};
+    }
+    if (const auto* action = std::get_if<ActionChange>(&change)) {
+        if (!action->after) return {{"op", "action_removed"}, {"index", action->before->id}};
+        return {{"op", "action"}, {"action", action_to_json(*action->after)}};
+    }
+    json settings = settings_to_json(document.settings);
+    settings["title"] = document.title;
+    settings["description"] = document.description;
+    return {{"op", "settings"}, {"settings", std::move(settings)}};
+}
+
+// Edits
+// ----------------------------------------------------------------------------------------------------------------
+
+// Carries an entity's change, already in the document, over to the simulation.
+Result<void> SessionState::sync_entity(const EntityChange& change) {
+    if (!change.before) return simulation->add(*document.find(change.after->index));
+    const EntityIndex index = change.before->index;
+    // An action may have taken it away.
+    if (simulation->body(index).is_null()) return {};
+    if (!change.after) return simulation->remove(index);
+    const Entity& entity = *document.find(index);
+    if (play_state == PlayState::stopped) return simulation->update(entity, false);
+
+    // In a run it goes on from where it is, but for what was changed on purpose.
+    const physics::BodyHandle body = simulation->body(index);
+    if (Result<void> updated = simulation->update(entity, true); !updated.ok()) return updated;
+    physics::World& world = simulation->world();
+    if (change.before->pose != change.after->pose)
+        if (Result<void> moved = world.set_pose(body, entity.pose); !moved.ok()) return moved;
+    if (change.before->linear_velocity != change.after->linear_velocity ||
+        change.before->angular_velocity != change.after->angular_velocity)
+        return world.set_velocity(body, entity.linear_velocity, entity.angular_velocity);
+    return {};
+}
+
+Result<void> SessionState::sync_heading(const HeadingChange& change) {
+    return simulation->world().set_settings(change.after.settings);
+}
+
+Result<void> SessionState::sync(const Change& change) {
+    simulation_is_pristine = false;
+    if (const auto* entity = std::get_if<EntityChange>(&change)) return sync_entity(*entity);
+    if (const auto* heading = std::get_if<HeadingChange>(&change)) return sync_heading(*heading);
+    if (std::holds_alternative<ActionChange>(change)) {
+        simulation->set_actions(document.actions);
+        return {};
+    }
+    if (const auto* joint = std::get_if<JointChange>(&change)) {
+        if (joint->before && !simulation->joint(joint->before->index).is_null())
+            if (Result<void> removed = simulation->remove_joint(joint->before->index); !removed.ok()) return removed;
+        return joint->after ? simulation->add_joint(*joint->after) : Result<void>{};
+    }
+
+    // A thing that is moved by hand stands still there.
+    const auto& pose = std::get<PoseChange>(change);
+    const physics::BodyHandle body = simulation->body(pose.index);
+    if (body.is_null()) return {};
+    if (Result<void> moved = simulation->world().set_pose(body, pose.after); !moved.ok()) return moved;
+    if (play_state == PlayState::stopped) return {};
+    return simulation->world().set_velocity(body, {}, {});
+}
+
+// All changes or none.
+Result<void> SessionState::run_changes(const std::vector<Change>& changes) {
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+        apply_change(document, changes[i]);
+        const Result<void> synced = sync(changes[i]);
+        if (synced.ok()) continue;
+        for (std::size_t back = i + 1; back-- > 0;) {
+            apply_change(document, reversed(changes[back]));
+            // The one that failed has changed nothing in the simulation.
+            if (back != i) (void)sync(reversed(changes[back])).ok();
+        }
+        if (play_state == PlayState::stopped) (void)rebuild_simulation().ok();
+        return synced.error();
+    }
+    return {};
+}
+
+Edit SessionState::start_edit(std::string label) const {
+    Edit edit;
+    edit.label = std::move(label);
+    edit.next_before = edit.next_after = document.next_index;
+    return edit;
+}
+
+Result<void> SessionState::commit(Edit edit) {
+    if (edit.changes.empty()) return {};
+    if (Result<void> done = run_changes(edit.changes); !done.ok()) return done;
+    document.next_index = edit.next_after;
+    json changes = json::array();
+    for (const Change& change : edit.changes) changes.push_back(change_json(change));
+    history.add(std::move(edit));
+    tell_document(std::move(changes));
+    return {};
+}
+
+Result<std::string> SessionState::undo() {
+    const Edit* edit = history.undoable();
+    if (!edit) return std::string();
+    std::vector<Change> back;
+    for (auto change = edit->changes.rbegin(); change != edit->changes.rend(); ++change)
+        back.push_back(reversed(*change));
+    if (Result<void> done = run_changes(back); !done.ok()) return done.error();
+    document.next_index = edit->next_before;
+    std::string label = edit->label;
+    history.move_back();
+    json changes = json::array();
+    for (const Change& change : back) changes.push_back(change_json(change));
+    tell_document(std::move(changes));
+    return label;
+}
+
+Result<std::string> SessionState::redo() {
+    const Edit* edit = history.redoable();
+    if (!edit) return std::string();
+    if (Result<void> done = run_changes(edit->changes); !done.ok()) return done.error();
+    document.next_index = edit->next_after;
+    std::string label = edit->label;
+    json changes = json::array();
+    for (const Change& change : edit->changes) changes.push_back(change_json(change));
+    history.move_forward();
+    tell_document(std::move(changes));
+    return label;
+}
+
+Result<void> SessionState::open(Document opened, std::string opened_name) {
+    Result<std::unique_ptr<Simulation>> made = Simulation::create(opened, catalog);
+    if (!made.ok()) return made.error();
+    document = std::move(opened);
+    name = std::move(opened_name);
+    simulation = std::move(made).value();
+    simulation_is_pristine = true;
+    grab.reset();
+    told_limits = 0;
+    told_problems.clear();
+    history.clear();
+    play_state = PlayState::stopped;
+    step_times.clear();
+    tell_document(json::array({{{"op", "reset"}, {"scene", document_to_json(document)}}}));
+    tell(simulation_event());
+    events.all_poses = true;
+    autosaved_revision = revision;
+    return {};
+}
+
+// Names
+// ----------------------------------------------------------------------------------------------------------------
+
+Result<const Entity*> SessionState::entity(EntityIndex index, const std::string& where) const {
+    if (const Entity* found = document.find(index)) return found;
+    return Error{where, "there is no entity " + std::to_string(index) + " in the scene"};
+}
+
+std::string SessionState::called(const std::vector<EntityIndex>& indices) const {
+    if (indices.size() != 1) return std::to_string(indices.size()) + " entities";
+    const Entity* entity = document.find(indices.front());
+    if (!entity || entity->name.empty()) return "entity " + std::to_string(indices.front());
+    return entity->name;
+}
+
+}  // namespace embody::scene

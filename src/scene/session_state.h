@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "scene/entity_body.h"
+#include "scene/grab.h"
+#include "scene/history.h"
+#include "scene/session.h"
+#include "scene/simulation.h"
+
+namespace embody::scene {
+
+enum class PlayState : std::uint8_t { stopped, playing, paused };
+
+/// What the commands of a session work on: the document with its history, its simulation, and what clients have not
+/// heard yet.
+struct SessionState {
+    SessionState(catalog::Catalog* catalog, SessionOptions options);
+
+    catalog::Catalog* catalog = nullptr;
+    SessionOptions options;
+    EntityBodies bodies;
+
+    Document document;
+    std::string name;  ///< of the file; empty: not saved yet
+    std::uint64_t revision = 0;
+    std::uint64_t autosaved_revision = 0;
+    History history;
+
+    /// Always there: while stopped it holds the document's poses, for picking and placing.
+    std::unique_ptr<Simulation> simulation;
+    bool simulation_is_pristine = true;  ///< made of the document as it is, in one go
+    PlayState play_state = PlayState::stopped;
+    std::optional<Grab> grab;
+    std::deque<std::chrono::steady_clock::time_point> step_times;  ///< of the last steps
+    std::uint32_t told_limits = 0;                                 ///< of this run
+    std::set<std::string> told_problems;
+
+    Events events;
+
+    /// Does the edit to document and simulation and tells clients. On failure all is as before.
+    Result<void> commit(Edit edit);
+    /// The label of what was undone or redone; empty: nothing.
+    Result<std::string> undo();
+    Result<std::string> redo();
+    /// An edit with the document's present next_index in it.
+    [[nodiscard]] Edit start_edit(std::string label) const;
+
+    /// Takes another document, without history. On failure the old one stays.
+    Result<void> open(Document opened, std::string opened_name);
+    /// A new simulation of the document.
+    Result<void> rebuild_simulation();
+    void set_play_state(PlayState state);
+    void step();
+
+    void tell(nlohmann::json message) { events.messages.push_back(std::move(message)); }
+    void tell_message(const char* level, std::string text);
+    void tell_document(nlohmann::json changes);
+    [[nodiscard]] nlohmann::json simulation_json() const;
+    [[nodiscard]] nlohmann::json simulation_event() const;
+
+    /// The document's entity, or an error that names the field.
+    Result<const Entity*> entity(EntityIndex index, const std::string& where) const;
+    /// The entity's name as a label says it, or "3 entities".
+    [[nodiscard]] std::string called(const std::vector<EntityIndex>& indices) const;
+
+private:
+    Result<void> sync(const Change& change);
+    Result<void> sync_entity(const EntityChange& change);
+    Result<void> sync_heading(const HeadingChange& change);
+    Result<void> run_changes(const std::vector<Change>& changes);
+    void tell_step();
+    [[nodiscard]] nlohmann::json change_json(const Change& change) const;
+};
+
+/// The document that scene.new makes: a floor to put things on.
+Document new_document(const std::string& title);
+
+}  // namespace embody::scene
