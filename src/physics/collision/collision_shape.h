@@ -51,7 +51,8 @@ std::optional<ShapeRayHit> cast_ray(const CollisionShape& shape, const Transform
                                     double max_distance);
 
 /// Time of impact in [0, 1] of shape a moving linearly by `motion_a` and turning to `pose_a_end`'s rotation while b
-/// stands still, by conservative advancement; std::nullopt if they stay farther apart than `target_separation`.
+/// stands still, by conservative advancement; std::nullopt if they stay farther apart than `target_separation`. 0 where
+/// they overlap at the start: ask only for pairs that do not touch yet. a is not static-only.
 std::optional<double> time_of_impact(const CollisionShape& a, const Transform& pose_a_start,
                                      const Transform& pose_a_end, const CollisionShape& b, const Transform& pose_b,
                                      double target_separation);

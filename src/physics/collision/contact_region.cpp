@@ -141,7 +141,7 @@ void cross_segments(const ContactFeature& a, const ContactFeature& b, double rad
 
 void reduce_to_four(ContactRegion& region) {
     auto& points = region.points;
-    if (points.size() < 3) return;
+    if (points.size() < 2) return;
     const Vec3 normal = region.normal;
     std::size_t kept = 0;
     // Moves the best of the points not yet kept behind those kept, unless its score is below `least`.
@@ -179,7 +179,9 @@ void reduce_to_four(ContactRegion& region) {
     const double no_area = 1e-5 * size * size;
     const auto area = [&](Vec3 from, Vec3 to, Vec3 p) { return dot(normal, cross(to - from, p - from)); };
     const Vec3 first = points[0].position;
-    if (keep_best(1e-6 * size, [&](const ManifoldPoint& p) { return distance(p.position, first); })) {
+    constexpr double same_place = 1e-9;  // m
+    if (keep_best(std::max(1e-6 * size, same_place),
+                  [&](const ManifoldPoint& p) { return distance(p.position, first); })) {
         const Vec3 second = points[1].position;
         if (keep_best(no_area, [&](const ManifoldPoint& p) { return std::fabs(area(first, second, p.position)); })) {
             const Vec3 third = points[2].position;

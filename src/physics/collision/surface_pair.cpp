@@ -71,6 +71,9 @@ bool leans_too_far(const PlacedTriangle& t, Vec3 outwards) {
     return up <= 0;
 }
 
+// Whether the normal is the triangle's own but for a lean too small to mean an edge.
+bool is_flat_to(const PlacedTriangle& t, Vec3 outwards) { return dot(outwards, t.normal) > 1 - flat_sine * flat_sine; }
+
 // The convex against the plane of the triangle, clipped to the triangle.
 void collide_along_normal(const PlacedConvex& convex, const PlacedTriangle& t, double margin, ContactRegion& region) {
     thread_local ContactFeature face, facing;
@@ -105,8 +108,9 @@ void collide_sphere_triangle(const PlacedConvex& sphere, const PlacedTriangle& t
     const double radius = sphere.shape->radius;
     const double gap = distance(center, nearest);
     if (gap - radius > margin) return;
-    const Vec3 outwards = inside ? t.normal : normalized(center - nearest, t.normal);
+    Vec3 outwards = inside ? t.normal : normalized(center - nearest, t.normal);
     if (!inside && leans_too_far(t, outwards)) return;
+    if (is_flat_to(t, outwards)) outwards = t.normal;
     region.normal = -outwards;
     region.add(center - outwards * radius, gap - radius, 0);
 }
@@ -132,7 +136,8 @@ void collide_triangle(const PlacedConvex& convex, const PlacedTriangle& t, doubl
     shape.bounds = {};
     for (const Vec3& p : t.corners) shape.bounds.add(p);
     collide_round(convex, {&shape, {}, {}}, margin, region);
-    if (region.points.empty() || !leans_too_far(t, -region.normal)) return;
+    if (region.points.empty()) return;
+    if (!is_flat_to(t, -region.normal) && !leans_too_far(t, -region.normal)) return;
     region.points.clear();
     collide_along_normal(convex, t, margin, region);
 }

@@ -119,11 +119,12 @@ std::optional<double> time_of_impact(const CollisionShape& a, const Transform& p
         bool touches = false;
         for_each_gap(a.data(), motion.at(time), b.data(), pose_b, reach, [&](const Gap& gap) {
             // Parts that move away from each other are no impact, even if they touch now.
+            // Overlapping ones have no direction to tell.
             const double speed = dot(way, gap.direction) + turn_speed;
-            if (speed <= 0) return;
+            if (speed <= 0 && length_squared(gap.direction) > 0) return;
             const double left = gap.distance - target_separation;
             touches = touches || left <= tolerance;
-            step = std::fmin(step, left / speed);
+            if (speed > 0) step = std::fmin(step, left / speed);
         });
         if (touches) return time;
         time += step;

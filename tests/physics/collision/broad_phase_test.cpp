@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "physics/collision/broad_phase.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "physics/collision/collision_probe.h"
+
+namespace embody::physics {
+namespace {
+
+Bounds cube_at(Vec3 p, double half) { return enlarged(Bounds{p, p}, half); }
+
+TEST(BroadPhase, two_immovable_bodies_are_no_pair) {
+    BroadPhase phase;
+    phase.insert(0, cube_at({}, 1), false);
+    phase.insert(1, cube_at({}, 1), false);
+    EXPECT_TRUE(phase.update_pairs().empty());
+    phase.insert(2, cube_at({}, 1), true);
+    EXPECT_EQ(phase.update_pairs().size(), 2u);
+}
+
+TEST(BroadPhase, an_endless_plane_pairs_with_what_moves) {
+    BroadPhase phase;
+    const auto plane = make_shape(PlaneShape{});
+    phase.insert(7, plane->bounds({}), false);
+    phase.insert(3, cube_at({100, 0.5, -5000}, 0.5), true);
+    phase.insert(4, cube_at({0, 50, 0}, 0.5), true);
+    const auto& pairs = phase.update_pairs();
+    ASSERT_EQ(pairs.size(), 1u);
+    EXPECT_EQ(pairs[0], (BroadPhase::Pair{3, 7}));
+}
+
+TEST(BroadPhase, a_removed_body_takes_its_pairs_along) {
+    BroadPhase phase;
+    phase.insert(0, cube_at({}, 1), true);
+    phase.insert(1, cube_at({}, 1), true);
+    ASSERT_EQ(phase.update_pairs().size(), 1u);
+    phase.remove(0);
+    EXPECT_TRUE(phase.update_pairs().empty());
+    phase.insert(0, cube_at({50, 0, 0}, 1), true);
+    EXPECT_TRUE(phase.update_pairs().empty());
+}
+
+// Against all pairs by brute force, while bodies come, move and go; twice, for the same order.
+TEST(BroadPhase, finds_every_overlap_in_a_crowd) {
+    std::vector<BroadPhase::Pair> first_run;
+    for (int run = 0; run < 2; ++run) {
+        Random random(5);
+        BroadPhase phase;
+        std::map<std::uint32_t, Bounds> bodies;
+        std::vector<BroadPhase::Pair> all;
+        for (int step = 0; step < 60; ++step) {
+            for (int change = 0; change < 40; ++change) {
+                const auto body = static_cast<std::uint32_t>(random.below(200));
+                const Vec3 p{random.between(-5, 5), random.between(-5, 5), random.between(-5, 5)};
+                const Bounds bounds = cube_at(p, random.between(0.01, 0.6));
+                if (!bodies.contains(body)) {
+                    phase.insert(body, bounds, body % 5 != 0);
+                } else if (random.unit() < 0.2) {
+                    phase.remove(body);
+                    bodies.erase(body);
+                    continue;
+                } else {
+                    phase.move(body, bounds, {0.1, 0, 0});
+                }
+                bodies[body] = bounds;
+            }
+            const auto& pairs = phase.update_pairs();
+            EXPECT_TRUE(std::is_sorted(pairs.begin(), pairs.end()));
+            EXPECT_EQ(std::adjacent_find(pairs.begin(), pairs.end()), pairs.end());
+            const std::set<BroadPhase::Pair> known(pairs.begin(), pairs.end());
+            for (const auto& [a, bounds_a] : bodies) {
+                for (const auto& [b, bounds_b] : bodies) {
+                    if (a >= b || (a % 5 == 0 && b % 5 == 0)) continue;
+                    EXPECT_TRUE(!overlaps(bounds_a, bounds_b) || known.contains({a, b})) << a << " " << b;
+                    if (!overlaps(enlarged(bounds_a, 0.5), enlarged(bounds_b, 0.5))) {
+                        EXPECT_FALSE(known.contains({a, b})) << a << " " << b;
+                    }
+                }
+            }
+            all.insert(all.end(), pairs.begin(), pairs.end());
+        }
+        if (run == 0) first_run = all;
+        EXPECT_EQ(first_run, all);
+    }
+}
+
+TEST(BroadPhase, queries_ascend_and_rays_shorten) {
+    BroadPhase phase;
+    for (std::uint32_t i = 0; i < 50; ++i)
+        phase.insert(49 - i, cube_at({static_cast<double>(49 - i), 0, 0}, 0.2), true);
+    std::vector<std::uint32_t> found;
+    phase.query(cube_at({10, 0, 0}, 2), [&](std::uint32_t body) { found.push_back(body); });
+    EXPECT_EQ(found, (std::vector<std::uint32_t>{8, 9, 10, 11, 12}));
+
+    // The nearest hit ends the search for what lies behind.
+    int visits = 0;
+    double best = 1e9;
+    phase.query_ray({-5, 0, 0}, {1, 0, 0}, 1e9, [&](std::uint32_t body, double limit) {
+        ++visits;
+        best = std::min(best, body + 5 - 0.2);
+        return std::min(limit, best);
+    });
+    EXPECT_NEAR(best, 4.8, 1e-12);
+    EXPECT_LT(visits, 50);
+}
+
+}  // namespace
+}  // namespace embody::physics
