@@ -101,6 +101,7 @@ private:
             if (place.worker->has_unsent()) waits.push_back({place.worker->input(), POLLOUT, 0});
             due = std::min(due, place.deadline);
         }
+        if (waits.empty()) return;
         const auto left = std::chrono::ceil<std::chrono::milliseconds>(due - Clock::now()).count();
         poll(waits.data(), waits.size(), static_cast<int>(std::clamp<std::int64_t>(left, 0, 1000)));
 
