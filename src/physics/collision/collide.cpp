@@ -66,6 +66,16 @@ void collide_pieces(const CollisionShape::Data& a, const Transform& pose_a, cons
 
 }  // namespace
 
+namespace {
+
+// Every edge of one against every edge of the other is the faster way only while both have few.
+bool has_few_edges(const PlacedConvex& a, const PlacedConvex& b) {
+    constexpr std::size_t few = 4096;
+    return a.shape->polytope.edges.size() * b.shape->polytope.edges.size() <= few;
+}
+
+}  // namespace
+
 void collide_convexes(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region) {
     region.points.clear();
     // Each pair of kinds in one order, so that swapped arguments give the mirrored answer.
@@ -76,7 +86,7 @@ void collide_convexes(const PlacedConvex& a, const PlacedConvex& b, double margi
     }
     if (a.shape->kind == ConvexKind::sphere) {
         collide_sphere(a, b, margin, region);
-    } else if (a.shape->kind == ConvexKind::polytope && b.shape->kind == ConvexKind::polytope) {
+    } else if (a.shape->kind == ConvexKind::polytope && b.shape->kind == ConvexKind::polytope && has_few_edges(a, b)) {
         collide_polytopes(a, b, margin, region);
     } else {
         collide_round(a, b, margin, region);

@@ -31,15 +31,15 @@ double smaller_size(const PlacedConvex& a, const PlacedConvex& b) {
     return std::min(size_a, size_b);
 }
 
-void gather_candidates(const PlacedConvex& a, const PlacedConvex& b, Vec3 normal, bool overlap,
+void gather_candidates(const PlacedConvex& a, const PlacedConvex& b, Vec3 normal, bool all_faces,
                        std::vector<Vec3>& candidates) {
     thread_local std::vector<Vec3> lines_a, lines_b, normals_b;
     candidates.clear();
     normals_b.clear();
     lines_a.clear();
     lines_b.clear();
-    add_own_normals(a, normal, overlap, candidates);
-    add_own_normals(b, -normal, overlap, normals_b);
+    add_own_normals(a, normal, all_faces, candidates);
+    add_own_normals(b, -normal, all_faces, normals_b);
     for (const Vec3& n : normals_b) candidates.push_back(-n);
 
     // Lines that cross part along what is perpendicular to both.
@@ -65,18 +65,20 @@ PartingAxis find_axis(const PlacedConvex& a, const PlacedConvex& b, double margi
 
     // Below this gap the difference of the witness points has no direction left.
     const bool apart = !gap.overlap && gap.distance > 1e-9 * size;
+    bool is_lost = false;
     if (apart) {
         axis = {true, (gap.on_b - gap.on_a) / gap.distance, gap.distance - radii, true, gap.on_a, gap.on_b};
     } else {
-        if (!penetration_normal(a, b, gap, axis.normal)) {
+        is_lost = !penetration_normal(a, b, gap, axis.normal);
+        if (is_lost) {
             axis.normal = normalized(interior_point(b) - interior_point(a), {0, 1, 0});
         }
         axis.separation = separation_along(a, b, axis.normal);
         axis.found = true;
     }
 
-    // An exact normal that is better, or as good within a hair.
-    gather_candidates(a, b, axis.normal, !apart, candidates);
+    // An exact normal that is better, or as good within a hair; of all faces where the search found no direction.
+    gather_candidates(a, b, axis.normal, is_lost, candidates);
     const double hair = 1e-7 * size;
     Vec3 best_normal;
     double best = axis.separation - hair;
