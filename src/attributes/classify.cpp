@@ -24,7 +24,7 @@ bool classify_by_words(const Taxonomy::Data& data, std::string_view where, std::
     const auto match = match_phrase(data.category_phrases, data.longest_phrase, text);
     if (!match) return false;
     const CategoryData& category = data.categories[match->entry];
-    result = {&category, because(where, *match), level_of(category)};
+    result = {&category, because(where, *match), match->phrase, level_of(category)};
     return true;
 }
 
@@ -32,15 +32,16 @@ bool classify_by_catalogue(const Taxonomy::Data& data, const std::string& name, 
     const auto found = data.by_catalogue.find(stems_of(name));
     if (found == data.by_catalogue.end()) return false;
     const CategoryData& category = data.categories[found->second];
-    result = {&category, "the catalogue files it under \"" + name + "\"; no word of its name is known",
+    result = {&category, "the catalogue files it under \"" + name + "\"; no word of its name is known", "",
               level_of(category)};
     return true;
 }
 
 bool material_by_words(const Taxonomy::Data& data, const std::string& where, std::string_view text,
                        MaterialChoice& result) {
+    // A "door with panes" is not made of glass: only the first part of a name says what it is made of.
     const auto match = match_phrase(data.material_phrases, data.longest_phrase, text);
-    if (!match) return false;
+    if (!match || match->segment > 0) return false;
     result = {&data.materials[match->entry], where + " says \"" + match->phrase + "\"", AttributeLevel::model};
     return true;
 }
@@ -48,7 +49,7 @@ bool material_by_words(const Taxonomy::Data& data, const std::string& where, std
 }  // namespace
 
 Classification classify(const Taxonomy::Data& data, const ModelFacts& facts) {
-    Classification result{&data.categories[data.unknown], "no word of its name, tags or folder is known",
+    Classification result{&data.categories[data.unknown], "no word of its name, tags or folder is known", "",
                           AttributeLevel::standard};
     if (classify_by_words(data, "name", facts.name, result)) return result;
     for (const std::string& tag : facts.tags) {
@@ -63,7 +64,8 @@ Classification classify(const Taxonomy::Data& data, const ModelFacts& facts) {
 MaterialChoice choose_material(const Taxonomy::Data& data, const ModelFacts& facts, const Classification& what) {
     const MaterialData* usual = data.material(what.category->material);
     MaterialChoice result{usual, "usual for " + what.category->name, what.level};
-    if (material_by_words(data, "name", facts.name, result)) return result;
+    // The words that name the thing say nothing of its material: a "paper towel holder" is not made of paper.
+    if (material_by_words(data, "name", without_phrase(facts.name, what.phrase), result)) return result;
     for (const std::string& part : facts.material_names) {
         if (material_by_words(data, "part material \"" + part.substr(0, 60) + "\"", part, result)) return result;
     }

@@ -12,6 +12,7 @@ namespace embody::attributes {
 struct Classification {
     const CategoryData* category = nullptr;  ///< never null
     std::string source;
+    std::string phrase;                               ///< the words that decided; empty where none did
     AttributeLevel level = AttributeLevel::standard;  ///< subcategory, category, or standard where nothing tells
 };
 

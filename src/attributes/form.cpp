@@ -69,7 +69,10 @@ CenterAndInertia center_and_inertia(const GeometryFacts& facts, const Form& form
     if (form.volume_is_own && is_finite(facts.center_of_volume)) {
         const Mat3 inertia = facts.unit_inertia * (mass / facts.volume);
         const Vec3 center = min(max(facts.center_of_volume, lower), upper);
-        if (validate("inertia", inertia) && distance(center, facts.center_of_volume) < 0.05 * length(form.size)) {
+        // No mass is farther from the centre than the diagonal of the box.
+        const bool fits = trace(inertia) <= 2 * mass * length_squared(form.size);
+        const bool centered = distance(center, facts.center_of_volume) < 0.05 * length(form.size);
+        if (validate("inertia", inertia) && fits && centered) {
             return {center, inertia, "homogeneous solid inside the " + form.volume_source + ", scaled to the mass",
                     form.volume_level};
         }

@@ -74,12 +74,24 @@ std::optional<PhraseMatch> match_phrase(const PhraseIndex& index, std::size_t lo
     const Occurrence& best = *std::min_element(found.begin(), found.end(), says_more);
 
     // What else the text could have meant, for the reader; parts of the deciding phrase say nothing more.
-    PhraseMatch match{best.phrase->entry, best.phrase->text, {}};
+    PhraseMatch match{best.phrase->entry, best.phrase->text, best.segment, {}};
     for (const Occurrence& other : found) {
         const bool inside = other.end <= best.end && other.end + best.phrase->length > best.end;
-        if (other.phrase->entry != match.entry && !inside) match.others.push_back(other.phrase->text);
+        const bool told = std::ranges::find(match.others, other.phrase->text) != match.others.end();
+        if (other.phrase->entry != match.entry && !inside && !told) match.others.push_back(other.phrase->text);
     }
     return match;
+}
+
+std::string without_phrase(std::string_view text, std::string_view phrase) {
+    const std::vector<Token> tokens = tokens_of(text);
+    const std::vector<Token> cut = tokens_of(phrase);
+    const auto found = std::search(tokens.begin(), tokens.end(), cut.begin(), cut.end(),
+                                   [](const Token& a, const Token& b) { return a.stem == b.stem; });
+    if (found == tokens.end() || cut.empty()) return std::string(text);
+    const auto before = static_cast<std::size_t>(found - tokens.begin());
+    const std::span all(tokens);
+    return join(all.first(before), &Token::text) + " " + join(all.subspan(before + cut.size()), &Token::text);
 }
 
 std::string stems_of(std::string_view text) { return join(tokens_of(text), &Token::stem); }

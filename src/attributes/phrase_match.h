@@ -13,6 +13,7 @@ namespace embody::attributes {
 struct PhraseMatch {
     std::size_t entry = 0;
     std::string phrase;               ///< the words that decided
+    int segment = 0;                  ///< in which part of the text they stand, counted by separators
     std::vector<std::string> others;  ///< phrases of other entries in the same text that did not
 };
 
@@ -23,6 +24,9 @@ bool add_phrase(PhraseIndex& index, std::string_view words, std::size_t entry);
 /// noun
 /// ("bedside lamp"), and of those the longest ("coffee table").
 std::optional<PhraseMatch> match_phrase(const PhraseIndex& index, std::size_t longest_phrase, std::string_view text);
+
+/// The text without the words of the phrase (words in lower case, separators as they were).
+std::string without_phrase(std::string_view text, std::string_view phrase);
 
 /// Stems of all words of the text, joined by one space.
 std::string stems_of(std::string_view text);

@@ -119,7 +119,7 @@ void put_mass(AttributeSet& set, const ModelFacts& facts, const Classification& 
         set.put({"fill_fraction", fill, {}, {}, "mass / (density x volume)", AttributeLevel::model});
     } else {
         set.put({"density",
-                 mass.typical / form.volume,
+                 std::min(mass.typical / form.volume, heaviest_density),
                  {},
                  {},
                  "mass / volume: " + surface.material->name + " would be too light for it",

@@ -40,7 +40,11 @@ std::optional<double> suggested_scale(const Taxonomy& taxonomy, const ModelFacts
 std::optional<double> likely_unit(double largest, double usual_low, double usual_high);
 
 /// `automatic` with the manual entries laid over it and what depends on them computed again (mass from density, …).
+/// Entries that validate() refuses are left out; contradictions between manual entries stay, and check() names them.
+/// With a taxonomy, a manual surface_material brings that material's density, friction and bounciness.
 AttributeSet with_manual(const AttributeSet& automatic, const std::vector<AttributeEntry>& manual,
                          const ModelFacts& facts);
+AttributeSet with_manual(const Taxonomy& taxonomy, const AttributeSet& automatic,
+                         const std::vector<AttributeEntry>& manual, const ModelFacts& facts);
 
 }  // namespace embody::attributes

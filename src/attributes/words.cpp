@@ -64,7 +64,9 @@ public:
         if (word_.empty()) return;
         std::ranges::transform(word_, word_.begin(),
                                [](char c) { return is_upper(c) ? static_cast<char>(c - 'A' + 'a') : c; });
-        if (std::ranges::find(separators, word_) != separators.end()) ++segment_;
+        // A number after the noun counts parts: a "sofa 2 seats" is a sofa.
+        const bool is_count = is_digit(word_.front()) && !tokens_.empty();
+        if (is_count || std::ranges::find(separators, word_) != separators.end()) ++segment_;
         tokens_.push_back({word_, singular_of(word_), segment_});
         word_.clear();
     }

@@ -7,8 +7,8 @@
 
 namespace embody::attributes {
 
-/// One word of a name, and how many separators ("with", "of", a comma, a bracket …) stand before it. What a thing is
-/// stands in front of the first separator: a "chair with cushion" is a chair.
+/// One word of a name, and how many separators ("with", "of", a number, a comma, a bracket …) stand before it. What a
+/// thing is stands in front of the first separator: a "chair with cushion" is a chair.
 struct Token {
     std::string text;  ///< lower case, accents folded
     std::string stem;  ///< singular

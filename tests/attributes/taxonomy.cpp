@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "attributes/check.h"
+#include "attributes/phrase_match.h"
+#include "attributes/sample_facts.h"
+#include "attributes/taxonomy_data.h"
+#include "attributes/words.h"
+
+namespace embody::attributes {
+namespace {
+
+constexpr const char* materials = R"({"materials": [{"name": "generic", "words": [], "density": [1, 2, 3],
+    "friction_static": [0.1, 0.2, 0.3], "friction_dynamic": [0.1, 0.2, 0.3], "friction_rolling": 0,
+    "restitution": [0, 0.1, 0.2], "source": "s"}]})";
+
+std::string category(const std::string& name, const std::string& words, const std::string& more = "") {
+    return R"({"name": ")" + name + R"(", "words": )" + words +
+           R"(, "kind": "rigid", "placement": "floor", "movable": true, "mass": [1, 2, 3], "at_size": [1, 1, 1],
+              "usual_size": [0.1, 2], "material": "generic", "source": "s")" +
+           more + "}";
+}
+
+// Loads the two texts from a folder of their own; the message of the error, or "".
+std::string load_error(const std::string& materials_text, const std::string& taxonomy_text) {
+    const auto folder = std::filesystem::temp_directory_path() / ("embody_taxonomy_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "materials.json") << materials_text;
+    std::ofstream(folder / "taxonomy.json") << taxonomy_text;
+    const auto loaded = Taxonomy::load(folder);
+    std::filesystem::remove_all(folder);
+    return loaded ? "" : loaded.error().message();
+}
+std::string load_error(const std::string& categories) {
+    return load_error(materials, R"({"categories": [)" + category("object", "[]") + ", " + categories + "]}");
+}
+
+TEST(TaxonomyLoad, NamesFileEntryAndField) {
+    EXPECT_FALSE(Taxonomy::load("/nowhere").ok());
+    EXPECT_NE(load_error("{", "{}").find("materials.json"), std::string::npos);
+    EXPECT_NE(load_error(materials, "[1").find("taxonomy.json"), std::string::npos);
+    EXPECT_EQ(load_error(materials, "{}"), "taxonomy.json.categories: is missing");
+    EXPECT_EQ(load_error(R"({"name": "a"})"), "taxonomy.json: categories[1].words: is missing");
+    EXPECT_EQ(load_error("7"), "taxonomy.json: categories[1]: must be an object");
+    EXPECT_EQ(load_error(category("a", R"(["a"])", R"(, "colour": "red")")),
+              "taxonomy.json: categories[1].colour: there is no field of this name");
+}
+
+TEST(TaxonomyLoad, RefusesImpossibleValues) {
+    const auto with = [](const std::string& field, const std::string& value) {
+        return load_error(category("a", R"(["a"])",
+                                   ", \"subcategories\": [{\"name\": \"b\", \"words\": [], \"source\": \"s\", "
+                                   "\"at_size\": [1, 1, 1], \"" +
+                                       field + "\": " + value + "}]"));
+    };
+    EXPECT_NE(with("mass", "[3, 2, 1]").find("ascending"), std::string::npos);
+    EXPECT_NE(with("mass", "[0, 1, 2]").find("must be 3 numbers"), std::string::npos);
+    EXPECT_NE(with("mass", "[1, 2]").find("must be 3 numbers"), std::string::npos);
+    EXPECT_NE(with("kind", "\"solid\"").find("must be one of"), std::string::npos);
+    EXPECT_NE(with("kind", "\"static\"").find("movable"), std::string::npos);
+    EXPECT_NE(with("placement", "\"moon\"").find("must be one of"), std::string::npos);
+    EXPECT_NE(with("material", "\"cheese\"").find("materials.json has no"), std::string::npos);
+    EXPECT_NE(with("mass_grows_with", "\"age\"").find("volume or area"), std::string::npos);
+    EXPECT_NE(with("solid", "true").find("fill_fraction"), std::string::npos);
+    EXPECT_EQ(with("exponent", "1"), "");
+}
+
+TEST(TaxonomyLoad, EveryPhraseBelongsToOneEntry) {
+    EXPECT_NE(load_error(category("a", R"(["x y"])") + "," + category("b", R"(["X-Y"])")).find("belongs to another"),
+              std::string::npos);
+    EXPECT_NE(load_error(category("a", R"(["x"])") + "," + category("a", R"(["y"])")).find("is there already"),
+              std::string::npos);
+    EXPECT_NE(load_error(category("a", R"(["--"])")).find("is empty"), std::string::npos);
+}
+
+TEST(TaxonomyLoad, NumbersNeedASource) {
+    const std::string sub =
+        R"(, "subcategories": [{"name": "b", "words": [], "mass": [1, 2, 3], "at_size": [1, 1, 1]}])";
+    // The category's source does not vouch for the subcategory's numbers.
+    EXPECT_EQ(load_error(category("a", R"(["a"])", sub)),
+              "taxonomy.json: categories[1].subcategories[0].source: is missing");
+}
+
+TEST(ShippedTaxonomy, EveryEntryGivesASetThatHoldsTogether) {
+    const Taxonomy::Data& data = shipped_taxonomy().data();
+    EXPECT_GE(data.categories.size(), 128u);
+    EXPECT_GE(data.materials.size(), 25u);
+    for (const CategoryData& category : data.categories) {
+        EXPECT_FALSE(category.source.empty()) << category.name;
+        // A typical piece lies in the category's usual range, and no solid is denser than its material.
+        const Vec3 s = category.at_size;
+        const double largest = std::max({s.x, s.y, s.z});
+        EXPECT_GE(largest, category.usual_low) << category.name;
+        EXPECT_LE(largest, category.usual_high) << category.name;
+        if (category.words.empty()) continue;
+        const ModelFacts facts = named(category.words.front(), s);
+        const AttributeSet set = resolve(shipped_taxonomy(), facts);
+        EXPECT_EQ(set.word(category.parent.empty() ? "category" : "subcategory", ""), category.name);
+        for (const Issue& issue : check(set, facts))
+            ADD_FAILURE() << category.name << " " << issue.attribute << " " << issue.why;
+        if (const AttributeEntry* mass = set.find("mass")) {
+            EXPECT_NEAR(std::get<double>(mass->value), category.mass.typical, 1e-9 * category.mass.typical)
+                << category.name;
+        }
+    }
+}
+
+TEST(Words, SplitsNamesAsPeopleWriteThem) {
+    const auto joined = [](std::string_view text) {
+        std::string all;
+        for (const Token& token : tokens_of(text)) all += token.stem + std::to_string(token.segment) + " ";
+        return all;
+    };
+    EXPECT_EQ(joined("bedsideTable_140x190"), "bedside0 table0 1401 x1 1902 ");
+    EXPECT_EQ(joined("Chairs with Cushions"), "chair0 with1 cushion1 ");
+    EXPECT_EQ(joined("Frame H\xC3\xB4i An (captain's)"), "frame0 hoi0 an0 ,1 captain1 ,2 ");
+    EXPECT_EQ(joined("iPhone"), "iphone0 ");
+    EXPECT_EQ(joined(""), "");
+    EXPECT_EQ(joined("\xC3"), "");
+    EXPECT_EQ(joined("\xE6\xA4\x85\xE5\xAD\x90"), "");
+}
+
+TEST(Words, SingularOfCommonNouns) {
+    EXPECT_EQ(singular_of("chairs"), "chair");
+    EXPECT_EQ(singular_of("boxes"), "box");
+    EXPECT_EQ(singular_of("glasses"), "glass");
+    EXPECT_EQ(singular_of("cherries"), "cherry");
+    EXPECT_EQ(singular_of("bus"), "bus");
+    EXPECT_EQ(singular_of("cactus"), "cactus");
+    EXPECT_EQ(singular_of("dress"), "dress");
+    EXPECT_EQ(singular_of("s"), "s");
+}
+
+}  // namespace
+}  // namespace embody::attributes

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "attributes/to_physics.h"
+
+#include <gtest/gtest.h>
+
+#include "attributes/resolver.h"
+#include "attributes/sample_facts.h"
+
+namespace embody::attributes {
+namespace {
+
+// Geometry of a unit tetrahedron, or the error that the file is gone.
+class SampleGeometry : public ModelGeometry {
+public:
+    bool broken = false;
+    Result<std::vector<Vec3>> hull_points() override {
+        if (broken) return Error{"model", "is gone"};
+        return std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    }
+    Result<physics::MeshShape> mesh() override {
+        if (broken) return Error{"model", "is gone"};
+        return physics::MeshShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+    }
+};
+
+AttributeSet with_word(const ModelFacts& facts, const char* name, const char* word) {
+    AttributeSet set = resolve(shipped_taxonomy(), facts);
+    set.put({name, std::string(word), {}, {}, "test", AttributeLevel::manual});
+    return set;
+}
+
+TEST(ToPhysics, WhatIsOnlyDrawnHasNoBody) {
+    const auto body = body_from_attributes(resolve(shipped_taxonomy(), named("White light source")));
+    ASSERT_FALSE(body.ok());
+    EXPECT_EQ(body.error().where, "kind");
+}
+
+TEST(ToPhysics, MovingThingsMayNotBeTriangles) {
+    SampleGeometry geometry;
+    const ModelFacts facts = named("Chair");
+    EXPECT_FALSE(shape_from_attributes(with_word(facts, "collision_shape", "trimesh"), facts.geometry, geometry).ok());
+    EXPECT_FALSE(shape_from_attributes(with_word(facts, "collision_shape", "blob"), facts.geometry, geometry).ok());
+}
+
+TEST(ToPhysics, MissingGeometryIsAnErrorNotAnEmptyShape) {
+    SampleGeometry geometry;
+    geometry.broken = true;
+    const ModelFacts chair = named("Chair");
+    EXPECT_FALSE(shape_from_attributes(resolve(shipped_taxonomy(), chair), chair.geometry, geometry).ok());
+    const ModelFacts door = named("Door");
+    EXPECT_FALSE(shape_from_attributes(resolve(shipped_taxonomy(), door), door.geometry, geometry).ok());
+}
+
+TEST(ToPhysics, EveryKindWithABodyPassesThePhysicsOwnCheck) {
+    SampleGeometry geometry;
+    for (const char* name : {"Chair", "Door", "Curtain", "Teddy bear", "Male", "Hatchback", "xyzzy", "Rug", "Rock"}) {
+        const ModelFacts facts = closed_box(name, {0.5, 0.7, 0.3});
+        const AttributeSet set = resolve(shipped_taxonomy(), facts);
+        const auto body = body_from_attributes(set);
+        ASSERT_TRUE(body.ok()) << name << ": " << body.error().message();
+        const auto valid = physics::validate(*body);
+        EXPECT_TRUE(valid.ok()) << name << ": " << valid.error().message();
+        const auto shape = shape_from_attributes(set, facts.geometry, geometry);
+        ASSERT_TRUE(shape.ok()) << name << ": " << shape.error().message();
+        EXPECT_TRUE(physics::validate(*shape).ok()) << name;
+        EXPECT_EQ(body->kind == physics::BodyKind::static_body, set.word("kind", "") == "static") << name;
+        EXPECT_DOUBLE_EQ(*body->mass.mass, set.number("mass", 0));
+    }
+}
+
+TEST(ToPhysics, EmptySetGivesABodyWithDefaults) {
+    const auto body = body_from_attributes({});
+    ASSERT_TRUE(body.ok());
+    EXPECT_EQ(body->kind, physics::BodyKind::dynamic_body);
+    EXPECT_FALSE(body->mass.mass.has_value());
+    EXPECT_EQ(body->material.friction_static, 0.5);
+    EXPECT_EQ(body->collision_mask, 0xFFFFFFFFu);
+}
+
+TEST(ToPhysics, FittedPrimitiveStandsWhereItWasFitted) {
+    SampleGeometry geometry;
+    const ModelFacts facts = closed_box("Crate", {0.6, 0.4, 0.5});
+    const auto shape = shape_from_attributes(resolve(shipped_taxonomy(), facts), facts.geometry, geometry);
+    ASSERT_TRUE(shape.ok());
+    const auto& compound = std::get<physics::CompoundShape>(*shape);
+    ASSERT_EQ(compound.children.size(), 1u);
+    EXPECT_EQ(compound.children[0].local.position, (Vec3{0, 0.2, 0}));
+    EXPECT_EQ(std::get<physics::BoxShape>(compound.children[0].shape).half_extents, (Vec3{0.3, 0.2, 0.25}));
+}
+
+TEST(ToPhysics, PrimitiveThatWasNotFittedSurroundsTheBox) {
+    SampleGeometry geometry;
+    const ModelFacts facts = named("Chair", {0.4, 1.0, 0.4});
+    for (const char* shape : {"sphere", "capsule", "cylinder", "box"}) {
+        const auto made = shape_from_attributes(with_word(facts, "collision_shape", shape), facts.geometry, geometry);
+        ASSERT_TRUE(made.ok()) << shape;
+        EXPECT_TRUE(physics::validate(*made).ok()) << shape;
+        EXPECT_EQ(std::get<physics::CompoundShape>(*made).children[0].local.position, (Vec3{0, 0.5, 0})) << shape;
+    }
+}
+
+TEST(ToPhysics, FlatThingsBecomeThinBoxes) {
+    SampleGeometry geometry;
+    const ModelFacts facts = named("Calendar", {0.3, 0.4, 0});
+    const auto shape = shape_from_attributes(resolve(shipped_taxonomy(), facts), facts.geometry, geometry);
+    ASSERT_TRUE(shape.ok());
+    const auto& compound = std::get<physics::CompoundShape>(*shape);
+    EXPECT_TRUE(std::holds_alternative<physics::BoxShape>(compound.children[0].shape));
+    EXPECT_TRUE(physics::validate(*shape).ok());
+}
+
+TEST(ToPhysics, CombineRulesAndFlagsArriveInThePhysics) {
+    AttributeSet set = with_word(named("Chair"), "friction_combine", "minimum");
+    set.put({"restitution_combine", std::string("average"), {}, {}, "", AttributeLevel::manual});
+    set.put({"kinematic", true, {}, {}, "", AttributeLevel::manual});
+    set.put({"continuous", true, {}, {}, "", AttributeLevel::manual});
+    set.put({"gravity_factor", -1.0, {}, {}, "", AttributeLevel::manual});
+    const auto body = body_from_attributes(set);
+    ASSERT_TRUE(body.ok());
+    EXPECT_EQ(body->material.friction_combine, physics::CombineRule::minimum);
+    EXPECT_EQ(body->material.restitution_combine, physics::CombineRule::average);
+    EXPECT_EQ(body->kind, physics::BodyKind::kinematic_body);
+    EXPECT_TRUE(body->continuous);
+    EXPECT_EQ(body->gravity_factor, -1);
+}
+
+}  // namespace
+}  // namespace embody::attributes
