@@ -86,7 +86,7 @@ void update_collision_shape(AttributeSet& set, const GeometryFacts& facts, const
     replace(set, {"collision_shape", choice.shape, {}, {}, choice.source, choice.level});
 }
 
-// What a manual entry was replaced by is lost at its level; the fallback of a mass that a cloth never had is 1 kg.
+// Valid entries only, each as a person's own, whatever level it came with.
 AttributeSet lay_over(const AttributeSet& automatic, const std::vector<AttributeEntry>& manual) {
     AttributeSet set = automatic;
     for (AttributeEntry entry : manual) {

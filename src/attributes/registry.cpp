@@ -52,7 +52,7 @@ Error unknown_name(std::string_view name) {
     // A name that shares nothing gets no guess.
     const bool close = least <= std::max<std::size_t>(2, nearest->name.size() / 2);
     return {std::string(name.substr(0, 64)), "there is no attribute of this name",
-            close ? "did you mean \"" + nearest->name + "\"?" : "embody attributes lists them"};
+            close ? "did you mean \"" + nearest->name + "\"?" : ""};
 }
 
 std::string range_text(const AttributeDescription& description) {
