@@ -63,12 +63,10 @@ void match_points(const Contact& old_contact, Contact& new_contact) {
         if (best < 0) continue;
         const ContactPoint& old_point = old_contact.points[static_cast<std::size_t>(best)];
         taken[static_cast<std::size_t>(best)] = true;
-        point.position_phase = carried_over(old_point.position_phase, old_contact, new_contact);
-        point.velocity_phase = carried_over(old_point.velocity_phase, old_contact, new_contact);
+        point.impulse = carried_over(old_point.impulse, old_contact, new_contact);
         point.sticks = old_point.sticks;
     }
-    new_contact.turning_position_phase = old_contact.turning_position_phase;
-    new_contact.turning_velocity_phase = old_contact.turning_velocity_phase;
+    new_contact.turning = old_contact.turning;
     new_contact.was_loaded = is_pressed(old_contact);
 }
 
@@ -82,8 +80,7 @@ double current_separation(const Contact& contact, const ContactPoint& point, std
 
 bool is_pressed(const Contact& contact) {
     for (int i = 0; i < contact.count; ++i) {
-        const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        if (point.position_phase.normal + point.velocity_phase.normal > 0) return true;
+        if (contact.points[static_cast<std::size_t>(i)].impulse.normal > 0) return true;
     }
     return false;
 }

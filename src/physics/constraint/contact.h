@@ -11,7 +11,7 @@
 
 namespace embody::physics {
 
-/// Impulse of one half of a substep at a contact point: along the normal and along the two tangents, N s.
+/// Impulse at a contact point: along the normal and along the two tangents, N s.
 struct PointImpulse {
     double normal = 0;
     double tangent_1 = 0, tangent_2 = 0;
@@ -27,9 +27,8 @@ struct ContactPoint {
     double tangent_11 = 0, tangent_12 = 0, tangent_22 = 0;  ///< inverse of the 2×2 tangent block, kg
     bool sticks = true;                                     ///< holds by static friction until the cone is left
 
-    PointImpulse position_phase;  ///< of the last substep's first half; warm start of the next
-    PointImpulse velocity_phase;  ///< of its second half
-    PointImpulse total;           ///< of the whole step, impacts included
+    PointImpulse impulse;  ///< of the last substep; warm start of the next
+    PointImpulse total;    ///< of the whole step, impacts included
 };
 
 /// One contact region (paper, III.B) as a constraint between two bodies.
@@ -41,8 +40,7 @@ struct Contact {
     int count = 0;
     std::array<ContactPoint, Manifold::max_points> points;
 
-    Vec3 turning_position_phase, turning_velocity_phase;  ///< torsion (along n) and rolling resistance, N m s
-    double torsional_mass = 0;
+    Vec3 turning;  ///< angular impulse by torsion (along n) and rolling resistance of the last substep, N m s
     double approach_speed = 0;  ///< fastest point when found, m/s, >= 0
     double inactive_until = 0;  ///< s in the step: before that an impact lets the bodies part
     bool was_loaded = false;    ///< pressed in the last step

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
 // Contact and friction by sequential impulses with soft contacts and substeps.
-// Sources: E. Catto, "Soft constraints: reinventing the spring", GDC 2011 (softness from frequency and damping);
-// M. Macklin et al., "Small steps in physics simulation", 2019 (substeps instead of iterations); H. Andersen, "Rattle:
-// a velocity version of the Shake algorithm", 1983 (the two phases, here for unilateral contacts). Paper:
-// non-penetration is eq. (4), the opposite impulses are eq. (6), the cone is eq. (7), with the square that the print
-// misses on its right side: |j_t|² <= μ² j_n².
+// Sources: E. Catto, "Soft constraints: reinventing the spring", GDC 2011 (softness from frequency and damping), and
+// "Solver2D", 2024 (one biased and one relaxing pass a substep); M. Macklin et al., "Small steps in physics
+// simulation", 2019 (substeps instead of iterations). Paper: non-penetration is eq. (4), the opposite impulses are eq.
+// (6), the cone is eq. (7), with the square that the print misses on its right side: |j_t|² <= μ² j_n².
 //
-//   position phase:  v_n + s/h >= 0 while apart,  v_n + bias(s) >= 0 soft while overlapping,  λ₁ >= 0
-//   velocity phase:  v_n >= 0 at touching points,  λ₁ + λ₂ >= 0
-// λ₂ may be negative down to −λ₁: so it takes back the speed that the first phase gave to push bodies apart.
+//   position phase:  v_n + s/h >= 0 while apart,  v_n + bias(s) >= 0, soft, while overlapping
+//   velocity phase:  v_n >= 0 at touching points: takes back the speed that the first phase gave to push bodies apart
+//   both:            λ >= 0 for the sum over the substep
 #include "physics/constraint/contact_solver.h"
 
 #include <algorithm>
@@ -19,23 +18,15 @@ namespace embody::physics {
 
 namespace {
 
-constexpr double push_speed = 3;          // m/s: overlapping bodies part no faster than this
-constexpr double damping_ratio = 10;      // overdamped: penetration fades without a bounce
-constexpr double stiffness_share = 0.25;  // contact frequency over substep frequency: the stiffest that stays stable
+constexpr double push_speed = 3;      // m/s: overlapping bodies part no faster than this
+constexpr double damping_ratio = 10;  // overdamped: penetration fades without a bounce
+// Contact frequency over substep frequency: the stiffest that stays quiet with one pass and with many.
+constexpr double stiffness_one_pass = 0.25, stiffness_many_passes = 0.5;
 constexpr double pi = 3.14159265358979323846;
-
-PointImpulse& impulse_of(ContactPoint& point, SolvePhase phase) {
-    return phase == SolvePhase::position ? point.position_phase : point.velocity_phase;
-}
 
 void apply(const Contact& contact, const ContactPoint& point, Vec3 impulse, std::span<BodyState> bodies) {
     apply_impulse(bodies[contact.b], impulse, point.arm_b);
     apply_impulse(bodies[contact.a], -impulse, point.arm_a);
-}
-
-// How far the first phase's impulse may be taken back by the second.
-PointImpulse earlier_impulse(const ContactPoint& point, SolvePhase phase) {
-    return phase == SolvePhase::velocity ? point.position_phase : PointImpulse{};
 }
 
 void solve_normal(const Contact& contact, ContactPoint& point, SolvePhase phase, const ContactSoftness& softness,
@@ -50,10 +41,10 @@ void solve_normal(const Contact& contact, ContactPoint& point, SolvePhase phase,
         impulse_scale = softness.impulse_scale;
     }
     const double speed = dot(relative_velocity(contact, point, bodies), contact.normal);
-    PointImpulse& impulse = impulse_of(point, phase);
+    PointImpulse& impulse = point.impulse;
     const double wanted =
         impulse.normal - point.normal_mass * mass_scale * (speed + bias) - impulse_scale * impulse.normal;
-    const double allowed = std::max(wanted, -earlier_impulse(point, phase).normal);
+    const double allowed = std::max(wanted, 0.0);
     const double change = allowed - impulse.normal;
     impulse.normal = allowed;
     if (change != 0) apply(contact, point, contact.normal * change, bodies);
@@ -61,45 +52,37 @@ void solve_normal(const Contact& contact, ContactPoint& point, SolvePhase phase,
 
 // Coulomb's cone with the full 2×2 tangent block: a pyramid or two separate rows would make friction depend on the
 // choice of tangents.
-void solve_friction(const Contact& contact, ContactPoint& point, SolvePhase phase, std::span<BodyState> bodies) {
-    PointImpulse& impulse = impulse_of(point, phase);
-    const PointImpulse earlier = earlier_impulse(point, phase);
-    const double normal = impulse.normal + earlier.normal;
-    if (normal <= 0 && impulse.tangent_1 == 0 && impulse.tangent_2 == 0) return;
+void solve_friction(const Contact& contact, ContactPoint& point, std::span<BodyState> bodies) {
+    PointImpulse& impulse = point.impulse;
+    if (impulse.normal == 0 && impulse.tangent_1 == 0 && impulse.tangent_2 == 0) return;
 
     // What would stop the point.
     const Vec3 velocity = relative_velocity(contact, point, bodies);
     const double u1 = dot(velocity, contact.tangent_1), u2 = dot(velocity, contact.tangent_2);
-    double sum_1 = earlier.tangent_1 + impulse.tangent_1 - (point.tangent_11 * u1 + point.tangent_12 * u2);
-    double sum_2 = earlier.tangent_2 + impulse.tangent_2 - (point.tangent_12 * u1 + point.tangent_22 * u2);
+    double sum_1 = impulse.tangent_1 - (point.tangent_11 * u1 + point.tangent_12 * u2);
+    double sum_2 = impulse.tangent_2 - (point.tangent_12 * u1 + point.tangent_22 * u2);
 
     // A sticking point holds up to the static limit; once it slides, it must fall below the dynamic one to stick again.
     const double wanted = std::sqrt(sum_1 * sum_1 + sum_2 * sum_2);
     const Material& material = contact.material;
-    const double limit = (point.sticks ? material.friction_static : material.friction_dynamic) * normal;
+    const double limit = (point.sticks ? material.friction_static : material.friction_dynamic) * impulse.normal;
     point.sticks = wanted <= limit;
     if (!point.sticks) {
-        const double share = wanted > 0 ? std::max(0.0, material.friction_dynamic * normal) / wanted : 0;
+        const double share = wanted > 0 ? material.friction_dynamic * impulse.normal / wanted : 0;
         sum_1 *= share;
         sum_2 *= share;
     }
-    const double change_1 = sum_1 - earlier.tangent_1 - impulse.tangent_1;
-    const double change_2 = sum_2 - earlier.tangent_2 - impulse.tangent_2;
-    impulse.tangent_1 += change_1;
-    impulse.tangent_2 += change_2;
+    const double change_1 = sum_1 - impulse.tangent_1;
+    const double change_2 = sum_2 - impulse.tangent_2;
+    impulse.tangent_1 = sum_1;
+    impulse.tangent_2 = sum_2;
     apply(contact, point, contact.tangent_1 * change_1 + contact.tangent_2 * change_2, bodies);
 }
 
 // Torsion of the patch and rolling resistance: angular impulses bounded by lever arm times normal impulse.
-void solve_turning(Contact& contact, SolvePhase phase, std::span<BodyState> bodies) {
+void solve_turning(Contact& contact, std::span<BodyState> bodies) {
     double normal = 0;
-    for (int i = 0; i < contact.count; ++i) {
-        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        normal += impulse_of(point, phase).normal + earlier_impulse(point, phase).normal;
-    }
-    const bool is_second = phase == SolvePhase::velocity;
-    Vec3& impulse = is_second ? contact.turning_velocity_phase : contact.turning_position_phase;
-    const Vec3 earlier = is_second ? contact.turning_position_phase : Vec3{};
+    for (int i = 0; i < contact.count; ++i) normal += contact.points[static_cast<std::size_t>(i)].impulse.normal;
     BodyState& a = bodies[contact.a];
     BodyState& b = bodies[contact.b];
     const Mat3 inverse_inertia = a.inverse_inertia + b.inverse_inertia;
@@ -107,16 +90,16 @@ void solve_turning(Contact& contact, SolvePhase phase, std::span<BodyState> bodi
     const Vec3 n = contact.normal;
 
     // What would stop all relative turning, split along and across the normal, each part bounded.
-    const Vec3 wanted = earlier + impulse - solve(inverse_inertia, spin);
-    const double torsion_limit = contact.material.friction_torsional * std::max(normal, 0.0);
+    const Vec3 wanted = contact.turning - solve(inverse_inertia, spin);
+    const double torsion_limit = contact.material.friction_torsional * normal;
     const double torsion = std::clamp(dot(wanted, n), -torsion_limit, torsion_limit);
     Vec3 rolling = wanted - dot(wanted, n) * n;
-    const double rolling_limit = contact.material.friction_rolling * std::max(normal, 0.0);
+    const double rolling_limit = contact.material.friction_rolling * normal;
     const double size = length(rolling);
     if (size > rolling_limit) rolling *= rolling_limit / size;
 
-    const Vec3 change = torsion * n + rolling - earlier - impulse;
-    impulse += change;
+    const Vec3 change = torsion * n + rolling - contact.turning;
+    contact.turning += change;
     apply_angular_impulse(b, change);
     apply_angular_impulse(a, -change);
 }
@@ -127,8 +110,14 @@ bool resists_turning(const Contact& contact) {
 
 }  // namespace
 
-ContactSoftness contact_softness(double substep) {
-    const double omega = 2 * pi * stiffness_share / substep;
+int contact_passes(std::size_t contacts) {
+    constexpr std::size_t budget = 256, most = 8;
+    return static_cast<int>(std::clamp<std::size_t>(budget / std::max<std::size_t>(contacts, 1), 1, most));
+}
+
+ContactSoftness contact_softness(double substep, std::size_t contacts) {
+    const double share = contact_passes(contacts) >= 4 ? stiffness_many_passes : stiffness_one_pass;
+    const double omega = 2 * pi * share / substep;
     const double a1 = 2 * damping_ratio + substep * omega;
     const double a2 = substep * omega * a1;
     return {substep, omega / a1, a2 / (1 + a2), 1 / (1 + a2)};
@@ -156,38 +145,40 @@ void prepare_contact(Contact& contact, std::span<const BodyState> bodies) {
     }
 }
 
-void warm_start_contact(Contact& contact, SolvePhase phase, std::span<BodyState> bodies) {
+void warm_start_contact(const Contact& contact, std::span<BodyState> bodies) {
     for (int i = 0; i < contact.count; ++i) {
-        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        PointImpulse& impulse = impulse_of(point, phase);
-        impulse.normal = std::max(impulse.normal, -earlier_impulse(point, phase).normal);
+        const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        const PointImpulse& impulse = point.impulse;
         apply(contact, point,
               contact.normal * impulse.normal + contact.tangent_1 * impulse.tangent_1 +
                   contact.tangent_2 * impulse.tangent_2,
               bodies);
     }
     if (!resists_turning(contact)) return;
-    const Vec3 turning =
-        phase == SolvePhase::position ? contact.turning_position_phase : contact.turning_velocity_phase;
-    apply_angular_impulse(bodies[contact.b], turning);
-    apply_angular_impulse(bodies[contact.a], -turning);
+    apply_angular_impulse(bodies[contact.b], contact.turning);
+    apply_angular_impulse(bodies[contact.a], -contact.turning);
 }
 
 void solve_contact(Contact& contact, SolvePhase phase, const ContactSoftness& softness, std::span<BodyState> bodies) {
     const auto points = std::span(contact.points).first(static_cast<std::size_t>(contact.count));
-    for (ContactPoint& point : points) solve_normal(contact, point, phase, softness, bodies);
     if (contact.material.friction_static > 0) {
-        for (ContactPoint& point : points) solve_friction(contact, point, phase, bodies);
+        for (ContactPoint& point : points) solve_friction(contact, point, bodies);
     }
-    if (resists_turning(contact)) solve_turning(contact, phase, bodies);
+
+    // Non-penetration has the last word. Forwards and backwards: else the last point would win and a flat body lean.
+    for (ContactPoint& point : points) solve_normal(contact, point, phase, softness, bodies);
+    for (auto point = points.rbegin(); point != points.rend(); ++point) {
+        solve_normal(contact, *point, phase, softness, bodies);
+    }
+    if (resists_turning(contact)) solve_turning(contact, bodies);
 }
 
 void add_to_totals(Contact& contact) {
     for (int i = 0; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        point.total.normal += point.position_phase.normal + point.velocity_phase.normal;
-        point.total.tangent_1 += point.position_phase.tangent_1 + point.velocity_phase.tangent_1;
-        point.total.tangent_2 += point.position_phase.tangent_2 + point.velocity_phase.tangent_2;
+        point.total.normal += point.impulse.normal;
+        point.total.tangent_1 += point.impulse.tangent_1;
+        point.total.tangent_2 += point.impulse.tangent_2;
     }
 }
 

@@ -7,11 +7,6 @@ namespace embody::physics {
 
 namespace {
 
-// Passes: a long list gets one, since the substeps and the warm start do the work; a short one costs nothing.
-int contact_passes(std::size_t contacts) {
-    constexpr std::size_t budget = 64;
-    return static_cast<int>(std::clamp<std::size_t>(budget / std::max<std::size_t>(contacts, 1), 1, 8));
-}
 int joint_passes(std::size_t joints) {
     constexpr std::size_t budget = 512;
     return static_cast<int>(std::clamp<std::size_t>(budget / std::max<std::size_t>(joints, 1), 4, 64));
@@ -24,11 +19,12 @@ bool is_active(const Contact& contact, double time) { return time > contact.inac
 
 }  // namespace
 
-void solve_phase(const ConstraintList& list, SolvePhase phase, const ContactSoftness& softness,
-                 std::span<BodyState> bodies) {
+void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, std::span<BodyState> bodies) {
+    const ContactSoftness softness = contact_softness(substep, list.contact_order.size());
     for (const std::uint32_t i : list.joint_order) warm_start_joint(list.joints[i], phase, bodies);
     for (const std::uint32_t i : list.contact_order) {
-        if (is_active(list.contacts[i], list.time)) warm_start_contact(list.contacts[i], phase, bodies);
+        const bool is_first = phase == SolvePhase::position;
+        if (is_first && is_active(list.contacts[i], list.time)) warm_start_contact(list.contacts[i], bodies);
     }
 
     const int least = contact_passes(list.contact_order.size());
@@ -36,7 +32,7 @@ void solve_phase(const ConstraintList& list, SolvePhase phase, const ContactSoft
     for (int pass = 0; pass < most; ++pass) {
         double error = 0;
         for (const std::uint32_t i : list.joint_order) {
-            error = std::max(error, solve_joint(list.joints[i], phase, softness.substep, bodies));
+            error = std::max(error, solve_joint(list.joints[i], phase, substep, bodies));
         }
         for (const std::uint32_t i : list.contact_order) {
             if (is_active(list.contacts[i], list.time)) solve_contact(list.contacts[i], phase, softness, bodies);

@@ -18,7 +18,6 @@ struct ConstraintList {
 };
 
 /// Passes over the list in one phase: few for long lists, more for short ones, until a joint's error is gone.
-void solve_phase(const ConstraintList& list, SolvePhase phase, const ContactSoftness& softness,
-                 std::span<BodyState> bodies);
+void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, std::span<BodyState> bodies);
 
 }  // namespace embody::physics

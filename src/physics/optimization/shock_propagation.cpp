@@ -14,14 +14,20 @@ namespace embody::physics {
 
 namespace {
 
-constexpr std::uint32_t deep = 4;   // levels from which the solver's own correction is too slow
-constexpr double tolerance = 2e-5;  // m of penetration that may stay: keeps the contact pressed
-constexpr double share = 0.3;       // of the rest taken out in one step
+constexpr std::uint32_t deep = 4;  // levels from which the solver's own correction is too slow
+constexpr double slop = 1e-4;      // m of penetration beyond the sag that is let be
+constexpr double share = 0.2;      // of the rest taken out in one step
+
+// How deep the soft contact sinks under the load that it carries: without that sag it would not press back.
+double sag(const ContactPoint& point, const ContactSoftness& softness) {
+    const double stiffness = point.normal_mass * softness.mass_scale * softness.bias_rate;
+    return stiffness > 0 ? softness.impulse_scale * point.impulse.normal / stiffness : 0;
+}
 
 }  // namespace
 
 void propagate_shock(const Island& island, const Islands& islands, std::span<const Contact> contacts,
-                     std::span<BodyState> bodies) {
+                     const ContactSoftness& softness, std::span<BodyState> bodies) {
     if (island.deepest_level < deep) return;
     for (std::uint32_t k = 0; k < island.contact_count; ++k) {
         const Contact& contact = contacts[islands.contacts[island.first_contact + k]];
@@ -29,12 +35,11 @@ void propagate_shock(const Island& island, const Islands& islands, std::span<con
         if (level_a == level_b || level_a == no_level || level_b == no_level || !is_pressed(contact)) continue;
 
         // The deepest point tells how far the upper body has to go; it only shifts, so that nothing starts to turn.
-        double deepest = 0;
+        double depth = 0;
         for (int i = 0; i < contact.count; ++i) {
-            deepest =
-                std::min(deepest, current_separation(contact, contact.points[static_cast<std::size_t>(i)], bodies));
+            const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+            depth = std::max(depth, -current_separation(contact, point, bodies) - sag(point, softness) - slop);
         }
-        const double depth = -deepest - tolerance;
         if (depth <= 0) continue;
         const Vec3 shift = contact.normal * (share * depth);
         if (level_b > level_a) {

@@ -7,9 +7,10 @@
 
 namespace embody::physics {
 
-/// Takes out the penetration that the solver left in a deep island, in one sweep from the ground up, in which a lower
-/// body is immovable for the ones above it. Changes positions only, never a velocity.
+/// Takes out the penetration that the solver left in a deep island (beyond the sag of its soft contacts), in one sweep
+/// from the ground up, in which a lower body is immovable for the ones above it. Changes positions only, never a
+/// velocity.
 void propagate_shock(const Island& island, const Islands& islands, std::span<const Contact> contacts,
-                     std::span<BodyState> bodies);
+                     const ContactSoftness& softness, std::span<BodyState> bodies);
 
 }  // namespace embody::physics

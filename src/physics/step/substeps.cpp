@@ -10,7 +10,7 @@ namespace embody::physics {
 
 namespace {
 
-void solve_islands(WorldState& world, SolvePhase phase, const ContactSoftness& softness, double time) {
+void solve_islands(WorldState& world, SolvePhase phase, double h, double time) {
     const Islands& islands = world.islands;
     for (const Island& island : islands.list) {
         const ConstraintList list{
@@ -19,21 +19,51 @@ void solve_islands(WorldState& world, SolvePhase phase, const ContactSoftness& s
             .joints = world.active_joints,
             .joint_order = std::span(islands.joints).subspan(island.first_joint, island.joint_count),
             .time = time};
-        solve_phase(list, phase, softness, world.motion);
+        solve_phase(list, phase, h, world.motion);
     }
 }
 
-void kick_all(WorldState& world, double time) {
-    for (const std::uint32_t body : world.islands.bodies) kick(world.motion[body], world.constants[body], time);
+// Free bodies and jointed ones get half of the forces before the drift and half after it, which is exact for a constant
+// force and symplectic for joints. Where there are contacts all of it comes first: resting bodies then have the
+// velocity that the contacts must hold, and the warm start fits.
+bool has_split_kick(const Island& island) { return island.contact_count == 0; }
+
+void kick_before_drift(WorldState& world, double h) {
+    for (const Island& island : world.islands.list) {
+        const double time = has_split_kick(island) ? h / 2 : h;
+        for (std::uint32_t k = 0; k < island.body_count; ++k) {
+            const std::uint32_t body = world.islands.bodies[island.first_body + k];
+            kick(world.motion[body], world.constants[body], time);
+            split_gyroscopic(world.motion[body], world.constants[body], h);
+            world.kicked_velocity[body] = world.motion[body].linear_velocity;
+        }
+    }
 }
 
-void drift_all(WorldState& world, double time) {
-    for (const std::uint32_t body : world.awake) {
-        if (world.motion[body].inverse_mass > 0) {
-            drift(world.motion[body], world.constants[body], time);
-        } else {
-            drift_kinematic(world.motion[body], time);
+void kick_after_drift(WorldState& world, double h) {
+    for (const Island& island : world.islands.list) {
+        if (!has_split_kick(island)) continue;
+        for (std::uint32_t k = 0; k < island.body_count; ++k) {
+            const std::uint32_t body = world.islands.bodies[island.first_body + k];
+            kick(world.motion[body], world.constants[body], h / 2);
         }
+    }
+}
+
+void drift_all(WorldState& world, double h) {
+    for (const Island& island : world.islands.list) {
+        for (std::uint32_t k = 0; k < island.body_count; ++k) {
+            const std::uint32_t body = world.islands.bodies[island.first_body + k];
+            BodyState& state = world.motion[body];
+
+            // A body near others that nothing touched: its mean velocity lies half a kick behind.
+            const bool is_free = state.linear_velocity == world.kicked_velocity[body];
+            if (!has_split_kick(island) && is_free) state.center -= world.constants[body].acceleration * (h * h / 2);
+            drift(state, world.constants[body], h);
+        }
+    }
+    for (const std::uint32_t body : world.awake) {
+        if (world.motion[body].inverse_mass == 0) drift_kinematic(world.motion[body], h);
     }
 }
 
@@ -79,29 +109,27 @@ void clamp_speeds(WorldState& world) {
 
 void run_substeps(WorldState& world) {
     const double h = world.settings.time_step / world.settings.substeps;
-    const ContactSoftness softness = contact_softness(h);
     for (Contact& contact : world.contacts) prepare_contact(contact, world.motion);
     prepare_joints(world);
+    world.kicked_velocity.resize(world.motion.size());
 
     for (int k = 1; k <= world.settings.substeps; ++k) {
-        // Half the forces, constraints on the mean velocity, motion.
-        kick_all(world, h / 2);
-        for (const std::uint32_t body : world.islands.bodies) {
-            split_gyroscopic(world.motion[body], world.constants[body], h);
-        }
-        solve_islands(world, SolvePhase::position, softness, k * h);
+        // Forces, constraints that also mend positions, motion.
+        kick_before_drift(world, h);
+        solve_islands(world, SolvePhase::position, h, k * h);
         drift_all(world, h);
 
-        // The other half, constraints on the velocity itself.
+        // Constraints on the velocity alone.
         prepare_joints(world);
-        kick_all(world, h / 2);
-        solve_islands(world, SolvePhase::velocity, softness, k * h);
+        kick_after_drift(world, h);
+        solve_islands(world, SolvePhase::velocity, h, k * h);
         for (Contact& contact : world.contacts) add_to_totals(contact);
     }
 
     if (world.settings.shock_propagation) {
         for (const Island& island : world.islands.list) {
-            propagate_shock(island, world.islands, world.contacts, world.motion);
+            propagate_shock(island, world.islands, world.contacts, contact_softness(h, island.contact_count),
+                            world.motion);
         }
     }
     clamp_speeds(world);

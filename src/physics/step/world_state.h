@@ -75,6 +75,8 @@ struct WorldState {
     std::vector<std::uint32_t> active_joint_slots;         // islands
     Islands islands;                                       // islands
 
+    std::vector<Vec3> kicked_velocity;  // substeps: linear velocity before the constraints, m/s
+
     std::map<std::uint32_t, SleepingGroup> sleepers;  // sleep, wake
     std::uint32_t next_group = 1;                     // sleep
     std::vector<std::uint32_t> to_wake;               // face, touch: slots
