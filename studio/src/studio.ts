@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
+import { Box3, Vector3 } from "three";
 import { CommandRefused, Connection, NotConnected } from "./connection/connection";
-import type { Commands, ServerError, ServerEvent, Simulation, Statistics } from "./connection/messages";
+import type { Commands, DocumentEvent, ServerError, ServerEvent, Simulation, Statistics } from "./connection/messages";
 import { Motion } from "./document/motion";
-import { SceneDocument } from "./document/scene_document";
+import { positionOf, SceneDocument } from "./document/scene_document";
 import { Selection } from "./document/selection";
 import { Preferences } from "./preferences";
 import { Signal } from "./signal";
@@ -69,10 +70,7 @@ export class Studio {
 
   private followDocument(): void {
     this.document.changed.on((changed) => {
-      if (changed.all) {
-        this.motion.clear();
-        this.selection.clear();
-      }
+      if (changed.all) this.selection.clear();
       for (const index of changed.removed) if (!this.document.entity(index)) this.motion.forget(index);
       this.entities.apply(changed);
       this.selection.set(this.selection.indices.filter((index) => this.document.entity(index)));
@@ -91,7 +89,12 @@ export class Studio {
   }
 
   private followConnection(): void {
-    this.connection.opened.on(() => void this.greet());
+    this.connection.opened.on(() => {
+      // It may be another server now. Frames may come before the answer to hello, so that only here all poses are old.
+      this.models.forgetSummaries();
+      this.motion.clear();
+      void this.greet();
+    });
     this.connection.closed.on(() => this.connectionChanged.emit());
     this.connection.fault.on((reason) => this.notice.emit({ level: "error", text: reason, remedy: "Reload the page." }));
     this.connection.event.on((event) => this.take(event));
@@ -137,8 +140,7 @@ export class Studio {
   private take(event: ServerEvent): void {
     switch (event.event) {
       case "document":
-        this.document.apply(event);
-        if (event.changes.some((change) => change.op === "reset")) this.openCamera();
+        this.takeDocument(event);
         break;
       case "simulation":
         this.takeSimulation(event);
@@ -161,6 +163,14 @@ export class Studio {
     }
   }
 
+  private takeDocument(event: DocumentEvent): void {
+    const isOther = event.changes.some((change) => change.op === "reset");
+    // Every pose of the new scene follows in a frame.
+    if (isOther) this.motion.clear();
+    this.document.apply(event);
+    if (isOther) this.openCamera();
+  }
+
   private takeSimulation({ state, time, step }: Simulation): void {
     const restarted = state === "stopped" && this.simulation.state !== "stopped";
     this.simulation = { state, time, step };
@@ -176,9 +186,18 @@ export class Studio {
     this.view.invalidate();
   }
 
+  /** The box around everything, with room around it; models that are still on their way count as a point. */
+  private wholeScene(): Box3 {
+    const { entities } = this.document;
+    const bounds = this.entities.boundsOf(entities.keys(), performance.now());
+    for (const entity of entities.values()) if (entity.model) bounds.expandByPoint(new Vector3(...positionOf(entity.pose)));
+    return bounds.expandByScalar(0.5);
+  }
+
   private openCamera(): void {
-    const camera = this.document.camera;
+    const { camera } = this.document;
     if (camera) this.view.rig.place(camera.position, camera.target);
+    else this.view.rig.focus(this.wholeScene(), performance.now(), true);
   }
 }
 

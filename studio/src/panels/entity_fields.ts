@@ -44,9 +44,11 @@ export class EntityFields {
     if (entities.every((entity) => entity.shape)) shown.push(this.colorRow());
     const start = this.startRows();
     this.rows = [...(single ? [this.nameRow()] : []), ...shown, ...start];
+    const card = single?.model ? modelCard(this.studio, single.model) : null;
     const head = single ? this.rows[0]!.root : element("h2", { "data-testid": "selection-count" }, `${entities.length} entities`);
     this.root.replaceChildren(
       head,
+      ...(card ? [card] : []),
       element("details", { class: "group", open: true }, element("summary", {}, "Place and size"), ...shown.map((row) => row.root)),
       element("details", { class: "group" }, element("summary", {}, "Start and forces"), ...start.map((row) => row.root)),
     );
@@ -166,8 +168,25 @@ export class EntityFields {
   }
 
   private change(entity: NewEntity): void {
-    for (const index of this.studio.selection.indices) void this.studio.command("entity.update", { index, entity });
+    // However many are changed, undo takes it back at once.
+    const merge = `fields-${Date.now()}`;
+    for (const index of this.studio.selection.indices) void this.studio.command("entity.update", { index, entity, merge });
   }
+}
+
+/** Which model of the database it is, by whom and under which licence. */
+function modelCard(studio: Studio, key: string): HTMLElement {
+  const card = element("div", { class: "model-card", "data-testid": "model-card" });
+  studio.models.summary(key).then((model) => {
+    const size = model.size.map((length) => length.toPrecision(3)).join(" × ");
+    const lines = [[model.category, model.subcategory].filter(Boolean).join(" / "), `${size} m, ${model.triangles.toLocaleString("en")} triangles`];
+    lines.push([model.author && `by ${model.author}`, model.licence].filter(Boolean).join(", "));
+    card.append(
+      element("img", { src: studio.models.thumbnail(model), alt: "" }),
+      element("div", {}, ...lines.filter(Boolean).map((line) => element("p", { class: "note" }, line))),
+    );
+  }, () => card.append(element("p", { class: "note" }, `The model ${key} is not in the database`)));
+  return card;
 }
 
 function row(label: string, field: HTMLElement): HTMLElement {

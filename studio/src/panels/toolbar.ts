@@ -60,7 +60,11 @@ export class Toolbar {
         title: key ? `${action.label} (${key})` : action.label,
         "aria-label": action.label,
         "data-testid": action.id,
-        onclick: () => action.run(),
+        onclick: (event: MouseEvent) => {
+          action.run();
+          // After a click keys are the scene's again; whoever came by keyboard stays.
+          if (event.detail > 0 && !document.querySelector("dialog[open]")) this.studio.view.canvas.focus();
+        },
       },
       icon(action.icon ?? "options"),
     );

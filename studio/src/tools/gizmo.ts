@@ -120,14 +120,12 @@ export class Gizmo {
   }
 
   private async scaleBy(factor: number, drag: PoseDrag): Promise<void> {
+    const merge = `scale-${Date.now()}`;
     for (const index of drag.start.keys()) {
       const entity = this.studio.document.entity(index);
-      if (!entity) continue;
-      if (entity.model) await this.studio.command("entity.update", { index, entity: { scale: (entity.scale ?? 1) * factor } });
-      else if (entity.shape) {
-        const shape = scaledShape(entity.shape, factor);
-        if (shape) await this.studio.command("entity.update", { index, entity: { shape } });
-      }
+      const shape = entity?.shape && scaledShape(entity.shape, factor);
+      const changed = entity?.model ? { scale: (entity.scale ?? 1) * factor } : shape && { shape };
+      if (changed) await this.studio.command("entity.update", { index, entity: changed, merge });
     }
     await drag.end();
   }

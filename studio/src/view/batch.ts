@@ -27,11 +27,8 @@ export class Batch {
     const slot = this.slots.length;
     this.slots.push(index);
     this.slotOf.set(index, slot);
-    for (const mesh of this.meshes) {
-      mesh.count = this.slots.length;
-      mesh.setColorAt(slot, color);
-      mesh.instanceColor!.needsUpdate = true;
-    }
+    for (const mesh of this.meshes) mesh.count = this.slots.length;
+    this.setColor(index, color);
     this.setTint(index, [0, 0, 0, 0]);
   }
 
@@ -63,6 +60,15 @@ export class Batch {
       mesh.instanceMatrix.needsUpdate = true;
       mesh.boundingSphere = null;
     });
+  }
+
+  setColor(index: number, color: Color): void {
+    const slot = this.slotOf.get(index);
+    if (slot === undefined) return;
+    for (const mesh of this.meshes) {
+      mesh.setColorAt(slot, color);
+      mesh.instanceColor!.needsUpdate = true;
+    }
   }
 
   setTint(index: number, tint: readonly number[]): void {

@@ -67,8 +67,8 @@ export class CameraRig {
     this.changed.emit();
   }
 
-  /** Glides until the box fills most of the picture. */
-  focus(bounds: Box3, now: number): void {
+  /** Glides, or jumps, until the box fills most of the picture. */
+  focus(bounds: Box3, now: number, jump = false): void {
     if (bounds.isEmpty()) return;
     const radius = Math.max(0.5 * bounds.getSize(this.step).length(), 0.1);
     const narrow = Math.min(1, this.camera.aspect);
@@ -78,8 +78,9 @@ export class CameraRig {
       toTarget: bounds.getCenter(new Vector3()),
       fromRadius: this.arm.radius,
       toRadius: clamp(distance, NEAREST, FARTHEST),
-      start: now,
+      start: jump ? now - FLY_TIME_MS : now,
     };
+    if (jump) this.advance(now, 0);
     this.changed.emit();
   }
 

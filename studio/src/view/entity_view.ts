@@ -138,8 +138,10 @@ export class EntityView {
   }
 
   private putShape(entity: Entity): void {
+    const key = shapeKey(entity.shape!);
+    if (this.keep(entity, key)) return;
     try {
-      this.join(entity, shapeKey(entity.shape!), () => shapeDrawable(entity));
+      this.join(entity, key, () => shapeDrawable(entity));
     } catch (error) {
       this.join(entity, "placeholder", () => PLACEHOLDER);
       this.failed.emit({ index: entity.index, reason: (error as Error).message });
@@ -147,12 +149,7 @@ export class EntityView {
   }
 
   private async putModel(entity: Entity, key: string): Promise<void> {
-    const shown = this.batchOf.get(entity.index);
-    if (shown?.key === key) {
-      shown.entity = entity;
-      this.motion.moved.add(entity.index);
-      return;
-    }
+    if (this.keep(entity, key)) return;
     ++this.pending;
     try {
       const drawable = await this.models.drawable(key);
@@ -164,6 +161,16 @@ export class EntityView {
     }
     --this.pending;
     this.loaded.emit();
+  }
+
+  /** An entity that looks as before stays where it is drawn; false where it does not. */
+  private keep(entity: Entity, key: string): boolean {
+    const shown = this.batchOf.get(entity.index);
+    if (shown?.key !== key) return false;
+    shown.entity = entity;
+    shown.batch.setColor(entity.index, colorOf(entity));
+    this.motion.moved.add(entity.index);
+    return true;
   }
 
   private join(entity: Entity, key: string, make: () => Drawable): void {

@@ -19,6 +19,11 @@ export class ModelStore {
     this.summaries.set(model.key, Promise.resolve(model));
   }
 
+  /** The database may be another one: a key's number and content are asked for again. */
+  forgetSummaries(): void {
+    this.summaries.clear();
+  }
+
   summary(key: string): Promise<ModelSummary> {
     return keep(this.summaries, key, async () => (await this.connection.request("catalog.model", { key })).model);
   }

@@ -135,6 +135,7 @@ export class View {
 
   /** A world point's place on the page in pixels. */
   project(point: Vector3): Vector2 {
+    this.rig.camera.updateMatrixWorld();
     const seen = point.clone().project(this.rig.camera);
     const frame = this.canvas.getBoundingClientRect();
     return new Vector2(frame.left + (0.5 + 0.5 * seen.x) * frame.width, frame.top + (0.5 - 0.5 * seen.y) * frame.height);
