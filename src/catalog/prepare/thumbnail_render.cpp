@@ -25,7 +25,7 @@ constexpr double view_angle = 0.35;  // half of the field of view, rad
 constexpr int most_layers = 8;       // transparent surfaces looked through
 const Vec3 toward_viewer = normalized(Vec3{0.55, 0.45, 0.9});
 const Vec3 toward_sun = normalized(Vec3{0.35, 0.85, 0.6});
-constexpr double sun = 0.55, sky = 0.5, ground = 0.22;  // light, linear
+constexpr double sun = 0.5, sky = 0.45, ground = 0.22;  // light, linear
 
 double srgb_from_linear(double v) {
     v = std::clamp(v, 0.0, 1.0);
