@@ -114,6 +114,10 @@ export class Studio {
     view.setTheme(preferences.get("theme"));
     view.setQuality(preferences.get("quality"));
     view.environment.showGrid(preferences.get("grid"));
+    view.slow.on(() => {
+      if (preferences.get("quality") === "high")
+        this.notice.emit({ level: "info", text: "Drawing is slow on this computer", remedy: "View options have “Fast drawing”: no shadows or reflections." });
+    });
     preferences.changed.on((name) => {
       if (name === "theme") view.setTheme(preferences.get("theme"));
       if (name === "quality") view.setQuality(preferences.get("quality"));

@@ -172,6 +172,7 @@ export class MockServer {
     },
     "entity.reset_attribute": ({ indices, name }) => this.edit(`reset ${name}`, () => indices.forEach((index) => delete this.entity(index).attributes?.[name])),
     "entity.attributes": ({ index }) => ({ attributes: this.attributes(index) }),
+    "action.trigger": () => ({ started: 1 }),
     "edit.undo": () => this.travel(this.past, this.future),
     "edit.redo": () => this.travel(this.future, this.past),
     "simulation.play": () => this.setState("playing"),

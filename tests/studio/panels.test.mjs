@@ -145,6 +145,42 @@ describe("the Studio's panels", { timeout: 300000 }, () => {
     await page.getByText("8 models", { exact: true }).waitFor();
   });
 
+  it("shows the scene's own buttons, and hands its keys on while it plays", async () => {
+    mock.scene.actions.push({ id: 1, trigger: { type: "signal", button: "Kick" } }, { id: 2, trigger: { type: "signal", key: "g" } });
+    await page.reload();
+    await page.getByTestId("scene-button-Kick").click();
+    await page.waitForFunction(() => window.embody.connected());
+    await page.getByTestId("simulation.play").click();
+    await page.waitForFunction(() => window.embody.simulation().state === "playing");
+    await page.keyboard.press("g");
+    await page.getByTestId("simulation.play").click();
+    await page.waitForFunction(() => window.embody.simulation().state === "paused");
+    assert.deepEqual(sent("action.trigger"), [{ button: "Kick" }, { key: "g" }]);
+  });
+
+  it("keeps states and poses of a scene at rest when the page is loaded again", async () => {
+    await page.getByTestId("simulation.play").click();
+    await page.waitForFunction((index) => window.embody.entities().find((entity) => entity.index === index).state === 2, CRATE);
+    await page.getByTestId("simulation.play").click();
+    await page.reload();
+    await page.waitForFunction((index) => window.embody?.entities().find((entity) => entity.index === index)?.state === 2, CRATE);
+    const crate = (await page.evaluate(() => window.embody.entities())).find(({ index }) => index === CRATE);
+    assert.ok(Math.abs(crate.position[1] - 0.2) < 1e-3, `at ${crate.position[1]} m`);
+  });
+
+  it("selects what lies in a rectangle", async () => {
+    mock.commands["entity.add"]({ entity: { shape: { type: "sphere", radius: 0.2 }, pose: { position: [0.8, 0.3, 0] } } });
+    await page.waitForFunction(() => window.embody.entities().length === 3);
+    const canvas = await page.getByTestId("canvas").boundingBox();
+    await page.keyboard.down("Control");
+    await page.mouse.move(canvas.x + 10, canvas.y + 10);
+    await page.mouse.down();
+    await page.mouse.move(canvas.x + canvas.width - 10, canvas.y + canvas.height - 10, { steps: 4 });
+    await page.mouse.up();
+    await page.keyboard.up("Control");
+    assert.deepEqual(await page.evaluate(() => window.embody.selection()), [CRATE, 3]);
+  });
+
   it("finds commands by words in the palette", async () => {
     await page.keyboard.press("Control+k");
     await page.getByTestId("palette-input").fill("light th");

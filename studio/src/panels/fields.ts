@@ -70,7 +70,10 @@ export function numberField(label: string, unit: string, commit: (value: number)
     set(next) {
       if (document.activeElement === input && input.value !== shown) return;
       value = next;
-      shown = next === null ? "" : numberText(next);
+      const text = next === null ? "" : numberText(next);
+      // What was refused is no longer there to be wrong.
+      if (text !== shown) setError(null);
+      shown = text;
       input.value = shown;
       input.placeholder = next === null ? "differs" : "";
     },

@@ -19,6 +19,9 @@ export interface Hit {
 
 const GROUND = new Plane(new Vector3(0, 1, 0), 0);
 const LONGEST_STEP_S = 0.1;
+/** So many pictures on end, each as late as this after the one before, are slow drawing. */
+const SLOW_PICTURES = 30;
+const SLOW_MS = 120;
 
 /** The picture in the middle. It is drawn only when something changed. */
 export class View {
@@ -29,11 +32,15 @@ export class View {
   readonly outline: Outline;
   /** Just before a picture is drawn, with the page's clock in milliseconds. */
   readonly beforeFrame = new Signal<number>();
+  /** Motion is not fluent here, for the last SLOW_PICTURES pictures; said once. */
+  readonly slow = new Signal<void>();
   /** Pictures drawn so far. */
   frames = 0;
   private asked = false;
   private halted = false;
   private lastFrame = 0;
+  /** Slow pictures on end; -1 once that has been said. */
+  private slowPictures = 0;
   private readonly size = new Vector2();
   private readonly raycaster = new Raycaster();
   private readonly instance = new Matrix4();
@@ -145,6 +152,7 @@ export class View {
     this.asked = false;
     if (this.halted) return;
     const seconds = Math.min((now - this.lastFrame) / 1000, LONGEST_STEP_S);
+    this.watchPace(now - this.lastFrame);
     this.lastFrame = now;
     const flying = this.rig.advance(now, seconds);
     const moving = this.motion.advance(now);
@@ -157,6 +165,16 @@ export class View {
     this.renderer.render(this.scene, this.rig.camera);
     ++this.frames;
     if (flying || moving) this.invalidate();
+  }
+
+  private watchPace(interval: number): void {
+    if (this.slowPictures < 0) return;
+    // A longer pause is rest, not work.
+    const late = interval > SLOW_MS && interval < 8 * SLOW_MS;
+    this.slowPictures = late ? this.slowPictures + 1 : 0;
+    if (this.slowPictures < SLOW_PICTURES) return;
+    this.slowPictures = -1;
+    this.slow.emit();
   }
 
   private resize(): void {
