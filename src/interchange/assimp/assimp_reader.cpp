@@ -135,7 +135,7 @@ Result<RawScene> read_by_assimp(const FileSource& source, const std::string& pat
     const std::string where = source.describe(path);
     Assimp::Importer importer;
     keep_our_formats(importer);
-    importer.SetIOHandler(new SourceFiles(source));  // the importer owns and deletes it
+    importer.SetIOHandler(new_source_files(source));  // the importer owns and deletes it
     // No bones, animations, cameras, lights: what is not asked for cannot go wrong.
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS |
                                                             aiComponent_CAMERAS | aiComponent_LIGHTS |

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
 #include <cstring>
 
 namespace embody::interchange {
@@ -54,17 +55,27 @@ std::vector<std::uint8_t> with_leading_zeros(const std::vector<std::uint8_t>& ob
     return out;
 }
 
+class SourceFiles final : public Assimp::IOSystem {
+public:
+    explicit SourceFiles(const FileSource& source) : source_(&source) {}
+    bool Exists(const char* path) const override { return !source_->find(path).empty(); }
+    char getOsSeparator() const override { return '/'; }
+    Assimp::IOStream* Open(const char* path, const char* mode) override {
+        if (std::strpbrk(mode, "wa+") != nullptr || source_->find(path).empty()) return nullptr;
+        auto bytes = source_->read(path);
+        if (!bytes) return nullptr;
+        const std::string extension = std::filesystem::path(path).extension().string();
+        const bool obj = extension == ".obj" || extension == ".OBJ";
+        return new MemoryStream(obj ? with_leading_zeros(*bytes) : std::move(*bytes));
+    }
+    void Close(Assimp::IOStream* stream) override { delete stream; }
+
+private:
+    const FileSource* source_;
+};
+
 }  // namespace
 
-Assimp::IOStream* SourceFiles::Open(const char* path, const char* mode) {
-    if (std::strpbrk(mode, "wa+") != nullptr || source_->find(path).empty()) return nullptr;
-    auto bytes = source_->read(path);
-    if (!bytes) return nullptr;
-    const std::string extension = std::filesystem::path(path).extension().string();
-    return new MemoryStream(extension == ".obj" || extension == ".OBJ" ? with_leading_zeros(*bytes)
-                                                                       : std::move(*bytes));
-}
-
-void SourceFiles::Close(Assimp::IOStream* stream) { delete stream; }
+Assimp::IOSystem* new_source_files(const FileSource& source) { return new SourceFiles(source); }
 
 }  // namespace embody::interchange
