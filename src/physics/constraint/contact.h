@@ -25,6 +25,7 @@ struct ContactPoint {
 
     double normal_mass = 0;                                 ///< 1/(nᵀAn), kg
     double tangent_11 = 0, tangent_12 = 0, tangent_22 = 0;  ///< inverse of the 2×2 tangent block, kg
+    double slide_mass = 0;    ///< 1 over the block's larger eigenvalue, kg
     bool sticks = true;                                     ///< holds by static friction until the cone is left
 
     PointImpulse impulse;  ///< of the last substep; warm start of the next

@@ -63,12 +63,15 @@ void solve_friction(const Contact& contact, ContactPoint& point, std::span<BodyS
     double sum_2 = impulse.tangent_2 - (point.tangent_12 * u1 + point.tangent_22 * u2);
 
     // A sticking point holds up to the static limit; once it slides, it must fall below the dynamic one to stick again.
-    const double wanted = std::sqrt(sum_1 * sum_1 + sum_2 * sum_2);
     const Material& material = contact.material;
     const double limit = (point.sticks ? material.friction_static : material.friction_dynamic) * impulse.normal;
-    point.sticks = wanted <= limit;
+    point.sticks = sum_1 * sum_1 + sum_2 * sum_2 <= limit * limit;
     if (!point.sticks) {
-        const double share = wanted > 0 ? material.friction_dynamic * impulse.normal / wanted : 0;
+        // Sliding friction opposes the velocity, not the impulse that would stop it: the block would mix the tangents.
+        sum_1 = impulse.tangent_1 - point.slide_mass * u1;
+        sum_2 = impulse.tangent_2 - point.slide_mass * u2;
+        const double size = std::sqrt(sum_1 * sum_1 + sum_2 * sum_2);
+        const double share = size > 0 ? material.friction_dynamic * impulse.normal / size : 0;
         sum_1 *= share;
         sum_2 *= share;
     }
@@ -141,6 +144,7 @@ void prepare_contact(Contact& contact, std::span<const BodyState> bodies) {
             point.tangent_11 = k22 / det;
             point.tangent_12 = -k12 / det;
             point.tangent_22 = k11 / det;
+            point.slide_mass = 2 / (k11 + k22 + std::sqrt((k11 - k22) * (k11 - k22) + 4 * k12 * k12));
         }
     }
 }

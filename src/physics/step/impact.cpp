@@ -44,6 +44,7 @@ public:
 
 private:
     double next_impact(const Contact& contact) const;
+    bool is_closing(const Contact& contact) const;
     double slowest_speed(const Contact& contact, double acceleration) const;
     Vec3 free_acceleration(std::uint32_t body) const;
     double earliest_time(const Contact& contact) const;
@@ -83,6 +84,15 @@ double ImpactStage::earliest_time(const Contact& contact) const {
 double ImpactStage::slowest_speed(const Contact& contact, double acceleration) const {
     const double slowest = std::max(slowest_impact, 2 * std::fabs(acceleration) * substep_);
     return contact.was_loaded ? 5 * slowest : slowest;
+}
+
+bool ImpactStage::is_closing(const Contact& contact) const {
+    const double slowest = slowest_speed(contact, dot(contact.normal, world_.settings.gravity));
+    for (int i = 0; i < contact.count; ++i) {
+        const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        if (dot(relative_velocity(contact, point, world_.motion), contact.normal) < -slowest) return true;
+    }
+    return false;
 }
 
 // The first time at which a point of the contact closes fast enough to be an impact; `never` if none does.
@@ -136,6 +146,10 @@ void ImpactStage::prepare() {
 void ImpactStage::push(std::uint32_t contact) {
     const double time = next_impact(world_.contacts[contact]);
     if (time <= step_) events_.push({time, contact, version_[contact]});
+
+    // What closes fast but meets after this step is the next step's impact: the substeps must not brake it before.
+    Contact& c = world_.contacts[contact];
+    if (!c.had_impact) c.inactive_until = time > step_ && !c.was_loaded && is_closing(c) ? step_ : 0;
 }
 
 Vec3 ImpactStage::center_at(std::uint32_t body, double time) const {
@@ -275,7 +289,7 @@ void ImpactStage::note_impulse(Contact& contact, Vec3 position, Vec3 impulse, do
 
     // Until then the bodies' new paths overlap at this contact.
     const double parting = dot(relative_velocity(contact, *nearest, world_.motion), contact.normal);
-    if (parting > 0) contact.inactive_until = time;
+    contact.inactive_until = parting > 0 ? time : 0;
 }
 
 void ImpactStage::handle(std::uint32_t contact, double time, const Manifold& manifold) {
