@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `embody serve` on a model database of real furniture, as a user has it.
 import { spawn, spawnSync } from "node:child_process";
-import { existsSync, mkdirSync, mkdtempSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -40,8 +40,10 @@ export function prepareDatabase(program) {
 export class RealServer {
   constructor(program, database) {
     this.program = program;
-    this.database = database;
     this.home = mkdtempSync(join(tmpdir(), "embody-studio-"));
+    // Tests import and change models: in a copy, with what is still in the write-ahead log.
+    this.database = join(this.home, "models.sqlite");
+    for (const suffix of ["", "-wal"]) if (existsSync(database + suffix)) copyFileSync(database + suffix, this.database + suffix);
   }
 
   /** Starts it on a scene (the document itself); resolves with its address. A second start takes the same port again. */

@@ -120,7 +120,9 @@ function tensorField(label: string, unit: string, commit: (value: number[][]) =>
 
 function intervalText(entry: AttributeEntry): string {
   if (entry.low === null || entry.high === null || entry.low === undefined || entry.high === undefined) return "";
-  return `${numberText(entry.low)} … ${numberText(entry.high)}`;
+  // Bounds are estimates: three figures say all they know.
+  const text = (bound: number) => numberText(Number(bound.toPrecision(3)));
+  return `${text(entry.low)} … ${text(entry.high)}`;
 }
 
 function valueText(value: AttributeValue): string {

@@ -71,6 +71,8 @@ export class View {
 
   /** Draws nothing any more until resume(): screenshots of a page that draws all the time may never end. */
   halt(): void {
+    // What was asked for is drawn first: a canvas of a new size would stay empty.
+    if (this.asked) this.draw(performance.now());
     this.halted = true;
   }
 
