@@ -37,6 +37,14 @@ int count_above(const scene::Simulation& simulation, double height) {
     return count;
 }
 
+int count_out_of_plane(const scene::Simulation& simulation, double distance) {
+    int count = 0;
+    for_each_movable(simulation, [&](scene::EntityIndex, physics::BodyHandle body) {
+        count += std::fabs(simulation.world().center_of_mass(body).z) > distance;
+    });
+    return count;
+}
+
 double greatest_speed(const scene::Simulation& simulation) {
     double greatest = 0;
     for_each_movable(simulation, [&](scene::EntityIndex, physics::BodyHandle body) {

@@ -258,7 +258,15 @@ Result<physics::BodyDefinition> EntityBodies::body(const Entity& entity, const A
 }
 
 Result<physics::ShapeDefinition> EntityBodies::shape(const Entity& entity, const AttributeSet& attributes) {
-    if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry)) return *shape;
+    if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry)) {
+        // Triangles have no inside that could move; a mesh that is made movable collides as its convex hull.
+        const auto* mesh = std::get_if<physics::MeshShape>(shape);
+        if (!mesh || attributes.word("kind", "static") == "static") return *shape;
+        physics::HullShape hull;
+        hull.points.reserve(mesh->positions.size());
+        for (const Vec3f& position : mesh->positions) hull.points.push_back(to_vec3(position));
+        return physics::ShapeDefinition{std::move(hull)};
+    }
     const Result<const Model*> model = find(std::get<ModelReference>(entity.geometry).key);
     if (!model.ok()) return model.error();
     CatalogGeometry geometry(*catalog_, model.value()->summary.id, entity.scale);
