@@ -1,11 +1,25 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/document_parts.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "foundation/random.h"
 
 namespace embody::scenes {
 
 using scene::Entity;
+
+namespace {
+
+/// Neighbours differ a little, so that single blocks can be told in a wall.
+Color shade(Color color, scene::EntityIndex index) {
+    const double factor = Random(index).between(0.75, 1.2);
+    for (double& channel : color) channel = std::min(1.0, channel * factor);
+    return color;
+}
+
+}  // namespace
 
 DocumentParts::DocumentParts(const std::string& title, const std::string& description) {
     document_.title = title;
@@ -19,7 +33,7 @@ Entity& DocumentParts::add(const std::string& name, physics::ShapeDefinition sha
     entity.name = name;
     entity.geometry = std::move(shape);
     entity.pose = {position, rotation};
-    entity.color = color;
+    entity.color = shade(color, entity.index);
     entity.attributes = {
         {"density", 1000.0}, {"friction_static", 0.5}, {"friction_dynamic", 0.5}, {"restitution", 0.0}};
     return document_.entities.emplace_back(std::move(entity));
