@@ -11,7 +11,7 @@ namespace embody::scene {
 namespace {
 
 constexpr double frequency = 12;               // ω, rad/s: reaches the target in a third of a second
-constexpr double spin_damping = 4;             // 1/s
+constexpr double spin_damping = 8;             // 1/s
 constexpr double greatest_acceleration = 400;  // m/s²: a far target pulls, it does not shoot
 
 }  // namespace
@@ -33,19 +33,22 @@ void pull(physics::World& world, const Grab& grab) {
     const double size = length(wanted);
     if (size > greatest_acceleration) wanted *= greatest_acceleration / size;
 
-    // The force that does so on this body at this arm; the weight is carried.
+    // The force that does so on this body at this arm.
     const double mass = world.mass(grab.body);
     const Mat3 inertia = rotate_tensor(pose.rotation, world.inertia(grab.body));
     const Mat3 r = skew(arm);
     const Mat3 mobility = Mat3::identity() * (1 / mass) - r * inverse_or_zero(inertia) * r;
-    const double gravity_factor = world.body(grab.body)->gravity_factor;
-    const Vec3 force = solve(mobility, wanted) - world.settings().gravity * (mass * gravity_factor);
-    if (!is_finite(force)) return;
+    const Mat3 held = inertia + (Mat3::identity() * dot(arm, arm) - outer(arm, arm)) * mass;
+    const Vec3 torque = held * spin * -spin_damping;
+    const Vec3 gravity = world.settings().gravity * world.body(grab.body)->gravity_factor;
+    const Vec3 free = gravity + cross(spin, cross(spin, arm)) + cross(solve(inertia, torque), arm);
+    const Vec3 force = solve(mobility, wanted - free);
+    if (!is_finite(force) || !is_finite(torque)) return;
 
     // The handle was checked, the numbers are finite: nothing here is refused.
     (void)world.wake(grab.body).ok();
     (void)world.apply_force(grab.body, force, point).ok();
-    (void)world.apply_angular_impulse(grab.body, inertia * spin * (-spin_damping * h)).ok();
+    (void)world.apply_angular_impulse(grab.body, torque * h).ok();
 }
 
 }  // namespace embody::scene

@@ -232,6 +232,23 @@ Result<void> SessionState::run_changes(const std::vector<Change>& changes) {
     return {};
 }
 
+// Undo and redo lead to a document that was there before; no state of a run may stand in the way.
+Result<void> SessionState::insist_on_changes(const std::vector<Change>& changes) {
+    Result<void> done = run_changes(changes);
+    if (done.ok() || play_state == PlayState::stopped) return done;
+    for (const Change& change : changes) apply_change(document, change);
+    Result<void> made = rebuild_simulation();
+    if (!made.ok()) {
+        for (auto change = changes.rbegin(); change != changes.rend(); ++change)
+            apply_change(document, reversed(*change));
+        return made;
+    }
+    tell_message("warning", "The running simulation could not follow and was reset: " + done.error().message());
+    set_play_state(PlayState::stopped);
+    events.all_poses = true;
+    return {};
+}
+
 Edit SessionState::start_edit(std::string label) const {
     Edit edit;
     edit.label = std::move(label);
@@ -256,7 +273,7 @@ Result<std::string> SessionState::undo() {
     std::vector<Change> back;
     for (auto change = edit->changes.rbegin(); change != edit->changes.rend(); ++change)
         back.push_back(reversed(*change));
-    if (Result<void> done = run_changes(back); !done.ok()) return done.error();
+    if (Result<void> done = insist_on_changes(back); !done.ok()) return done.error();
     document.next_index = edit->next_before;
     std::string label = edit->label;
     history.move_back();
@@ -269,7 +286,7 @@ Result<std::string> SessionState::undo() {
 Result<std::string> SessionState::redo() {
     const Edit* edit = history.redoable();
     if (!edit) return std::string();
-    if (Result<void> done = run_changes(edit->changes); !done.ok()) return done.error();
+    if (Result<void> done = insist_on_changes(edit->changes); !done.ok()) return done.error();
     document.next_index = edit->next_after;
     std::string label = edit->label;
     json changes = json::array();

@@ -77,6 +77,7 @@ private:
     Result<void> sync_entity(const EntityChange& change);
     Result<void> sync_heading(const HeadingChange& change);
     Result<void> run_changes(const std::vector<Change>& changes);
+    Result<void> insist_on_changes(const std::vector<Change>& changes);
     void tell_step();
     [[nodiscard]] nlohmann::json change_json(const Change& change) const;
 };

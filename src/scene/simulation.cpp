@@ -17,7 +17,9 @@ using physics::ShapeHandle;
 namespace {
 
 // Beyond this an action that spawns whenever something touches would fill the memory.
-constexpr std::size_t most_spawned = 20'000;
+constexpr std::size_t most_spawned = 10'000;
+// An action that answers contacts with things that make contacts must not explode within a step.
+constexpr std::size_t most_spawned_a_step = 32;
 
 Error of_entity(const Entity& entity, Error error) {
     std::string who = "entity " + std::to_string(entity.index);
@@ -225,7 +227,8 @@ struct Simulation::State {
 
     Result<EntityIndex> spawn(EntityIndex like, const Spawn& spawn) {
         if (next_spawned - last_document_index > most_spawned)
-            return Error{"spawn", "20000 entities were spawned in this run", "let the action fire less often"};
+            return Error{"spawn", "10000 entities were spawned in this run", "let the action fire less often"};
+        if (spawned.size() >= most_spawned_a_step) return Error{"spawn", "32 entities were spawned in this step"};
         const Entity* original = definition(like);
         if (const auto found = templates.find(like); found != templates.end()) original = &found->second;
         if (!original) return Error{"receiver", "entity " + std::to_string(like) + " is not there any more"};

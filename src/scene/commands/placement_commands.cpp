@@ -13,6 +13,7 @@ namespace {
 
 constexpr double farthest = 1e4;        // m, of a pointer's ray
 constexpr double clearance = 1e-4;      // m, left between a thing and what it is laid on
+constexpr double wall_gap = 0.005;      // m, before a wall: nearer, it would count as touching on the way down
 constexpr double steepest_floor = 0.5;  // cosine: up to 60° a surface is one to lie on
 
 // An entity put into the running world for a moment, to be measured there.
@@ -96,7 +97,7 @@ Result<Transform> place_on_ray(SessionState& state, const Entity& entity, Vec3 o
     const Vec3 half = bounds.half_extents();
     const Vec3 n = surface.normal;
     const double reach = std::fabs(n.x) * half.x + std::fabs(n.y) * half.y + std::fabs(n.z) * half.z;
-    pose.position = surface.position + n * (reach + clearance) + (surface.position - bounds.center());
+    pose.position = surface.position + n * (reach + wall_gap) + (surface.position - bounds.center());
     const Result<attributes::AttributeSet> set = state.simulation->attributes(entity.index);
     const std::string usual_place = set.ok() ? set.value().word("placement", "floor") : "floor";
     if (n.y < -steepest_floor || usual_place == "wall" || usual_place == "ceiling") return pose;

@@ -13,23 +13,25 @@ using nlohmann::json;
 namespace {
 
 // A model's key or a shape; an entity has one of the two.
-void read_geometry(FieldReader& reader, Entity& entity, bool is_new) {
+bool read_geometry(FieldReader& reader, Entity& entity) {
     std::string key;
     const bool is_model = reader.text("model", key);
     const json* shape = reader.take("shape");
-    if (!reader.ok()) return;
-    if (is_model && shape)
-        return reader.fail(reader.path("shape"), "goes without a model: an entity is one of the two");
-    if (is_model) {
-        if (key.empty()) return reader.fail(reader.path("model"), "must be the key of a model");
+    if (!reader.ok() || (!is_model && !shape)) return false;
+    if (is_model && shape) {
+        reader.fail(reader.path("shape"), "goes without a model: an entity is one of the two");
+    } else if (is_model) {
+        if (key.empty()) reader.fail(reader.path("model"), "must be the key of a model");
         entity.geometry = ModelReference{key};
-    } else if (shape) {
+    } else {
         Result<physics::ShapeDefinition> read = shape_from_json(*shape, reader.path("shape"));
-        if (!read.ok()) return reader.fail(read.error().where, read.error().why, read.error().remedy);
+        if (!read.ok()) {
+            reader.fail(read.error().where, read.error().why, read.error().remedy);
+            return false;
+        }
         entity.geometry = std::move(read).value();
-    } else if (is_new) {
-        reader.fail(reader.path("model"), "is missing: an entity needs a model or a shape");
     }
+    return true;
 }
 
 void read_attributes(FieldReader& reader, Entity& entity) {
@@ -67,7 +69,7 @@ Result<void> change_entity_from_json(Entity& entity, const json& value, const st
     std::optional<Error> error;
     FieldReader reader(value, where, error);
     reader.text("name", changed.name);
-    read_geometry(reader, changed, is_new);
+    const bool has_geometry = read_geometry(reader, changed);
     read_attributes(reader, changed);
     reader.transform("pose", changed.pose);
     reader.vector("linear_velocity", changed.linear_velocity);
@@ -84,6 +86,8 @@ Result<void> change_entity_from_json(Entity& entity, const json& value, const st
     std::uint32_t index = entity.index;
     if (reader.whole("index", index, 1, last_document_index) && is_new) changed.index = index;
     if (!reader.finish()) return *error;
+    // Last, so that a slip in the field's name is told as such.
+    if (is_new && !has_geometry) return Error{reader.path("model"), "is missing: an entity needs a model or a shape"};
     if (!is_new && index != entity.index) return Error{reader.path("index"), "of an entity can't be changed"};
     entity = std::move(changed);
     return {};
