@@ -70,12 +70,31 @@ void match_points(const Contact& old_contact, Contact& new_contact) {
     new_contact.was_loaded = is_pressed(old_contact);
 }
 
+namespace {
+
+// How the point at `arm` moved since it was found. On a round body other matter has come to the point when it rolls, so
+// only the tilt counts, to first order: exact turning would lift a rolling ball by r θ²/2.
+Vec3 motion_of(const BodyState& body, Vec3 arm, bool is_round) {
+    const Vec3 shift = body.center - body.start_center;
+    if (!is_round) return shift + rotate(body.turn, arm) - arm;
+    const double sign = body.turn.w < 0 ? -2 : 2;
+    return shift + cross(sign * Vec3{body.turn.x, body.turn.y, body.turn.z}, arm);
+}
+
+}  // namespace
+
 double current_separation(const Contact& contact, const ContactPoint& point, std::span<const BodyState> bodies) {
-    const BodyState& a = bodies[contact.a];
-    const BodyState& b = bodies[contact.b];
-    const Vec3 move_a = a.center - a.start_center + rotate(a.turn, point.arm_a) - point.arm_a;
-    const Vec3 move_b = b.center - b.start_center + rotate(b.turn, point.arm_b) - point.arm_b;
+    const Vec3 move_a = motion_of(bodies[contact.a], point.arm_a, contact.a_is_round);
+    const Vec3 move_b = motion_of(bodies[contact.b], point.arm_b, contact.b_is_round);
     return point.separation + dot(contact.normal, move_b - move_a);
+}
+
+void activate_points(Contact& contact, double time) {
+    for (int i = 0; i < contact.count; ++i) {
+        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        point.is_active = time > point.inactive_until;
+        if (!point.is_active) point.impulse = {};
+    }
 }
 
 bool is_pressed(const Contact& contact) {

@@ -25,8 +25,11 @@ struct ContactPoint {
 
     double normal_mass = 0;                                 ///< 1/(nᵀAn), kg
     double tangent_11 = 0, tangent_12 = 0, tangent_22 = 0;  ///< inverse of the 2×2 tangent block, kg
-    double slide_mass = 0;    ///< 1 over the block's larger eigenvalue, kg
-    bool sticks = true;                                     ///< holds by static friction until the cone is left
+    double slide_mass = 0;                                  ///< 1 over the block's larger eigenvalue, kg
+    double inactive_until =
+        0;                  ///< s in the step: until then an impact lets the surfaces part, or they are not there yet
+    bool is_active = true;  ///< in this substep
+    bool sticks = true;     ///< holds by static friction until the cone is left
 
     PointImpulse impulse;  ///< of the last substep; warm start of the next
     PointImpulse total;    ///< of the whole step, impacts included
@@ -42,10 +45,10 @@ struct Contact {
     std::array<ContactPoint, Manifold::max_points> points;
 
     Vec3 turning;  ///< angular impulse by torsion (along n) and rolling resistance of the last substep, N m s
-    double approach_speed = 0;  ///< fastest point when found, m/s, >= 0
-    double inactive_until = 0;  ///< s in the step: before that an impact lets the bodies part
-    bool was_loaded = false;    ///< pressed in the last step
-    bool had_impact = false;    ///< solved by the impact stage in this step
+    bool a_is_round = false, b_is_round = false;  ///< rolls: the point of contact does not turn with the body
+    double approach_speed = 0;                    ///< fastest point when found, m/s, >= 0
+    bool was_loaded = false;                      ///< pressed in the last step
+    bool had_impact = false;                      ///< solved by the impact stage in this step
 };
 
 /// Same bodies and pieces, in the order contacts are kept.
@@ -64,6 +67,9 @@ inline Vec3 relative_velocity(const Contact& contact, const ContactPoint& point,
 
 /// Gap at the point now, m, from the bodies' motion since it was found.
 double current_separation(const Contact& contact, const ContactPoint& point, std::span<const BodyState> bodies);
+
+/// Decides which points take part in the substep that ends `time` s after the step began.
+void activate_points(Contact& contact, double time);
 
 /// Whether it carried a load at the end of the last substep that solved it; impacts do not count.
 bool is_pressed(const Contact& contact);

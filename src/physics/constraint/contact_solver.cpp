@@ -31,6 +31,7 @@ void apply(const Contact& contact, const ContactPoint& point, Vec3 impulse, std:
 
 void solve_normal(const Contact& contact, ContactPoint& point, SolvePhase phase, const ContactSoftness& softness,
                   std::span<BodyState> bodies) {
+    if (!point.is_active) return;
     const double separation = current_separation(contact, point, bodies);
     double bias = 0, mass_scale = 1, impulse_scale = 0;
     if (separation > 0) {
@@ -54,6 +55,7 @@ void solve_normal(const Contact& contact, ContactPoint& point, SolvePhase phase,
 // choice of tangents.
 void solve_friction(const Contact& contact, ContactPoint& point, std::span<BodyState> bodies) {
     PointImpulse& impulse = point.impulse;
+    if (!point.is_active) return;
     if (impulse.normal == 0 && impulse.tangent_1 == 0 && impulse.tangent_2 == 0) return;
 
     // What would stop the point.

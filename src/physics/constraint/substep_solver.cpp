@@ -15,8 +15,6 @@ int joint_passes(std::size_t joints) {
 // A joint list is done when no row has to change its speed by more than this, m/s or rad/s.
 constexpr double joint_tolerance = 1e-10;
 
-bool is_active(const Contact& contact, double time) { return time > contact.inactive_until; }
-
 }  // namespace
 
 void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, std::span<BodyState> bodies) {
@@ -24,7 +22,7 @@ void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, s
     for (const std::uint32_t i : list.joint_order) warm_start_joint(list.joints[i], phase, bodies);
     for (const std::uint32_t i : list.contact_order) {
         const bool is_first = phase == SolvePhase::position;
-        if (is_first && is_active(list.contacts[i], list.time)) warm_start_contact(list.contacts[i], bodies);
+        if (is_first) warm_start_contact(list.contacts[i], bodies);
     }
 
     const int least = contact_passes(list.contact_order.size());
@@ -35,7 +33,7 @@ void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, s
             error = std::max(error, solve_joint(list.joints[i], phase, substep, bodies));
         }
         for (const std::uint32_t i : list.contact_order) {
-            if (is_active(list.contacts[i], list.time)) solve_contact(list.contacts[i], phase, softness, bodies);
+            solve_contact(list.contacts[i], phase, softness, bodies);
         }
         if (pass + 1 >= least && error <= joint_tolerance) break;
     }

@@ -14,7 +14,6 @@ struct ConstraintList {
     std::span<const std::uint32_t> contact_order;
     std::span<Joint> joints;
     std::span<const std::uint32_t> joint_order;
-    double time = 0;  ///< s since the step began, at the end of the substep: contacts that part are left alone
 };
 
 /// Passes over the list in one phase: few for long lists, more for short ones, until a joint's error is gone.

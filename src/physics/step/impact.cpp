@@ -44,7 +44,8 @@ public:
 
 private:
     double next_impact(const Contact& contact) const;
-    bool is_closing(const Contact& contact) const;
+    void leave_open_points(Contact& contact, bool pass);
+    bool is_open_at_end(const Contact& contact);
     double slowest_speed(const Contact& contact, double acceleration) const;
     Vec3 free_acceleration(std::uint32_t body) const;
     double earliest_time(const Contact& contact) const;
@@ -56,7 +57,7 @@ private:
     Vec3 center_at(std::uint32_t body, double time) const;
     void handle(std::uint32_t contact, double time, const Manifold& manifold);
     void add_manifold_sites(const Contact& contact, const Manifold& manifold, double time);
-    void add_neighbour_sites(std::uint32_t contact, double time);
+    void add_loaded_neighbours(std::uint32_t contact, double time);
     void note_impulse(Contact& contact, Vec3 position, Vec3 impulse, double time);
 
     WorldState& world_;
@@ -84,15 +85,6 @@ double ImpactStage::earliest_time(const Contact& contact) const {
 double ImpactStage::slowest_speed(const Contact& contact, double acceleration) const {
     const double slowest = std::max(slowest_impact, 2 * std::fabs(acceleration) * substep_);
     return contact.was_loaded ? 5 * slowest : slowest;
-}
-
-bool ImpactStage::is_closing(const Contact& contact) const {
-    const double slowest = slowest_speed(contact, dot(contact.normal, world_.settings.gravity));
-    for (int i = 0; i < contact.count; ++i) {
-        const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        if (dot(relative_velocity(contact, point, world_.motion), contact.normal) < -slowest) return true;
-    }
-    return false;
 }
 
 // The first time at which a point of the contact closes fast enough to be an impact; `never` if none does.
@@ -147,9 +139,25 @@ void ImpactStage::push(std::uint32_t contact) {
     const double time = next_impact(world_.contacts[contact]);
     if (time <= step_) events_.push({time, contact, version_[contact]});
 
-    // What closes fast but meets after this step is the next step's impact: the substeps must not brake it before.
-    Contact& c = world_.contacts[contact];
-    if (!c.had_impact) c.inactive_until = time > step_ && !c.was_loaded && is_closing(c) ? step_ : 0;
+    leave_open_points(world_.contacts[contact], false);
+}
+
+// What closes fast but meets after this step is the next step's impact: the substeps must not brake it before. Tells by
+// the path of each point, unless the surfaces are known to `pass` each other.
+void ImpactStage::leave_open_points(Contact& contact, bool pass) {
+    const double slowest = slowest_speed(contact, dot(contact.normal, world_.settings.gravity));
+    const double acceleration = dot(contact.normal, free_acceleration(contact.b) - free_acceleration(contact.a));
+    for (int i = 0; i < contact.count; ++i) {
+        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        const double s = current_separation(contact, point, world_.motion);
+        const double u = dot(relative_velocity(contact, point, world_.motion), contact.normal);
+        const bool stays_open = s > 0 && (pass || s + step_ * (u + acceleration * step_ / 2) > 0);
+        if (u < -slowest && stays_open) {
+            point.inactive_until = step_;
+        } else if (point.inactive_until >= step_) {
+            point.inactive_until = 0;
+        }
+    }
 }
 
 Vec3 ImpactStage::center_at(std::uint32_t body, double time) const {
@@ -213,6 +221,13 @@ bool ImpactStage::refine(const Contact& contact, double& time, Manifold& manifol
     return false;
 }
 
+// Whether the bodies are apart at the end of the step, if nothing else happens to them.
+bool ImpactStage::is_open_at_end(const Contact& contact) {
+    collide_at(contact, step_, manifolds_);
+    return std::all_of(manifolds_.begin(), manifolds_.end(),
+                       [](const Manifold& manifold) { return least_separation(manifold) > 0; });
+}
+
 ImpactCoefficients coefficients_of(const Material& material, double restitution) {
     return {material.friction_dynamic, material.friction_static, restitution};
 }
@@ -248,26 +263,23 @@ void ImpactStage::add_manifold_sites(const Contact& contact, const Manifold& man
     }
 }
 
-// Contacts of the colliding bodies that are closed at that time take part; the resting ones without a bounce.
-void ImpactStage::add_neighbour_sites(std::uint32_t contact, double time) {
+// Loaded contacts of the colliding bodies take part, without a bounce. Others that collide at the same time have their
+// own events: one after the other, as the balls of Newton's cradle do it, keeps the energy of elastic bodies.
+void ImpactStage::add_loaded_neighbours(std::uint32_t contact, double time) {
     const Contact& first = world_.contacts[contact];
     for (const std::uint32_t body : {first.a, first.b}) {
         if (world_.motion[body].inverse_mass == 0) continue;
         for (std::uint32_t k = first_[body]; k < first_[body + 1]; ++k) {
             const std::uint32_t other = of_body_[k];
             const Contact& c = world_.contacts[other];
-            if (other == contact ||
-                std::find(site_contact_.begin(), site_contact_.end(), other) != site_contact_.end()) {
-                continue;
-            }
+            const bool is_known = std::find(site_contact_.begin(), site_contact_.end(), other) != site_contact_.end();
+            if (!c.was_loaded || is_known) continue;
             for (int i = 0; i < c.count; ++i) {
                 const ContactPoint& point = c.points[static_cast<std::size_t>(i)];
                 const double speed = dot(relative_velocity(c, point, world_.motion), c.normal);
-                const double gap = current_separation(c, point, world_.motion) + speed * time;
-                if (gap > patch_gap) continue;
-                const bool collides = speed < -slowest_speed(c, dot(c.normal, world_.settings.gravity));
-                sites_.push_back({c.a, c.b, point.arm_a, point.arm_b, c.normal,
-                                  coefficients_of(c.material, collides ? c.material.restitution : 0), Vec3{}});
+                if (current_separation(c, point, world_.motion) + speed * time > patch_gap) continue;
+                sites_.push_back(
+                    {c.a, c.b, point.arm_a, point.arm_b, c.normal, coefficients_of(c.material, 0), Vec3{}});
                 site_contact_.push_back(other);
             }
         }
@@ -287,9 +299,12 @@ void ImpactStage::note_impulse(Contact& contact, Vec3 position, Vec3 impulse, do
     if (!contact.had_impact) ++world_.report.impacts;
     contact.had_impact = true;
 
-    // Until then the bodies' new paths overlap at this contact.
-    const double parting = dot(relative_velocity(contact, *nearest, world_.motion), contact.normal);
-    contact.inactive_until = parting > 0 ? time : 0;
+    // Until then the bodies' new paths overlap where they part.
+    for (int i = 0; i < contact.count; ++i) {
+        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        const double parting = dot(relative_velocity(contact, point, world_.motion), contact.normal);
+        point.inactive_until = parting > 0 ? time : 0;
+    }
 }
 
 void ImpactStage::handle(std::uint32_t contact, double time, const Manifold& manifold) {
@@ -297,7 +312,7 @@ void ImpactStage::handle(std::uint32_t contact, double time, const Manifold& man
     site_contact_.clear();
     add_manifold_sites(world_.contacts[contact], manifold, time);
     site_contact_.assign(sites_.size(), contact);
-    add_neighbour_sites(contact, time);
+    add_loaded_neighbours(contact, time);
 
     // Velocities at the time of impact, the collision, and back to the start of the step on the new path.
     std::vector<std::uint32_t> bodies;
@@ -363,7 +378,7 @@ void ImpactStage::run() {
         Manifold manifold;
         if (!refine(contact, time, manifold)) {
             // They pass each other: the region found at the start must not hold them up.
-            if (!contact.was_loaded) contact.inactive_until = step_;
+            if (is_open_at_end(contact)) leave_open_points(contact, true);
         } else if (!events_.empty() && time > events_.top().time + 1e-12) {
             ++version_[event.contact];
             events_.push({time, event.contact, version_[event.contact]});

@@ -10,15 +10,14 @@ namespace embody::physics {
 
 namespace {
 
-void solve_islands(WorldState& world, SolvePhase phase, double h, double time) {
+void solve_islands(WorldState& world, SolvePhase phase, double h) {
     const Islands& islands = world.islands;
     for (const Island& island : islands.list) {
         const ConstraintList list{
             .contacts = world.contacts,
             .contact_order = std::span(islands.contacts).subspan(island.first_contact, island.contact_count),
             .joints = world.active_joints,
-            .joint_order = std::span(islands.joints).subspan(island.first_joint, island.joint_count),
-            .time = time};
+            .joint_order = std::span(islands.joints).subspan(island.first_joint, island.joint_count)};
         solve_phase(list, phase, h, world.motion);
     }
 }
@@ -115,14 +114,15 @@ void run_substeps(WorldState& world) {
 
     for (int k = 1; k <= world.settings.substeps; ++k) {
         // Forces, constraints that also mend positions, motion.
+        for (Contact& contact : world.contacts) activate_points(contact, k * h);
         kick_before_drift(world, h);
-        solve_islands(world, SolvePhase::position, h, k * h);
+        solve_islands(world, SolvePhase::position, h);
         drift_all(world, h);
 
         // Constraints on the velocity alone.
         prepare_joints(world);
         kick_after_drift(world, h);
-        solve_islands(world, SolvePhase::velocity, h, k * h);
+        solve_islands(world, SolvePhase::velocity, h);
         for (Contact& contact : world.contacts) add_to_totals(contact);
     }
 

@@ -83,6 +83,12 @@ void wake_touched(WorldState& world, std::vector<Manifold>& manifolds) {
     if (woke) gather_awake(world);
 }
 
+bool is_round(const WorldState& world, std::uint32_t body) {
+    const ShapeDefinition& shape = world.record(body).shape->definition();
+    return std::holds_alternative<SphereShape>(shape) || std::holds_alternative<CapsuleShape>(shape) ||
+           std::holds_alternative<CylinderShape>(shape) || std::holds_alternative<ConeShape>(shape);
+}
+
 // Contacts of both steps are sorted by key, so one pass over the two finds all old partners.
 void take_over_impulses(const std::vector<Contact>& last, std::vector<Contact>& contacts) {
     auto old_contact = last.begin();
@@ -122,6 +128,8 @@ void find_contacts(WorldState& world) {
         for (const Manifold& manifold : manifolds) {
             world.contacts.push_back(make_contact(pair.a, pair.b, manifold, world.motion));
             world.contacts.back().material = material;
+            world.contacts.back().a_is_round = is_round(world, pair.a);
+            world.contacts.back().b_is_round = is_round(world, pair.b);
         }
     }
     std::sort(world.contacts.begin(), world.contacts.end(),

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "foundation/random.h"
+#include "physics/constraint/contact.h"
+#include "physics/constraint/impact_group.h"
+
+namespace embody::physics {
+namespace {
+
+TEST(FrictionalImpact, SphereNeverChangesItsDirectionOfSliding) {
+    // Homogeneous sphere on a plane: A_tn = 0, the control case.
+    const Mat3 a = Mat3::diagonal({3.5, 3.5, 1});
+    const ImpactOutcome outcome = solve_frictional_impact(a, {3, 4, -1}, {0.1, 0.1, 0.5});
+    EXPECT_NEAR(outcome.velocity_after.x / outcome.velocity_after.y, 0.75, 1e-12);
+    EXPECT_NEAR(outcome.velocity_after.z, 0.5, 1e-12);
+    EXPECT_NEAR(std::hypot(outcome.impulse.x, outcome.impulse.y), 0.1 * outcome.impulse.z, 1e-12);
+}
+
+TEST(FrictionalImpact, NeverAddsEnergyAndStaysInTheCone) {
+    Random random(3);
+    const auto number = [&] { return random.between(-1, 1); };
+    for (int i = 0; i < 2000; ++i) {
+        // A random positive definite inverse mass.
+        const Mat3 root{{number(), number(), number()}, {number(), number(), number()}, {number(), number(), number()}};
+        const Mat3 a = root * transpose(root) + Mat3::identity() * 0.05;
+        const Vec3 u{number(), number(), -random.between(0.1, 1)};
+        const double mu = random.between(0, 1.5), e = random.between(0, 1);
+        const ImpactOutcome outcome = solve_frictional_impact(a, u, {mu, mu, e});
+        const double change = 0.5 * dot(outcome.impulse, u + outcome.velocity_after);
+        ASSERT_LE(change, 1e-9) << i;
+        ASSERT_GE(outcome.velocity_after.z, -1e-7) << i;
+        ASSERT_LE(std::hypot(outcome.impulse.x, outcome.impulse.y), mu * outcome.impulse.z * (1 + 1e-6) + 1e-12) << i;
+    }
+}
+
+TEST(ImpactGroup, FlatBoxBouncesWithoutTurning) {
+    std::vector<BodyState> bodies(2);
+    bodies[1].inverse_mass = 1;
+    bodies[1].inverse_inertia = Mat3::identity() * 6;
+    bodies[1].linear_velocity = {0, -2, 0};
+    std::vector<ImpactSite> sites;
+    for (const Vec3 corner : {Vec3{0, -0.5, 0}, Vec3{0.5, -0.5, 0.5}, Vec3{-0.5, -0.5, 0.5}, Vec3{0.5, -0.5, -0.5},
+                              Vec3{-0.5, -0.5, -0.5}}) {
+        ImpactSite site;
+        site.b = 1;
+        site.arm_b = corner;
+        site.normal = {0, 1, 0};
+        site.coefficients = {0.5, 0.5, 0.8};
+        sites.push_back(site);
+    }
+    const ImpactReport report = solve_impact_group(sites, bodies);
+    EXPECT_TRUE(report.converged);
+    EXPECT_NEAR(bodies[1].linear_velocity.y, 1.6, 1e-9);
+    EXPECT_LT(length(bodies[1].angular_velocity), 1e-9);
+    EXPECT_NEAR(report.energy_change, 0.5 * (1.6 * 1.6 - 4), 1e-9);
+}
+
+TEST(ImpactGroup, ConservesMomentumOfTwoFreeBodies) {
+    std::vector<BodyState> bodies(2);
+    bodies[0].inverse_mass = 1;
+    bodies[0].inverse_inertia = Mat3::identity() * 10;
+    bodies[1].inverse_mass = 0.5;
+    bodies[1].inverse_inertia = Mat3::identity() * 4;
+    bodies[0].linear_velocity = {1, 0.3, 0};
+    bodies[1].linear_velocity = {-2, 0, 0.1};
+    const Vec3 before = bodies[0].linear_velocity + 2 * bodies[1].linear_velocity;
+    ImpactSite site{0, 1, {0.1, 0.05, 0}, {-0.1, 0, 0.02}, {1, 0, 0}, {0.4, 0.4, 0.6}, {}};
+    solve_impact_group({&site, 1}, bodies);
+    EXPECT_LT(length(bodies[0].linear_velocity + 2 * bodies[1].linear_velocity - before), 1e-12);
+    EXPECT_GT(dot(site.impulse, site.normal), 0);
+}
+
+}  // namespace
+}  // namespace embody::physics
