@@ -17,6 +17,9 @@ def run(*words: str) -> subprocess.CompletedProcess:
 
 def main() -> int:
     embody, listing, database = sys.argv[1:4]
+    if not pathlib.Path(listing).is_file():
+        print(f"{listing} is missing: ./test writes it")
+        return 1
     catalogues = pathlib.Path(listing).read_text().split("\n")
     catalogues = [c for c in catalogues if c]
     if not catalogues:
