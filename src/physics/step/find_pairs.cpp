@@ -11,7 +11,11 @@ void find_pairs(WorldState& world) {
         if (!record.shape) continue;
         const Vec3 motion =
             world.motion[body].linear_velocity * dt + world.constants[body].acceleration * (dt * dt / 2);
-        world.broad_phase.move(body, record.shape->bounds(world.pose(body)), motion);
+
+        // The whole way counts as bounds: what lies on it must be a pair before the body gets there.
+        Bounds swept = record.shape->bounds(world.pose(body));
+        swept.add(Bounds{swept.lower + motion, swept.upper + motion});
+        world.broad_phase.move(body, swept, motion);
     }
     world.pairs = &world.broad_phase.update_pairs();
     world.report.pairs = static_cast<std::uint32_t>(world.pairs->size());

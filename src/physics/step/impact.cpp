@@ -364,7 +364,7 @@ void ImpactStage::run() {
     if (world_.contacts.empty()) return;
     prepare();
     for (std::uint32_t i = 0; i < world_.contacts.size(); ++i) push(i);
-    std::size_t left = 64 + 8 * world_.contacts.size();
+    std::size_t left = 64 + 32 * world_.contacts.size();
     while (!events_.empty()) {
         const Event event = events_.top();
         events_.pop();

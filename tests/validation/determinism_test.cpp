@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include "foundation/random.h"
+#include "validation/reference.h"
+
+namespace embody::physics {
+namespace {
+
+// A heap of spheres and boxes dropped on a plane.
+std::unique_ptr<World> make_heap() {
+    auto world = make_world({});
+    add_plane(*world, friction(0.5));
+    const auto ball = world->create_shape(SphereShape{0.3}).value();
+    const auto box = world->create_shape(BoxShape{{0.3, 0.3, 0.3}}).value();
+    Random random(7);
+    for (int i = 0; i < 60; ++i) {
+        EXPECT_TRUE(world->create_body(
+            {.shape = i % 2 ? ball : box,
+             .position = {random.between(-1, 1), 0.5 + 0.4 * i, random.between(-1, 1)},
+             .material = {.friction_rolling = 0.03, .friction_torsional = 0.03, .restitution = 0.3}}));
+    }
+    return world;
+}
+
+TEST(Determinism, SameInputGivesTheSameBits) {
+    const auto first = make_heap(), second = make_heap();
+    for (int i = 0; i < 300; ++i) {
+        first->step();
+        second->step();
+        ASSERT_EQ(first->state_hash(), second->state_hash()) << "step " << i;
+    }
+}
+
+TEST(Determinism, AnotherInputGivesOtherBits) {
+    const auto first = make_heap(), second = make_heap();
+    ASSERT_TRUE(second->set_velocity(second->bodies()[1], {1e-9, 0, 0}, {}));
+    first->step();
+    second->step();
+    EXPECT_NE(first->state_hash(), second->state_hash());
+}
+
+TEST(Heap, ComesToRestAndSleepsWithoutPassingThroughTheFloor) {
+    const auto world = make_heap();
+    const double start = energy(*world);
+    for (int i = 0; i < 60 * 20; ++i) {
+        world->step();
+        ASSERT_LE(energy(*world), start * (1 + 1e-3)) << "step " << i;
+    }
+    for (const BodyHandle body : world->bodies()) EXPECT_GT(world->pose(body).position.y, -0.01);
+    EXPECT_EQ(world->last_report().limits & static_cast<std::uint32_t>(StepLimit::not_finite_body_frozen), 0u);
+    EXPECT_EQ(world->last_report().bodies_asleep, 60u);
+}
+
+}  // namespace
+}  // namespace embody::physics
