@@ -7,7 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
+#include "foundation/random.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics {
@@ -16,14 +18,21 @@ namespace {
 /// A chair's hull: four feet, a seat, a back; centre of mass and inertia as of a real plastic chair of 6.9 kg.
 BodyDefinition chair(World& world) {
     BodyDefinition body;
-    body.shape = *world.create_shape(HullShape{{{-0.234, 0, -0.146},
-                                                {0.234, 0, -0.146},
-                                                {-0.234, 0, 0.25},
-                                                {0.234, 0, 0.25},
-                                                {-0.2, 0.45, 0.27},
-                                                {0.2, 0.45, 0.27},
-                                                {-0.2, 0.965, -0.28},
-                                                {0.2, 0.965, -0.28}}});
+    // Real feet are round and not all of one height.
+    HullShape hull;
+    Random random(3);
+    for (const double x : {-0.234, 0.234}) {
+        for (const double z : {-0.146, 0.25}) {
+            for (int i = 0; i < 12; ++i) {
+                const double angle = 2 * std::numbers::pi * i / 12;
+                hull.points.push_back(
+                    {x + 0.015 * std::cos(angle), random.between(0, 0.0004), z + 0.015 * std::sin(angle)});
+            }
+        }
+        hull.points.push_back({0.85 * x, 0.45, 0.27});
+        hull.points.push_back({0.85 * x, 0.965, -0.28});
+    }
+    body.shape = *world.create_shape(hull);
     body.mass.mass = 6.9;
     body.mass.center_of_mass = Vec3{0, 0.496, -0.02};
     body.mass.inertia = Mat3{{0.678, 0, 0}, {0, 0.424, 0.1445}, {0, 0.1445, 0.648}};
@@ -45,9 +54,9 @@ TEST_P(FurnitureComesToRest, WhenDroppedOnAPlane) {
             ASSERT_TRUE(world->create_body(floor));
             BodyDefinition body = chair(*world);
             body.material.restitution = GetParam();
-            body.position = {0, height, 0};
             body.rotation = from_axis_angle(normalized(Vec3{0.3, 0, 1}), tilt);
             const BodyHandle handle = *world->create_body(body);
+            ASSERT_TRUE(world->set_pose(handle, {{0, height - world->bounds(handle).lower.y, 0}, body.rotation}));
             double lowest = 1;
             int steps = 0;
             while (steps < 600 && world->sleep_state(handle) != SleepState::asleep) {

@@ -151,7 +151,7 @@ void reduce_to_four(ContactRegion& region) {
         for (std::size_t i = kept; i < points.size(); ++i) {
             const double value = score(points[i]);
             // Ties by a hair go to the earlier point, so that rounding does not choose.
-            if (value <= highest + (best == points.size() ? 0 : 1e-9 * std::fabs(highest))) continue;
+            if (!(value > highest + (best == points.size() ? 0 : 1e-9 * std::fabs(highest)))) continue;
             highest = value;
             best = i;
         }
@@ -175,20 +175,31 @@ void reduce_to_four(ContactRegion& region) {
     });
 
     // The farthest from it, the farthest from their line, the farthest beyond the triangle; what adds no area is
-    // dropped.
-    const double no_area = 1e-5 * size * size;
-    const auto area = [&](Vec3 from, Vec3 to, Vec3 p) { return dot(normal, cross(to - from, p - from)); };
+    // dropped. Depth counts before area: of two points side by side the lower one carries, and a hull of many vertices
+    // has higher ones a little farther out everywhere. `slope`: metres of extent given up for a metre of depth.
+    constexpr double slope = 10;
+    constexpr double unfit = -std::numeric_limits<double>::infinity();
+    const auto lift = [&](const ManifoldPoint& p) { return slope * (p.separation - lowest); };
+    const double no_length = std::max(1e-6 * size, 1e-9);
+    const auto reach = [&](double length, const ManifoldPoint& p) {
+        return length > no_length ? length - lift(p) : unfit;
+    };
+    // Distance of p from the line, positive on the left seen against the normal.
+    const auto beside = [&](Vec3 from, Vec3 to, Vec3 p) {
+        return dot(normal, cross(to - from, p - from)) / distance(from, to);
+    };
     const Vec3 first = points[0].position;
-    constexpr double same_place = 1e-9;  // m
-    if (keep_best(std::max(1e-6 * size, same_place),
-                  [&](const ManifoldPoint& p) { return distance(p.position, first); })) {
+    if (keep_best(unfit, [&](const ManifoldPoint& p) { return reach(distance(p.position, first), p); })) {
         const Vec3 second = points[1].position;
-        if (keep_best(no_area, [&](const ManifoldPoint& p) { return std::fabs(area(first, second, p.position)); })) {
+        const auto from_line = [&](const ManifoldPoint& p) { return std::fabs(beside(first, second, p.position)); };
+        if (keep_best(unfit, [&](const ManifoldPoint& p) { return reach(from_line(p), p); })) {
             const Vec3 third = points[2].position;
-            const double turn = area(first, second, third) < 0 ? -1.0 : 1.0;
-            keep_best(no_area, [&](const ManifoldPoint& p) {
-                return std::max({-turn * area(first, second, p.position), -turn * area(second, third, p.position),
-                                 -turn * area(third, first, p.position)});
+            const double turn = beside(first, second, third) < 0 ? -1.0 : 1.0;
+            keep_best(unfit, [&](const ManifoldPoint& p) {
+                const double outside =
+                    std::max({-turn * beside(first, second, p.position), -turn * beside(second, third, p.position),
+                              -turn * beside(third, first, p.position)});
+                return reach(outside, p);
             });
         }
     }

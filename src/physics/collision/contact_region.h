@@ -51,7 +51,7 @@ void keep_deepest(Vec3 on_a, double separation, double tolerance, ContactRegion&
 void cross_segments(const ContactFeature& a, const ContactFeature& b, double radius_a, double radius_b, double margin,
                     ContactRegion& region);
 
-/// Keeps at most four points: the deepest, then those that span the largest area (paper, III.B), in a fixed order;
+/// Keeps at most four points: the deepest, then deep ones that span a large area (paper, III.B), in a fixed order;
 /// points that add no area (twins, or inner ones of a line) go.
 void reduce_to_four(ContactRegion& region);
 
