@@ -67,6 +67,7 @@ void match_points(const Contact& old_contact, Contact& new_contact) {
         point.sticks = old_point.sticks;
     }
     new_contact.turning = old_contact.turning;
+    new_contact.was_touching = is_touching(old_contact);
     new_contact.was_loaded = is_pressed(old_contact);
 }
 

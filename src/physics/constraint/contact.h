@@ -47,6 +47,7 @@ struct Contact {
     Vec3 turning;  ///< angular impulse by torsion (along n) and rolling resistance of the last substep, N m s
     bool a_is_round = false, b_is_round = false;  ///< rolls: the point of contact does not turn with the body
     double approach_speed = 0;                    ///< fastest point when found, m/s, >= 0
+    bool was_touching = false;                    ///< in the last step
     bool was_loaded = false;                      ///< pressed in the last step
     bool had_impact = false;                      ///< solved by the impact stage in this step
 };

@@ -43,6 +43,11 @@ public:
     void run();
 
 private:
+    struct Gap {
+        double size, rate;  // m, m/s
+    };
+    Gap gap_at(const Contact& contact, const ContactPoint& point, double time) const;
+    double touch_time(const Contact& contact, const ContactPoint& point, double start) const;
     double next_impact(const Contact& contact) const;
     void leave_open_points(Contact& contact, bool pass);
     bool is_open_at_end(const Contact& contact);
@@ -81,34 +86,69 @@ double ImpactStage::earliest_time(const Contact& contact) const {
     return std::max(last_time_[contact.a], last_time_[contact.b]);
 }
 
-// Classification (paper, eq. 4): slower contacts rest. A loaded one must be far faster to count as a collision.
+// Classification (paper, eq. 4): slower contacts rest. Loaded ones and ones that do not bounce must be far faster to
+// count as a collision: the contact solver stops them as well. If they also touch already there is none to come.
 double ImpactStage::slowest_speed(const Contact& contact, double acceleration) const {
+    const bool bounces = contact.material.restitution > 0;
+    if (contact.was_touching && !bounces) return never;
     const double slowest = std::max(slowest_impact, 2 * std::fabs(acceleration) * substep_);
-    return contact.was_loaded ? 5 * slowest : slowest;
+    return contact.was_loaded || !bounces ? 5 * slowest : slowest;
+}
+
+// Gap and its rate at `time`, the turning of the bodies included: a foot of a spinning chair does not move straight.
+ImpactStage::Gap ImpactStage::gap_at(const Contact& contact, const ContactPoint& point, double time) const {
+    const auto move = [&](std::uint32_t body, Vec3 arm, bool is_round, Vec3& velocity) {
+        const BodyState& state = world_.motion[body];
+        const Quat turn = normalized(cayley(state.angular_velocity * time) * state.turn);
+        const Vec3 turned = is_round ? arm : rotate(turn, arm);
+        velocity = state.linear_velocity + free_acceleration(body) * time + cross(state.angular_velocity, turned);
+        const Vec3 by_turning = is_round ? cross(state.angular_velocity * time, arm) : turned - arm;
+        return center_at(body, time) - state.start_center + by_turning;
+    };
+    Vec3 velocity_a, velocity_b;
+    const Vec3 move_a = move(contact.a, point.arm_a, contact.a_is_round, velocity_a);
+    const Vec3 move_b = move(contact.b, point.arm_b, contact.b_is_round, velocity_b);
+    return {point.separation + dot(contact.normal, move_b - move_a), dot(contact.normal, velocity_b - velocity_a)};
+}
+
+// The first time at which the point touches, `never` if it does not within the step.
+double ImpactStage::touch_time(const Contact& contact, const ContactPoint& point, double start) const {
+    const Gap first = gap_at(contact, point, start);
+    if (first.size <= touch_gap) return start;
+    const Gap last = gap_at(contact, point, step_);
+    if (last.size > 0) {
+        // Open at both ends; a parabola that opens upwards may dip through in between.
+        const double acceleration = step_ > start ? (last.rate - first.rate) / (step_ - start) : 0;
+        const double discriminant = first.rate * first.rate - 2 * acceleration * first.size;
+        if (first.rate >= 0 || discriminant < 0) return never;
+        const double time = start + 2 * first.size / (-first.rate + std::sqrt(discriminant));
+        return time <= step_ ? time : never;
+    }
+
+    // Closed at the end: the root between, by the regula falsi (Illinois).
+    double low = start, high = step_, at_low = first.size, at_high = last.size;
+    double time = high;
+    for (int i = 0; i < 8; ++i) {
+        time = low + (high - low) * at_low / (at_low - at_high);
+        const double gap = gap_at(contact, point, time).size;
+        if (std::fabs(gap) < touch_gap) break;
+        (gap > 0 ? low : high) = time;
+        (gap > 0 ? at_low : at_high) = gap;
+        (gap > 0 ? at_high : at_low) /= 2;
+    }
+    return time;
 }
 
 // The first time at which a point of the contact closes fast enough to be an impact; `never` if none does.
 double ImpactStage::next_impact(const Contact& contact) const {
     const double start = earliest_time(contact);
-    const double acceleration = dot(contact.normal, free_acceleration(contact.b) - free_acceleration(contact.a));
     const double slowest = slowest_speed(contact, dot(contact.normal, world_.settings.gravity));
     double first = never;
+    if (slowest == never) return never;
     for (int i = 0; i < contact.count; ++i) {
-        // Gap s + u t + a t²/2 and its rate.
         const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        const double s = current_separation(contact, point, world_.motion);
-        const double u = dot(relative_velocity(contact, point, world_.motion), contact.normal);
-        const double gap = s + start * (u + acceleration * start / 2);
-        double time = start;
-        if (gap > touch_gap) {
-            const double speed = u + acceleration * start;
-            const double discriminant = speed * speed - 2 * acceleration * gap;
-            if (discriminant < 0) continue;
-            const double denominator = -speed + std::sqrt(discriminant);
-            if (denominator <= 0) continue;
-            time = start + 2 * gap / denominator;
-        }
-        if (time <= step_ && u + acceleration * time < -slowest) first = std::min(first, time);
+        const double time = touch_time(contact, point, start);
+        if (time < first && gap_at(contact, point, time).rate < -slowest) first = time;
     }
     return first;
 }
@@ -146,13 +186,12 @@ void ImpactStage::push(std::uint32_t contact) {
 // the path of each point, unless the surfaces are known to `pass` each other.
 void ImpactStage::leave_open_points(Contact& contact, bool pass) {
     const double slowest = slowest_speed(contact, dot(contact.normal, world_.settings.gravity));
-    const double acceleration = dot(contact.normal, free_acceleration(contact.b) - free_acceleration(contact.a));
+    if (slowest == never) return;
     for (int i = 0; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        const double s = current_separation(contact, point, world_.motion);
-        const double u = dot(relative_velocity(contact, point, world_.motion), contact.normal);
-        const bool stays_open = s > 0 && (pass || s + step_ * (u + acceleration * step_ / 2) > 0);
-        if (u < -slowest && stays_open) {
+        const Gap now = gap_at(contact, point, 0);
+        const bool stays_open = now.size > 0 && (pass || gap_at(contact, point, step_).size > 0);
+        if (now.rate < -slowest && stays_open) {
             point.inactive_until = step_;
         } else if (point.inactive_until >= step_) {
             point.inactive_until = 0;
