@@ -32,8 +32,11 @@ void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, s
         for (const std::uint32_t i : list.joint_order) {
             error = std::max(error, solve_joint(list.joints[i], phase, substep, bodies));
         }
-        for (const std::uint32_t i : list.contact_order) {
-            solve_contact(list.contacts[i], phase, softness, bodies);
+        // Bottom-up while positions are mended, top-down for the velocities: weights travel down, support travels up.
+        const std::size_t count = list.contact_order.size();
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::size_t place = phase == SolvePhase::position ? k : count - 1 - k;
+            solve_contact(list.contacts[list.contact_order[place]], phase, softness, bodies);
         }
         if (pass + 1 >= least && error <= joint_tolerance) break;
     }
