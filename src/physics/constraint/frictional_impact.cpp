@@ -33,13 +33,11 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Share of the fastest decay of u_t that one RK4 step spans: error about 1e-7 of the velocity over a collision.
-constexpr double step_share = 0.1;
 // A sliding speed below this share of the start velocity counts as zero.
 constexpr double stop_share = 1e-9;
 // Most collisions end within the first short steps. Where A is ill-conditioned u_t decays slowly, and steps may grow.
 constexpr int short_steps = 400;
-constexpr double longest_step = 15;
+constexpr double longest_share = 1.5;
 constexpr int max_steps = 20000;
 
 enum class Phase { compression, restitution };
@@ -49,7 +47,7 @@ struct Collision {
     const ImpactCoefficients& c;
     Phase phase;
     double target_work;  // restitution only
-    double stop_speed;
+    ImpactPrecision precision;
     ImpactState& s;
 };
 
@@ -142,20 +140,21 @@ ImpactState step_to_end(const Collision& k, double tau) {
 bool slide_curved(const Collision& k) {
     const double norm_tt = std::fabs(k.a.x.x) + std::fabs(k.a.y.y) + 2 * std::fabs(k.a.x.y);
     const double norm_tn = std::fabs(k.a.z.x) + std::fabs(k.a.z.y);
-    const double shortest = step_share / (k.c.friction_slide * norm_tt + norm_tn);
+    const double fastest_decay = k.c.friction_slide * norm_tt + norm_tn;
+    const double shortest = k.precision.step_share / fastest_decay, longest = longest_share / fastest_decay;
     for (int i = 0; i < max_steps; ++i) {
         // A slow decay gets longer steps, within what keeps RK4 stable.
         const double slip = length(tangential(k.s.velocity));
         const double change = length(tangential(rate_over_tau(k, k.s.velocity).velocity));
-        const double wanted = change > 0 ? step_share * slip / change : longest_step * shortest;
-        const double tau = i < short_steps ? shortest : std::clamp(wanted, shortest, longest_step * shortest);
+        const double wanted = change > 0 ? k.precision.step_share * slip / change : longest;
+        const double tau = i < short_steps ? shortest : std::clamp(wanted, shortest, longest);
         const ImpactState next = runge_kutta_step(k, k.s, tau);
         if (overshoot(k, next) >= 0) {
             k.s = step_to_end(k, tau);
             return true;
         }
         k.s = next;
-        if (length(tangential(k.s.velocity)) <= k.stop_speed) return false;
+        if (length(tangential(k.s.velocity)) <= k.precision.stop_speed) return false;
     }
     return false;
 }
@@ -204,7 +203,7 @@ void run_phase(const Collision& k) {
         if (amount < infinity) advance_linearly(k, {}, amount);
         return;
     }
-    if (speed > k.stop_speed) {
+    if (speed > k.precision.stop_speed) {
         const Vec3 d = slip / speed;
         const Vec3 rate = tangential(k.a * Vec3{-k.c.friction_slide * d.x, -k.c.friction_slide * d.y, 1});
         const bool is_straight = std::fabs(d.x * rate.y - d.y * rate.x) <= 1e-13 * length(rate);
@@ -225,21 +224,24 @@ void run_phase(const Collision& k) {
     }
 }
 
-double stop_speed(const ImpactState& state) { return stop_share * length(state.velocity) + 1e-300; }
+ImpactPrecision at_least_relative(const ImpactPrecision& precision, const ImpactState& state) {
+    return {precision.step_share, std::max(precision.stop_speed, stop_share * length(state.velocity) + 1e-300)};
+}
 
 }  // namespace
 
-void compress(const Mat3& inverse_mass, const ImpactCoefficients& coefficients, ImpactState& state) {
+void compress(const Mat3& inverse_mass, const ImpactCoefficients& coefficients, ImpactState& state,
+              const ImpactPrecision& precision) {
     state.normal_work = 0;
     if (state.velocity.z >= 0) return;
-    run_phase({inverse_mass, coefficients, Phase::compression, 0, stop_speed(state), state});
+    run_phase({inverse_mass, coefficients, Phase::compression, 0, at_least_relative(precision, state), state});
 }
 
 void release(const Mat3& inverse_mass, const ImpactCoefficients& coefficients, double work, ImpactState& state) {
     state.normal_work = 0;
     if (work <= 0) return;
     state.velocity.z = std::max(state.velocity.z, 0.0);
-    run_phase({inverse_mass, coefficients, Phase::restitution, work, stop_speed(state), state});
+    run_phase({inverse_mass, coefficients, Phase::restitution, work, at_least_relative({}, state), state});
 }
 
 ImpactOutcome solve_frictional_impact(const Mat3& inverse_mass, Vec3 velocity, const ImpactCoefficients& coefficients) {

@@ -13,6 +13,12 @@ struct ImpactCoefficients {
     double restitution = 0;     ///< Stronge's energetic coefficient, 0 … 1
 };
 
+/// How finely eq. (3) is integrated.
+struct ImpactPrecision {
+    double step_share = 0.1;  ///< share of the fastest decay of the sliding that one step spans, 0.01 … 0.5
+    double stop_speed = 0;    ///< m/s of sliding that counts as none; 1e-9 of the start speed is the least
+};
+
 /// Where a micro-collision stands: what eq. (3) integrates over the normal impulse.
 struct ImpactState {
     Vec3 velocity;           ///< relative velocity of the contact point, m/s
@@ -30,7 +36,8 @@ struct ImpactOutcome {
 };
 
 /// Integrates eq. (3) from `state` until the approach ends (u_n = 0).
-void compress(const Mat3& inverse_mass, const ImpactCoefficients& coefficients, ImpactState& state);
+void compress(const Mat3& inverse_mass, const ImpactCoefficients& coefficients, ImpactState& state,
+              const ImpactPrecision& precision = {});
 
 /// Integrates eq. (3) on until the normal work of this phase has reached `work` (J, >= 0).
 void release(const Mat3& inverse_mass, const ImpactCoefficients& coefficients, double work, ImpactState& state);

@@ -23,6 +23,8 @@ namespace {
 constexpr double never = 1e300;
 constexpr double touch_gap = 1e-6;       // m: bodies this near touch
 constexpr double patch_gap = 5e-4;       // m: corners this near to the first one collide together with it
+constexpr int most_bounces = 3;          // of one contact in a step; later impacts do not bounce (Zeno's ball)
+constexpr int most_impacts = 5;          // of one contact in a step; then the contact solver stops it
 constexpr double slowest_impact = 0.02;  // m/s: slower contacts rest
 
 // A predicted impact. Outdated once one of the bodies has had another one (its version has moved on).
@@ -61,7 +63,7 @@ private:
     Transform pose_at(std::uint32_t body, double time) const;
     Vec3 center_at(std::uint32_t body, double time) const;
     void handle(std::uint32_t contact, double time, const Manifold& manifold);
-    void add_manifold_sites(const Contact& contact, const Manifold& manifold, double time);
+    void add_manifold_sites(const Contact& contact, const Manifold& manifold, double time, bool may_bounce);
     void add_loaded_neighbours(std::uint32_t contact, double time);
     void note_impulse(Contact& contact, Vec3 position, Vec3 impulse, double time);
 
@@ -71,6 +73,7 @@ private:
     std::vector<std::uint8_t> is_supported_;      // by body: a contact carried it in the last step
     std::vector<std::uint32_t> first_, of_body_;  // contacts of each body
     std::vector<std::uint32_t> version_;          // by contact
+    std::vector<std::uint8_t> impacts_;           // by contact, in this step
     std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
     std::vector<ImpactSite> sites_;
     std::vector<std::uint32_t> site_contact_;  // contact of each site
@@ -161,6 +164,7 @@ void ImpactStage::prepare() {
     }
     last_time_.assign(world_.motion.size(), 0);
     version_.assign(contacts.size(), 0);
+    impacts_.assign(contacts.size(), 0);
     first_.assign(world_.motion.size() + 1, 0);
     for (const Contact& contact : contacts) {
         ++first_[contact.a + 1];
@@ -176,6 +180,7 @@ void ImpactStage::prepare() {
 }
 
 void ImpactStage::push(std::uint32_t contact) {
+    if (impacts_[contact] >= most_impacts) return;
     const double time = next_impact(world_.contacts[contact]);
     if (time <= step_) events_.push({time, contact, version_[contact]});
 
@@ -272,7 +277,7 @@ ImpactCoefficients coefficients_of(const Material& material, double restitution)
 }
 
 // A flat region collides as one patch at its middle and, where it tilts, at its corners.
-void ImpactStage::add_manifold_sites(const Contact& contact, const Manifold& manifold, double time) {
+void ImpactStage::add_manifold_sites(const Contact& contact, const Manifold& manifold, double time, bool may_bounce) {
     const double nearest = least_separation(manifold);
     const auto add = [&](Vec3 position) {
         ImpactSite site;
@@ -283,7 +288,7 @@ void ImpactStage::add_manifold_sites(const Contact& contact, const Manifold& man
         site.normal = manifold.normal;
         const Vec3 velocity =
             velocity_at(world_.motion[site.b], site.arm_b) - velocity_at(world_.motion[site.a], site.arm_a);
-        const bool bounces = -dot(velocity, site.normal) >= contact.material.restitution_threshold;
+        const bool bounces = may_bounce && -dot(velocity, site.normal) >= contact.material.restitution_threshold;
         site.coefficients = coefficients_of(contact.material, bounces ? contact.material.restitution : 0);
         sites_.push_back(site);
     };
@@ -349,7 +354,8 @@ void ImpactStage::note_impulse(Contact& contact, Vec3 position, Vec3 impulse, do
 void ImpactStage::handle(std::uint32_t contact, double time, const Manifold& manifold) {
     sites_.clear();
     site_contact_.clear();
-    add_manifold_sites(world_.contacts[contact], manifold, time);
+    const bool may_bounce = impacts_[contact]++ < most_bounces;
+    add_manifold_sites(world_.contacts[contact], manifold, time, may_bounce);
     site_contact_.assign(sites_.size(), contact);
     add_loaded_neighbours(contact, time);
 
