@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -16,13 +17,16 @@ class ByteWriter {
 public:
     template <class T>
     requires std::is_arithmetic_v<T>
-    void number(T value) {
-        const auto* begin = reinterpret_cast<const std::uint8_t*>(&value);
-        bytes_.insert(bytes_.end(), begin, begin + sizeof value);
+    void number(T value) { raw({reinterpret_cast<const std::uint8_t*>(&value), sizeof value}); }
+    /// The bytes without their count.
+    void raw(std::span<const std::uint8_t> data) {
+        const std::size_t size = bytes_.size();
+        bytes_.resize(size + data.size());
+        std::copy(data.begin(), data.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(size));
     }
     void block(std::span<const std::uint8_t> data) {
         number(static_cast<std::uint64_t>(data.size()));
-        bytes_.insert(bytes_.end(), data.begin(), data.end());
+        raw(data);
     }
     void text(std::string_view value) { block({reinterpret_cast<const std::uint8_t*>(value.data()), value.size()}); }
 

@@ -140,13 +140,9 @@ std::vector<std::uint8_t> frame(FrameKind kind, std::span<const std::uint8_t> pa
     out.number(protocol_version);
     out.number(static_cast<std::uint32_t>(kind));
     out.number(static_cast<std::uint32_t>(payload.size()));
-    std::vector<std::uint8_t> bytes = out.take();
-    bytes.insert(bytes.end(), payload.begin(), payload.end());
-    ByteWriter end;
-    end.number(hash_of(payload));
-    const std::vector<std::uint8_t> hash = end.take();
-    bytes.insert(bytes.end(), hash.begin(), hash.end());
-    return bytes;
+    out.raw(payload);
+    out.number(hash_of(payload));
+    return out.take();
 }
 
 Result<FrameHeader> read_frame_header(std::span<const std::uint8_t> bytes) {

@@ -20,7 +20,7 @@ bool is_zero_or_normal(double value) { return value == 0 || std::isnormal(value)
 }  // namespace
 
 Result<void> check_number(std::string_view field, double value, double lowest, double highest, std::string_view unit) {
-    const std::string suffix = unit.empty() ? "" : " " + std::string(unit);
+    const std::string suffix = (unit.empty() ? std::string() : std::string(" ")).append(unit);
     if (!std::isfinite(value)) return Error{std::string(field), "must be a finite number, got " + in_digits(value)};
     if (!is_zero_or_normal(value)) return Error{std::string(field), "is a denormal number; use 0"};
     if (value < lowest || value > highest) {

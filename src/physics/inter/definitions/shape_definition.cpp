@@ -19,7 +19,9 @@ std::string to_text(double number) {
     return text;
 }
 
-std::string element(const char* array, std::size_t index) { return array + ("[" + std::to_string(index) + "]"); }
+std::string element(const char* array, std::size_t index) {
+    return std::string(array).append("[").append(std::to_string(index)).append("]");
+}
 
 Result<void> check_size(const char* field, double size) {
     if (size >= smallest_size && size <= largest_size) return {};
