@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -20,9 +19,8 @@ public:
     void number(T value) { raw({reinterpret_cast<const std::uint8_t*>(&value), sizeof value}); }
     /// The bytes without their count.
     void raw(std::span<const std::uint8_t> data) {
-        const std::size_t size = bytes_.size();
-        bytes_.resize(size + data.size());
-        std::copy(data.begin(), data.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(size));
+        // One by one: gcc 12 raises false alarms about insert() and resize() here at -O3.
+        for (const std::uint8_t byte : data) bytes_.push_back(byte);
     }
     void block(std::span<const std::uint8_t> data) {
         number(static_cast<std::uint64_t>(data.size()));
