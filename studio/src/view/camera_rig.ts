@@ -10,10 +10,13 @@ const FARTHEST = 2000;
 const FLY_TIME_MS = 250;
 const HIGHEST = Math.PI - 0.02;
 const LOWEST = 0.02;
+/** Upright angle of view in degrees, while the picture is at least this many times as wide as high. */
+const VIEW_ANGLE = 45;
+const USUAL_ASPECT = 1.5;
 
 /** The camera: it looks at a target from a distance; orbits, pans, zooms and flies. The caller decides which gesture means what. */
 export class CameraRig {
-  readonly camera = new PerspectiveCamera(45, 1, 0.03, 3000);
+  readonly camera = new PerspectiveCamera(VIEW_ANGLE, 1, 0.03, 3000);
   readonly target = new Vector3(0, 0.5, 0);
   readonly changed = new Signal<void>();
   private readonly arm = new Spherical(6, 1.15, 0.6);
@@ -28,6 +31,14 @@ export class CameraRig {
 
   get distance(): number {
     return this.arm.radius;
+  }
+
+  /** Fits the picture's shape; in a narrow one as much is seen from left to right as in a usual one. */
+  fit(aspect: number): void {
+    this.camera.aspect = aspect;
+    const slope = Math.tan((VIEW_ANGLE * Math.PI) / 360) * Math.max(1, USUAL_ASPECT / aspect);
+    this.camera.fov = Math.min((360 / Math.PI) * Math.atan(slope), 80);
+    this.camera.updateProjectionMatrix();
   }
 
   orbit(dx: number, dy: number): void {

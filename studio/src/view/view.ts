@@ -182,8 +182,7 @@ export class View {
   private resize(): void {
     const frame = this.canvas.parentElement!.getBoundingClientRect();
     if (frame.width < 1 || frame.height < 1 || this.renderer.xr.isPresenting) return;
-    this.rig.camera.aspect = frame.width / frame.height;
-    this.rig.camera.updateProjectionMatrix();
+    this.rig.fit(frame.width / frame.height);
     this.renderer.setSize(frame.width, frame.height);
     this.invalidate();
   }
