@@ -22,7 +22,8 @@ export interface ModelSummary {
   content_hash: string;
 }
 
-export type AttributeValue = number | string | boolean | number[] | number[][];
+/** A vector has three numbers, a symmetric tensor six: xx, yy, zz, xy, xz, yz. */
+export type AttributeValue = number | string | boolean | number[];
 
 export interface AttributeEntry {
   name: string;

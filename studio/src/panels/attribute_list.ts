@@ -30,6 +30,8 @@ export class AttributeList implements AttributeEdits {
   private shape = "";
   private timer = 0;
   private generation = 0;
+  /** Kinds that are folded; few people look for the last one. */
+  private readonly closed = new Set(["motion"]);
 
   constructor(private readonly studio: Studio) {
     this.root.append(this.note, this.groups);
@@ -103,12 +105,19 @@ export class AttributeList implements AttributeEdits {
       this.rows.set(entry.name, row);
       let group = groups.get(entry.kind);
       if (!group) {
-        group = element("details", { class: "group", open: true }, element("summary", {}, KIND_TITLES[entry.kind] ?? entry.kind));
+        group = this.makeGroup(entry.kind);
         groups.set(entry.kind, group);
       }
       group.append(row.root);
     }
     this.groups.replaceChildren(...groups.values());
+  }
+
+  /** A group of attributes, open or closed as its user left the last one of that kind. */
+  private makeGroup(kind: string): HTMLElement {
+    const group = element("details", { class: "group", open: !this.closed.has(kind) }, element("summary", {}, KIND_TITLES[kind] ?? kind));
+    group.addEventListener("toggle", () => (group.open ? this.closed.delete(kind) : this.closed.add(kind)));
+    return group;
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import type { AttributeEntry, AttributeValue } from "../connection/messages";
 import { element, setText, show } from "./element";
-import { type Field, numberField, numberText, truthField, vectorField, wordField } from "./fields";
+import { type Field, NOISE, numberField, numberText, truthField, vectorField, wordField } from "./fields";
 import { icon } from "./icons";
 
 /** One attribute as the selected entities have it. */
@@ -11,6 +11,18 @@ export interface SharedAttribute {
   same: boolean;
   overridden: boolean;
 }
+
+/** How sure a value is, from the surest: what the badge beside it means. */
+const LEVELS: Record<string, string> = {
+  manual: "Set by hand",
+  measured: "Measured",
+  model: "Found in this very model: its shape, its materials, its catalogue",
+  subcategory: "Usual for things of this subcategory",
+  category: "Usual for things of this category",
+  kind: "Usual for this physical kind",
+  default: "Nothing better is known: the same for everything",
+  mixed: "The selected entities have different values",
+};
 
 export interface AttributeEdits {
   set(name: string, value: AttributeValue): Promise<string | null>;
@@ -52,10 +64,14 @@ export class AttributeRow {
 
   show({ entry, same, overridden }: SharedAttribute): void {
     this.field.set((same ? entry.value : null) as never);
-    setText(this.level, same ? entry.level : "mixed");
-    this.level.dataset["level"] = same ? entry.level : "mixed";
+    const level = same ? entry.level : "mixed";
+    setText(this.level, level);
+    this.level.dataset["level"] = level;
+    this.level.title = LEVELS[level] ?? "";
     const interval = same ? intervalText(entry) : "";
-    setText(this.source, same ? [interval, entry.source].filter(Boolean).join(" · ") : "the selected entities differ");
+    // A source that only repeats its level says nothing.
+    const source = entry.source === entry.level ? "" : entry.source;
+    setText(this.source, same ? [interval, source].filter(Boolean).join(" · ") : "the selected entities differ");
     this.source.title = same ? `${entry.source}${interval ? `\n80 % interval ${interval}` : ""}` : "";
     show(this.reset, overridden);
     this.reset.title = entry.automatic === null ? "Back to the automatic value" : `Back to the automatic value, ${valueText(entry.automatic)}`;
@@ -89,19 +105,11 @@ function fieldFor(entry: AttributeEntry, commit: (value: AttributeValue) => void
   return made as unknown as Field<never>;
 }
 
-/** The six numbers of a symmetric tensor: the diagonal, and below it xy, xz, yz. */
-function tensorField(label: string, unit: string, commit: (value: number[][]) => void): Field<number[][]> {
+/** A symmetric tensor, as the server writes it: xx, yy, zz and, below these, xy, xz, yz. */
+function tensorField(label: string, unit: string, commit: (value: number[]) => void): Field<readonly number[]> {
   let diagonal: readonly number[] = [0, 0, 0];
   let mixed: readonly number[] = [0, 0, 0];
-  const send = (): void => {
-    const [xx, yy, zz] = diagonal as [number, number, number];
-    const [xy, xz, yz] = mixed as [number, number, number];
-    commit([
-      [xx, xy, xz],
-      [xy, yy, yz],
-      [xz, yz, zz],
-    ]);
-  };
+  const send = (): void => commit([...diagonal, ...mixed]);
   const upper = vectorField(["xx", "yy", "zz"].map((part) => `${label} ${part}`), unit, (value) => ((diagonal = value), send()));
   const lower = vectorField(["xy", "xz", "yz"].map((part) => `${label} ${part}`), unit, (value) => ((mixed = value), send()));
   return {
@@ -109,8 +117,10 @@ function tensorField(label: string, unit: string, commit: (value: number[][]) =>
     setError: upper.setError,
     set(next) {
       if (next) {
-        diagonal = [next[0]![0]!, next[1]![1]!, next[2]![2]!];
-        mixed = [next[0]![1]!, next[0]![2]!, next[1]![2]!];
+        diagonal = next.slice(0, 3);
+        // What is left of a symmetric body's products is rounding.
+        const largest = Math.max(...diagonal.map(Math.abs));
+        mixed = next.slice(3, 6).map((part) => (Math.abs(part) < NOISE * largest ? 0 : part));
       }
       upper.set(next && diagonal);
       lower.set(next && mixed);
@@ -127,6 +137,6 @@ function intervalText(entry: AttributeEntry): string {
 
 function valueText(value: AttributeValue): string {
   if (typeof value === "number") return numberText(value);
-  if (Array.isArray(value)) return value.flat().map(numberText).join(", ");
+  if (Array.isArray(value)) return value.map(numberText).join(", ");
   return String(value);
 }

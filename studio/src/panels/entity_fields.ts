@@ -183,7 +183,7 @@ function modelCard(studio: Studio, key: string): HTMLElement {
     lines.push([model.author && `by ${model.author}`, model.licence].filter(Boolean).join(", "));
     card.append(
       element("img", { src: studio.models.thumbnail(model), alt: "" }),
-      element("div", {}, ...lines.filter(Boolean).map((line) => element("p", { class: "note" }, line))),
+      element("div", {}, ...lines.filter(Boolean).map((line) => element("p", { class: "note", title: line }, line))),
     );
   }, () => card.append(element("p", { class: "note" }, `The model ${key} is not in the database`)));
   return card;

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 import { element } from "./element";
 
-/** A number as people read it: five figures, no noise. */
+/** Beside a number of size one, anything smaller is rounding and shown as 0. */
+export const NOISE = 1e-6;
+
+/** A number as people read it: five figures, no noise; whole numbers in full. */
 export function numberText(value: number): string {
   if (!Number.isFinite(value)) return value > 0 ? "∞" : value < 0 ? "-∞" : "?";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  if (size < 1e-3 || size >= 1e6) return value.toExponential(3).replace(/\.?0+e/, "e").replace("e+", "e");
+  if (Number.isInteger(value) && size < 1e10) return String(value);
+  if (size < 1e-4 || size >= 1e6) return value.toExponential(3).replace(/\.?0+e/, "e").replace("e+", "e");
   return String(Number(value.toPrecision(5)));
 }
 
@@ -35,6 +39,7 @@ export function numberField(label: string, unit: string, commit: (value: number)
     "aria-label": unit && unit !== "1" ? `${label}, ${unit}` : label,
     autocomplete: "off",
     spellcheck: "false",
+    title: `${label}\nArrow keys: a little more or less, with Shift ten times that`,
   });
   const root = element("span", { class: "field" }, input, unit && unit !== "1" ? element("span", { class: "unit" }, unit) : null);
 
@@ -98,7 +103,8 @@ export function vectorField(labels: readonly string[], unit: string, commit: (va
     setError: (reason) => fields[0]!.setError(reason),
     set(next) {
       value = next === null ? null : [...next];
-      fields.forEach((field, at) => field.set(next === null ? null : (next[at] ?? 0)));
+      const least = NOISE * Math.max(0, ...(next ?? []).map(Math.abs));
+      fields.forEach((field, at) => field.set(next === null ? null : Math.abs(next[at] ?? 0) < least ? 0 : next[at]!));
     },
   };
 }
