@@ -157,6 +157,8 @@ export class Studio {
         break;
       case "statistics":
         this.statistics = event;
+        // While everything sleeps no frames come, but time goes on.
+        if (this.playing) [this.simulation.time, this.simulation.step] = [event.time, event.step];
         this.statisticsChanged.emit();
         break;
       case "message":

@@ -43,7 +43,7 @@ export class Overlays {
   private update(): void {
     const { studio } = this;
     const open = studio.connection.isOpen;
-    show(this.legend, studio.preferences.get("tint"));
+    show(this.legend, studio.preferences.get("tint") && studio.simulation.state !== "stopped");
     show(this.loading, studio.entities.loading > 0 || (!studio.ready && !this.everConnected));
     this.loading.textContent = studio.ready ? `Loading ${studio.entities.loading} models…` : "Connecting…";
     show(this.advice, studio.ready && open && studio.document.entities.size === 0);

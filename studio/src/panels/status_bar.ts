@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 import type { Studio } from "../studio";
-import { element, setText } from "./element";
+import { element, setText, show } from "./element";
 
 /** The line at the bottom: what the simulation does and costs, and whether the server is there. */
 export class StatusBar {
@@ -20,14 +20,15 @@ export class StatusBar {
       "footer",
       { class: "status-bar", "aria-label": "Statistics", "data-testid": "status-bar" },
       cell("state", "State of the simulation", "wide"),
+      cell("hint", "The simulation begins from the scene as it is now"),
       cell("time", "Simulated time"),
       cell("bodies", "Bodies in the world"),
       cell("active", "Active bodies", "active"),
       cell("wants", "Bodies that want to sleep", "wants"),
       cell("asleep", "Bodies asleep", "asleep"),
       cell("contacts", "Contacts"),
-      cell("step", "Time the computer takes for a step"),
-      cell("rate", "Simulated seconds a second"),
+      cell("step", "Time the computer needs for one step of the simulation"),
+      cell("rate", "Simulated seconds in one second of yours"),
       cell("fps", "Pictures drawn in the last second; drawn only when something changes"),
       element("span", { class: "spacer" }),
       this.connection,
@@ -46,13 +47,17 @@ export class StatusBar {
   private update(): void {
     const { statistics, simulation, connection, version } = this.studio;
     this.put("state", { stopped: "Stopped", playing: "Playing", paused: "Paused" }[simulation.state]);
-    this.put("time", `${(simulation.state === "stopped" ? 0 : Math.max(simulation.time, 0)).toFixed(2)} s`);
+    this.put("time", `${Math.max(simulation.time, 0).toFixed(2)} s`);
+    this.put("hint", this.studio.ready ? "Press Space to play" : "");
+    // Before the first step there is nothing to measure.
+    const begun = simulation.state !== "stopped";
+    for (const [name, cell] of this.cells) if (name !== "state" && name !== "fps") show(cell, begun === (name !== "hint"));
     this.put("bodies", `${statistics?.bodies ?? "–"} bodies`);
     this.put("active", `${statistics?.active ?? "–"} active`);
-    this.put("wants", `${statistics?.wants_to_sleep ?? "–"} want sleep`);
+    this.put("wants", `${statistics?.wants_to_sleep ?? "–"} want to sleep`);
     this.put("asleep", `${statistics?.asleep ?? "–"} asleep`);
     this.put("contacts", `${statistics?.contacts ?? "–"} contacts`);
-    this.put("step", statistics ? `${statistics.step_ms.toFixed(2)} ms/step` : "– ms/step");
+    this.put("step", statistics ? `${statistics.step_ms.toFixed(2)} ms a step` : "– ms a step");
     this.put("rate", statistics ? `${statistics.real_time_factor.toFixed(2)}× real time` : "–× real time");
     this.connection.dataset["state"] = connection.isOpen ? "open" : "closed";
     setText(this.connection, connection.isOpen ? `Connected${version ? ` · Embody ${version}` : ""}` : "Not connected");
@@ -61,7 +66,7 @@ export class StatusBar {
   private countFrames(): void {
     const { frames } = this.studio.view;
     const now = performance.now();
-    this.put("fps", `${Math.round(((frames - this.lastFrames) * 1000) / (now - this.lastLook))} fps`);
+    this.put("fps", frames === this.lastFrames ? "picture at rest" : `${Math.round(((frames - this.lastFrames) * 1000) / (now - this.lastLook))} fps`);
     this.lastFrames = frames;
     this.lastLook = now;
     if (this.studio.playing) this.put("time", `${this.studio.simulation.time.toFixed(2)} s`);
