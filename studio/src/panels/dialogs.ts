@@ -84,7 +84,8 @@ export async function openScenes(studio: Studio): Promise<void> {
           "button",
           { class: "scene-item", "data-testid": `scene-${scene.name}`, onclick: () => void load({ name: scene.name }) },
           element("span", {}, scene.title || scene.name),
-          element("span", { class: "note" }, scene.title && scene.title !== scene.name ? scene.name : "", dateText(scene.modified)),
+          // When an example came with the program tells nobody anything.
+          kind === "demo" ? null : element("span", { class: "note" }, [nameBeside(scene), dateText(scene.modified)].filter(Boolean).join(" · ")),
         ),
       ),
     );
@@ -94,15 +95,20 @@ export async function openScenes(studio: Studio): Promise<void> {
   body.replaceChildren(
     list("Saved", "saved", "Nothing saved yet. Ctrl+S saves."),
     list("Examples", "demo", "No examples found."),
-    ...(recovered ? [list("Kept by itself, not saved", "recovery", "")] : []),
+    ...(recovered ? [list("Recovered (kept automatically, never saved)", "recovery", "")] : []),
   );
   body.querySelector<HTMLElement>("button")?.focus();
+}
+
+/** The name a scene is saved under, where its title does not say it. */
+function nameBeside({ kind, name, title }: SceneListing): string {
+  return kind === "saved" && title && title !== name ? name : "";
 }
 
 function dateText(modified: SceneListing["modified"]): string {
   if (!modified) return "";
   const date = new Date(modified);
-  return Number.isNaN(date.getTime()) ? "" : ` ${date.toLocaleString()}`;
+  return Number.isNaN(date.getTime()) ? "" : date.toLocaleString([], { dateStyle: "medium", timeStyle: "short" });
 }
 
 export function saveAs(studio: Studio): void {

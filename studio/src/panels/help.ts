@@ -8,12 +8,12 @@ import { element } from "./element";
 const MOUSE: readonly (readonly [string, string])[] = [
   ["Left drag on empty space", "turn the view"],
   ["Middle drag, or Shift + left drag", "move the view"],
-  ["Wheel", "nearer, farther"],
+  ["Wheel", "go nearer or farther"],
   ["Right drag, with W A S D Q E", "look around and fly"],
   ["Click", "select; Shift or Ctrl adds"],
   ["Ctrl + drag", "select what is in the rectangle"],
   ["Left drag on a body while playing", "pull it with a spring"],
-  ["Left drag with the move tool", "slide it along its level"],
+  ["Left drag on a body with the move tool", "slide it sideways at its height"],
 ];
 
 /** Mouse and keys; a key can be changed by clicking on it. */
@@ -38,7 +38,7 @@ export function openHelp(studio: Studio, actions: readonly UserAction[]): void {
       "div",
       { class: "dialog-buttons" },
       element("span", { class: "note" }, "Click on a key to change it."),
-      element("button", { onclick: () => (studio.preferences.set("keys", {}), dialog.close()) }, "All keys as they came"),
+      element("button", { onclick: () => (studio.preferences.set("keys", {}), dialog.close()) }, "Restore all keys"),
     ),
   );
 }

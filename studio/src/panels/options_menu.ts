@@ -31,8 +31,8 @@ export function openOptions(studio: Studio, actions: readonly UserAction[]): voi
       flip("view.theme"),
       flip("view.quality"),
       flip("tool.snap"),
-      row("Step of snapping when moving", step.root),
-      row("Step of snapping when rotating", angle.root),
+      row("Snapping step when moving", step.root),
+      row("Snapping step when rotating", angle.root),
     ),
   );
 }

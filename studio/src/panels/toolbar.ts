@@ -106,7 +106,7 @@ export class Toolbar {
     for (const { trigger } of this.studio.document.actions.values()) if (trigger?.button) names.add(trigger.button);
     this.sceneButtons.replaceChildren(
       ...[...names].map((button) =>
-        element("button", { class: "scene-button", "data-testid": `scene-button-${button}`, onclick: () => void this.trigger(button) }, button),
+        element("button", { class: "scene-button", title: `A button of this scene: starts “${button}”`, "data-testid": `scene-button-${button}`, onclick: () => void this.trigger(button) }, button),
       ),
     );
     show(this.sceneButtons, names.size > 0);

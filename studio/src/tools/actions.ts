@@ -119,7 +119,7 @@ function toolActions(studio: Studio, gizmo: Gizmo): UserAction[] {
     },
     {
       id: "tool.snap",
-      label: "Snap (Shift while dragging turns it over)",
+      label: "Snap to steps (hold Shift for the opposite)",
       group: "Tools",
       keys: [],
       icon: "snap",
@@ -143,7 +143,7 @@ function simulationActions(studio: Studio): UserAction[] {
     },
     { id: "simulation.step", label: "One step", group: "Simulation", keys: ["."], icon: "step", run: () => void studio.command("simulation.step", { count: 1 }) },
     { id: "simulation.reset", label: "Back to the start", group: "Simulation", keys: ["Backspace"], icon: "reset", possible: begun, run: () => void studio.command("simulation.reset", {}) },
-    { id: "simulation.keep", label: "Keep these poses (settle)", group: "Simulation", keys: ["K"], icon: "keep", possible: begun, run: () => void keepPoses(studio) },
+    { id: "simulation.keep", label: "Settle: keep these poses as the scene", group: "Simulation", keys: ["K"], icon: "keep", possible: begun, run: () => void keepPoses(studio) },
   ];
 }
 
