@@ -45,6 +45,7 @@ function start(): void {
   const gizmo = new Gizmo(studio);
   const pointer = new Pointer(studio, gizmo);
   const browser = new ModelBrowser(studio, new DragIn(studio));
+  const left = leftPanel(browser, new Hierarchy(studio));
 
   const actions: UserAction[] = makeActions(studio, gizmo, {
     scenes: () => void openScenes(studio),
@@ -52,7 +53,10 @@ function start(): void {
     newScene: () => void newScene(studio),
     help: () => openHelp(studio, actions),
     palette: () => openPalette(studio, actions),
-    search: () => browser.focusSearch(),
+    search: () => {
+      left.showModels();
+      browser.focusSearch();
+    },
   });
   actions.push({ id: "view.options", label: "View options…", group: "View", keys: [], icon: "options", run: () => openOptions(studio, actions) });
 
@@ -65,7 +69,7 @@ function start(): void {
   show(attributes.root, false);
   app.append(
     toolbar.root,
-    leftPanel(browser, new Hierarchy(studio)),
+    left.root,
     element("aside", { class: "panel right", "aria-label": "Properties", "data-testid": "properties" }, new SceneFields(studio).root, entityFields.root, attributes.root),
     new StatusBar(studio).root,
   );
@@ -84,7 +88,7 @@ function start(): void {
 }
 
 /** Models to choose from, and what is in the scene, behind two tabs. */
-function leftPanel(browser: ModelBrowser, hierarchy: Hierarchy): HTMLElement {
+function leftPanel(browser: ModelBrowser, hierarchy: Hierarchy): { root: HTMLElement; showModels(): void } {
   const pages = [
     { name: "Models", root: browser.root },
     { name: "In the scene", root: hierarchy.root },
@@ -97,10 +101,11 @@ function leftPanel(browser: ModelBrowser, hierarchy: Hierarchy): HTMLElement {
   };
   const tabs = pages.map(({ name, root }) => element("button", { role: "tab", "data-testid": `tab-${name}`, onclick: () => choose(root) }, name));
   choose(browser.root);
-  return element(
+  const root = element(
     "aside",
     { class: "panel left", "aria-label": "Models and entities" },
     element("div", { class: "tabs", role: "tablist" }, ...tabs),
-    ...pages.map(({ root }) => root),
+    ...pages.map((page) => page.root),
   );
+  return { root, showModels: () => choose(browser.root) };
 }

@@ -16,9 +16,8 @@ export class Overlays {
   private readonly advice = element(
     "div",
     { class: "advice", "data-testid": "empty-scene" },
-    element("strong", {}, "An empty scene"),
-    element("p", {}, "Drag a model or a primitive from the left, drop a model file here, or open a scene with Ctrl+O."),
-    element("p", {}, "Begin with a plane as the floor."),
+    element("strong", {}, "Nothing here yet"),
+    element("p", {}, "Drag a model or a primitive in from the left, drop a model file here, or open a scene with Ctrl+O."),
   );
   private readonly lost = element(
     "div",
@@ -46,7 +45,10 @@ export class Overlays {
     show(this.legend, studio.preferences.get("tint") && studio.simulation.state !== "stopped");
     show(this.loading, studio.entities.loading > 0 || (!studio.ready && !this.everConnected));
     this.loading.textContent = studio.ready ? `Loading ${studio.entities.loading} models…` : "Connecting…";
-    show(this.advice, studio.ready && open && studio.document.entities.size === 0);
+    // A new scene has a floor and nothing else.
+    const { entities } = studio.document;
+    const bare = entities.size <= 1 && [...entities.values()].every(({ shape, attributes }) => shape?.type === "plane" || attributes?.["kind"] === "static");
+    show(this.advice, studio.ready && open && bare && studio.simulation.state === "stopped");
     show(this.lost, studio.ready && !open);
     document.body.classList.toggle("disconnected", studio.ready && !open);
   }

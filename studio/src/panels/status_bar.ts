@@ -29,7 +29,7 @@ export class StatusBar {
       cell("contacts", "Contacts"),
       cell("step", "Time the computer needs for one step of the simulation"),
       cell("rate", "Simulated seconds in one second of yours"),
-      cell("fps", "Pictures drawn in the last second; drawn only when something changes"),
+      cell("fps", "Pictures drawn in the last second; idle: nothing changes, so nothing is drawn"),
       element("span", { class: "spacer" }),
       this.connection,
     );
@@ -66,7 +66,7 @@ export class StatusBar {
   private countFrames(): void {
     const { frames } = this.studio.view;
     const now = performance.now();
-    this.put("fps", frames === this.lastFrames ? "picture at rest" : `${Math.round(((frames - this.lastFrames) * 1000) / (now - this.lastLook))} fps`);
+    this.put("fps", frames === this.lastFrames ? "idle" : `${Math.round(((frames - this.lastFrames) * 1000) / (now - this.lastLook))} fps`);
     this.lastFrames = frames;
     this.lastLook = now;
     if (this.studio.playing) this.put("time", `${this.studio.simulation.time.toFixed(2)} s`);

@@ -12,7 +12,7 @@ const HIGHEST = Math.PI - 0.02;
 const LOWEST = 0.02;
 /** Upright angle of view in degrees, while the picture is at least this many times as wide as high. */
 const VIEW_ANGLE = 45;
-const USUAL_ASPECT = 1.5;
+const USUAL_ASPECT = 1.4;
 
 /** The camera: it looks at a target from a distance; orbits, pans, zooms and flies. The caller decides which gesture means what. */
 export class CameraRig {
