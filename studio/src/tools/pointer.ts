@@ -5,6 +5,7 @@ import type { Studio } from "../studio";
 import type { Hit } from "../view/view";
 import type { Gizmo } from "./gizmo";
 import { PoseDrag } from "./poses";
+import { SpringLine } from "./spring_line";
 
 /** A press that moves less than this is a click, px. */
 const CLICK_REACH = 4;
@@ -27,11 +28,13 @@ export class Pointer {
   private lastY = 0;
   private moved = false;
   private readonly held = new Set<string>();
+  private readonly spring: SpringLine;
 
   constructor(
     private readonly studio: Studio,
     private readonly gizmo: Gizmo,
   ) {
+    this.spring = new SpringLine(studio);
     const canvas = studio.view.canvas;
     canvas.addEventListener("pointerdown", (event) => this.press(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
@@ -99,6 +102,7 @@ export class Pointer {
     const plane = new Plane().setFromNormalAndCoplanarPoint(facing, hit.point);
     const point = hit.point.toArray();
     this.gesture = { kind: "grab", plane, sending: false, newer: null };
+    this.spring.begin(hit.index, hit.point);
     void this.studio.command("simulation.grab", { index: hit.index, point, target: point });
   }
 
@@ -106,6 +110,7 @@ export class Pointer {
     const gesture = this.gesture;
     if (gesture?.kind !== "grab") return;
     gesture.newer = this.studio.view.meet(event.clientX, event.clientY, gesture.plane);
+    if (gesture.newer) this.spring.pullTo(gesture.newer);
     if (!gesture.sending) void this.sendPull(gesture);
   }
 
@@ -146,7 +151,10 @@ export class Pointer {
     this.gesture = null;
     if (!gesture) return;
     if (gesture.kind === "press") this.click(gesture.hit, event);
-    else if (gesture.kind === "grab") void this.studio.command("simulation.release", {});
+    else if (gesture.kind === "grab") {
+      this.spring.end();
+      void this.studio.command("simulation.release", {});
+    }
     else if (gesture.kind === "slide") void gesture.drag.end();
     else if (gesture.kind === "box") this.chooseInBox(gesture.frame);
     else if (gesture.kind === "look") this.stopFlight();
