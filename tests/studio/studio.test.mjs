@@ -132,6 +132,10 @@ describe("the Studio on the real catalogue", { timeout: 900000 }, () => {
     assert.ok(Number(automatic) > 0.2 && Number(automatic) < 100, `${automatic} kg`);
     assert.match(await row.innerText(), /kg/);
     assert.ok((await row.locator(".source").innerText()).length > 10, "says where the value is from");
+    for (const part of [0, 1, 2]) {
+      const moment = await page.locator("[data-testid=attribute-inertia] input").nth(part).inputValue();
+      assert.ok(Number(moment) > 0, `a chair resists turning about each axis: ${moment} kg m²`);
+    }
 
     await field("mass").fill("-1");
     await field("mass").press("Enter");
