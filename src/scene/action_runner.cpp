@@ -3,6 +3,7 @@
 #include "scene/action_runner.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace embody::scene {
 
@@ -94,9 +95,11 @@ void ActionRunner::run_timed(const Action& action, const AtTime& at, double time
     Progress& progress = progress_[action.id];
     if (progress.next_time > time + clock_error || (!at.repeat_every && progress.has_fired)) return;
     run(action, 0, 0);
-    // At most once a step, however short the period.
-    if (at.repeat_every)
-        while (progress.next_time <= time + clock_error) progress.next_time += std::max(*at.repeat_every, 1e-5);
+    // At most once a step, however short the period and however long ago it was due.
+    if (!at.repeat_every) return;
+    const double period = std::max(*at.repeat_every, 1e-5);
+    const double missed = std::floor((time + clock_error - progress.next_time) / period);
+    progress.next_time += (missed + 1) * period;
 }
 
 void ActionRunner::before_step(double time) {

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "scene/json/nesting.h"
 #include "scene/json/print.h"
 #include "scene/whole_file.h"
 
@@ -15,7 +16,6 @@ using nlohmann::json;
 namespace {
 
 constexpr std::uintmax_t largest_file = std::uintmax_t{512} << 20;
-constexpr int deepest_nesting = 64;
 
 std::string line_and_column(const std::string& text, std::size_t byte) {
     const std::size_t end = std::min(byte, text.size());
@@ -25,25 +25,6 @@ std::string line_and_column(const std::string& text, std::size_t byte) {
     const std::size_t newline = end == 0 ? std::string::npos : text.rfind('\n', end - 1);
     const std::size_t column = newline == std::string::npos ? end : end - newline - 1;
     return "line " + std::to_string(line) + ", column " + std::to_string(std::max<std::size_t>(column, 1));
-}
-
-// A scene nests a few levels deep. A file of a million brackets would exhaust the stack of whoever walks it.
-bool nests_too_deep(const std::string& text) {
-    int depth = 0;
-    bool quoted = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (quoted) {
-            if (c == '\\') ++i;
-            if (c == '"') quoted = false;
-            continue;
-        }
-        if (c == '"') quoted = true;
-        if (c == '[' || c == '{') ++depth;
-        if (c == ']' || c == '}') --depth;
-        if (depth > deepest_nesting) return true;
-    }
-    return false;
 }
 
 Result<json> parse(const std::string& text, const std::string& name) {

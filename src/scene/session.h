@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -19,6 +20,7 @@ namespace embody::scene {
 struct Events {
     std::vector<nlohmann::json> messages;  ///< in order, for every client
     bool all_poses = false;                ///< send every entity's pose again
+    std::size_t actions = 0;               ///< carried out; of very many the later ones have no message
 };
 
 /// One entity's state for a state frame.
@@ -29,8 +31,9 @@ struct EntityState {
 };
 
 struct SessionOptions {
-    std::filesystem::path saved_scenes;  ///< folder of the user's scenes; autosaves go to its sub-folder "autosave"
-    std::filesystem::path demo_scenes;   ///< folder of the scenes that come with Embody
+    std::filesystem::path saved_scenes;      ///< folder of the user's scenes; autosaves go to its sub-folder "autosave"
+    std::filesystem::path demo_scenes;       ///< folder of the scenes that come with Embody
+    std::function<bool()> stop_wanted = {};  ///< asked between the steps of simulation.step; true ends it early
 };
 
 /// One open scene: the document with undo, its running simulation, and every command of docs/protocol.md that is not

@@ -13,6 +13,8 @@ using nlohmann::json;
 namespace {
 
 constexpr std::size_t timed_steps = 120;
+/// Of one command or step: a hundred thousand steps with actions on every contact would fill the memory.
+constexpr std::size_t most_told_actions = 1000;
 
 // What to say of each limit of a step.
 struct LimitText {
@@ -104,12 +106,14 @@ void SessionState::tell_step() {
         if (entity) tell({{"event", "spawned"}, {"entity", entity_to_json(*entity)}});
     }
     for (const EntityIndex index : simulation->despawned()) tell({{"event", "despawned"}, {"index", index}});
-    for (const ActionFired& fired : simulation->fired())
+    for (const ActionFired& fired : simulation->fired()) {
+        if (++events.actions > most_told_actions) continue;
         tell({{"event", "action"},
               {"name", fired.name},
               {"id", fired.id},
               {"sender", fired.sender},
               {"receiver", fired.receiver}});
+    }
 
     // The same complaint once a run.
     for (const Error& problem : simulation->problems())

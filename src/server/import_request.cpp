@@ -87,7 +87,12 @@ void ImportRequests::work() {
             job = std::move(jobs_.front());
             jobs_.pop_front();
         }
-        job.respond(import(job.request));
+        // What the libraries throw (memory, files) fails this import and nothing else.
+        try {
+            job.respond(import(job.request));
+        } catch (const std::exception& thrown) {
+            job.respond(error_response(500, "import", std::string("failed: ") + thrown.what()));
+        }
     }
 }
 
@@ -106,7 +111,12 @@ HttpResponse ImportRequests::import(const HttpRequest& request) const {
         return error_response(507, name, "cannot be kept for the import", "is the disk full?");
     auto catalog = catalog::Catalog::open(database_, taxonomy_folder_);
     if (!catalog) return error_response(500, "database", catalog.error().message());
-    auto report = (*catalog)->import({file}, {});
+    catalog::ImportOptions options;
+    options.progress = [this](const catalog::ImportProgress&) {
+        const std::lock_guard lock(mutex_);
+        return !stop_;
+    };
+    auto report = (*catalog)->import({file}, options);
     if (!report) return error_response(422, name, report.error().why, report.error().remedy);
     HttpResponse response;
     response.body = report_json(*report).dump(-1, ' ', false, json::error_handler_t::replace);

@@ -17,7 +17,7 @@ namespace embody::server {
 class ImportRequests {
 public:
     ImportRequests(std::filesystem::path database, std::filesystem::path taxonomy_folder);
-    /// Finishes the import in hand; the waiting ones are answered with an error.
+    /// Ends the import after the model in hand; the waiting ones are answered with an error.
     ~ImportRequests();
 
     static bool is_import(const HttpRequest& request);
@@ -33,7 +33,7 @@ private:
     [[nodiscard]] HttpResponse import(const HttpRequest& request) const;
 
     std::filesystem::path database_, taxonomy_folder_;
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<Job> jobs_;
     bool stop_ = false;

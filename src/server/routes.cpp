@@ -56,8 +56,11 @@ ModelPath split_model_path(const std::string& path) {
 }  // namespace
 
 Routes::Routes(std::unique_ptr<catalog::Catalog> catalog, fs::path studio_folder,
-               std::function<std::string()> scene_json)
-    : catalog_(std::move(catalog)), studio_folder_(std::move(studio_folder)), scene_json_(std::move(scene_json)) {}
+               std::function<std::string()> scene_json, std::function<std::string()> scene_title)
+    : catalog_(std::move(catalog)),
+      studio_folder_(std::move(studio_folder)),
+      scene_json_(std::move(scene_json)),
+      scene_title_(std::move(scene_title)) {}
 
 HttpResponse Routes::answer(const HttpRequest& request) const {
     if (request.method != "GET" && request.method != "HEAD")
@@ -66,9 +69,11 @@ HttpResponse Routes::answer(const HttpRequest& request) const {
     if (path.empty() || path.front() != '/') return error_response(400, request.target, "is not a path");
     if (path == "/api/health") {
         HttpResponse response;
-        const nlohmann::json body = {
-            {"name", "embody"}, {"version", version_text}, {"models", catalog_->model_count()}};
-        response.body = body.dump();
+        const nlohmann::json body = {{"name", "embody"},
+                                     {"version", version_text},
+                                     {"scene", scene_title_()},
+                                     {"models", catalog_->model_count()}};
+        response.body = body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
         return response;
     }
     if (path == "/scene.json") {

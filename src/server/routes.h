@@ -14,9 +14,9 @@ namespace embody::server {
 /// Answers of the HTTP face (docs/protocol.md) but imports, which take long and have a thread of their own.
 class Routes {
 public:
-    /// `studio_folder`: the built front-end. `scene_json`: the open document.
+    /// `studio_folder`: the built front-end. `scene_json`, `scene_title`: of the open document.
     Routes(std::unique_ptr<catalog::Catalog> catalog, std::filesystem::path studio_folder,
-           std::function<std::string()> scene_json);
+           std::function<std::string()> scene_json, std::function<std::string()> scene_title);
 
     /// Never fails: what is wrong becomes a response with its status.
     HttpResponse answer(const HttpRequest& request) const;
@@ -27,7 +27,7 @@ private:
 
     std::unique_ptr<catalog::Catalog> catalog_;
     std::filesystem::path studio_folder_;
-    std::function<std::string()> scene_json_;
+    std::function<std::string()> scene_json_, scene_title_;
 };
 
 }  // namespace embody::server

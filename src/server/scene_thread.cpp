@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "catalog/catalog.h"
+#include "scene/json/nesting.h"
 #include "scene/scene_file.h"
 #include "server/state_frame.h"
 
@@ -47,24 +48,29 @@ struct SceneThread::State {
     std::unique_ptr<catalog::Catalog> catalog;
     std::unique_ptr<scene::Session> session;
 
-    mutable std::mutex mutex;  ///< guards messages, stop, board
+    mutable std::mutex mutex;  ///< guards messages, stop, board, title
     std::condition_variable changed;
     std::deque<Message> messages;
     bool stop = false;
     StateBoard board;
+    std::string title;
 
     std::thread thread;
     std::vector<scene::EntityState> scratch;
     Clock::time_point statistics_due{}, autosave_due{}, statistics_since{};
     double statistics_time = 0;  ///< simulated time at statistics_since
 
+    Result<void> open_safely();
     Result<void> open();
     void run();
     void handle(const Message& message);
+    json answer(const std::string& text);
     json execute(const json& request);
     void tell_events();
     void publish(bool all_changed);
     void tell_statistics(Clock::time_point now);
+    void broadcast_message(const char* level, const std::string& text);
+    void autosave();
     void play_until(Clock::time_point& due);
 };
 
@@ -84,12 +90,16 @@ Result<std::unique_ptr<SceneThread>> SceneThread::start(const SceneThreadOptions
     std::unique_ptr<SceneThread> made(new SceneThread);
     State& state = *made->state_;
     state.options = options;
+    state.options.session.stop_wanted = [&state] {
+        const std::lock_guard lock(state.mutex);
+        return state.stop;
+    };
     state.listener = std::move(listener);
     // The catalogue and the session are opened on the thread that uses them; its first result is whether that worked.
     std::promise<Result<void>> opened;
     std::future<Result<void>> result = opened.get_future();
     state.thread = std::thread([&state, opened = std::move(opened)]() mutable {
-        Result<void> opening = state.open();
+        Result<void> opening = state.open_safely();
         const bool ok = opening.ok();
         opened.set_value(std::move(opening));
         if (ok) state.run();
@@ -111,6 +121,11 @@ SceneThread::Frame SceneThread::frame_since(std::uint64_t seen) const {
     return {state_->board.frame_since(seen), state_->board.version()};
 }
 
+std::string SceneThread::scene_title() const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->title;
+}
+
 std::string SceneThread::scene_json() const {
     auto wanted = std::make_shared<std::promise<std::string>>();
     std::future<std::string> scene = wanted->get_future();
@@ -121,6 +136,14 @@ std::string SceneThread::scene_json() const {
     }
     state_->changed.notify_all();
     return scene.get();
+}
+
+Result<void> SceneThread::State::open_safely() {
+    try {
+        return open();
+    } catch (const std::exception& thrown) {
+        return Error{options.open_scene, std::string("cannot be opened: ") + thrown.what(), ""};
+    }
 }
 
 Result<void> SceneThread::State::open() {
@@ -167,20 +190,36 @@ void SceneThread::State::run() {
             due = Clock::now();
         if (Clock::now() >= autosave_due) {
             autosave_due = Clock::now() + autosave_period;
-            if (auto saved = session->autosave(); !saved)
-                listener.broadcast(
-                    dump({{"event", "message"}, {"level", "warning"}, {"text", saved.error().message()}}));
+            autosave();
         }
     }
-    // Nothing is lost when the server ends; there is nobody left to tell if this fails.
-    (void)session->autosave();
+    // Nothing is lost when the server ends.
+    autosave();
+}
+
+void SceneThread::State::autosave() {
+    try {
+        if (const auto saved = session->autosave(); !saved) broadcast_message("warning", saved.error().message());
+    } catch (const std::exception& thrown) {
+        broadcast_message("warning", std::string("The scene could not be kept: ") + thrown.what());
+    }
+}
+
+void SceneThread::State::broadcast_message(const char* level, const std::string& text) {
+    listener.broadcast(dump({{"event", "message"}, {"level", level}, {"text", text}}));
 }
 
 void SceneThread::State::play_until(Clock::time_point& due) {
     const Clock::time_point now = Clock::now();
     if (now < due) return;
     const auto step = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(session->time_step()));
-    session->step();
+    try {
+        session->step();
+    } catch (const std::exception& thrown) {
+        // The document is as it was: it can still be edited and saved.
+        (void)session->execute("simulation.pause", {});
+        broadcast_message("error", std::string("The simulation could not go on: ") + thrown.what());
+    }
     due += step;
     const auto most_behind =
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(most_seconds_behind));
@@ -207,18 +246,26 @@ void SceneThread::State::handle(const Message& message) {
         message.scene->set_value(document.dump(2, ' ', false, json::error_handler_t::replace));
         return;
     }
-    json request = json::parse(message.text, nullptr, false);
-    json reply;
     const bool was_playing = session->playing();
-    if (request.is_discarded() || !request.is_object()) {
-        reply = failed(nullptr, {"message", "is not a JSON object", R"(send {"id": 1, "command": "hello"})"});
-    } else {
-        reply = execute(request);
-    }
+    const json reply = answer(message.text);
     // Events first, so that a client that gets its reply has already heard what the command did.
     tell_events();
     listener.reply(message.client, dump(reply));
     if (session->playing() != was_playing) tell_statistics(Clock::now());
+}
+
+json SceneThread::State::answer(const std::string& text) {
+    if (scene::nests_too_deep(text))
+        return failed(nullptr, {"message", "nests lists and objects more than 64 deep", ""});
+    // What the libraries throw (memory, files) fails this command and nothing else.
+    try {
+        const json request = json::parse(text, nullptr, false);
+        if (request.is_discarded() || !request.is_object())
+            return failed(nullptr, {"message", "is not a JSON object", R"(send {"id": 1, "command": "hello"})"});
+        return execute(request);
+    } catch (const std::exception& thrown) {
+        return failed(nullptr, {"message", std::string("could not be carried out: ") + thrown.what(), ""});
+    }
 }
 
 json SceneThread::State::execute(const json& request) {
@@ -252,6 +299,7 @@ void SceneThread::State::publish(bool all_changed) {
     {
         const std::lock_guard lock(mutex);
         board.publish(scratch, session->simulated_time(), session->simulated_steps(), all_changed);
+        title = session->document().title;
     }
     listener.states_changed();
 }

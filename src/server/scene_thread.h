@@ -47,6 +47,9 @@ public:
     };
     [[nodiscard]] Frame frame_since(std::uint64_t seen) const;
 
+    /// The open document's title; does not wait for the command in hand.
+    [[nodiscard]] std::string scene_title() const;
+
     /// The open document as a scene file.
     [[nodiscard]] std::string scene_json() const;
 

@@ -7,10 +7,11 @@
 #include <atomic>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <boost/asio/strand.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <cstdio>
 #include <deque>
 #include <map>
 #include <optional>
@@ -35,6 +36,11 @@ constexpr std::uint64_t largest_upload = std::uint64_t{256} << 20;
 constexpr std::uint64_t largest_other_body = 64 << 10;
 constexpr std::size_t largest_command = std::size_t{64} << 20;   ///< a whole scene may come as one
 constexpr std::size_t most_unsent_text = std::size_t{64} << 20;  ///< a client that reads nothing is let go
+/// Of one client: commands that wait for their reply, and replies that it has not read. Its next commands stay in the
+/// socket until there is less, so that a flood fills no memory.
+constexpr std::size_t most_waiting_commands = 256;
+constexpr std::size_t most_waiting_bytes = largest_command;
+constexpr std::size_t most_unread_replies = std::size_t{1} << 20;
 
 class WebSocketClient;
 
@@ -93,6 +99,12 @@ public:
         write();
     }
 
+    void send_reply(std::string text) {
+        if (--waiting_commands_ == 0) waiting_bytes_ = 0;
+        send_text(std::move(text));
+        read_on();
+    }
+
     void close() {
         error_code ignored;
         beast::get_lowest_layer(stream_).socket().close(ignored);
@@ -100,15 +112,27 @@ public:
     }
 
 private:
+    [[nodiscard]] bool has_enough_waiting() const {
+        return waiting_commands_ >= most_waiting_commands || waiting_bytes_ >= most_waiting_bytes ||
+               unsent_ >= most_unread_replies;
+    }
+    void read_on() {
+        if (read_pauses_ && !has_enough_waiting()) read();
+    }
+
     void read() {
-        stream_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
+        read_pauses_ = false;
+        stream_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t size) {
             if (error) {
                 self->shared_.clients.erase(self->id_);
                 return;
             }
             self->shared_.scene->post(self->id_, beast::buffers_to_string(self->buffer_.data()));
             self->buffer_.consume(self->buffer_.size());
-            self->read();
+            ++self->waiting_commands_;
+            self->waiting_bytes_ += size;
+            self->read_pauses_ = self->has_enough_waiting();
+            if (!self->read_pauses_) self->read();
         });
     }
 
@@ -138,6 +162,7 @@ private:
                 return;
             }
             self->write();
+            self->read_on();
         });
     }
 
@@ -147,6 +172,8 @@ private:
     beast::flat_buffer buffer_;
     std::deque<std::string> texts_;
     std::size_t unsent_ = 0;
+    std::size_t waiting_commands_ = 0, waiting_bytes_ = 0;
+    bool read_pauses_ = false;
     std::string outgoing_;
     bool writing_ = false;
     bool frame_wanted_ = false;
@@ -163,7 +190,7 @@ public:
     void read_header() {
         parser_.emplace();
         // The whole header first: how large a body may be depends on what is asked.
-        parser_->body_limit(largest_upload);
+        parser_->body_limit(boost::none);
         stream_.expires_after(std::chrono::seconds(60));
         http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
             if (error) return self->close();
@@ -246,18 +273,28 @@ private:
         response_->content_length(answer.body.size());
         if (!head) response_->body() = std::move(answer.body);
         stream_.expires_after(std::chrono::minutes(2));
-        serializer_.emplace(*response_);
-        serializer_->split(false);
         http::async_write(stream_, *response_, [self = shared_from_this(), keep_alive](error_code error, std::size_t) {
             if (error || !keep_alive) return self->close();
             self->read_header();
         });
     }
 
+    // What the client still sends is read for a moment: else the system would take back the answer that refuses it.
     void close() {
         error_code ignored;
         stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
-        stream_.close();
+        stream_.expires_after(std::chrono::seconds(5));
+        read_rest();
+    }
+
+    void read_rest() {
+        buffer_.clear();
+        stream_.async_read_some(buffer_.prepare(64 << 10), [self = shared_from_this()](error_code error, std::size_t) {
+            if (error)
+                self->stream_.close();
+            else
+                self->read_rest();
+        });
     }
 
     beast::tcp_stream stream_;
@@ -265,7 +302,6 @@ private:
     beast::flat_buffer buffer_;
     std::optional<http::request_parser<http::string_body>> parser_;
     std::optional<http::response<http::string_body>> response_;
-    std::optional<http::response_serializer<http::string_body>> serializer_;
 };
 
 }  // namespace
@@ -276,6 +312,7 @@ struct Server::State {
     Shared shared;
     std::optional<tcp::acceptor> acceptor;
     std::optional<asio::signal_set> signals;
+    asio::steady_timer accept_again{shared.io};
     std::string address;
     std::atomic<bool> frame_posted{false};
 
@@ -303,8 +340,9 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options) {
     auto scene = SceneThread::start(options.scene, state.listener());
     if (!scene) return scene.error();
     state.shared.scene = std::move(*scene);
-    state.shared.routes = std::make_unique<Routes>(std::move(*catalog), options.studio_folder,
-                                                   [&shared = state.shared] { return shared.scene->scene_json(); });
+    state.shared.routes = std::make_unique<Routes>(
+        std::move(*catalog), options.studio_folder, [&shared = state.shared] { return shared.scene->scene_json(); },
+        [&shared = state.shared] { return shared.scene->scene_title(); });
     state.shared.imports = std::make_unique<ImportRequests>(options.scene.database, options.scene.taxonomy_folder);
     state.accept();
     return server;
@@ -335,12 +373,18 @@ Result<void> Server::State::listen(const ServerOptions& options) {
 void Server::State::accept() {
     acceptor->async_accept([this](error_code error, tcp::socket socket) {
         if (error == asio::error::operation_aborted) return;
-        if (!error) {
-            // Small frames must not wait for more to come.
-            error_code ignored;
-            socket.set_option(tcp::no_delay(true), ignored);
-            std::make_shared<HttpConnection>(std::move(socket), shared)->read_header();
+        if (error) {
+            // No descriptor is left, most likely: the next try is for when a connection has ended.
+            accept_again.expires_after(std::chrono::milliseconds(100));
+            accept_again.async_wait([this](error_code stopped) {
+                if (!stopped) accept();
+            });
+            return;
         }
+        // Small frames must not wait for more to come.
+        error_code ignored;
+        socket.set_option(tcp::no_delay(true), ignored);
+        std::make_shared<HttpConnection>(std::move(socket), shared)->read_header();
         accept();
     });
 }
@@ -353,7 +397,7 @@ SceneThreadListener Server::State::listener() {
     SceneThreadListener listener;
     listener.reply = [this, client](ClientId id, std::string text) {
         asio::post(shared.io, [client, id, text = std::move(text)]() mutable {
-            if (const auto to = client(id)) to->send_text(std::move(text));
+            if (const auto to = client(id)) to->send_reply(std::move(text));
         });
     };
     listener.broadcast = [this](std::string text) {
@@ -399,7 +443,15 @@ void Server::run() {
     state_->signals->async_wait([this](error_code error, int) {
         if (!error) state_->stop();
     });
-    state_->shared.io.run();
+    // What a handler throws (memory, files) ends its own connection and nothing else.
+    for (;;) {
+        try {
+            state_->shared.io.run();
+            return;
+        } catch (const std::exception& thrown) {
+            std::fprintf(stderr, "embody: a connection failed: %s\n", thrown.what());
+        }
+    }
 }
 
 void Server::request_stop() {

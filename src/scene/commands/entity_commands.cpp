@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <string_view>
+#include <unordered_set>
 
 #include "scene/commands/commands.h"
 #include "scene/json/parts.h"
@@ -10,14 +12,13 @@ namespace embody::scene {
 using nlohmann::json;
 
 std::string free_name(const Document& document, const std::string& wanted) {
-    const auto is_taken = [&document](const std::string& name) {
-        return std::any_of(document.entities.begin(), document.entities.end(),
-                           [&name](const Entity& entity) { return entity.name == name; });
-    };
-    if (!is_taken(wanted)) return wanted;
+    // Looked up often: many things of one kind have names that differ by their number only.
+    std::unordered_set<std::string_view> taken;
+    for (const Entity& entity : document.entities) taken.insert(entity.name);
+    if (!taken.contains(wanted)) return wanted;
     for (int number = 2;; ++number) {
         std::string name = wanted + " " + std::to_string(number);
-        if (!is_taken(name)) return name;
+        if (!taken.contains(name)) return name;
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <filesystem>
 
+#include "foundation/version.h"
 #include "scene/commands/commands.h"
 #include "scene/json/parts.h"
 #include "scene/scene_file.h"
@@ -12,7 +13,6 @@ using nlohmann::json;
 
 namespace {
 
-constexpr const char* version = "0.1.0";
 constexpr int frame_version = 1;
 
 // Everything that a client needs to draw the scene and go on from there.
@@ -26,7 +26,7 @@ Result<json> hello(SessionState& state, const json& params) {
         if (!state.document.find(index)) spawned.push_back(entity_to_json(*state.simulation->definition(index)));
     for (const Entity& entity : state.document.entities)
         if (state.simulation->body(entity.index).is_null()) despawned.push_back(entity.index);
-    return json{{"version", version},
+    return json{{"version", version_text},
                 {"scene", document_to_json(state.document)},
                 {"revision", state.revision},
                 {"simulation", state.simulation_json()},

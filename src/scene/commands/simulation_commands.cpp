@@ -43,7 +43,8 @@ Result<json> step(SessionState& state, const json& params) {
     if (!reader.finish()) return *error;
     if (Result<void> ready = leave_stop(state); !ready.ok()) return ready.error();
     state.play_state = PlayState::paused;
-    for (std::uint32_t i = 0; i < count; ++i) state.step();
+    const auto stop_wanted = [&state] { return state.options.stop_wanted && state.options.stop_wanted(); };
+    for (std::uint32_t i = 0; i < count && !stop_wanted(); ++i) state.step();
     state.tell(state.simulation_event());
     return json::object();
 }
