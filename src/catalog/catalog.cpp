@@ -223,6 +223,7 @@ Result<void> Catalog::set_attribute(std::int64_t id, std::string_view name, cons
 }
 
 Result<void> Catalog::reset_attribute(std::int64_t id, std::string_view name) {
+    if (!attributes::describe(name)) return attributes::parse_value(name, "").error();
     auto transaction = database::Transaction::begin(*state_->connection);
     if (!transaction) return transaction.error();
     const auto row = state_->row(id);

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "catalog/catalog.h"
+#include "cli/output.h"
 #include "foundation/version.h"
 
 namespace embody::cli {
@@ -18,6 +19,16 @@ struct Command {
     CLI::App* app = nullptr;
     std::shared_ptr<T> into = std::make_shared<T>();
 };
+
+/// A number in the range; unlike CLI::Range it refuses "nan".
+CLI::Validator between(double low, double high) {
+    const auto check = [low, high](const std::string& word) -> std::string {
+        double number = 0;
+        if (CLI::detail::lexical_cast(word, number) && number >= low && number <= high) return {};
+        return "must be a number from " + short_number(low) + " to " + short_number(high) + ", got " + word;
+    };
+    return {check, "NUMBER"};
+}
 
 class Parser {
 public:
@@ -78,8 +89,8 @@ private:
             ->capture_default_str();
         c.app->add_option("--port", c.into->port,
                           "Port; 0: any free one (default 8420, or a free one where it is taken)");
-        c.app->add_option("--scene", c.into->scene, "Scene to open: a file, or the name of a saved or demo scene")
-            ->capture_default_str();
+        c.app->add_option("--scene", c.into->scene,
+                          "Scene to open: a file, or the name of a saved or demo scene (default furnished_room)");
         c.app->add_flag("--open", c.into->open_browser, "Open the Studio in the desktop's browser");
     }
     void add_import() {
@@ -136,11 +147,11 @@ private:
         c.app->add_option("scene", c.into->scene, "Scene file, or a name that `embody scene` lists")->required();
         c.app->add_option("--seconds", c.into->seconds, "Simulated time")
             ->capture_default_str()
-            ->check(CLI::Range(0.0, 1e6));
+            ->check(between(0, 1e6));
         c.app->add_option("--record", c.into->record, "File for JSON lines: every entity's pose, velocities and state");
         c.app->add_option("--rate", c.into->rate, "Samples a simulated second")
             ->capture_default_str()
-            ->check(CLI::Range(1e-3, 1e5));
+            ->check(between(1e-3, 1e5));
         c.app->add_flag("--contacts", c.into->contacts, "Record contacts with impulses");
         c.app->add_flag("--energy", c.into->energy, "Record energy and momenta");
         add_json(c);
@@ -165,7 +176,7 @@ private:
         c.app->add_option("suite", c.into->suite, "table1")->capture_default_str()->check(CLI::IsMember({"table1"}));
         c.app->add_option("--scene", c.into->scene, "Only this scene");
         c.app->add_option("--steps", c.into->steps, "Steps of each scene (default: its own number)")
-            ->check(CLI::NonNegativeNumber);
+            ->check(CLI::Range(0, 10'000'000));
         add_json(c);
     }
 

@@ -15,7 +15,7 @@ struct ServeArguments {
     std::filesystem::path database;
     std::string address = "127.0.0.1";
     std::optional<unsigned short> port;  ///< open: 8420, or a free one where that is taken
-    std::string scene = "furnished_room";
+    std::optional<std::string> scene;    ///< none: the furnished room, or an empty scene where its models are missing
     bool open_browser = false;
 };
 struct ImportArguments {

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/core.h>
 
-#include <csignal>
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/locations.h"
 #include "cli/output.h"
 
 namespace embody::cli {
 namespace {
 
-// Ctrl+C ends the import after the model in hand; what is in the database stays.
-volatile std::sig_atomic_t interrupted = 0;
-void note_interrupt(int) { interrupted = 1; }
+// The error mostly names the file itself.
+std::string text_of(const catalog::ImportFailure& failure) {
+    const std::string why = failure.error.message();
+    return why.starts_with(failure.path) ? why : failure.path + ": " + why;
+}
 
 nlohmann::json to_json(const catalog::ImportReport& report) {
     nlohmann::json failures = nlohmann::json::array();
@@ -34,15 +36,14 @@ int run_import(const ImportArguments& arguments) {
     options.again = arguments.again;
     options.progress = [&](const catalog::ImportProgress& progress) {
         bar.show(progress.done, progress.total, progress.current);
-        return interrupted == 0;
+        // Ctrl+C ends the import after the model in hand; what is in the database stays.
+        return !interrupted();
     };
-    std::signal(SIGINT, note_interrupt);
-    std::signal(SIGTERM, note_interrupt);
+    watch_interrupts();
     const auto result = (*catalog)->import(arguments.paths, options);
     bar.finish();
     if (!result) return report(result.error());
-    for (const catalog::ImportFailure& failure : result->failures)
-        fmt::print(stderr, "embody: {}: {}\n", failure.path, failure.error.message());
+    for (const catalog::ImportFailure& failure : result->failures) fmt::print(stderr, "embody: {}\n", text_of(failure));
     if (arguments.json) {
         print_json(to_json(*result));
     } else {

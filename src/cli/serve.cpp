@@ -36,8 +36,15 @@ int run_serve(const ServeArguments& arguments) {
     options.scene.taxonomy_folder = data_folder() / "taxonomy";
     options.scene.session.saved_scenes = saved_scenes_folder();
     options.scene.session.demo_scenes = data_folder() / "scenes";
-    options.scene.open_scene = arguments.scene;
+    options.scene.open_scene = arguments.scene.value_or("furnished_room");
     auto server = server::Server::start(options);
+    if (!server && !arguments.scene) {
+        // The scene that opens by itself needs models; without them an empty one is better than no Studio.
+        const Error no_scene = server.error();
+        options.scene.open_scene.clear();
+        server = server::Server::start(options);
+        if (server) fmt::print(stderr, "embody: starting with an empty scene: {}\n", no_scene.message());
+    }
     if (!server) return report(server.error());
     fmt::print("Studio: {}\n", (*server)->url());
     fmt::print("Stop with Ctrl+C.\n");

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/locations.h"
 #include "cli/output.h"
 #include "cli/scene_lookup.h"
@@ -77,6 +78,8 @@ int run_simulate(const SimulateArguments& arguments) {
     auto simulation = scene::Simulation::create(*document, catalog->get());
     if (!simulation) return report(simulation.error());
 
+    // Ctrl+C ends the run; what was recorded until then is written in whole lines.
+    watch_interrupts();
     std::unique_ptr<scene::Recorder> recorder;
     if (!arguments.record.empty()) {
         auto created = scene::Recorder::create(arguments.record, *document,
@@ -91,7 +94,7 @@ int run_simulate(const SimulateArguments& arguments) {
         static_cast<std::uint64_t>(std::llround(arguments.seconds / (*simulation)->world().settings().time_step));
     ProgressBar bar("Simulating");
     const auto start = std::chrono::steady_clock::now();
-    while (summary.steps < steps && !summary.paused) {
+    while (summary.steps < steps && !summary.paused && !interrupted()) {
         const physics::StepReport& step = (*simulation)->step();
         ++summary.steps;
         summary.slowest_ms = std::max(summary.slowest_ms, step.milliseconds);
@@ -113,7 +116,10 @@ int run_simulate(const SimulateArguments& arguments) {
         print_json(to_json(summary, **simulation));
     else
         print(summary, **simulation);
-    return exit_ok;
+    if (!interrupted()) return exit_ok;
+    fmt::print(stderr, "embody: stopped at {} s of {} s\n", short_number(summary.simulated),
+               short_number(arguments.seconds));
+    return exit_failed;
 }
 
 }  // namespace embody::cli

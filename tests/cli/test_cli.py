@@ -8,10 +8,14 @@ import json
 import math
 import os
 import pathlib
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
+import urllib.request
 
 EMBODY = ""
 SOURCE = pathlib.Path(__file__).resolve().parent.parent.parent
@@ -100,8 +104,10 @@ class Database(unittest.TestCase):
         self.assertEqual(refused.returncode, 1)
         self.assertIn("friction_dynamic", refused.stderr)
         self.assertIn("2", refused.stderr)  # the range's upper end
-        unknown = run("set", "--database", self.database, model, "masss=2")
-        self.assertIn("mass", unknown.stderr)
+        for command, word in (("set", "masss=2"), ("reset", "masss")):
+            unknown = run(command, "--database", self.database, model, word)
+            self.assertEqual(unknown.returncode, 1, command)
+            self.assertIn("mass", unknown.stderr)
         self.assertEqual(json.loads(run("show", "--database", self.database, "--json", model).stdout), shown)
 
         changed = json.loads(run("set", "--database", self.database, "--json", model, "mass=2.5").stdout)
@@ -173,6 +179,31 @@ class Scenes(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn("/nowhere/out.jsonl", result.stderr)
 
+    def test_numbers_that_are_none_are_refused(self):
+        for option, value in (("--seconds", "nan"), ("--seconds", "-1"), ("--seconds", "inf"), ("--rate", "nan")):
+            result = run("simulate", "table1_e", option, value)
+            self.assertEqual(result.returncode, 2, (option, value, result.stderr))
+            self.assertIn(option, result.stderr)
+            self.assertIn(value, result.stderr)
+        self.assertEqual(run("bench", "--steps", "-1").returncode, 2)
+
+    def test_ctrl_c_ends_a_recording_with_whole_lines(self):
+        with tempfile.TemporaryDirectory() as folder:
+            record = pathlib.Path(folder) / "out.jsonl"
+            words = [EMBODY, "simulate", "table1_e", "--seconds", "1000000", "--record", str(record), "--json"]
+            with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+                # The header is on disk before the first step.
+                while not record.exists() or record.stat().st_size == 0:
+                    self.assertIsNone(process.poll())
+                    time.sleep(0.05)
+                process.send_signal(signal.SIGINT)
+                out, error = process.communicate(timeout=120)
+            self.assertEqual(process.returncode, 1, error)
+            self.assertIn("stopped", error)
+            summary = json.loads(out)
+            lines = [json.loads(line) for line in record.read_text().splitlines()]
+            self.assertAlmostEqual(lines[-1]["t"], summary["simulated_seconds"], delta=0.1)
+
     def test_bench_prints_the_papers_columns(self):
         result = run("bench", "table1", "--scene", "table1_e", "--steps", "30", "--json")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -181,6 +212,59 @@ class Scenes(unittest.TestCase):
         self.assertGreater(row["max_ms"], 0)
         self.assertLessEqual(row["min_ms"], row["average_ms"])
         self.assertLessEqual(row["average_ms"], row["max_ms"])
+
+
+class Server(unittest.TestCase):
+    """What a client may do to the server: nothing that stops it."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        words = [EMBODY, "serve", "--port", "0", "--database", str(pathlib.Path(self.folder.name) / "models.sqlite")]
+        self.server = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                       env={**os.environ, "XDG_DATA_HOME": self.folder.name})
+        line = self.server.stdout.readline()
+        self.assertIn("http://127.0.0.1:", line, self.server.stderr.read() if not line else "")
+        self.port = int(line.strip().rstrip("/").rsplit(":", 1)[1])
+
+    def tearDown(self):
+        self.server.terminate()
+        self.server.communicate(timeout=60)
+        self.folder.cleanup()
+        self.assertEqual(self.server.returncode, 0)
+
+    def open_web_socket(self) -> socket.socket:
+        client = socket.create_connection(("127.0.0.1", self.port), timeout=60)
+        client.sendall(f"GET /ws HTTP/1.1\r\nHost: 127.0.0.1:{self.port}\r\nUpgrade: websocket\r\n"
+                       "Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+                       "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n".encode())
+        answer = b""
+        while not answer.endswith(b"\r\n\r\n"):
+            answer += client.recv(1)
+        self.assertIn(b"101", answer)
+        return client
+
+    def health(self) -> dict:
+        with urllib.request.urlopen(f"http://127.0.0.1:{self.port}/api/health", timeout=60) as answer:
+            return json.load(answer)
+
+    def test_without_models_the_studio_opens_an_empty_scene(self):
+        health = self.health()
+        self.assertEqual((health["name"], health["scene"]), ("embody", "Untitled"))
+
+    def test_a_client_that_only_sends_fills_no_memory(self):
+        client = self.open_web_socket()
+        text = json.dumps({"id": 1, "command": "simulation.pause", "params": {}}).encode()
+        frame = bytes((0x81, 0x80 | len(text), 0, 0, 0, 0)) + text  # masked with zeros
+        client.settimeout(3)
+        sent = 0
+        try:
+            while sent < 64 << 20:
+                sent += client.send(frame * 1000)
+        except OSError:
+            pass  # the server waits until the replies are read
+        self.assertLess(sent, 64 << 20)
+        self.assertEqual(self.health()["name"], "embody")
+        client.close()
 
 
 if __name__ == "__main__":
