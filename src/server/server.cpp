@@ -13,6 +13,7 @@
 #include <boost/beast/websocket.hpp>
 #include <cstdio>
 #include <deque>
+#include <limits>
 #include <map>
 #include <optional>
 #include <random>
@@ -190,7 +191,7 @@ public:
     void read_header() {
         parser_.emplace();
         // The whole header first: how large a body may be depends on what is asked.
-        parser_->body_limit(boost::none);
+        parser_->body_limit(std::numeric_limits<std::uint64_t>::max());
         stream_.expires_after(std::chrono::seconds(60));
         http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
             if (error) return self->close();

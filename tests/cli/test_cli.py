@@ -251,6 +251,25 @@ class Server(unittest.TestCase):
         health = self.health()
         self.assertEqual((health["name"], health["scene"]), ("embody", "Untitled"))
 
+    def test_a_file_that_is_too_large_is_refused_with_a_reason(self):
+        client = socket.create_connection(("127.0.0.1", self.port), timeout=60)
+        client.sendall(f"POST /import?name=a.obj HTTP/1.1\r\nHost: 127.0.0.1:{self.port}\r\n"
+                       f"Content-Length: {300 << 20}\r\n\r\n".encode())
+        for _ in range(64):
+            client.sendall(bytes(1 << 16))
+        answer = b""
+        while more := client.recv(4096):
+            answer += more
+        client.close()
+        self.assertTrue(answer.startswith(b"HTTP/1.1 413"), answer[:100])
+        self.assertIn(b"embody import", answer)
+
+    def test_a_file_that_is_sent_is_imported(self):
+        request = urllib.request.Request(f"http://127.0.0.1:{self.port}/import?name=../tetrahedron.obj",
+                                         data=TETRAHEDRON.encode(), method="POST")
+        with urllib.request.urlopen(request, timeout=60) as answer:
+            self.assertEqual(len(json.load(answer)["keys"]), 1)
+
     def test_a_client_that_only_sends_fills_no_memory(self):
         client = self.open_web_socket()
         text = json.dumps({"id": 1, "command": "simulation.pause", "params": {}}).encode()
