@@ -102,7 +102,11 @@ EdgeAxis best_edge_axis(const TurnedPolytope& a, const TurnedPolytope& b, double
             if (size < 1e-6 * length(along_a) * length(along_b)) continue;
             n = n / size;
             if (dot(n, a.vertices[edge_a.from] - a.center) < 0) n = -n;
-            const double separation = dot(n, b.vertices[edge_b.from] - a.vertices[edge_a.from]);
+            if (dot(n, b.vertices[edge_b.from] - a.vertices[edge_a.from]) <= best.separation) continue;
+
+            // Edges of merged faces lie a little beside the faces' planes; where they are short, n may not touch the
+            // shapes at these edges at all. The shapes' own extent along n is what separates them.
+            const double separation = b.lowest_along(n) + a.lowest_along(-n);
             if (separation > best.separation) best = {separation, i, j, n};
             if (separation > margin) return best;
         }
