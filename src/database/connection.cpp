@@ -91,6 +91,14 @@ Result<std::unique_ptr<Connection>> Connection::open(const std::filesystem::path
 }
 
 Result<void> Connection::check_ownership(const ConnectionOptions& options) {
+    // One snapshot for all questions: another process may be creating the file just now.
+    if (auto begun = execute("BEGIN"); !begun) return begun;
+    Result<void> owned = compare_marks(options);
+    if (auto ended = execute("COMMIT"); owned && !ended) return ended;
+    return owned;
+}
+
+Result<void> Connection::compare_marks(const ConnectionOptions& options) {
     const auto mark = query_integer("PRAGMA application_id");
     if (!mark) return mark.error();
     if (static_cast<std::uint32_t>(*mark) == options.application_id) return {};
@@ -109,16 +117,21 @@ Result<void> Connection::configure(const ConnectionOptions& options) {
     // A page size counts only before the first write; the mark is set by whoever comes first.
     if (auto size = execute("PRAGMA page_size = " + std::to_string(page_bytes)); !size) return size;
     if (auto log = switch_to_write_ahead_log(options.wait_milliseconds); !log) return log;
-    const auto mark = query_integer("PRAGMA application_id");
-    if (!mark) return mark.error();
-    if (*mark == 0) {
-        if (auto set = execute("PRAGMA application_id = " + std::to_string(options.application_id)); !set) return set;
-    }
+    if (auto marked = set_mark(options.application_id); !marked) return marked;
 
     // NORMAL: a killed process loses nothing that was committed, a power cut at most the last commits, never the file.
     return execute(
         "PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = ON; PRAGMA cache_size = -32768; PRAGMA temp_store = MEMORY;"
         "PRAGMA journal_size_limit = 67108864");
+}
+
+Result<void> Connection::set_mark(std::uint32_t application_id) {
+    const auto mark = query_integer("PRAGMA application_id");
+    if (!mark) return mark.error();
+    if (*mark != 0) return {};
+    // The write lock first: one that is asked for after reading is refused at once where another process has written.
+    if (auto begun = execute("BEGIN IMMEDIATE"); !begun) return begun;
+    return execute("PRAGMA application_id = " + std::to_string(application_id) + "; COMMIT");
 }
 
 Result<void> Connection::switch_to_write_ahead_log(int wait_milliseconds) {

@@ -50,6 +50,8 @@ private:
     Connection(std::filesystem::path file, std::unique_ptr<Handles> handles);
     [[nodiscard]] Error last_error() const;
     Result<void> check_ownership(const ConnectionOptions& options);
+    Result<void> compare_marks(const ConnectionOptions& options);
+    Result<void> set_mark(std::uint32_t application_id);
     Result<void> configure(const ConnectionOptions& options);
     Result<void> switch_to_write_ahead_log(int wait_milliseconds);
     void give_back(std::string command, void* compiled);

@@ -2,6 +2,7 @@
 #include "scene/session_state.h"
 
 #include <array>
+#include <nlohmann/json.hpp>
 
 #include "scene/json/parts.h"
 #include "scene/scene_file.h"
@@ -334,5 +335,7 @@ std::string SessionState::called(const std::vector<EntityIndex>& indices) const 
     if (!entity || entity->name.empty()) return "entity " + std::to_string(indices.front());
     return entity->name;
 }
+
+void SessionState::tell(nlohmann::json message) { events.messages.push_back(std::move(message)); }
 
 }  // namespace embody::scene

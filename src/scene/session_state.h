@@ -4,7 +4,7 @@
 #include <chrono>
 #include <deque>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -61,7 +61,7 @@ struct SessionState {
     void set_play_state(PlayState state);
     void step();
 
-    void tell(nlohmann::json message) { events.messages.push_back(std::move(message)); }
+    void tell(nlohmann::json message);
     void tell_message(const char* level, std::string text);
     void tell_document(nlohmann::json changes);
     [[nodiscard]] nlohmann::json simulation_json() const;

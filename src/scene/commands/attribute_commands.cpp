@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <array>
+#include <nlohmann/json.hpp>
 
 #include "attributes/attribute_json.h"
 #include "attributes/registry.h"

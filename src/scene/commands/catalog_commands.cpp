@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <array>
+#include <nlohmann/json.hpp>
 
 #include "scene/commands/commands.h"
 #include "scene/json/parts.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "scene/commands/commands.h"
 #include "scene/json/parts.h"

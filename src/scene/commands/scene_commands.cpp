@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "foundation/version.h"
 #include "scene/commands/commands.h"

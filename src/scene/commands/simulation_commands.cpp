@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "scene/commands/commands.h"
 
+#include <nlohmann/json.hpp>
+
 namespace embody::scene {
 
 using nlohmann::json;
