@@ -64,13 +64,12 @@ build_program() {
         say "Configuring ($preset) …"
         (cd "$root" && cmake --preset "$preset") >"$log" 2>&1 || { tail -n 20 "$log" >&2; fail "configuring failed (log: build/$preset.log)."; }
     fi
-    # Ninja's own progress line where there is a terminal, every tenth step elsewhere; nothing where there is nothing to do.
-    if (cd "$root" && ninja -C "build/$preset" -n "$@" 2>/dev/null | grep -q 'no work to do'); then return 0; fi
-    say "Building ($preset) …"
+    [ -x "$root/build/$preset/src/embody" ] || say "Building ($preset); the first time this takes some minutes …"
+    # Ninja's own progress line where there is a terminal, every tenth step elsewhere.
     if [ -t 2 ]; then
         (cd "$root" && NINJA_STATUS="[%f/%t %p] " ninja -C "build/$preset" "$@") >&2 || fail "the build failed." "The compiler's message is above."
     else
-        (cd "$root" && NINJA_STATUS="[%f/%t %p] " ninja -C "build/$preset" "$@") 2>&1 | tee "$log" | awk '!/^\[/ || ++n % 10 == 0' >&2
+        (cd "$root" && NINJA_STATUS="[%f/%t %p] " ninja -C "build/$preset" "$@") 2>&1 | tee "$log" | awk '/^ninja: (Entering|no work)/ { next } !/^\[/ || ++n % 10 == 0' >&2
         [ "${PIPESTATUS[0]}" -eq 0 ] || fail "the build failed (log: build/$preset.log)."
     fi
 }
