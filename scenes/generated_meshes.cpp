@@ -84,15 +84,17 @@ physics::MeshShape make_dog(std::uint64_t seed) {
 
     // Each point put into a triangle makes two more of it, until the count is the paper's.
     for (std::size_t next = 1; mesh.triangles.size() < dog_triangles; next += 97) {
-        const auto [a, b, c] = mesh.triangles[next];
+        const std::array<std::uint32_t, 3> corners = mesh.triangles[next];
         const auto middle = [&](float Vec3f::*axis) {
-            return (mesh.positions[a].*axis + mesh.positions[b].*axis + mesh.positions[c].*axis) / 3;
+            return (mesh.positions[corners[0]].*axis + mesh.positions[corners[1]].*axis +
+                    mesh.positions[corners[2]].*axis) /
+                   3;
         };
         mesh.positions.push_back({middle(&Vec3f::x), middle(&Vec3f::y), middle(&Vec3f::z)});
         const auto m = static_cast<std::uint32_t>(mesh.positions.size() - 1);
-        mesh.triangles[next] = {a, b, m};
-        mesh.triangles.push_back({b, c, m});
-        mesh.triangles.push_back({c, a, m});
+        mesh.triangles[next] = {corners[0], corners[1], m};
+        mesh.triangles.push_back({corners[1], corners[2], m});
+        mesh.triangles.push_back({corners[2], corners[0], m});
     }
 
     // Feet on the ground.

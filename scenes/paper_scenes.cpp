@@ -93,8 +93,8 @@ scene::Document build_table1_g() {
     const Color colors[] = {accent_color, wood_color, steel_color};
     for (int k = 0; k < 343; ++k) {
         const int kind = k % 3;
-        const Vec3 place{k / 7 % 7 - 3 + random.between(-0.05, 0.05), 5.25 + k / 49,
-                         k % 7 - 3 + random.between(-0.05, 0.05)};
+        const int row = k / 7 % 7, layer = k / 49;
+        const Vec3 place{row - 3 + random.between(-0.05, 0.05), 5.25 + layer, k % 7 - 3 + random.between(-0.05, 0.05)};
         parts.add(names[kind], shapes[kind], place, colors[kind], random_rotation(random));
     }
     return parts.take();
@@ -132,7 +132,8 @@ scene::Document build_dog_on_terrain() {
     DocumentParts parts("Dog on a terrain", "A model of 33,854 triangles falls on hills of 115,200 triangles.");
     physics::HeightfieldShape terrain = make_terrain(11);
     const double half = (terrain.columns - 1) * terrain.cell_x / 2;
-    const auto middle = static_cast<std::size_t>(terrain.rows / 2 * terrain.columns + terrain.columns / 2);
+    const auto columns = static_cast<std::size_t>(terrain.columns), rows = static_cast<std::size_t>(terrain.rows);
+    const std::size_t middle = rows / 2 * columns + columns / 2;
     const double ground = static_cast<double>(terrain.heights[middle]);
     parts.set_camera({4, ground + 3, 5}, {0, ground + 0.5, 0});
     parts.add_static("terrain", std::move(terrain), {-half, 0, -half}, {0.2, 0.32, 0.14});

@@ -11,7 +11,7 @@ namespace {
 
 using scene::Simulation;
 
-std::string first_of(std::string a, std::string b) { return a.empty() ? b : a; }
+std::string first_of(const std::string& a, const std::string& b) { return a.empty() ? b : a; }
 std::string unless(bool right, const char* wrong) { return right ? std::string() : std::string(wrong); }
 
 // The ball's momentum goes on, so it may be far away, and at least one cube has gone with it.
