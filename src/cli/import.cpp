@@ -11,10 +11,13 @@
 namespace embody::cli {
 namespace {
 
-// The error mostly names the file itself.
+/// One line: the model, then the reason, without naming the model's file a second time.
 std::string text_of(const catalog::ImportFailure& failure) {
-    const std::string why = failure.error.message();
-    return why.starts_with(failure.path) ? why : failure.path + ": " + why;
+    std::string why = failure.error.message();
+    if (why.starts_with(failure.path)) return why;
+    const std::string file = failure.path.substr(0, failure.path.find('!')) + ": ";
+    if (why.starts_with(file)) why.erase(0, file.size());
+    return failure.path + ": " + why;
 }
 
 nlohmann::json to_json(const catalog::ImportReport& report) {
