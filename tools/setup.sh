@@ -54,6 +54,18 @@ install_packages() {
     fi
 }
 
+# Of Ninja's lines every tenth step as soon as it is done, and whatever is no step. (mawk would wait for a full block.)
+every_tenth_step() {
+    local line steps=0
+    while IFS= read -r line; do
+        case $line in
+            "ninja: Entering"* | "ninja: no work"*) ;;
+            "["*) steps=$((steps + 1)); [ $((steps % 10)) -ne 0 ] || printf '%s\n' "$line" ;;
+            *) printf '%s\n' "$line" ;;
+        esac
+    done
+}
+
 # build_program PRESET TARGET…: configures once, builds what changed.
 build_program() {
     local preset=$1
@@ -69,7 +81,7 @@ build_program() {
     if [ -t 2 ]; then
         (cd "$root" && NINJA_STATUS="[%f/%t %p] " ninja -C "build/$preset" "$@") >&2 || fail "the build failed." "The compiler's message is above."
     else
-        (cd "$root" && NINJA_STATUS="[%f/%t %p] " ninja -C "build/$preset" "$@") 2>&1 | tee "$log" | awk '/^ninja: (Entering|no work)/ { next } !/^\[/ || ++n % 10 == 0' >&2
+        (cd "$root" && NINJA_STATUS="[%f/%t %p] " ninja -C "build/$preset" "$@") 2>&1 | tee "$log" | every_tenth_step >&2
         [ "${PIPESTATUS[0]}" -eq 0 ] || fail "the build failed (log: build/$preset.log)."
     fi
 }

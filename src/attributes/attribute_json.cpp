@@ -20,6 +20,7 @@ json number_json(double value) {
 }
 json vector_json(Vec3 v) { return json::array({v.x, v.y, v.z}); }
 json tensor_json(const Mat3& m) { return json::array({m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)}); }
+json columns_json(const Mat3& m) { return json::array({vector_json(m.x), vector_json(m.y), vector_json(m.z)}); }
 
 std::optional<double> number_of(const json& document) {
     if (document.is_number()) return document.get<double>();
@@ -105,14 +106,12 @@ private:
         return v && (value = *v, true);
     }
     static bool take(const json& d, Mat3& value) {
-        const auto m = tensor_of(d);
-        return m && (value = *m, true);
+        return d.is_array() && d.size() == 3 && take(d[0], value.x) && take(d[1], value.y) && take(d[2], value.z);
     }
-    static bool take(const json& d, Transform& value) {
+    static bool take(const json& d, Quat& value) {
         const auto n = numbers_of(d);
-        if (!n || n->size() != 7) return false;
-        value.position = {(*n)[0], (*n)[1], (*n)[2]};
-        value.rotation = Quat{(*n)[3], (*n)[4], (*n)[5], (*n)[6]};
+        if (!n || n->size() != 4) return false;
+        value = {(*n)[0], (*n)[1], (*n)[2], (*n)[3]};
         return true;
     }
     static bool take(const json& d, std::vector<std::string>& value) {
@@ -130,20 +129,20 @@ private:
 };
 
 json geometry_json(const GeometryFacts& g) {
-    const Vec3 p = g.fitted_pose.position;
-    const Quat q = g.fitted_pose.rotation;
+    const Quat turn = g.fitted_pose.rotation;
     return {{"size", vector_json(g.size)},
             {"closed", g.closed},
             {"volume", g.volume},
             {"volume_method", g.volume_method},
             {"volume_relative_error", g.volume_relative_error},
             {"center_of_volume", vector_json(g.center_of_volume)},
-            {"unit_inertia", tensor_json(g.unit_inertia)},
+            {"unit_inertia", columns_json(g.unit_inertia)},
             {"hull_volume", g.hull_volume},
             {"surface_area", g.surface_area},
             {"fitted_shape", g.fitted_shape},
             {"fitted_dimensions", vector_json(g.fitted_dimensions)},
-            {"fitted_pose", json::array({p.x, p.y, p.z, q.x, q.y, q.z, q.w})},
+            {"fitted_position", vector_json(g.fitted_pose.position)},
+            {"fitted_rotation", json::array({turn.x, turn.y, turn.z, turn.w})},
             {"fitted_error", g.fitted_error}};
 }
 
@@ -160,7 +159,8 @@ std::optional<Error> read_geometry(const json& document, GeometryFacts& g) {
     reader.read("surface_area", g.surface_area);
     reader.read("fitted_shape", g.fitted_shape);
     reader.read("fitted_dimensions", g.fitted_dimensions);
-    reader.read("fitted_pose", g.fitted_pose);
+    reader.read("fitted_position", g.fitted_pose.position);
+    reader.read("fitted_rotation", g.fitted_pose.rotation);
     reader.read("fitted_error", g.fitted_error);
     return reader.error();
 }
@@ -278,7 +278,7 @@ nlohmann::json to_json(const ModelFacts& facts) {
                   {"door_or_window", facts.door_or_window},
                   {"size_is_stated", facts.size_is_stated},
                   {"geometry", geometry_json(facts.geometry)}};
-    document["movable"] = facts.movable ? json(*facts.movable) : json(nullptr);
+    if (facts.movable) document["movable"] = *facts.movable;
     return document;
 }
 

@@ -27,6 +27,7 @@ Result<AttributeSet> set_from_json(const nlohmann::json& document);
 /// The whole registry, for the Studio and for programs.
 nlohmann::json registry_to_json();
 
+/// The form in which the database keeps them; their numbers are finite, the tensor stands by columns, to the last bit.
 nlohmann::json to_json(const ModelFacts& facts);
 /// What is left out keeps its default; a field of the wrong type is refused by name.
 Result<ModelFacts> facts_from_json(const nlohmann::json& document);

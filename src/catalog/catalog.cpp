@@ -24,12 +24,6 @@ namespace {
 constexpr const char* taxonomy_setting = "taxonomy_hash";
 constexpr const char* primitives_setting = "primitives_revision";
 
-GeometryKind kind_from_name(const std::string& name) {
-    if (name == "point_cloud") return GeometryKind::point_cloud;
-    if (name == "voxel") return GeometryKind::voxel;
-    return name == "analytical" ? GeometryKind::analytical : GeometryKind::mesh;
-}
-
 ModelSummary summary_of(database::ModelRow row) {
     ModelSummary model;
     model.id = row.id;

@@ -13,13 +13,11 @@
 #include "attributes/attribute.h"
 #include "attributes/model_facts.h"
 #include "attributes/resolver.h"
+#include "catalog/geometry_kind.h"
 #include "foundation/result.h"
 #include "geometry/triangle_mesh.h"
 
 namespace embody::catalog {
-
-/// The paper's four kinds of model geometry.
-enum class GeometryKind : std::uint8_t { mesh, point_cloud, voxel, analytical };
 
 struct ModelSummary {
     std::int64_t id = 0;  ///< in this database

@@ -5,14 +5,15 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "attributes/attribute_json.h"
+
 namespace embody::catalog {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 using attributes::AttributeEntry;
 using attributes::AttributeSet;
 using attributes::AttributeValue;
-using attributes::GeometryFacts;
 using attributes::ModelFacts;
 
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
@@ -79,59 +80,6 @@ Result<AttributeEntry> to_entry(const Json& json) {
     return entry;
 }
 
-Json from_geometry(const GeometryFacts& facts) {
-    const Quat turn = facts.fitted_pose.rotation;
-    return {{"size", from_vector(facts.size)},
-            {"closed", facts.closed},
-            {"volume", from_number(facts.volume)},
-            {"volume_method", facts.volume_method},
-            {"volume_relative_error", from_number(facts.volume_relative_error)},
-            {"center_of_volume", from_vector(facts.center_of_volume)},
-            {"unit_inertia", from_matrix(facts.unit_inertia)},
-            {"hull_volume", from_number(facts.hull_volume)},
-            {"surface_area", from_number(facts.surface_area)},
-            {"fitted_shape", facts.fitted_shape},
-            {"fitted_dimensions", from_vector(facts.fitted_dimensions)},
-            {"fitted_position", from_vector(facts.fitted_pose.position)},
-            {"fitted_rotation", Json::array({turn.x, turn.y, turn.z, turn.w})},
-            {"fitted_error", from_number(facts.fitted_error)}};
-}
-
-GeometryFacts to_geometry(const Json& json) {
-    GeometryFacts facts;
-    facts.size = to_vector(json.at("size"));
-    facts.closed = json.at("closed").get<bool>();
-    facts.volume = to_number(json.at("volume"));
-    facts.volume_method = json.at("volume_method").get<std::string>();
-    facts.volume_relative_error = to_number(json.at("volume_relative_error"));
-    facts.center_of_volume = to_vector(json.at("center_of_volume"));
-    facts.unit_inertia = to_matrix3(json.at("unit_inertia"));
-    facts.hull_volume = to_number(json.at("hull_volume"));
-    facts.surface_area = to_number(json.at("surface_area"));
-    facts.fitted_shape = json.at("fitted_shape").get<std::string>();
-    facts.fitted_dimensions = to_vector(json.at("fitted_dimensions"));
-    facts.fitted_pose.position = to_vector(json.at("fitted_position"));
-    const Json& turn = json.at("fitted_rotation");
-    facts.fitted_pose.rotation = {to_number(turn.at(0)), to_number(turn.at(1)), to_number(turn.at(2)),
-                                  to_number(turn.at(3))};
-    facts.fitted_error = to_number(json.at("fitted_error"));
-    return facts;
-}
-
-ModelFacts to_facts(const Json& json) {
-    ModelFacts facts;
-    facts.name = json.at("name").get<std::string>();
-    facts.tags = json.at("tags").get<std::vector<std::string>>();
-    facts.catalogue_category = json.at("catalogue_category").get<std::string>();
-    facts.folder = json.at("folder").get<std::string>();
-    facts.material_names = json.at("material_names").get<std::vector<std::string>>();
-    if (json.contains("movable")) facts.movable = json.at("movable").get<bool>();
-    facts.door_or_window = json.at("door_or_window").get<bool>();
-    facts.size_is_stated = json.at("size_is_stated").get<bool>();
-    facts.geometry = to_geometry(json.at("geometry"));
-    return facts;
-}
-
 // The library throws where a field is missing or of another type; nothing thrown leaves here.
 template <class T, class Read>
 Result<T> read_text(std::string_view text, const char* what, const Read& read) {
@@ -173,22 +121,11 @@ Result<AttributeSet> set_from_json(std::string_view text) {
     });
 }
 
-std::string to_json(const ModelFacts& facts) {
-    Json json = {{"name", facts.name},
-                 {"tags", facts.tags},
-                 {"catalogue_category", facts.catalogue_category},
-                 {"folder", facts.folder},
-                 {"material_names", facts.material_names},
-                 {"door_or_window", facts.door_or_window},
-                 {"size_is_stated", facts.size_is_stated},
-                 {"geometry", from_geometry(facts.geometry)}};
-    if (facts.movable) json["movable"] = *facts.movable;
-    return text_of(json);
-}
+std::string to_json(const ModelFacts& facts) { return text_of(attributes::to_json(facts)); }
 
 Result<ModelFacts> facts_from_json(std::string_view text) {
     return read_text<ModelFacts>(text, "stored facts",
-                                 [](const Json& json) -> Result<ModelFacts> { return to_facts(json); });
+                                 [](const Json& json) { return attributes::facts_from_json(json); });
 }
 
 std::string valid_utf8(const std::string& text) {

@@ -160,7 +160,7 @@ void ActionRunner::run_volume(const Action& action, const OnEnterVolume& enter) 
     }
 }
 
-void ActionRunner::after_step(std::vector<ContactEvent> contacts, std::vector<SleepEvent> sleeps) {
+void ActionRunner::after_step(const std::vector<ContactEvent>& contacts, const std::vector<SleepEvent>& sleeps) {
     for (const Action& action : actions_) {
         if (is_done(action)) continue;
         if (const auto* begin = std::get_if<OnContactBegin>(&action.trigger))

@@ -5,23 +5,6 @@
 #include <string>
 
 namespace embody::scene {
-namespace {
-
-const char* name_of(catalog::GeometryKind kind) {
-    switch (kind) {
-        case catalog::GeometryKind::mesh:
-            return "mesh";
-        case catalog::GeometryKind::point_cloud:
-            return "point_cloud";
-        case catalog::GeometryKind::voxel:
-            return "voxel";
-        case catalog::GeometryKind::analytical:
-            return "analytical";
-    }
-    return "mesh";
-}
-
-}  // namespace
 
 nlohmann::json model_to_json(const catalog::ModelSummary& model) {
     return {{"id", model.id},
@@ -39,7 +22,7 @@ nlohmann::json model_to_json(const catalog::ModelSummary& model) {
             {"triangles", model.triangles},
             {"parts", model.parts},
             {"quality", model.quality},
-            {"geometry_kind", name_of(model.geometry_kind)},
+            {"geometry_kind", catalog::name_of(model.geometry_kind)},
             // A decimal string: a JavaScript number would lose digits.
             {"content_hash", std::to_string(model.content_hash)}};
 }

@@ -220,7 +220,7 @@ struct Simulation::State {
             entity.definition.enabled = enable->enabled;
             return world->set_enabled(entity.body, enable->enabled);
         }
-        const Result<void> removed = remove(index);
+        Result<void> removed = remove(index);
         if (removed.ok()) despawned.push_back(index);
         return removed;
     }
@@ -397,7 +397,7 @@ Result<void> Simulation::add_joint(const SceneJoint& joint) { return state_->add
 Result<void> Simulation::remove_joint(std::uint32_t joint) {
     const auto found = state_->joints.find(joint);
     if (found == state_->joints.end()) return Error{"index", "joint " + std::to_string(joint) + " is not in the world"};
-    const Result<void> removed = state_->world->destroy_joint(found->second.joint);
+    Result<void> removed = state_->world->destroy_joint(found->second.joint);
     state_->joints.erase(found);
     return removed;
 }

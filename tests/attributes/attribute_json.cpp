@@ -37,6 +37,12 @@ TEST(AttributeJson, FactsOfTheWrongTypeAreRefusedByName) {
     EXPECT_EQ(facts_from_json(json::parse(R"({"name": 7})")).error().where, "facts.name");
     EXPECT_EQ(facts_from_json(json::parse(R"({"movable": "yes"})")).error().where, "facts.movable");
     EXPECT_EQ(facts_from_json(json::parse(R"({"geometry": {"size": [1, 2]}})")).error().where, "facts.size");
+    for (const char* inertia : {"[1, 2, 3]", "[[1, 2, 3], [1, 2]]", "[[1, 2, 3], [1, 2, 3], [1, 2, null]]"}) {
+        const json damaged = {{"geometry", {{"unit_inertia", json::parse(inertia)}}}};
+        EXPECT_EQ(facts_from_json(damaged).error().where, "facts.unit_inertia") << inertia;
+    }
+    EXPECT_EQ(facts_from_json(json::parse(R"({"geometry": {"fitted_rotation": [0, 0, 1]}})")).error().where,
+              "facts.fitted_rotation");
 }
 
 TEST(AttributeJson, SetsReadBackAlike) {
@@ -81,11 +87,13 @@ TEST(AttributeJson, FactsReadBackAlike) {
     facts.folder = "x/y";
     facts.catalogue_category = "Bedroom";
     facts.movable = false;
-    facts.geometry.fitted_pose.rotation = {0.5, 0.5, 0.5, 0.5};
+    facts.geometry.fitted_pose = {{0.1, 0.2, 0.3}, {0.5, 0.5, 0.5, 0.5}};
+    facts.geometry.unit_inertia = {{1, 0.1, 1.0 / 3}, {0.1, 2, 0.3}, {1.0 / 3, 0.3, 3}};
     const auto read = facts_from_json(json::parse(to_json(facts).dump()));
     ASSERT_TRUE(read.ok()) << read.error().message();
     EXPECT_EQ(to_json(*read), to_json(facts));
     EXPECT_EQ(read->geometry.fitted_pose, facts.geometry.fitted_pose);
+    EXPECT_EQ(read->geometry.unit_inertia, facts.geometry.unit_inertia);
     EXPECT_EQ(read->movable, facts.movable);
     EXPECT_FALSE(facts_from_json(json::object()).value().movable.has_value());
 }

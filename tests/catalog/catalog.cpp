@@ -225,6 +225,21 @@ TEST(KnowledgeJson, KeepsEveryBit) {
     EXPECT_EQ(back->find("mass")->level, AttributeLevel::category);
 }
 
+TEST(KnowledgeJson, ReadsTheFactsOfDatabasesThatExist) {
+    const auto facts = facts_from_json(
+        R"({"name":"Box","tags":["a"],"catalogue_category":"Bedroom","folder":"f","material_names":["oak"],
+            "door_or_window":false,"size_is_stated":true,"movable":true,
+            "geometry":{"size":[1.0,2.0,3.0],"closed":true,"volume":6.0,"volume_method":"m","volume_relative_error":0.1,
+              "center_of_volume":[0.0,1.0,0.0],"unit_inertia":[[6.5,0.1,0.2],[0.1,5.0,0.3],[0.2,0.3,2.5]],
+              "hull_volume":6.0,"surface_area":22.0,"fitted_shape":"box","fitted_dimensions":[0.5,1.0,1.5],
+              "fitted_position":[0.0,1.0,0.0],"fitted_rotation":[0.0,0.0,0.0,1.0],"fitted_error":0.25}})");
+    ASSERT_TRUE(facts) << facts.error().message();
+    EXPECT_EQ(facts->movable, true);
+    EXPECT_EQ(facts->geometry.unit_inertia, (Mat3{{6.5, 0.1, 0.2}, {0.1, 5, 0.3}, {0.2, 0.3, 2.5}}));
+    EXPECT_EQ(facts->geometry.fitted_pose.position, (Vec3{0, 1, 0}));
+    EXPECT_EQ(facts->geometry.fitted_error, 0.25);
+}
+
 TEST(KnowledgeJson, TextThatIsNotUtf8IsReplaced) {
     attributes::ModelFacts facts;
     facts.material_names = {"Bo\xeete"};

@@ -85,11 +85,6 @@ std::string hexadecimal(std::uint64_t number) {
     return text;
 }
 
-const char* kind_name(GeometryKind kind) {
-    constexpr std::array<const char*, 4> names{"mesh", "point_cloud", "voxel", "analytical"};
-    return names[static_cast<std::size_t>(kind)];
-}
-
 std::vector<std::uint8_t> pack_points(const std::vector<Vec3f>& points) {
     std::vector<std::uint8_t> bytes;
     bytes.reserve(points.size() * 12);
@@ -110,7 +105,7 @@ database::ModelRow make_row(const ImportItem& item, const PreparedModel& prepare
     apply_item(row, item);
     const Vec3 size = prepared.facts.geometry.size;
     row.size = {size.x, size.y, size.z};
-    row.geometry_kind = kind_name(kind);
+    row.geometry_kind = name_of(kind);
     row.vertices = prepared.vertices;
     row.triangles = prepared.triangles;
     row.parts = prepared.parts;

@@ -103,6 +103,30 @@ void clip_to_region(const ContactFeature& reference, const ContactFeature& incid
     }
 }
 
+void add_near_corners(const ContactFeature& reference, const PlacedConvex& incident, bool reference_is_a, double margin,
+                      ContactRegion& region) {
+    constexpr std::size_t corners_of_a_box = 8;
+    const std::vector<Vec3>& vertices = incident.shape->polytope.vertices;
+    if (vertices.size() <= corners_of_a_box) return;
+    const std::size_t sides = reference.points.size();
+    for (std::uint32_t i = 0; i < vertices.size(); ++i) {
+        const Vec3 corner = incident.to_frame(vertices[i]);
+        const double separation = dot(corner - reference.points[0], reference.normal);
+        if (separation > margin) continue;
+
+        // Over the reference: on the inner side of each of its sides.
+        bool is_over = true;
+        for (std::size_t k = 0; k < sides && is_over; ++k) {
+            const Vec3 p = reference.points[k];
+            const Vec3 along = reference.points[(k + 1) % sides] - p;
+            is_over = dot(cross(along, reference.normal), corner - p) <= 0;
+        }
+        if (!is_over) continue;
+        const Vec3 on_a = reference_is_a ? corner - reference.normal * separation : corner;
+        region.add(on_a, separation, feature_name({reference_is_a ? 4u : 5u, reference.id, i}));
+    }
+}
+
 void keep_deepest(Vec3 on_a, double separation, double tolerance, ContactRegion& region) {
     for (const ManifoldPoint& point : region.points) {
         if (point.separation <= separation + tolerance) return;

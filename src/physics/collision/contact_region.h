@@ -42,6 +42,12 @@ struct ContactRegion {
 void clip_to_region(const ContactFeature& reference, const ContactFeature& incident, bool reference_is_a, double lift,
                     double margin, ContactRegion& region);
 
+/// Adds the corners of a rich polytope (more than a box has) that lie over the polygon `reference` within `margin` of
+/// its plane, so that a rounded or slightly bent side stands on all its low corners and not on one small face of many,
+/// another one each step. To be called before clip_to_region: of two equal points the first one's name is kept.
+void add_near_corners(const ContactFeature& reference, const PlacedConvex& incident, bool reference_is_a, double margin,
+                      ContactRegion& region);
+
 /// Adds the deepest point of the pair where clipping lost it: it can lie on another face than the one that faces most,
 /// or in the sliver between a rim and its polygon.
 void keep_deepest(Vec3 on_a, double separation, double tolerance, ContactRegion& region);

@@ -164,6 +164,7 @@ void collide_polytopes(const PlacedConvex& a, const PlacedConvex& b, double marg
         reference.get_face(reference_is_a ? face_a.face : face_b.face, scratch.reference);
         incident.get_face(incident.face_along(-scratch.reference.normal), scratch.incident);
         region.normal = reference_is_a ? scratch.reference.normal : -scratch.reference.normal;
+        add_near_corners(scratch.reference, reference_is_a ? b : a, reference_is_a, margin, region);
         clip_to_region(scratch.reference, scratch.incident, reference_is_a, 0, margin, region);
 
         // Where they overlap the deepest corner is over the reference face; a little apart it may be beside it.

@@ -99,12 +99,29 @@ struct FeatureScratch {
     ContactFeature face_a, face_b, other, line_a, line_b;
 };
 
+double twice_area(const ContactFeature& face) {
+    Vec3 sum;
+    for (std::size_t i = 1; i + 1 < face.points.size(); ++i)
+        sum += cross(face.points[i] - face.points[0], face.points[i + 1] - face.points[0]);
+    return length(sum);
+}
+
+// A polytope's own face is exact, a rim is a polygon: the former first. Of two polytopes' faces the larger one: the
+// small faces that a scanned hull's side is made of say little about how it lies.
+bool is_better_reference(const PlacedConvex& a, const ContactFeature& face_a, const PlacedConvex& b,
+                         const ContactFeature& face_b) {
+    if (a.shape->kind != ConvexKind::polytope || b.shape->kind != ConvexKind::polytope)
+        return a.shape->kind == ConvexKind::polytope;
+    return twice_area(face_a) >= (1 - 1e-6) * twice_area(face_b);
+}
+
 // A face of one against what the other turns to it, and the other's deepest point whatever happens.
 void add_face_region(const PlacedConvex& a, const PlacedConvex& b, const PartingAxis& axis, bool is_face_a,
                      double margin, FeatureScratch& f, ContactRegion& region) {
     const PlacedConvex& incident = is_face_a ? b : a;
     const Vec3 outwards = is_face_a ? -axis.normal : axis.normal;
     get_facing(incident, outwards, f.other);
+    add_near_corners(is_face_a ? f.face_a : f.face_b, incident, is_face_a, margin, region);
     clip_to_region(is_face_a ? f.face_a : f.face_b, f.other, is_face_a, rounding(*incident.shape), margin, region);
     const Vec3 deepest = core_support(incident, outwards) + outwards * rounding(*incident.shape);
     const Vec3 on_a = is_face_a ? deepest - axis.normal * axis.separation : deepest;
@@ -131,11 +148,11 @@ void collide_round(const PlacedConvex& a, const PlacedConvex& b, double margin, 
     if (!axis.found || axis.separation > margin) return;
     region.normal = axis.normal;
 
-    // A flat face on either side: a region. A polytope's own face is exact, a rim is a polygon: the former first.
+    // A flat face on either side: a region.
     const bool is_face_a = get_aligned_face(a, axis.normal, f.face_a);
     const bool is_face_b = get_aligned_face(b, -axis.normal, f.face_b);
     if (is_face_a || is_face_b) {
-        const bool prefer_a = is_face_a && (!is_face_b || a.shape->kind == ConvexKind::polytope);
+        const bool prefer_a = is_face_a && (!is_face_b || is_better_reference(a, f.face_a, b, f.face_b));
         add_face_region(a, b, axis, prefer_a, margin, f, region);
         return;
     }

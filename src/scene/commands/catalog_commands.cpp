@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <array>
 #include <nlohmann/json.hpp>
 
 #include "scene/commands/commands.h"
 #include "scene/json/parts.h"
+#include "scene/model_json.h"
 
 namespace embody::scene {
 
@@ -16,27 +16,6 @@ namespace {
 Result<catalog::Catalog*> open_catalog(const SessionState& state) {
     if (state.catalog) return state.catalog;
     return Error{"catalog", "no model database is open", "start with --database FILE"};
-}
-
-json summary_json(const ModelSummary& model) {
-    constexpr std::array kinds{"mesh", "point_cloud", "voxel", "analytical"};
-    return {{"id", model.id},
-            {"key", model.key},
-            {"name", model.name},
-            {"source", model.source},
-            {"licence", model.licence},
-            {"author", model.author},
-            {"category", model.category},
-            {"subcategory", model.subcategory},
-            {"kind", model.physical_kind},
-            {"tags", model.tags},
-            {"size", vector_to_json(model.size)},
-            {"vertices", model.vertices},
-            {"triangles", model.triangles},
-            {"parts", model.parts},
-            {"quality", model.quality},
-            {"geometry_kind", kinds[static_cast<std::size_t>(model.geometry_kind)]},
-            {"content_hash", std::to_string(model.content_hash)}};
 }
 
 Result<json> search(SessionState& state, const json& params) {
@@ -53,7 +32,7 @@ Result<json> search(SessionState& state, const json& params) {
     const Result<catalog::SearchPage> page = catalog.value()->search(query);
     if (!page.ok()) return page.error();
     json models = json::array();
-    for (const ModelSummary& model : page.value().models) models.push_back(summary_json(model));
+    for (const ModelSummary& model : page.value().models) models.push_back(model_to_json(model));
     return json{{"models", std::move(models)}, {"total", page.value().total}};
 }
 
@@ -100,7 +79,7 @@ Result<json> model(SessionState& state, const json& params) {
     if (!reader.finish()) return *error;
     Result<json> rows = rows_of(*state.catalog, found.value().id);
     if (!rows.ok()) return rows.error();
-    return json{{"model", summary_json(found.value())}, {"attributes", std::move(rows).value()}};
+    return json{{"model", model_to_json(found.value())}, {"attributes", std::move(rows).value()}};
 }
 
 // The model is another one now: what was made of it while nothing runs is made again.
@@ -115,32 +94,42 @@ Result<json> after_change(SessionState& state, const ModelSummary& model) {
     return json{{"attributes", std::move(rows).value()}};
 }
 
+// Which attribute of which model a command means.
+struct AttributeOfModel {
+    ModelSummary model;
+    std::string name;
+};
+Result<AttributeOfModel> need_attribute(SessionState& state, FieldReader& reader) {
+    Result<ModelSummary> found = need_model(state, reader);
+    if (!found.ok()) return found.error();
+    AttributeOfModel meant{std::move(found).value(), {}};
+    need_text(reader, "name", "an attribute's name", meant.name);
+    return meant;
+}
+
 Result<json> set_attribute(SessionState& state, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);
-    const Result<ModelSummary> found = need_model(state, reader);
-    if (!found.ok()) return found.error();
-    std::string name;
-    need_text(reader, "name", "an attribute's name", name);
+    const Result<AttributeOfModel> meant = need_attribute(state, reader);
+    if (!meant.ok()) return meant.error();
+    const auto& [model, name] = meant.value();
     const json* value = reader.need("value", "the attribute's new value");
     if (!reader.finish()) return *error;
     const Result<attributes::AttributeValue> read = attribute_from_json(name, *value, "value");
     if (!read.ok()) return read.error();
-    if (Result<void> set = state.catalog->set_attribute(found.value().id, name, read.value()); !set.ok())
-        return set.error();
-    return after_change(state, found.value());
+    if (Result<void> set = state.catalog->set_attribute(model.id, name, read.value()); !set.ok()) return set.error();
+    return after_change(state, model);
 }
 
 Result<json> reset_attribute(SessionState& state, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);
-    const Result<ModelSummary> found = need_model(state, reader);
-    if (!found.ok()) return found.error();
-    std::string name;
-    need_text(reader, "name", "an attribute's name", name);
+    const Result<AttributeOfModel> meant = need_attribute(state, reader);
+    if (!meant.ok()) return meant.error();
     if (!reader.finish()) return *error;
-    if (Result<void> reset = state.catalog->reset_attribute(found.value().id, name); !reset.ok()) return reset.error();
-    return after_change(state, found.value());
+    const auto& [model, name] = meant.value();
+    if (Result<void> reset = state.catalog->reset_attribute(model.id, name); !reset.ok()) return reset.error();
+    return after_change(state, model);
 }
 
 constexpr Command commands[] = {{"catalog.search", search},
