@@ -36,7 +36,7 @@ public:
 
     /// Actions due by the clock or by signals since the last call.
     void before_step(double time);
-    /// Actions set off by what the step did. The events are copied: effects change the world.
+    /// Actions set off by what the step did. The events are copies of the world's: effects change it.
     void after_step(const std::vector<physics::ContactEvent>& contacts, const std::vector<physics::SleepEvent>& sleeps);
     std::size_t signal(const std::string& key, const std::string& button);
     void set_actions(std::vector<Action> actions);
