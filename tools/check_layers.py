@@ -25,7 +25,7 @@ def read_table(architecture: pathlib.Path) -> dict[str, set[str]]:
 
 
 def layer_of(path: str, layers: list[str]) -> str | None:
-    """The most specific layer that holds the path (relative to src/, or scenes/…)."""
+    """The most specific layer that holds the path (relative to src/, or scenes/…, benches/…)."""
     best = [layer for layer in layers if path.startswith(layer + "/")]
     return max(best, key=len) if best else None
 
@@ -36,7 +36,8 @@ def main() -> int:
     layers = list(table)
     wrong, checked = [], 0
     files = [(p, p.relative_to(root / "src").as_posix()) for p in (root / "src").rglob("*") if p.suffix in (".h", ".cpp")]
-    files += [(p, p.relative_to(root).as_posix()) for p in (root / "scenes").rglob("*") if p.suffix in (".h", ".cpp")]
+    files += [(p, p.relative_to(root).as_posix()) for folder in ("scenes", "benches")
+              for p in (root / folder).rglob("*") if p.suffix in (".h", ".cpp")]
     for path, name in sorted(files):
         own = layer_of(name, layers)
         if own is None:
