@@ -100,24 +100,29 @@ constexpr int allowed_calls[] = {SCMP_SYS(read),
                                  SCMP_SYS(exit),
                                  SCMP_SYS(exit_group)};
 
+/// A condition on an argument of a system call, counted from 0. The library's macros for it are C, not C++.
+scmp_arg_cmp argument(unsigned int place, scmp_compare comparison, scmp_datum_t a, scmp_datum_t b = 0) {
+    return {place, comparison, a, b};
+}
+
 /// Adds the calls that are allowed for some arguments only; the first error code, or 0.
 int allow_in_part(scmp_filter_ctx filter) {
     constexpr scmp_datum_t writing = O_ACCMODE | O_CREAT | O_TRUNC | O_APPEND | (O_TMPFILE & ~O_DIRECTORY);
-    const auto without_exec = SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0);
-    int code =
-        seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(openat), 1, SCMP_A2(SCMP_CMP_MASKED_EQ, writing, O_RDONLY));
+    const auto without_exec = argument(2, SCMP_CMP_MASKED_EQ, PROT_EXEC, 0);
+    int code = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(openat), 1,
+                                argument(2, SCMP_CMP_MASKED_EQ, writing, O_RDONLY));
     if (code == 0)
-        code =
-            seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(open), 1, SCMP_A1(SCMP_CMP_MASKED_EQ, writing, O_RDONLY));
+        code = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(open), 1,
+                                argument(1, SCMP_CMP_MASKED_EQ, writing, O_RDONLY));
     if (code == 0) code = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(mmap), 1, without_exec);
     if (code == 0) code = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(mprotect), 1, without_exec);
     // Threads, not processes; clone3 hides its flags from filters, and the C library falls back to clone without it.
     if (code == 0)
         code = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(clone), 1,
-                                SCMP_A0(SCMP_CMP_MASKED_EQ, CLONE_THREAD, CLONE_THREAD));
+                                argument(0, SCMP_CMP_MASKED_EQ, CLONE_THREAD, CLONE_THREAD));
     if (code == 0) code = seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0);
     // Signals to itself: how abort() ends it.
-    const auto itself = SCMP_A0(SCMP_CMP_EQ, static_cast<scmp_datum_t>(getpid()));
+    const auto itself = argument(0, SCMP_CMP_EQ, static_cast<scmp_datum_t>(getpid()));
     if (code == 0) code = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(tgkill), 1, itself);
     return code;
 }
