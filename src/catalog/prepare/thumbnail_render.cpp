@@ -31,6 +31,8 @@ double srgb_from_linear(double v) {
     v = std::clamp(v, 0.0, 1.0);
     return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
 }
+/// A share of 1 as a byte.
+std::uint8_t byte_from(double share) { return static_cast<std::uint8_t>(std::lround(255 * share)); }
 double linear_from_srgb(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
 
 /// What a ray met: where, how it faces, and what it is made of there.
@@ -254,17 +256,16 @@ std::vector<std::uint8_t> render_thumbnail(const RawScene& scene) {
         for (int column = 0; column < thumbnail_size; ++column) {
             std::array<double, 4> sum{};
             for (int s = 0; s < samples; ++s) {
-                const double x = (column + (s % samples_a_side + 0.5) / samples_a_side) / thumbnail_size;
-                const double y = (row + (s / samples_a_side + 0.5) / samples_a_side) / thumbnail_size;
+                const int across = s % samples_a_side, down = s / samples_a_side;
+                const double x = (column + (across + 0.5) / samples_a_side) / thumbnail_size;
+                const double y = (row + (down + 0.5) / samples_a_side) / thumbnail_size;
                 const auto seen = seen_along(traced, camera.ray(x, y), step, random);
                 for (std::size_t k = 0; k < 4; ++k) sum[k] += seen[k];
             }
             if (sum[3] <= 0) continue;
             std::uint8_t* pixel = &image.rgba[4 * static_cast<std::size_t>(row * thumbnail_size + column)];
-            for (std::size_t k = 0; k < 3; ++k) {
-                pixel[k] = static_cast<std::uint8_t>(255 * srgb_from_linear(sum[k] / sum[3]) + 0.5);
-            }
-            pixel[3] = static_cast<std::uint8_t>(255 * std::min(1.0, sum[3] / samples) + 0.5);
+            for (std::size_t k = 0; k < 3; ++k) pixel[k] = byte_from(srgb_from_linear(sum[k] / sum[3]));
+            pixel[3] = byte_from(std::min(1.0, sum[3] / samples));
         }
     }
     return interchange::encode_png(image);

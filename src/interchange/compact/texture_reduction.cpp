@@ -2,6 +2,7 @@
 #include "interchange/compact/texture_reduction.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "interchange/image/image_codec.h"
 
@@ -50,8 +51,8 @@ Result<StoredTexture> reduce_texture(const RawImage& image, int largest) {
 
     if (too_large) {
         const double ratio = static_cast<double>(largest) / std::max(pixels->width, pixels->height);
-        *pixels = resized(*pixels, std::max(1, static_cast<int>(pixels->width * ratio + 0.5)),
-                          std::max(1, static_cast<int>(pixels->height * ratio + 0.5)));
+        const auto scaled = [ratio](int side) { return std::max(1, static_cast<int>(std::lround(side * ratio))); };
+        *pixels = resized(*pixels, scaled(pixels->width), scaled(pixels->height));
     }
     const bool opaque = stored.transparency == Transparency::opaque;
     stored.bytes = opaque ? encode_jpeg(*pixels, jpeg_quality) : encode_png(*pixels);
