@@ -14,7 +14,6 @@ namespace embody::cli {
 namespace {
 
 using attributes::AttributeEntry;
-using attributes::AttributeSet;
 
 void print_model(const catalog::ModelSummary& model) {
     std::string tags;

@@ -71,7 +71,7 @@ std::string match_expression(std::string_view typed) {
     std::string expression;
     for (const std::string& word : split_words(typed)) {
         if (!expression.empty()) expression += " AND ";
-        expression += "(\"" + word + "\" OR \"" + word + "\" *)";
+        expression.append("(\"").append(word).append("\" OR \"").append(word).append("\" *)");
     }
     return expression;
 }

@@ -348,6 +348,7 @@ std::vector<std::pair<double, std::uint32_t>> farthest_outside(std::span<const V
 // few at a time (about ten rebuilt hulls instead of one a vertex).
 std::optional<ConvexHull> reduced_hull(std::span<const Vec3> points, std::array<std::uint32_t, 4> simplex, int limit) {
     std::vector<Vec3> chosen;
+    chosen.reserve(simplex.size());
     for (const std::uint32_t index : simplex) chosen.push_back(points[index]);
     std::optional<ConvexHull> hull = hull_of(chosen);
     while (hull) {

@@ -77,7 +77,7 @@ Result<Archive> Archive::open(const std::filesystem::path& file) {
 const std::vector<ArchiveMember>& Archive::members() const { return state_->members; }
 
 std::string Archive::find(std::string_view path) const {
-    const std::string wanted = normalized_member_path(path);
+    std::string wanted = normalized_member_path(path);
     if (state_->places.contains(wanted)) return wanted;
     const auto found = state_->by_lower_case.find(in_lower_case(wanted));
     return found == state_->by_lower_case.end() ? std::string() : found->second;

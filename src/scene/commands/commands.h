@@ -36,7 +36,7 @@ bool need_vector(FieldReader& reader, const char* name, const char* what, Vec3& 
 bool need_indices(FieldReader& reader, const SessionState& state, std::vector<EntityIndex>& indices);
 
 /// Ends a command that has no result.
-Result<nlohmann::json> done(Result<void> result);
+Result<nlohmann::json> done(const Result<void>& result);
 
 /// The rows of the properties panel: protocol's AttributeEntry. `own` tells whether a name is overridden.
 nlohmann::json attribute_rows(const attributes::AttributeSet& acting, const attributes::AttributeSet& automatic,

@@ -45,7 +45,7 @@ bool need_indices(FieldReader& reader, const SessionState& state, std::vector<En
     return true;
 }
 
-Result<json> done(Result<void> result) {
+Result<json> done(const Result<void>& result) {
     if (!result.ok()) return result.error();
     return json::object();
 }
