@@ -208,7 +208,8 @@ int main(int argc, char** argv) {
                                {"hull32-mesh", hull32.get(), hills.get(), true},
                                {"hull256-hull256", hull256.get(), hull256.get(), false},
                                {"hull256-box", hull256.get(), box.get(), false}};
-    std::printf("%-22s %-8s %9s %9s %7s  %s\n", "pair", "poses", "cold, ns", "warm, ns", "points", "sum of separations");
+    std::printf("%-22s %-8s %9s %9s %7s  %s\n", "pair", "poses", "cold, ns", "warm, ns", "points",
+                "sum of separations");
     bool same = true;
     for (const NamedPair& pair : pairs) {
         if (pair.name.find(wanted) == std::string::npos) continue;

@@ -2,6 +2,7 @@
 // From a pair of shapes to pairs of convexes. Everything below works in a frame of world axes whose origin is shape a's
 // position, so that a scene far from the world's origin loses no digits.
 #include "foundation/assert.h"
+#include "physics/collision/box_pair.h"
 #include "physics/collision/collision_shape.h"
 #include "physics/collision/collision_shape_data.h"
 #include "physics/collision/convex_pairs.h"
@@ -38,9 +39,28 @@ Bounds bounds_in_frame(const PlacedConvex& convex) {
     return {c - e, c + e};
 }
 
-void collide_pieces(const CollisionShape::Data& a, const Transform& pose_a, const CollisionShape::Data& b,
-                    const Transform& pose_b, double margin, std::vector<Manifold>& manifolds) {
+void append(Manifold& manifold, Vec3 origin, std::vector<Manifold>& manifolds) {
+    for (int i = 0; i < manifold.count; ++i) manifold.points[static_cast<std::size_t>(i)].position += origin;
+    manifolds.push_back(manifold);
+}
+
+// Two convex pieces in world axes with the origin at `origin`; at most one manifold.
+void collide_two(const PlacedConvex& a, const PlacedConvex& b, double margin, Vec3 origin, PairMemory& memory,
+                 std::vector<Manifold>& manifolds) {
+    if (a.shape->is_box && b.shape->is_box) {
+        const ConvexPair pair(*a.shape, a.rotation, *b.shape, b.rotation, b.position - a.position);
+        Manifold manifold;
+        const BoxMeeting meeting = collide_boxes(pair, margin, memory, manifold);
+        if (meeting == BoxMeeting::region) append(manifold, origin + a.position, manifolds);
+        if (meeting != BoxMeeting::undecided) return;
+    }
     thread_local ContactRegion region;
+    collide_convexes(a, b, margin, region);
+    append_manifold(region, origin, manifolds);
+}
+
+void collide_compounds(const CollisionShape::Data& a, const Transform& pose_a, const CollisionShape::Data& b,
+                       const Transform& pose_b, double margin, PairMemory& memory, std::vector<Manifold>& manifolds) {
     thread_local std::vector<PlacedConvex> placed_b;
     thread_local std::vector<Bounds> bounds_b;
     placed_b.clear();
@@ -54,14 +74,24 @@ void collide_pieces(const CollisionShape::Data& a, const Transform& pose_a, cons
         const Bounds bounds_a = enlarged(bounds_in_frame(placed_a), margin);
         for (std::uint32_t j = 0; j < placed_b.size(); ++j) {
             if (!overlaps(bounds_a, bounds_b[j])) continue;
-            collide_convexes(placed_a, placed_b[j], margin, region);
+            PairMemory forgotten;
             const std::size_t before = manifolds.size();
-            append_manifold(region, pose_a.position, manifolds);
+            collide_two(placed_a, placed_b[j], margin, pose_a.position, i + j == 0 ? memory : forgotten, manifolds);
             if (manifolds.size() == before) continue;
             manifolds.back().piece_a = i;
             manifolds.back().piece_b = j;
         }
     }
+}
+
+void collide_pieces(const CollisionShape::Data& a, const Transform& pose_a, const CollisionShape::Data& b,
+                    const Transform& pose_b, double margin, PairMemory& memory, std::vector<Manifold>& manifolds) {
+    if (a.pieces.size() > 1 || b.pieces.size() > 1) {
+        collide_compounds(a, pose_a, b, pose_b, margin, memory, manifolds);
+        return;
+    }
+    collide_two(place(a.pieces[0], pose_a, pose_a.position), place(b.pieces[0], pose_b, pose_a.position), margin,
+                pose_a.position, memory, manifolds);
 }
 
 }  // namespace
@@ -95,12 +125,18 @@ void collide_convexes(const PlacedConvex& a, const PlacedConvex& b, double margi
 
 void collide(const CollisionShape& a, const Transform& pose_a, const CollisionShape& b, const Transform& pose_b,
              double margin, std::vector<Manifold>& manifolds) {
-    EMBODY_ASSERT(!(is_static_only(a.definition()) && is_static_only(b.definition())));
+    PairMemory nothing;
+    collide(a, pose_a, b, pose_b, margin, nothing, manifolds);
+}
+
+void collide(const CollisionShape& a, const Transform& pose_a, const CollisionShape& b, const Transform& pose_b,
+             double margin, PairMemory& memory, std::vector<Manifold>& manifolds) {
     const CollisionShape::Data &data_a = a.data(), &data_b = b.data();
+    EMBODY_ASSERT(!(data_a.pieces.empty() && data_b.pieces.empty()));
     // A convex or compound comes first, what is only static second.
-    if (is_static_only(data_a.definition)) {
+    if (data_a.pieces.empty()) {
         const std::size_t before = manifolds.size();
-        collide(b, pose_b, a, pose_a, margin, manifolds);
+        collide(b, pose_b, a, pose_a, margin, memory, manifolds);
         for (std::size_t i = before; i < manifolds.size(); ++i) flip(manifolds[i]);
         return;
     }
@@ -111,7 +147,7 @@ void collide(const CollisionShape& a, const Transform& pose_a, const CollisionSh
             collide_surface(data_a.pieces[i], i, pose_a, {*data_b.surface, pose_b}, margin, manifolds);
         }
     } else {
-        collide_pieces(data_a, pose_a, data_b, pose_b, margin, manifolds);
+        collide_pieces(data_a, pose_a, data_b, pose_b, margin, memory, manifolds);
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "geometry/convex_hull.h"
 #include "physics/collision/collision_shape_data.h"
+#include "physics/collision/convex_pair.h"
 #include "physics/collision/shape_mass.h"
 
 namespace embody::physics {
@@ -35,7 +36,7 @@ Result<Convex> make_convex(const SphereShape& s) {
     return Convex{ConvexKind::sphere, s.radius, 0, {}, symmetric_bounds({s.radius, s.radius, s.radius})};
 }
 Result<Convex> make_convex(const BoxShape& s) {
-    return Convex{ConvexKind::polytope, 0, 0, box_polytope(s.half_extents), symmetric_bounds(s.half_extents)};
+    return Convex{ConvexKind::polytope, 0, 0, box_polytope(s.half_extents), symmetric_bounds(s.half_extents), true};
 }
 Result<Convex> make_convex(const CapsuleShape& s) { return round_convex(ConvexKind::capsule, s.radius, s.half_height); }
 Result<Convex> make_convex(const CylinderShape& s) {
@@ -132,7 +133,7 @@ private:
         if (!convex) return convex.error();
         const geometry::MassProperties mass = geometry::transformed(local, mass_of(*convex));
         data.mass = data.pieces.empty() ? mass : geometry::combined(data.mass, mass);
-        data.pieces.push_back({*std::move(convex), local});
+        data.pieces.push_back({*std::move(convex), local, local == Transform{}});
         return {};
     }
 };
@@ -191,9 +192,10 @@ double CollisionShape::radius_about(Vec3 center) const {
 }
 
 PlacedConvex place(const ConvexPiece& piece, const Transform& pose, Vec3 origin) {
+    if (piece.is_alone) return {&piece.convex, turn_of(pose.rotation), pose.position - origin};
     // The origin is taken off first: far from the world's origin the small differences keep their digits.
     const Vec3 at = (pose.position - origin) + rotate(pose.rotation, piece.local.position);
-    return {&piece.convex, to_matrix(pose.rotation * piece.local.rotation), at};
+    return {&piece.convex, turn_of(pose.rotation * piece.local.rotation), at};
 }
 
 }  // namespace embody::physics

@@ -14,6 +14,7 @@ namespace embody::physics {
 struct ConvexPiece {
     Convex convex;
     Transform local;
+    bool is_alone = true;  ///< stands in the shape's frame untouched: `local` changes nothing
 };
 
 struct CollisionShape::Data {

@@ -47,6 +47,7 @@ struct Convex {
     double half_height = 0;
     Polytope polytope;
     Bounds bounds;
+    bool is_box = false;  ///< a polytope whose corners are those of `bounds`, centred
 };
 
 /// A convex seen from the frame in which a pair is compared (world axes, origin near the pair: far from the world's

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+
+namespace embody::physics {
+
+/// A corner of a contact region in its plane: coordinates along two unit axes, and its depth, m.
+struct FlatPoint {
+    double x, y, separation;
+};
+
+/// Which points of a region to keep, by index.
+struct ChosenPoints {
+    int count = 0;
+    std::array<int, 4> index{};
+
+    [[nodiscard]] bool holds(int i) const {
+        for (int k = 0; k < count; ++k) {
+            if (index[static_cast<std::size_t>(k)] == i) return true;
+        }
+        return false;
+    }
+};
+
+/// At most four of the points: the deepest, then deep ones that span a large area (paper, III.B); points that add no
+/// area (twins, or inner ones of a line) go. Ties by a hair go to the earlier point, so that rounding does not choose.
+ChosenPoints choose_four(const FlatPoint* points, int count);
+
+}  // namespace embody::physics

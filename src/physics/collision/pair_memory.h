@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "math/vec3.h"
+
+namespace embody::physics {
+
+/// What the narrow phase keeps of a pair from one step to the next (32 bytes). Value-initialised: nothing known. It
+/// belongs to one ordered pair of shapes; clear it when a shape changes. Poses may jump: whatever is remembered is only
+/// tried first, so the contacts are those of an empty memory.
+struct PairMemory {
+    enum class Kind : std::uint8_t {
+        nothing,
+        apart,      ///< `axis` parted the pair by more than the margin
+        face_of_a,  ///< the pair met on face `feature_a` of a
+        face_of_b,  ///< … on face `feature_b` of b
+        edges,      ///< … where edge `feature_a` of a crosses edge `feature_b` of b
+        core_of_a,  ///< the parting direction was certified by a's core (round pairs)
+        core_of_b,  ///< … by b's core
+    };
+    Vec3 axis;  ///< unit, in the frame of the piece compared first, towards the other
+    std::uint16_t feature_a = 0, feature_b = 0;
+    Kind kind = Kind::nothing;
+
+    void part_along(Vec3 direction) {
+        axis = direction;
+        kind = Kind::apart;
+    }
+};
+static_assert(sizeof(PairMemory) <= 32);
+
+}  // namespace embody::physics
