@@ -26,7 +26,7 @@ void collide_with_plane(const CollisionShape::Data& a, const Transform& pose_a, 
         region.points.clear();
         collide_plane(place(a.pieces[i], pose_a, pose_a.position), placed, margin, region);
         const std::size_t before = manifolds.size();
-        append_manifold(region, pose_a.position, manifolds);
+        append_manifold(region, {}, pose_a.position, manifolds);
         if (manifolds.size() > before) manifolds.back().piece_a = i;
     }
 }
@@ -44,19 +44,36 @@ void append(Manifold& manifold, Vec3 origin, std::vector<Manifold>& manifolds) {
     manifolds.push_back(manifold);
 }
 
+// The family of the pair; a's kind is not after b's.
+void find_region(const ConvexPair& pair, double margin, PairMemory& memory, ContactRegion& region) {
+    if (pair.a->kind == ConvexKind::sphere) {
+        collide_sphere(pair.placed_a(), pair.placed_b(), margin, region);
+        return;
+    }
+    const bool has_corners = pair.a->kind == ConvexKind::polytope && pair.b->kind == ConvexKind::polytope;
+    if (has_corners && collide_polytopes(pair, margin, memory, region)) return;
+    collide_round(pair.placed_a(), pair.placed_b(), margin, region);
+}
+
 // Two convex pieces in world axes with the origin at `origin`; at most one manifold.
-void collide_two(const PlacedConvex& a, const PlacedConvex& b, double margin, Vec3 origin, PairMemory& memory,
+void collide_two(const PlacedConvex& first, const PlacedConvex& second, double margin, Vec3 origin, PairMemory& memory,
                  std::vector<Manifold>& manifolds) {
+    // Each pair of kinds in one order, so that swapped arguments give the mirrored answer.
+    const bool is_swapped = first.shape->kind > second.shape->kind;
+    const PlacedConvex &a = is_swapped ? second : first, &b = is_swapped ? first : second;
+    const ConvexPair pair(*a.shape, a.rotation, *b.shape, b.rotation, b.position - a.position);
     if (a.shape->is_box && b.shape->is_box) {
-        const ConvexPair pair(*a.shape, a.rotation, *b.shape, b.rotation, b.position - a.position);
         Manifold manifold;
         const BoxMeeting meeting = collide_boxes(pair, margin, memory, manifold);
         if (meeting == BoxMeeting::region) append(manifold, origin + a.position, manifolds);
         if (meeting != BoxMeeting::undecided) return;
     }
     thread_local ContactRegion region;
-    collide_convexes(a, b, margin, region);
-    append_manifold(region, origin, manifolds);
+    region.points.clear();
+    find_region(pair, margin, memory, region);
+    if (region.points.empty()) return;
+    append_manifold(region, pair.turn_a, origin + a.position, manifolds);
+    if (is_swapped) manifolds.back().normal = -manifolds.back().normal;
 }
 
 void collide_compounds(const CollisionShape::Data& a, const Transform& pose_a, const CollisionShape::Data& b,
@@ -95,33 +112,6 @@ void collide_pieces(const CollisionShape::Data& a, const Transform& pose_a, cons
 }
 
 }  // namespace
-
-namespace {
-
-// Every edge of one against every edge of the other is the faster way only while both have few.
-bool has_few_edges(const PlacedConvex& a, const PlacedConvex& b) {
-    constexpr std::size_t few = 4096;
-    return a.shape->polytope.edges.size() * b.shape->polytope.edges.size() <= few;
-}
-
-}  // namespace
-
-void collide_convexes(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region) {
-    region.points.clear();
-    // Each pair of kinds in one order, so that swapped arguments give the mirrored answer.
-    if (a.shape->kind > b.shape->kind) {
-        collide_convexes(b, a, margin, region);
-        region.normal = -region.normal;
-        return;
-    }
-    if (a.shape->kind == ConvexKind::sphere) {
-        collide_sphere(a, b, margin, region);
-    } else if (a.shape->kind == ConvexKind::polytope && b.shape->kind == ConvexKind::polytope && has_few_edges(a, b)) {
-        collide_polytopes(a, b, margin, region);
-    } else {
-        collide_round(a, b, margin, region);
-    }
-}
 
 void collide(const CollisionShape& a, const Transform& pose_a, const CollisionShape& b, const Transform& pose_b,
              double margin, std::vector<Manifold>& manifolds) {

@@ -5,42 +5,65 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace embody::physics {
 
 namespace {
 
-/// A corner of the clipped polygon: the edges that meet there name it.
-struct ClipCorner {
-    Vec3 position;
-    std::uint32_t edge_in = 0, edge_out = 0;
-};
-
 constexpr std::uint32_t reference_edge_tag = 0x8000u;
 
-// Keeps the part of a closed polygon (or an open segment) that lies below the plane.
-void clip_by_plane(const std::vector<ClipCorner>& from, bool closed, Vec3 normal, double offset, std::uint32_t name,
-                   std::vector<ClipCorner>& to) {
+/// Two axes of the reference's plane, and its origin there.
+struct ReferencePlane {
+    Vec3 origin, normal, across, up;
+
+    explicit ReferencePlane(const ContactFeature& reference)
+        : origin(reference.points[0]), normal(reference.normal), across(any_perpendicular(normal)) {
+        up = cross(normal, across);
+    }
+    [[nodiscard]] ClipCorner flatten(Vec3 p, std::uint32_t edge_in, std::uint32_t edge_out) const {
+        const Vec3 d = p - origin;
+        return {dot(d, across), dot(d, up), dot(d, normal), edge_in, edge_out};
+    }
+};
+
+/// A side of the reference: what lies beyond it is cut off. Heights over it are in units of its length.
+struct Side {
+    double x, y, along_x, along_y, slack;
+
+    Side(const ClipCorner& from, const ClipCorner& to)
+        : x(from.x), y(from.y), along_x(to.x - from.x), along_y(to.y - from.y) {
+        // A tiny slack keeps corners that lie on a side.
+        slack = 1e-9 * (along_x * along_x + along_y * along_y);
+    }
+    [[nodiscard]] double beyond(const ClipCorner& c) const { return along_y * (c.x - x) - along_x * (c.y - y) - slack; }
+};
+
+// Keeps the part of a closed polygon (or an open segment) that lies on the inner side; false where all of it does.
+bool clip_by_side(const std::vector<ClipCorner>& from, bool closed, const Side& side, std::uint32_t name,
+                  std::vector<ClipCorner>& to) {
+    double farthest_out = -1e300;
+    for (const ClipCorner& c : from) farthest_out = std::max(farthest_out, side.beyond(c));
+    if (farthest_out <= 0) return false;
+
     to.clear();
     const std::size_t n = from.size();
+    double out_u = side.beyond(from[0]);
     for (std::size_t i = 0; i < n; ++i) {
         const ClipCorner& u = from[i];
-        const double height_u = dot(normal, u.position) - offset;
-        if (height_u <= 0) to.push_back(u);
+        if (out_u <= 0) to.push_back(u);
         if (!closed && i + 1 == n) break;
 
-        // Where the edge crosses the plane, a new corner between this edge and the plane.
-        const ClipCorner& v = from[(i + 1) % n];
-        const double height_v = dot(normal, v.position) - offset;
-        if ((height_u <= 0) == (height_v <= 0)) continue;
-        const Vec3 p = u.position + (v.position - u.position) * (height_u / (height_u - height_v));
-        if (height_u <= 0) {
-            to.push_back({p, u.edge_out, name});
-        } else {
-            to.push_back({p, name, u.edge_out});
+        // Where the edge crosses the side, a new corner between this edge and the side.
+        const ClipCorner& v = from[i + 1 == n ? 0 : i + 1];
+        const double out_v = side.beyond(v);
+        if ((out_u <= 0) != (out_v <= 0)) {
+            const double t = out_u / (out_u - out_v);
+            to.push_back({u.x + (v.x - u.x) * t, u.y + (v.y - u.y) * t, u.height + (v.height - u.height) * t,
+                          out_u <= 0 ? u.edge_out : name, out_u <= 0 ? name : u.edge_out});
         }
+        out_u = out_v;
     }
+    return true;
 }
 
 /// Parameters of the nearest points of the lines p + s u and q + t v; false where they are parallel.
@@ -61,43 +84,39 @@ bool nearest_on_lines(Vec3 p, Vec3 u, Vec3 q, Vec3 v, double& s, double& t) {
 std::uint32_t feature_name(std::initializer_list<std::uint32_t> parts) {
     std::uint32_t name = 0x811C9DC5u;
     for (const std::uint32_t part : parts) {
-        for (int shift = 0; shift < 32; shift += 8) {
-            name ^= (part >> shift) & 0xFFu;
-            name *= 0x01000193u;
-        }
+        name = (name ^ part) * 0x9E3779B1u;
+        name ^= name >> 15;
     }
     return name;
 }
 
 void clip_to_region(const ContactFeature& reference, const ContactFeature& incident, bool reference_is_a, double lift,
                     double margin, ContactRegion& region) {
-    thread_local std::vector<ClipCorner> corners, clipped;
-    const std::size_t sides = reference.points.size();
+    const ReferencePlane plane(reference);
     const bool closed = incident.points.size() > 2;
 
     // The incident's corners, named by the edges before and after them.
+    auto &corners = region.corners, &sides = region.sides;
     corners.clear();
+    sides.clear();
     const auto n = static_cast<std::uint32_t>(incident.points.size());
-    for (std::uint32_t i = 0; i < n; ++i) corners.push_back({incident.points[i], (i + n - 1) % n, i});
+    for (std::uint32_t i = 0; i < n; ++i) corners.push_back(plane.flatten(incident.points[i], (i + n - 1) % n, i));
+    for (const Vec3& p : reference.points) sides.push_back(plane.flatten(p, 0, 0));
 
-    // By each side of the reference in turn; a tiny slack keeps corners that lie on a side.
-    for (std::size_t i = 0; i < sides && !corners.empty(); ++i) {
-        const Vec3 p = reference.points[i];
-        const Vec3 along = reference.points[(i + 1) % sides] - p;
-        const Vec3 outwards = normalized(cross(along, reference.normal));
-        const double slack = 1e-9 * (std::fabs(along.x) + std::fabs(along.y) + std::fabs(along.z));
+    // By each side of the reference in turn.
+    for (std::size_t i = 0; i < sides.size() && !corners.empty(); ++i) {
+        const Side side(sides[i], sides[i + 1 == sides.size() ? 0 : i + 1]);
         const auto name = static_cast<std::uint32_t>(i) | reference_edge_tag;
-        clip_by_plane(corners, closed, outwards, dot(outwards, p) + slack, name, clipped);
-        std::swap(corners, clipped);
+        if (clip_by_side(corners, closed, side, name, region.clipped)) std::swap(corners, region.clipped);
     }
 
     // What is near enough, with its height over the reference's plane.
     for (const ClipCorner& corner : corners) {
-        const double separation = dot(corner.position - reference.points[0], reference.normal) - lift;
+        const double separation = corner.height - lift;
         if (separation > margin) continue;
         const std::uint32_t name =
             feature_name({reference_is_a ? 1u : 2u, reference.id, incident.id, corner.edge_in << 16 | corner.edge_out});
-        const Vec3 on_reference = corner.position - reference.normal * (separation + lift);
+        const Vec3 on_reference = plane.origin + plane.across * corner.x + plane.up * corner.y;
         const Vec3 on_a = reference_is_a ? on_reference : on_reference - region.normal * separation;
         region.add(on_a, separation, name);
     }
@@ -109,16 +128,18 @@ void add_near_corners(const ContactFeature& reference, const PlacedConvex& incid
     const std::vector<Vec3>& vertices = incident.shape->polytope.vertices;
     if (vertices.size() <= corners_of_a_box) return;
     const std::size_t sides = reference.points.size();
+    const Vec3 normal = incident.direction_to_local(reference.normal);
+    const double low = dot(reference.points[0] - incident.position, reference.normal);
     for (std::uint32_t i = 0; i < vertices.size(); ++i) {
-        const Vec3 corner = incident.to_frame(vertices[i]);
-        const double separation = dot(corner - reference.points[0], reference.normal);
+        const double separation = dot(vertices[i], normal) - low;
         if (separation > margin) continue;
 
         // Over the reference: on the inner side of each of its sides.
+        const Vec3 corner = incident.to_frame(vertices[i]);
         bool is_over = true;
         for (std::size_t k = 0; k < sides && is_over; ++k) {
             const Vec3 p = reference.points[k];
-            const Vec3 along = reference.points[(k + 1) % sides] - p;
+            const Vec3 along = reference.points[k + 1 == sides ? 0 : k + 1] - p;
             is_over = dot(cross(along, reference.normal), corner - p) <= 0;
         }
         if (!is_over) continue;
@@ -166,81 +187,28 @@ void cross_segments(const ContactFeature& a, const ContactFeature& b, double rad
 void reduce_to_four(ContactRegion& region) {
     auto& points = region.points;
     if (points.size() < 2) return;
-    const Vec3 normal = region.normal;
-    std::size_t kept = 0;
-    // Moves the best of the points not yet kept behind those kept, unless its score is below `least`.
-    const auto keep_best = [&](double least, auto&& score) {
-        std::size_t best = points.size();
-        double highest = least;
-        for (std::size_t i = kept; i < points.size(); ++i) {
-            const double value = score(points[i]);
-            // Ties by a hair go to the earlier point, so that rounding does not choose.
-            if (!(value > highest + (best == points.size() ? 0 : 1e-9 * std::fabs(highest)))) continue;
-            highest = value;
-            best = i;
-        }
-        if (best == points.size()) return false;
-        const auto at = [&points](std::size_t i) { return points.begin() + static_cast<std::ptrdiff_t>(i); };
-        std::rotate(at(kept), at(best), at(best + 1));
-        ++kept;
-        return true;
-    };
-
-    // The outermost of the deepest (within a small part of the size).
-    Vec3 middle;
-    double lowest = std::numeric_limits<double>::infinity(), size = 0;
+    const Vec3 across = any_perpendicular(region.normal), up = cross(region.normal, across);
+    region.flat.clear();
     for (const ManifoldPoint& p : points) {
-        middle += p.position / static_cast<double>(points.size());
-        lowest = std::min(lowest, p.separation);
+        region.flat.push_back({dot(p.position, across), dot(p.position, up), p.separation});
     }
-    for (const ManifoldPoint& p : points) size = std::max(size, distance(p.position, middle));
-    keep_best(-1, [&](const ManifoldPoint& p) {
-        return p.separation <= lowest + 1e-4 * size ? distance(p.position, middle) : -2.0;
-    });
-
-    // The farthest from it, the farthest from their line, the farthest beyond the triangle; what adds no area is
-    // dropped. Depth counts before area: of two points side by side the lower one carries, and a hull of many vertices
-    // has higher ones a little farther out everywhere. `slope`: metres of extent given up for a metre of depth.
-    constexpr double slope = 10;
-    constexpr double unfit = -std::numeric_limits<double>::infinity();
-    const auto lift = [&](const ManifoldPoint& p) { return slope * (p.separation - lowest); };
-    const double no_length = std::max(1e-6 * size, 1e-9);
-    const auto reach = [&](double length, const ManifoldPoint& p) {
-        return length > no_length ? length - lift(p) : unfit;
-    };
-    // Distance of p from the line, positive on the left seen against the normal.
-    const auto beside = [&](Vec3 from, Vec3 to, Vec3 p) {
-        return dot(normal, cross(to - from, p - from)) / distance(from, to);
-    };
-    const Vec3 first = points[0].position;
-    if (keep_best(unfit, [&](const ManifoldPoint& p) { return reach(distance(p.position, first), p); })) {
-        const Vec3 second = points[1].position;
-        const auto from_line = [&](const ManifoldPoint& p) { return std::fabs(beside(first, second, p.position)); };
-        if (keep_best(unfit, [&](const ManifoldPoint& p) { return reach(from_line(p), p); })) {
-            const Vec3 third = points[2].position;
-            const double turn = beside(first, second, third) < 0 ? -1.0 : 1.0;
-            keep_best(unfit, [&](const ManifoldPoint& p) {
-                const double outside =
-                    std::max({-turn * beside(first, second, p.position), -turn * beside(second, third, p.position),
-                              -turn * beside(third, first, p.position)});
-                return reach(outside, p);
-            });
-        }
-    }
-    points.resize(kept);
+    const ChosenPoints chosen = choose_four(region.flat.data(), static_cast<int>(region.flat.size()));
+    std::array<ManifoldPoint, Manifold::max_points> kept;
+    const auto count = static_cast<std::size_t>(chosen.count);
+    for (std::size_t k = 0; k < count; ++k) kept[k] = points[static_cast<std::size_t>(chosen.index[k])];
+    points.assign(kept.begin(), kept.begin() + chosen.count);
 }
 
-void append_manifold(ContactRegion& region, Vec3 origin, std::vector<Manifold>& manifolds) {
+void append_manifold(ContactRegion& region, const Mat3& turn, Vec3 origin, std::vector<Manifold>& manifolds) {
     if (region.points.empty()) return;
     reduce_to_four(region);
-    Manifold manifold;
-    manifold.normal = region.normal;
-    for (const ManifoldPoint& point : region.points) {
-        manifold.points[static_cast<std::size_t>(manifold.count)] = point;
-        manifold.points[static_cast<std::size_t>(manifold.count)].position += origin;
-        ++manifold.count;
+    Manifold& manifold = manifolds.emplace_back();
+    manifold.normal = turn * region.normal;
+    manifold.count = static_cast<int>(region.points.size());
+    for (std::size_t i = 0; i < region.points.size(); ++i) {
+        manifold.points[i] = region.points[i];
+        manifold.points[i].position = origin + turn * region.points[i].position;
     }
-    manifolds.push_back(manifold);
 }
 
 }  // namespace embody::physics

@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <vector>
 
+#include "physics/collision/choose_four.h"
 #include "physics/collision/convex.h"
 #include "physics/collision/manifold.h"
 
@@ -25,10 +26,22 @@ struct ContactFeature {
 /// 32-bit name of a meeting of features.
 std::uint32_t feature_name(std::initializer_list<std::uint32_t> parts);
 
-/// A contact region while it is gathered, in the frame of the pair.
+/// A corner of a polygon while it is clipped: in the reference's plane, and its height over it; the edges that meet
+/// there name it.
+struct ClipCorner {
+    double x, y, height;
+    std::uint32_t edge_in, edge_out;
+};
+
+/// A contact region while it is gathered, in the frame of the pair, and room for that work: one lives long and its
+/// vectors keep their memory.
 struct ContactRegion {
     Vec3 normal;  ///< unit, a to b
     std::vector<ManifoldPoint> points;
+
+    ContactFeature reference, incident;
+    std::vector<ClipCorner> sides, corners, clipped;
+    std::vector<FlatPoint> flat;
 
     /// `on_a` on the surface of a, `separation` from there along the normal to b.
     void add(Vec3 on_a, double separation, std::uint32_t feature) {
@@ -57,11 +70,10 @@ void keep_deepest(Vec3 on_a, double separation, double tolerance, ContactRegion&
 void cross_segments(const ContactFeature& a, const ContactFeature& b, double radius_a, double radius_b, double margin,
                     ContactRegion& region);
 
-/// Keeps at most four points: the deepest, then deep ones that span a large area (paper, III.B), in a fixed order;
-/// points that add no area (twins, or inner ones of a line) go.
+/// Keeps the four points that choose_four() chooses.
 void reduce_to_four(ContactRegion& region);
 
-/// Appends the region as manifold, moved by `origin` into the world; nothing for an empty region.
-void append_manifold(ContactRegion& region, Vec3 origin, std::vector<Manifold>& manifolds);
+/// Appends the region as manifold, turned and moved into the world; nothing for an empty region.
+void append_manifold(ContactRegion& region, const Mat3& turn, Vec3 origin, std::vector<Manifold>& manifolds);
 
 }  // namespace embody::physics

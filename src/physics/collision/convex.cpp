@@ -5,14 +5,16 @@
 #include <map>
 #include <utility>
 
+#include "physics/collision/polytope_query.h"
+
 namespace embody::physics {
 
 namespace {
 
 Vec3 rim_support(const Convex& round, Vec3 local_direction, double height) {
-    const double flat = std::hypot(local_direction.x, local_direction.z);
-    if (flat <= 1e-150) return {round.radius, height, 0};
-    const double s = round.radius / flat;
+    const double squared = local_direction.x * local_direction.x + local_direction.z * local_direction.z;
+    if (!(squared > 1e-300)) return {round.radius, height, 0};
+    const double s = round.radius / std::sqrt(squared);
     return {local_direction.x * s, height, local_direction.z * s};
 }
 
@@ -35,7 +37,35 @@ Vec3 local_core_support(const Convex& convex, Vec3 d) {
     return dot(d, apex) > dot(d, rim) ? apex : rim;
 }
 
+// How far each face's normal reaches over all vertices, and lanes of vertices and normals.
+void fill_lanes(Polytope& polytope) {
+    std::vector<Vec3> normals;
+    for (const Polytope::Face& face : polytope.faces) {
+        double reach = -1e300;
+        for (const Vec3& v : polytope.vertices) reach = std::fmax(reach, dot(face.normal, v));
+        for (std::uint32_t i = 0; i < face.count; ++i) {
+            const Vec3 corner = polytope.vertices[polytope.loops[face.first + i]];
+            polytope.unevenness = std::fmax(polytope.unevenness, reach - dot(face.normal, corner));
+        }
+        normals.push_back(face.normal);
+        polytope.reach.push_back(reach);
+    }
+    polytope.normal_lanes.assign(normals);
+    polytope.vertex_lanes.assign(polytope.vertices);
+    polytope.reach.resize(polytope.normal_lanes.size(), polytope.reach[0]);
+}
+
 }  // namespace
+
+void Lanes::assign(const std::vector<Vec3>& vectors) {
+    const std::size_t filled = (vectors.size() + 3) / 4 * 4;
+    for (std::size_t i = 0; i < filled; ++i) {
+        const Vec3 v = vectors[i < vectors.size() ? i : 0];
+        x.push_back(v.x);
+        y.push_back(v.y);
+        z.push_back(v.z);
+    }
+}
 
 Polytope box_polytope(Vec3 h) {
     Polytope box;
@@ -104,32 +134,21 @@ void link_edges(Polytope& polytope) {
         if (!known) polytope.edge_directions.push_back(d);
     }
     for (const Vec3& v : polytope.vertices) polytope.center += v / static_cast<double>(polytope.vertices.size());
+    fill_lanes(polytope);
 }
 
 std::uint32_t support_vertex(const Polytope& polytope, Vec3 direction) {
+    if (polytope.vertex_lanes.size() > 0) return farthest(polytope.vertex_lanes, direction).index;
     std::uint32_t best = 0;
-    double farthest = dot(polytope.vertices[0], direction);
     for (std::uint32_t i = 1; i < polytope.vertices.size(); ++i) {
-        const double along = dot(polytope.vertices[i], direction);
-        if (along > farthest) {
-            farthest = along;
-            best = i;
-        }
+        if (dot(polytope.vertices[i], direction) > dot(polytope.vertices[best], direction)) best = i;
     }
     return best;
 }
 
 std::uint32_t support_face(const Polytope& polytope, Vec3 direction) {
-    std::uint32_t best = 0;
-    double most = dot(polytope.faces[0].normal, direction);
-    for (std::uint32_t i = 1; i < polytope.faces.size(); ++i) {
-        const double aligned = dot(polytope.faces[i].normal, direction);
-        if (aligned > most) {
-            most = aligned;
-            best = i;
-        }
-    }
-    return best;
+    if (polytope.faces.size() == 1) return 0;
+    return farthest(polytope.normal_lanes, direction).index;
 }
 
 Vec3 core_support(const PlacedConvex& convex, Vec3 direction) {

@@ -9,6 +9,15 @@
 
 namespace embody::physics {
 
+/// Vectors by components, in lanes: filled up to a multiple of four with copies of the first, so that loops over them
+/// need no rest and a maximum stays one of the originals.
+struct Lanes {
+    std::vector<double> x, y, z;
+
+    void assign(const std::vector<Vec3>& vectors);
+    [[nodiscard]] std::size_t size() const { return x.size(); }
+};
+
 /// Convex polyhedron with merged planar faces. Loops run counter-clockwise seen from outside.
 struct Polytope {
     static constexpr std::uint32_t no_face = 0xFFFFFFFFu;
@@ -28,6 +37,11 @@ struct Polytope {
     std::vector<Edge> edges;
     std::vector<Vec3> edge_directions;  ///< unit, each direction once (without its sign)
     Vec3 center;                        ///< mean of the vertices, inside
+    // For the separating axes, filled with the edges. `reach`: largest dot(normal, vertex) of each face, its plane's
+    // offset but for what merging left; `unevenness`: how far corners lie below their faces, at most.
+    Lanes vertex_lanes, normal_lanes;
+    std::vector<double> reach;
+    double unevenness = 0;
 };
 
 Polytope box_polytope(Vec3 half_extents);
@@ -35,7 +49,7 @@ Polytope box_polytope(Vec3 half_extents);
 Polytope triangle_polytope(Vec3 a, Vec3 b, Vec3 c);
 /// Moves an existing triangle without allocating.
 void set_triangle(Polytope& triangle, Vec3 a, Vec3 b, Vec3 c);
-/// Fills edges, edge_directions and center from vertices, faces and loops.
+/// Fills edges, edge_directions, center, lanes and reach from vertices, faces and loops.
 void link_edges(Polytope& polytope);
 
 enum class ConvexKind : std::uint8_t { sphere, capsule, polytope, cylinder, cone };

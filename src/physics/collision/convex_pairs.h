@@ -2,11 +2,13 @@
 #pragma once
 
 #include "physics/collision/contact_region.h"
-#include "physics/collision/convex.h"
+#include "physics/collision/convex_pair.h"
+#include "physics/collision/pair_memory.h"
 
 namespace embody::physics {
 
-// Each finds the contact region of one family of pairs; the region's normal is set where there are points.
+// Each finds the contact region of one family of pairs in an empty ContactRegion; its normal is set where there are
+// points. The frame is that of a.
 
 /// Signed distance of a point from the surface of a convex (negative inside), and the outward direction there.
 struct SurfaceDistance {
@@ -25,12 +27,10 @@ struct PlacedPlane {
 void collide_sphere(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region);
 /// a is any convex, b the plane; the normal points from a into the plane.
 void collide_plane(const PlacedConvex& a, const PlacedPlane& plane, double margin, ContactRegion& region);
-/// Both are polytopes with volume.
-void collide_polytopes(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region);
+/// Both are polytopes with volume. False, and nothing done, where they are so deep in each other that too many edges
+/// would have to be paired.
+bool collide_polytopes(const ConvexPair& pair, double margin, PairMemory& memory, ContactRegion& region);
 /// Any pair of convexes, by GJK and EPA: those with a round side, and triangles.
 void collide_round(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region);
-
-/// Picks the right one of the above; `region` is emptied first.
-void collide_convexes(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region);
 
 }  // namespace embody::physics

@@ -5,6 +5,7 @@
 #include "physics/collision/gjk.h"
 
 #include <cmath>
+#include <utility>
 
 namespace embody::physics {
 
@@ -14,19 +15,18 @@ using Simplex = std::array<DifferencePoint, 4>;
 
 /// Nearest point of a simplex to the origin: the corners that carry it and their weights.
 struct NearestPoint {
-    int size = 0;
-    std::array<int, 4> corner{};
-    std::array<double, 4> weight{};
+    int size;
+    int corner[4];
+    double weight[4];
     Vec3 point;
 };
 
-NearestPoint nearest_on_vertex(const Simplex& s, int a) {
-    return {1, {a}, {1.0}, s[static_cast<std::size_t>(a)].difference};
-}
+Vec3 corner(const Simplex& s, int i) { return s[static_cast<std::size_t>(i)].difference; }
+
+NearestPoint nearest_on_vertex(const Simplex& s, int a) { return {1, {a}, {1.0}, corner(s, a)}; }
 
 NearestPoint nearest_on_edge(const Simplex& s, int a, int b) {
-    const Vec3 p = s[static_cast<std::size_t>(a)].difference, q = s[static_cast<std::size_t>(b)].difference;
-    const Vec3 along = q - p;
+    const Vec3 p = corner(s, a), along = corner(s, b) - p;
     const double t = -dot(p, along), whole = dot(along, along);
     if (t <= 0) return nearest_on_vertex(s, a);
     if (t >= whole) return nearest_on_vertex(s, b);
@@ -34,10 +34,12 @@ NearestPoint nearest_on_edge(const Simplex& s, int a, int b) {
     return {2, {a, b}, {1 - w, w}, p + along * w};
 }
 
+void take_nearer(NearestPoint& best, const NearestPoint& other) {
+    if (best.size == 0 || length_squared(other.point) < length_squared(best.point)) best = other;
+}
+
 NearestPoint nearest_on_triangle(const Simplex& s, int a, int b, int c) {
-    const Vec3 p = s[static_cast<std::size_t>(a)].difference;
-    const Vec3 q = s[static_cast<std::size_t>(b)].difference;
-    const Vec3 r = s[static_cast<std::size_t>(c)].difference;
+    const Vec3 p = corner(s, a), q = corner(s, b), r = corner(s, c);
     const Vec3 n = cross(q - p, r - p);
     const double nn = dot(n, n);
 
@@ -47,30 +49,30 @@ NearestPoint nearest_on_triangle(const Simplex& s, int a, int b, int c) {
         const double sum = wa + wb + wc;
         return {3, {a, b, c}, {wa / sum, wb / sum, wc / sum}, n * (dot(n, p) / nn)};
     }
-    // Outside of the triangle's prism: the nearest of its edges.
-    NearestPoint best = nearest_on_edge(s, a, b);
-    for (const NearestPoint& other : {nearest_on_edge(s, b, c), nearest_on_edge(s, c, a)}) {
-        if (length_squared(other.point) < length_squared(best.point)) best = other;
-    }
+    // Outside of the triangle's prism: the nearest of the edges it is beyond.
+    NearestPoint best;
+    best.size = 0;
+    if (!(wc > 0)) take_nearer(best, nearest_on_edge(s, a, b));
+    if (!(wa > 0)) take_nearer(best, nearest_on_edge(s, b, c));
+    if (!(wb > 0)) take_nearer(best, nearest_on_edge(s, c, a));
+    if (best.size == 0) best = nearest_on_edge(s, a, b);
     return best;
 }
 
 // Whether the origin lies beyond the face a b c as seen from corner d.
 bool beyond_face(const Simplex& s, int a, int b, int c, int d) {
-    const Vec3 p = s[static_cast<std::size_t>(a)].difference;
-    const Vec3 n = cross(s[static_cast<std::size_t>(b)].difference - p, s[static_cast<std::size_t>(c)].difference - p);
-    const double origin_side = -dot(n, p);
-    const double inner_side = dot(n, s[static_cast<std::size_t>(d)].difference - p);
-    return origin_side * inner_side <= 0;
+    const Vec3 p = corner(s, a);
+    const Vec3 n = cross(corner(s, b) - p, corner(s, c) - p);
+    return -dot(n, p) * dot(n, corner(s, d) - p) <= 0;
 }
 
+// The last corner is the new one: the origin is on its side of the three others' face.
 NearestPoint nearest_on_tetrahedron(const Simplex& s) {
-    static constexpr int faces[4][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 3, 2, 0}};
+    static constexpr int faces[3][4] = {{0, 1, 3, 2}, {0, 3, 2, 1}, {1, 2, 3, 0}};
     NearestPoint best;
+    best.size = 0;
     for (const auto& f : faces) {
-        if (!beyond_face(s, f[0], f[1], f[2], f[3])) continue;
-        const NearestPoint other = nearest_on_triangle(s, f[0], f[1], f[2]);
-        if (best.size == 0 || length_squared(other.point) < length_squared(best.point)) best = other;
+        if (beyond_face(s, f[0], f[1], f[2], f[3])) take_nearer(best, nearest_on_triangle(s, f[0], f[1], f[2]));
     }
     // Beyond no face: the origin is inside.
     if (best.size == 0) best.size = 4;
@@ -86,24 +88,33 @@ NearestPoint nearest_on_simplex(const Simplex& s, int size) {
 
 bool holds(const CoreDistance& state, Vec3 difference) {
     for (int i = 0; i < state.simplex_size; ++i) {
-        if (state.simplex[static_cast<std::size_t>(i)].difference == difference) return true;
+        if (corner(state.simplex, i) == difference) return true;
     }
     return false;
 }
 
-// Drops the corners that do not carry the nearest point and reads off the witness points.
-void keep_carriers(CoreDistance& state, const NearestPoint& nearest) {
-    Simplex kept;
+// Drops the corners that do not carry the nearest point; the order of the others stays.
+void keep_carriers(CoreDistance& state, NearestPoint& nearest) {
+    for (int i = 1; i < nearest.size; ++i) {
+        for (int k = i; k > 0 && nearest.corner[k] < nearest.corner[k - 1]; --k) {
+            std::swap(nearest.corner[k], nearest.corner[k - 1]);
+            std::swap(nearest.weight[k], nearest.weight[k - 1]);
+        }
+    }
+    for (int i = 0; i < nearest.size; ++i) {
+        if (nearest.corner[i] == i) continue;
+        state.simplex[static_cast<std::size_t>(i)] = state.simplex[static_cast<std::size_t>(nearest.corner[i])];
+    }
+    state.simplex_size = nearest.size;
+}
+
+// The points of both shapes that the carriers' weights stand for.
+void read_witnesses(CoreDistance& state, const NearestPoint& nearest) {
     state.on_a = state.on_b = {};
     for (int i = 0; i < nearest.size; ++i) {
-        const auto slot = static_cast<std::size_t>(i);
-        kept[slot] = state.simplex[static_cast<std::size_t>(nearest.corner[slot])];
-        state.on_a += kept[slot].on_a * nearest.weight[slot];
-        state.on_b += kept[slot].on_b * nearest.weight[slot];
+        state.on_a += state.simplex[static_cast<std::size_t>(i)].on_a * nearest.weight[i];
+        state.on_b += state.simplex[static_cast<std::size_t>(i)].on_b * nearest.weight[i];
     }
-    state.simplex = kept;
-    state.simplex_size = nearest.size;
-    state.distance = length(nearest.point);
 }
 
 }  // namespace
@@ -113,51 +124,57 @@ DifferencePoint difference_support(const PlacedConvex& a, const PlacedConvex& b,
     return {on_b - on_a, on_a, on_b};
 }
 
-CoreDistance core_distance(const PlacedConvex& a, const PlacedConvex& b, double enough) {
+CoreDistance core_distance(const PlacedConvex& a, const PlacedConvex& b, double enough, Vec3 start) {
     constexpr int most_iterations = 100;
     // Relative to the size of the coordinates: what rounding leaves of a distance of zero.
     constexpr double zero = 1e-14;
     constexpr double converged = 1e-12;
 
     CoreDistance state;
-    Vec3 start = interior_point(b) - interior_point(a);
+    if (length_squared(start) == 0) start = interior_point(b) - interior_point(a);
     if (length_squared(start) == 0) start = {1, 0, 0};
     state.simplex[0] = difference_support(a, b, -start);
     state.simplex_size = 1;
-    keep_carriers(state, nearest_on_vertex(state.simplex, 0));
-    Vec3 nearest = state.simplex[0].difference;
-    double scale = length(nearest);
+    NearestPoint nearest = nearest_on_vertex(state.simplex, 0);
+    double squared = length_squared(nearest.point), scale = std::sqrt(squared);
 
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
-        if (state.distance <= zero * scale) {
+        if (squared <= zero * zero * scale * scale) {
             state.overlap = true;
             break;
         }
-        const DifferencePoint next = difference_support(a, b, -nearest);
-        scale = std::fmax(scale, length(next.difference));
-        const double squared = length_squared(nearest), lower = dot(nearest, next.difference);
+        const DifferencePoint next = difference_support(a, b, -nearest.point);
+        scale = std::fmax(scale,
+                          std::fabs(next.difference.x) + std::fabs(next.difference.y) + std::fabs(next.difference.z));
+        const double lower = dot(nearest.point, next.difference);
 
         // No nearer in this direction, or farther than anyone asks for.
         if (squared - lower <= converged * squared || holds(state, next.difference)) break;
-        if (lower > 0 && lower > enough * state.distance) {
-            state.distance = lower / state.distance;
-            break;
+        if (lower > 0 && enough < 1e150 && lower * lower > enough * enough * squared) {
+            read_witnesses(state, nearest);
+            state.distance = lower / std::sqrt(squared);
+            state.direction = nearest.point;
+            return state;
         }
-        CoreDistance trial = state;
-        trial.simplex[static_cast<std::size_t>(trial.simplex_size++)] = next;
-        const NearestPoint found = nearest_on_simplex(trial.simplex, trial.simplex_size);
+        state.simplex[static_cast<std::size_t>(state.simplex_size)] = next;
+        NearestPoint found = nearest_on_simplex(state.simplex, state.simplex_size + 1);
         if (found.size == 4) {
-            state = trial;
+            ++state.simplex_size;
             state.overlap = true;
             break;
         }
         // Rounding lets a flat simplex step back; the last one is then as near as doubles tell.
-        if (length_squared(found.point) >= squared) break;
-        state = trial;
+        const double found_squared = length_squared(found.point);
+        if (found_squared >= squared) break;
+        ++state.simplex_size;
         keep_carriers(state, found);
-        nearest = found.point;
+        nearest = found;
+        squared = found_squared;
     }
-    if (state.overlap) state.distance = 0;
+    if (nearest.size < 4) read_witnesses(state, nearest);
+    if (state.overlap) return state;
+    state.direction = nearest.point;
+    state.distance = std::sqrt(squared);
     return state;
 }
 

@@ -18,11 +18,13 @@ struct CoreDistance {
     bool overlap = false;
     double distance = 0;
     Vec3 on_a, on_b;
+    Vec3 direction;  ///< along which the cores are apart, of any length; zero where they overlap
     std::array<DifferencePoint, 4> simplex;  ///< of the last iteration, where they overlap it holds the origin
     int simplex_size = 0;
 };
-/// May stop as soon as the gap is known to exceed `enough`; then `distance` is a lower bound.
-CoreDistance core_distance(const PlacedConvex& a, const PlacedConvex& b, double enough = 1e300);
+/// May stop as soon as the gap along some direction is known to exceed `enough`: then `distance` is that gap. `start`
+/// is a direction from a to b to begin with, where one is known.
+CoreDistance core_distance(const PlacedConvex& a, const PlacedConvex& b, double enough = 1e300, Vec3 start = {});
 
 /// Direction in which overlapping cores part soonest, unit, from a to b; false if no volume was found to search.
 bool penetration_normal(const PlacedConvex& a, const PlacedConvex& b, const CoreDistance& overlap, Vec3& normal);

@@ -1,181 +1,296 @@
 // SPDX-License-Identifier: MIT
-// Separating axes of two polytopes (boxes and hulls): face normals of both, and the cross products of those edge pairs
-// that build a face of the Minkowski difference (D. Gregorius, "The separating axis test between convex polyhedra",
-// GDC 2013: arcs on the Gauss map). Then the region: incident face clipped by the reference face's sides.
+// Separating axes of two polytopes: face normals of both, and the cross products of those edge pairs that build a face
+// of the Minkowski difference (D. Gregorius, "The separating axis test between convex polyhedra", GDC 2013: arcs on the
+// Gauss map). Almost all are ruled out by a witness: the gap along a face normal is at most the height of any point of
+// the other polytope over that face, and an edge can part the two no better than a witness's heights over its two faces
+// allow. So no axis is left out that could be the best; which are measured first changes only the time.
+// Then the region: the incident face clipped by the reference face's sides.
+#include <algorithm>
 #include <cmath>
 
 #include "physics/collision/convex_pairs.h"
 #include "physics/collision/gjk.h"
+#include "physics/collision/polytope_query.h"
 
 namespace embody::physics {
 
 namespace {
 
-/// Vertices and face normals turned into the frame of the pair, once a pair.
-struct TurnedPolytope {
-    const Polytope* source = nullptr;
-    std::vector<Vec3> vertices, normals;
-    Vec3 center;
-
-    void turn(const PlacedConvex& placed) {
-        source = &placed.shape->polytope;
-        vertices.clear();
-        normals.clear();
-        for (const Vec3& v : source->vertices) vertices.push_back(placed.to_frame(v));
-        for (const Polytope::Face& f : source->faces) normals.push_back(placed.direction_to_frame(f.normal));
-        center = placed.to_frame(source->center);
-    }
-    [[nodiscard]] Vec3 face_point(std::uint32_t face) const {
-        return vertices[source->loops[source->faces[face].first]];
-    }
-    [[nodiscard]] double lowest_along(Vec3 direction) const {
-        double lowest = dot(vertices[0], direction);
-        for (const Vec3& v : vertices) lowest = std::fmin(lowest, dot(v, direction));
-        return lowest;
-    }
-    [[nodiscard]] std::uint32_t face_along(Vec3 direction) const {
-        std::uint32_t best = 0;
-        for (std::uint32_t i = 1; i < normals.size(); ++i) {
-            if (dot(normals[i], direction) > dot(normals[best], direction)) best = i;
-        }
-        return best;
-    }
-    void get_face(std::uint32_t face, ContactFeature& feature) const {
-        feature.clear();
-        feature.id = face;
-        feature.normal = normals[face];
-        const Polytope::Face& f = source->faces[face];
-        for (std::uint32_t i = 0; i < f.count; ++i) feature.points.push_back(vertices[source->loops[f.first + i]]);
-    }
-    void get_edge(std::uint32_t edge, ContactFeature& feature) const {
-        feature.clear();
-        feature.id = edge;
-        feature.points.push_back(vertices[source->edges[edge].from]);
-        feature.points.push_back(vertices[source->edges[edge].to]);
-    }
-};
+constexpr std::uint32_t none = Polytope::no_face;
 
 struct FaceAxis {
     double separation = -1e300;
-    std::uint32_t face = 0;
+    std::uint32_t face = none;
+    Vec3 witness;  ///< the other polytope's point nearest to the face, in the frame of the face's polytope
 };
+
 struct EdgeAxis {
     double separation = -1e300;
     std::uint32_t edge_a = 0, edge_b = 0;
-    Vec3 normal;
+    Vec3 normal;  ///< unit, in a's frame, from a to b
 };
 
-FaceAxis best_face_axis(const TurnedPolytope& faces_of, const TurnedPolytope& other, double margin) {
+/// An edge that may part the pair, turned into a's frame: the normals beside it (b's reversed) and its line.
+struct EdgeArc {
+    Vec3 left, right, turn;  ///< turn: right x left
+    Vec3 from, along;
+    std::uint32_t edge = 0;
+};
+
+/// Two polytopes, each as the other sees it, and room for what is found on the way.
+struct PolytopeSearch {
+    const Polytope* a = nullptr;
+    const Polytope* b = nullptr;
+    PlacedConvex b_in_a, a_in_b;
+    double margin = 0;
+    std::vector<double> heights, bounds;
+    std::vector<std::uint32_t> edges;
+    std::vector<EdgeArc> arcs_a, arcs_b;
+};
+
+/// Best face of `faces`, `other` placed in its frame. Only faces that part by more than `least` count. `start` is any
+/// point of the other, `first` a face to measure first (or none).
+FaceAxis best_face_axis(const Polytope& faces, const PlacedConvex& other, double least, Vec3 start, std::uint32_t first,
+                        PolytopeSearch& s) {
     FaceAxis best;
-    for (std::uint32_t f = 0; f < faces_of.normals.size(); ++f) {
-        const Vec3 n = faces_of.normals[f];
-        const double separation = other.lowest_along(n) - dot(n, faces_of.face_point(f));
-        if (separation > best.separation) best = {separation, f};
-        if (separation > margin) break;
+    best.separation = least;
+    const std::size_t count = faces.faces.size();
+    s.bounds.resize(faces.normal_lanes.size());
+    s.heights.resize(faces.normal_lanes.size());
+    heights_over_faces(faces, start, s.bounds.data());
+    if (first >= count) first = none;
+    for (std::size_t rounds = 0; rounds <= count; ++rounds) {
+        // The face that promises most; of equal ones the first, whatever was measured before.
+        std::uint32_t face = first;
+        if (face == none) {
+            double most = -1e300;
+            for (std::uint32_t f = 0; f < count; ++f) {
+                if (s.bounds[f] > most) {
+                    most = s.bounds[f];
+                    face = f;
+                }
+            }
+            if (face == none || most < best.separation) break;
+            if (most == best.separation && (best.face == none || face > best.face)) break;
+        }
+        first = none;
+
+        const Vec3 normal = faces.faces[face].normal;
+        const Extreme lowest = farthest(other.shape->polytope.vertex_lanes, -other.direction_to_local(normal));
+        const Vec3 witness = other.to_frame(other.shape->polytope.vertices[lowest.index]);
+        heights_over_faces(faces, witness, s.heights.data());
+        const double separation = s.heights[face];
+        const bool is_tie = separation == best.separation && best.face != none && face < best.face;
+        if (separation > best.separation || is_tie) {
+            best = {separation, face, witness};
+        }
+        if (separation > s.margin) break;
+        for (std::size_t f = 0; f < count; ++f) s.bounds[f] = std::min(s.bounds[f], s.heights[f]);
+        s.bounds[face] = -1e300;
     }
     return best;
+}
+
+// Edges beside a face that the witness is not farther below than `depth`.
+void gather_edges(const Polytope& polytope, Vec3 witness, double depth, PolytopeSearch& s) {
+    s.heights.resize(polytope.normal_lanes.size());
+    heights_over_faces(polytope, witness, s.heights.data());
+    s.edges.resize(polytope.edges.size());
+    const double limit = -depth - polytope.unevenness;
+    std::size_t count = 0;
+    for (std::uint32_t e = 0; e < polytope.edges.size(); ++e) {
+        const Polytope::Edge& edge = polytope.edges[e];
+        s.edges[count] = e;
+        count += std::max(s.heights[edge.left], s.heights[edge.right]) >= limit ? 1 : 0;
+    }
+    s.edges.resize(count);
+}
+
+void place_arcs(const Polytope& polytope, const PlacedConvex& placed, double sign, const PolytopeSearch& s,
+                std::vector<EdgeArc>& arcs) {
+    arcs.clear();
+    for (const std::uint32_t e : s.edges) {
+        const Polytope::Edge& edge = polytope.edges[e];
+        const Vec3 left = placed.direction_to_frame(polytope.faces[edge.left].normal) * sign;
+        const Vec3 right = placed.direction_to_frame(polytope.faces[edge.right].normal) * sign;
+        const Vec3 from = placed.to_frame(polytope.vertices[edge.from]);
+        arcs.push_back({left, right, cross(right, left), from, placed.to_frame(polytope.vertices[edge.to]) - from, e});
+    }
 }
 
 // Whether the arcs of two edges cross on the unit sphere, i.e. the edge pair is a face of the Minkowski difference.
-bool arcs_cross(Vec3 a, Vec3 b, Vec3 b_cross_a, Vec3 c, Vec3 d, Vec3 d_cross_c) {
-    const double cba = dot(c, b_cross_a), dba = dot(d, b_cross_a);
-    const double adc = dot(a, d_cross_c), bdc = dot(b, d_cross_c);
-    return cba * dba < 0 && adc * bdc < 0 && cba * bdc > 0;
+bool arcs_cross(const EdgeArc& a, const EdgeArc& b) {
+    const double cba = dot(b.left, a.turn), dba = dot(b.right, a.turn);
+    const double adc = dot(a.left, b.turn), bdc = dot(a.right, b.turn);
+    return (cba * dba < 0) & (adc * bdc < 0) & (cba * bdc > 0);
 }
 
-EdgeAxis best_edge_axis(const TurnedPolytope& a, const TurnedPolytope& b, double margin) {
-    EdgeAxis best;
-    for (std::uint32_t i = 0; i < a.source->edges.size(); ++i) {
-        const Polytope::Edge& edge_a = a.source->edges[i];
-        const Vec3 left_a = a.normals[edge_a.left], right_a = a.normals[edge_a.right];
-        const Vec3 turn_a = cross(right_a, left_a);
-        const Vec3 along_a = a.vertices[edge_a.to] - a.vertices[edge_a.from];
-        for (std::uint32_t j = 0; j < b.source->edges.size(); ++j) {
-            const Polytope::Edge& edge_b = b.source->edges[j];
-            const Vec3 left_b = -b.normals[edge_b.left], right_b = -b.normals[edge_b.right];
-            if (!arcs_cross(left_a, right_a, turn_a, left_b, right_b, cross(right_b, left_b))) continue;
+// Gap along an edge pair's own normal. Edges of merged faces lie a little beside the faces' planes; where they are
+// short, the normal may not touch the shapes at these edges at all. The shapes' own extent along it is what separates.
+void measure_edge_pair(const EdgeArc& a, const EdgeArc& b, PolytopeSearch& s, EdgeAxis& best) {
+    // Nearly parallel edges have no axis of their own: a face tells as much.
+    Vec3 n = cross(a.along, b.along);
+    const double squared = length_squared(n);
+    if (squared < 1e-12 * length_squared(a.along) * length_squared(b.along)) return;
+    n = n / std::sqrt(squared);
+    if (dot(n, a.left + a.right) < 0) n = -n;
+    if (dot(n, b.from - a.from) <= best.separation) return;
+    const double reach_a = farthest(s.a->vertex_lanes, n).along;
+    const double reach_b = farthest(s.b->vertex_lanes, -s.b_in_a.direction_to_local(n)).along;
+    const double separation = dot(n, s.b_in_a.position) - reach_b - reach_a;
+    if (separation > best.separation) best = {separation, a.edge, b.edge, n};
+}
 
-            // Nearly parallel edges have no axis of their own: a face tells as much.
-            const Vec3 along_b = b.vertices[edge_b.to] - b.vertices[edge_b.from];
-            Vec3 n = cross(along_a, along_b);
-            const double size = length(n);
-            if (size < 1e-6 * length(along_a) * length(along_b)) continue;
-            n = n / size;
-            if (dot(n, a.vertices[edge_a.from] - a.center) < 0) n = -n;
-            if (dot(n, b.vertices[edge_b.from] - a.vertices[edge_a.from]) <= best.separation) continue;
-
-            // Edges of merged faces lie a little beside the faces' planes; where they are short, n may not touch the
-            // shapes at these edges at all. The shapes' own extent along n is what separates them.
-            const double separation = b.lowest_along(n) + a.lowest_along(-n);
-            if (separation > best.separation) best = {separation, i, j, n};
-            if (separation > margin) return best;
+// False where far too many edges are left to pair them all: deep inside each other.
+bool best_edge_axis(double least, Vec3 witness_of_b, Vec3 witness_of_a, PolytopeSearch& s, EdgeAxis& best) {
+    constexpr std::size_t most_pairs = 40000;
+    best.separation = least;
+    const double depth = std::max(0.0, -least);
+    gather_edges(*s.a, witness_of_b, depth, s);
+    place_arcs(*s.a, {nullptr, {}, {}}, 1, s, s.arcs_a);
+    gather_edges(*s.b, witness_of_a, depth, s);
+    if (s.arcs_a.size() * s.edges.size() > most_pairs) return false;
+    place_arcs(*s.b, s.b_in_a, -1, s, s.arcs_b);
+    for (const EdgeArc& a : s.arcs_a) {
+        for (const EdgeArc& b : s.arcs_b) {
+            if (!arcs_cross(a, b)) continue;
+            measure_edge_pair(a, b, s, best);
+            if (best.separation > s.margin) return true;
         }
     }
-    return best;
+    return true;
+}
+
+void get_face(const PlacedConvex& placed, std::uint32_t face, ContactFeature& feature) {
+    const Polytope& polytope = placed.shape->polytope;
+    const Polytope::Face& f = polytope.faces[face];
+    feature.clear();
+    feature.id = face;
+    feature.normal = placed.direction_to_frame(f.normal);
+    for (std::uint32_t i = 0; i < f.count; ++i) {
+        feature.points.push_back(placed.to_frame(polytope.vertices[polytope.loops[f.first + i]]));
+    }
+}
+
+void get_edge(const PlacedConvex& placed, std::uint32_t edge, ContactFeature& feature) {
+    const Polytope& polytope = placed.shape->polytope;
+    feature.clear();
+    feature.id = edge;
+    feature.points.push_back(placed.to_frame(polytope.vertices[polytope.edges[edge].from]));
+    feature.points.push_back(placed.to_frame(polytope.vertices[polytope.edges[edge].to]));
+}
+
+// A face of `owner` against what the other turns to it. `deepest` is the other's point nearest to the face.
+void add_face_region(const PlacedConvex& owner, const PlacedConvex& other, const FaceAxis& axis, Vec3 deepest,
+                     bool is_face_of_a, double margin, double bias, ContactRegion& region) {
+    get_face(owner, axis.face, region.reference);
+    const Vec3 normal = region.reference.normal;
+    get_face(other, farthest(other.shape->polytope.normal_lanes, -other.direction_to_local(normal)).index,
+             region.incident);
+    region.normal = is_face_of_a ? normal : -normal;
+    add_near_corners(region.reference, other, is_face_of_a, margin, region);
+    clip_to_region(region.reference, region.incident, is_face_of_a, 0, margin, region);
+
+    // Where they overlap the deepest corner is over the reference face; a little apart it may be beside it.
+    if (axis.separation >= 0) return;
+    const Vec3 on_a = is_face_of_a ? deepest - region.normal * axis.separation : deepest;
+    keep_deepest(on_a, axis.separation, bias, region);
 }
 
 // Where the faces' sides cut everything off though the shapes are within the margin, the nearest points alone.
-void add_nearest_points(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region) {
+void add_nearest_points(const PlacedConvex& a, const PlacedConvex& b, double margin, PairMemory& memory,
+                        ContactRegion& region) {
     const CoreDistance gap = core_distance(a, b, margin);
     if (gap.overlap) {
         const double separation = separation_along(a, b, region.normal);
         region.add(core_support(b, -region.normal) - region.normal * separation, separation, 1);
-    } else if (gap.distance <= margin && gap.distance > 0) {
-        region.normal = (gap.on_b - gap.on_a) / gap.distance;
-        region.add(gap.on_a, gap.distance, 1);
+    } else if (gap.distance > 0) {
+        const Vec3 normal = (gap.on_b - gap.on_a) / gap.distance;
+        if (gap.distance <= margin) {
+            region.normal = normal;
+            region.add(gap.on_a, gap.distance, 1);
+        } else {
+            memory.part_along(normalized(gap.direction));
+        }
     }
 }
 
-struct PairScratch {
-    TurnedPolytope a, b;
-    ContactFeature reference, incident;
-};
+double least_extent(const Convex& convex) {
+    const Vec3 size = convex.bounds.size();
+    return std::min(size.x, std::min(size.y, size.z));
+}
+
+// The vertex of a face that is nearest to a point.
+Vec3 nearest_corner(const Polytope& polytope, std::uint32_t face, Vec3 point) {
+    const Polytope::Face& f = polytope.faces[face];
+    Vec3 best = polytope.vertices[polytope.loops[f.first]];
+    for (std::uint32_t i = 1; i < f.count; ++i) {
+        const Vec3 corner = polytope.vertices[polytope.loops[f.first + i]];
+        if (length_squared(corner - point) < length_squared(best - point)) best = corner;
+    }
+    return best;
+}
 
 }  // namespace
 
-void collide_polytopes(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region) {
-    thread_local PairScratch scratch;
-    scratch.a.turn(a);
-    scratch.b.turn(b);
+bool collide_polytopes(const ConvexPair& pair, double margin, PairMemory& memory, ContactRegion& region) {
+    thread_local PolytopeSearch s;
+    s.a = &pair.a->polytope;
+    s.b = &pair.b->polytope;
+    s.b_in_a = pair.placed_b();
+    s.a_in_b = {pair.a, transpose(pair.turn), s.b_in_a.direction_to_local(-pair.place)};
+    s.margin = margin;
+    using Kind = PairMemory::Kind;
 
-    // The axis of largest separation among faces of a, faces of b, edge pairs.
-    const FaceAxis face_a = best_face_axis(scratch.a, scratch.b, margin);
-    if (face_a.separation > margin) return;
-    const FaceAxis face_b = best_face_axis(scratch.b, scratch.a, margin);
-    if (face_b.separation > margin) return;
-    const EdgeAxis edge = best_edge_axis(scratch.a, scratch.b, margin);
-    if (edge.separation > margin) return;
-
-    // Faces are preferred by a little: they give a region, and the choice does not flicker by rounding.
-    const Vec3 extents_a = a.shape->bounds.size(), extents_b = b.shape->bounds.size();
-    const double size = std::fmin(std::fmin(extents_a.x, std::fmin(extents_a.y, extents_a.z)),
-                                  std::fmin(extents_b.x, std::fmin(extents_b.y, extents_b.z)));
-    const double bias = 1e-4 * size;
-    const double face_separation = std::fmax(face_a.separation, face_b.separation);
-    if (edge.separation > face_separation + bias + 0.02 * std::fabs(face_separation)) {
-        region.normal = edge.normal;
-        scratch.a.get_edge(edge.edge_a, scratch.reference);
-        scratch.b.get_edge(edge.edge_b, scratch.incident);
-        cross_segments(scratch.reference, scratch.incident, 0, 0, margin, region);
-    } else {
-        const bool reference_is_a = face_b.separation <= face_a.separation + bias;
-        const TurnedPolytope& reference = reference_is_a ? scratch.a : scratch.b;
-        const TurnedPolytope& incident = reference_is_a ? scratch.b : scratch.a;
-        reference.get_face(reference_is_a ? face_a.face : face_b.face, scratch.reference);
-        incident.get_face(incident.face_along(-scratch.reference.normal), scratch.incident);
-        region.normal = reference_is_a ? scratch.reference.normal : -scratch.reference.normal;
-        add_near_corners(scratch.reference, reference_is_a ? b : a, reference_is_a, margin, region);
-        clip_to_region(scratch.reference, scratch.incident, reference_is_a, 0, margin, region);
-
-        // Where they overlap the deepest corner is over the reference face; a little apart it may be beside it.
-        const double separation = reference_is_a ? face_a.separation : face_b.separation;
-        if (separation < 0) {
-            const Vec3 corner = core_support(reference_is_a ? b : a, -scratch.reference.normal);
-            const Vec3 on_a = reference_is_a ? corner - region.normal * separation : corner;
-            keep_deepest(on_a, separation, bias, region);
-        }
+    // The face of a that parts them most, beginning with the remembered one.
+    const FaceAxis face_a = best_face_axis(*s.a, s.b_in_a, -1e300, s.b_in_a.to_frame(s.b->center),
+                                           memory.kind == Kind::face_of_a ? memory.feature_a : none, s);
+    if (face_a.separation > margin) {
+        memory.part_along(s.a->faces[face_a.face].normal);
+        return true;
     }
-    if (region.points.empty()) add_nearest_points(a, b, margin, region);
+    // Faces are preferred by a little: they give a region, and the choice does not flicker by rounding.
+    const double bias = 1e-4 * std::min(least_extent(*pair.a), least_extent(*pair.b));
+    heights_over_faces(*s.a, face_a.witness, s.heights.data());
+    const bool is_inside_a = *std::max_element(s.heights.begin(), s.heights.end()) <= 0;
+    Vec3 witness_of_a = is_inside_a ? face_a.witness : nearest_corner(*s.a, face_a.face, face_a.witness);
+    witness_of_a = s.a_in_b.to_frame(witness_of_a);
+    const FaceAxis face_b = best_face_axis(*s.b, s.a_in_b, face_a.separation + bias, witness_of_a,
+                                           memory.kind == Kind::face_of_b ? memory.feature_b : none, s);
+    if (face_b.separation > margin && face_b.face != none) {
+        memory.part_along(-s.b_in_a.direction_to_frame(s.b->faces[face_b.face].normal));
+        return true;
+    }
+    const bool is_face_of_a = face_b.face == none;
+    const double face_separation = is_face_of_a ? face_a.separation : face_b.separation;
+    if (!is_face_of_a) witness_of_a = face_b.witness;
+
+    // An edge pair has to be better by more than that.
+    EdgeAxis edge;
+    const double least = std::min(face_separation + bias + 0.02 * std::fabs(face_separation), margin);
+    if (!best_edge_axis(least, face_a.witness, witness_of_a, s, edge)) return false;
+    if (edge.separation > margin) {
+        memory.part_along(edge.normal);
+        return true;
+    }
+    if (edge.separation > least) {
+        memory.kind = Kind::edges;
+        region.normal = edge.normal;
+        get_edge(pair.placed_a(), edge.edge_a, region.reference);
+        get_edge(s.b_in_a, edge.edge_b, region.incident);
+        cross_segments(region.reference, region.incident, 0, 0, margin, region);
+    } else if (is_face_of_a) {
+        memory.kind = Kind::face_of_a;
+        memory.feature_a = static_cast<std::uint16_t>(face_a.face);
+        add_face_region(pair.placed_a(), s.b_in_a, face_a, face_a.witness, true, margin, bias, region);
+    } else {
+        memory.kind = Kind::face_of_b;
+        memory.feature_b = static_cast<std::uint16_t>(face_b.face);
+        add_face_region(s.b_in_a, pair.placed_a(), face_b, s.b_in_a.to_frame(face_b.witness), false, margin, bias,
+                        region);
+    }
+    if (region.points.empty()) add_nearest_points(pair.placed_a(), s.b_in_a, margin, memory, region);
+    return true;
 }
 
 }  // namespace embody::physics

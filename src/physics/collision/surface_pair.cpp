@@ -190,7 +190,7 @@ void collide_surface(const ConvexPiece& piece, std::uint32_t piece_index, const 
         if (!region.points.empty()) add_to_groups(region, index, groups, count);
     }
     for (std::size_t g = 0; g < count; ++g) {
-        append_manifold(groups[g].region, pose.position, manifolds);
+        append_manifold(groups[g].region, {}, pose.position, manifolds);
         manifolds.back().piece_a = piece_index;
         manifolds.back().piece_b = groups[g].lowest_triangle;
     }
