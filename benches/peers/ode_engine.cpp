@@ -183,6 +183,9 @@ private:
         dGeomTriMeshDataBuildSingle(terrain_, terrain_vertices_.data(), 3 * sizeof(float),
                                     static_cast<int>(terrain.vertices.size()), terrain_indices_.data(),
                                     static_cast<int>(terrain_indices_.size()), 3 * sizeof(dTriIndex));
+        // Convex shapes against triangles need the angles between them.
+        constexpr unsigned face_angles = 1u << dTRIDATAPREPROCESS_BUILD_FACE_ANGLES;
+        dGeomTriMeshDataPreprocess2(terrain_, face_angles, nullptr);
         dCreateTriMesh(fixed_, terrain_, nullptr, nullptr, nullptr);
     }
 

@@ -14,6 +14,10 @@ constexpr double fallen_depth = 0.5;      // m
 constexpr double greatest_overlap = 0.1;  // m
 constexpr double energy_tolerance = 1e-3;
 
+// A structure that stands has come to rest by then; its cubes' mean speed is below this.
+constexpr int frames_to_rest = 300;
+constexpr double rest_speed = 0.05;  // m/s
+
 double potential_energy(const RaceBody& body, Vec3 position) { return body.mass * race_gravity * position.y; }
 
 }  // namespace
@@ -81,6 +85,10 @@ std::string RunWatch::judge(const EndState& end, bool standing) const {
     if (end.overlap.escaped > 0) return fmt::format("{} escaped", end.overlap.escaped);
     if (fell_early_) return "fell before it was hit";
     if (must_stand() && !standing) return "fell";
+    double mass = 0;
+    for (const RaceBody& body : bodies_) mass += body.mass;
+    if (must_stand() && frames_ >= frames_to_rest && end.kinetic_energy > 0.5 * mass * rest_speed * rest_speed)
+        return "still moving";
     const double deepest = std::max(end.overlap.bodies, end.overlap.statics);
     if (deepest > greatest_overlap) return fmt::format("overlap {:.2f} m", deepest);
     if (energy > energy_given_ + energy_tolerance * std::fabs(energy_given_)) return "gained energy";

@@ -88,7 +88,8 @@ void print_race(const RaceResult& result, const RaceOptions& options, bool stage
     const Lap* own = own_lap(result);
     for (const Lap& lap : result.laps) print_lap(lap, own);
     for (const Lap& lap : result.laps)
-        if (options.setup.threads != lap.threads) fmt::print("  {} steps with {} thread\n", lap.engine, lap.threads);
+        if (options.setup.threads != lap.threads)
+            fmt::print("  {} steps with {} of the {} threads\n", lap.engine, lap.threads, options.setup.threads);
     if (stages && own != nullptr) print_stages(*own);
     fmt::print("\n");
     std::fflush(stdout);

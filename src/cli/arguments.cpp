@@ -171,13 +171,26 @@ private:
         add_json(c);
     }
     void add_bench() {
-        auto c = add<BenchArguments>("bench", "Time the paper's scenes beside the paper's own numbers",
+        auto c = add<BenchArguments>("bench",
+                                     "Time the paper's scenes beside the paper's own numbers, or race other engines",
                                      "embody bench table1 --scene table1_f --json");
+        add_race(c);
         c.app->add_option("suite", c.into->suite, "table1")->capture_default_str()->check(CLI::IsMember({"table1"}));
         c.app->add_option("--scene", c.into->scene, "Only this scene");
         c.app->add_option("--steps", c.into->steps, "Steps of each scene (default: its own number)")
             ->check(CLI::Range(0, 10'000'000));
         add_json(c);
+    }
+
+    /// Its options and its help are those of the program that runs it.
+    void add_race(const Command<BenchArguments>& bench) {
+        CLI::App* race = bench.app->add_subcommand("race", "Race other engines: embody bench race --help");
+        race->set_help_flag();
+        race->allow_extras();
+        bench.app->callback([this, race, into = bench.into] {
+            if (race->parsed()) *into = {.suite = "race", .race_words = race->remaining()};
+            chosen_ = *into;
+        });
     }
 
     CLI::App app_;

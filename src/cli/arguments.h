@@ -70,9 +70,10 @@ struct SceneArguments {
     bool json = false;
 };
 struct BenchArguments {
-    std::string suite = "table1";
-    std::string scene;  ///< only this one
-    int steps = 0;      ///< 0: as many as the scene says
+    std::string suite = "table1";         ///< or "race"
+    std::vector<std::string> race_words;  ///< for the race's own program
+    std::string scene;                    ///< only this one
+    int steps = 0;                        ///< 0: as many as the scene says
     bool json = false;
 };
 
