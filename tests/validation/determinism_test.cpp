@@ -8,8 +8,8 @@ namespace embody::physics {
 namespace {
 
 // A heap of spheres and boxes dropped on a plane.
-std::unique_ptr<World> make_heap() {
-    auto world = make_world({});
+std::unique_ptr<World> make_heap(const WorldSettings& settings = {}) {
+    auto world = make_world(settings);
     add_plane(*world, friction(0.5));
     const auto ball = world->create_shape(SphereShape{0.3}).value();
     const auto box = world->create_shape(BoxShape{{0.3, 0.3, 0.3}}).value();
@@ -29,6 +29,22 @@ TEST(Determinism, SameInputGivesTheSameBits) {
         first->step();
         second->step();
         ASSERT_EQ(first->state_hash(), second->state_hash()) << "step " << i;
+    }
+}
+
+TEST(Determinism, AnyNumberOfLanesGivesTheSameBits) {
+    const auto four = make_heap({.lanes = 4});
+    std::vector<std::unique_ptr<World>> wider;
+    for (const int lanes : {8, 16}) {
+        if (auto world = World::create({.lanes = lanes})) wider.push_back(make_heap({.lanes = lanes}));
+    }
+    if (wider.empty()) GTEST_SKIP() << "this processor has no wider registers";
+    for (int i = 0; i < 300; ++i) {
+        four->step();
+        for (const auto& world : wider) {
+            world->step();
+            ASSERT_EQ(four->state_hash(), world->state_hash()) << world->settings().lanes << " lanes, step " << i;
+        }
     }
 }
 

@@ -115,13 +115,12 @@ bool resists_turning(const Contact& contact) {
 
 }  // namespace
 
-int contact_passes(std::size_t contacts) {
-    constexpr std::size_t budget = 256, most = 8;
-    return static_cast<int>(std::clamp<std::size_t>(budget / std::max<std::size_t>(contacts, 1), 1, most));
-}
+bool has_few_contacts(std::size_t contacts) { return contacts <= 64; }
+
+int contact_passes(std::size_t contacts) { return has_few_contacts(contacts) ? 8 : 1; }
 
 ContactSoftness contact_softness(double substep, std::size_t contacts) {
-    const double share = contact_passes(contacts) >= 4 ? stiffness_many_passes : stiffness_one_pass;
+    const double share = has_few_contacts(contacts) ? stiffness_many_passes : stiffness_one_pass;
     const double omega = 2 * pi * share / substep;
     const double a1 = 2 * damping_ratio + substep * omega;
     const double a2 = substep * omega * a1;

@@ -21,6 +21,9 @@ struct ContactSoftness {
 /// The stiffest that converges: a short list gets more passes (contact_passes()) and so may be stiffer.
 ContactSoftness contact_softness(double substep, std::size_t contacts);
 
+/// Whether a list is short enough for several passes, and so for stiff contacts.
+bool has_few_contacts(std::size_t contacts);
+
 /// Passes a phase over a list of that many contacts: a long list gets one, since the substeps and the warm start do the
 /// work; for a short one more cost nothing.
 int contact_passes(std::size_t contacts);

@@ -62,16 +62,17 @@ void split_gyroscopic(BodyState& state, const BodyConstants& constants, double t
     state.hidden_momentum = rotate(state.rotation, momentum - constants.inertia * mean);
 }
 
+Vec3 momentum_of(const BodyState& state, const BodyConstants& constants) {
+    const Vec3 omega = rotate_inverse(state.rotation, state.angular_velocity);
+    return rotate(state.rotation, constants.inertia * omega) + state.hidden_momentum;
+}
+
 void drift(BodyState& state, const BodyConstants& constants, double time) {
     state.center += state.linear_velocity * time;
     if (state.angular_velocity == Vec3{} && state.hidden_momentum == Vec3{}) return;
 
     // The momentum at the start of the drift, with what the constraints added to it since split_gyroscopic().
-    Vec3 momentum;
-    if (!constants.is_isotropic) {
-        const Vec3 omega = rotate_inverse(state.rotation, state.angular_velocity);
-        momentum = rotate(state.rotation, constants.inertia * omega) + state.hidden_momentum;
-    }
+    const Vec3 momentum = constants.is_isotropic ? Vec3{} : momentum_of(state, constants);
     state.rotation = normalized(cayley(state.angular_velocity * time) * state.rotation);
     state.turn = state.rotation * conjugate(state.start_rotation);
     refresh_inertia(state, constants);

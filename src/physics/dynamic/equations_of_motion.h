@@ -20,6 +20,9 @@ void drift(BodyState& state, const BodyConstants& constants, double time);
 /// As drift(), for a body that only its own velocity moves.
 void drift_kinematic(BodyState& state, double time);
 
+/// Angular momentum about the centre of mass in the world, with what split_gyroscopic() hid.
+Vec3 momentum_of(const BodyState& state, const BodyConstants& constants);
+
 /// The world inverse inertia at the current rotation.
 void refresh_inertia(BodyState& state, const BodyConstants& constants);
 

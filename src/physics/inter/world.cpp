@@ -13,9 +13,8 @@ World::World() : state_(std::make_unique<WorldState>()) {}
 World::~World() = default;
 
 Result<std::unique_ptr<World>> World::create(const WorldSettings& settings) {
-    if (auto result = validate(settings); !result) return result.error();
     std::unique_ptr<World> world(new World());
-    world->state_->settings = settings;
+    if (auto result = world->set_settings(settings); !result) return result.error();
     return world;
 }
 
@@ -23,6 +22,7 @@ const WorldSettings& World::settings() const { return state_->settings; }
 
 Result<void> World::set_settings(const WorldSettings& settings) {
     if (auto result = validate(settings); !result) return result;
+    if (auto result = choose_lanes(*state_, settings.lanes); !result) return result;
     state_->settings = settings;
 
     // Another gravity or no sleeping moves everything.

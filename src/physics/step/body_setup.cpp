@@ -110,6 +110,13 @@ void lift_body(WorldState& world, std::uint32_t body) {
     if (world.record(body).shape && world.record(body).definition.enabled) world.broad_phase.remove(body);
 }
 
+Result<void> choose_lanes(WorldState& world, int lanes) {
+    const ContactKernels* kernels = lanes == 0 ? &widest_contact_kernels() : contact_kernels(lanes);
+    if (!kernels) return Error{"lanes", "are more than this processor has", "set fewer, or 0 for the most it has"};
+    if (kernels->lanes != world.wide_solver.lanes()) world.wide_solver = WideContactSolver(*kernels);
+    return {};
+}
+
 Result<Joint> set_up_joint(const WorldState& world, const JointDefinition& definition) {
     if (auto result = validate(definition); !result) return result.error();
     if (!world.bodies.contains(definition.body_b)) return Error{"body_b", "is not a body of this world"};

@@ -23,6 +23,9 @@ void place_body(WorldState& world, std::uint32_t body, BodySetup setup);
 /// Takes it out of the broad phase, its sleeping group and the contact lists; wakes what touched it.
 void lift_body(WorldState& world, std::uint32_t body);
 
+/// The width of the contact solver; 0: the widest. Fails where the processor cannot.
+Result<void> choose_lanes(WorldState& world, int lanes);
+
 /// Start of the constraint of a joint record.
 Result<Joint> set_up_joint(const WorldState& world, const JointDefinition& definition);
 

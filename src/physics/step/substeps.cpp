@@ -4,21 +4,71 @@
 #include "physics/constraint/substep_solver.h"
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/optimization/shock_propagation.h"
+#include "physics/optimization/solve_schedule.h"
 #include "physics/step/step.h"
 
 namespace embody::physics {
 
 namespace {
 
-void solve_islands(WorldState& world, SolvePhase phase, double h) {
-    const Islands& islands = world.islands;
+/// Islands by the way they are solved (docs/physics/wide-solver.md).
+struct SolveWays {
+    std::vector<Island> one_by_one;  // free bodies, and all that joints hold
+    std::vector<Island> few, many;   // contacts only
+};
+
+SolveWays sort_islands(const Islands& islands) {
+    SolveWays ways;
     for (const Island& island : islands.list) {
+        const bool is_wide = island.joint_count == 0 && island.contact_count > 0;
+        std::vector<Island>& way = !is_wide                                 ? ways.one_by_one
+                                   : has_few_contacts(island.contact_count) ? ways.few
+                                                                            : ways.many;
+        way.push_back(island);
+    }
+    return ways;
+}
+
+// Solves all given islands, of contacts only, through the step.
+void solve_wide(WorldState& world, const std::vector<Island>& islands, ScheduleKind kind, double h) {
+    if (islands.empty()) return;
+    std::vector<std::uint32_t> order, bodies;
+    for (const Island& island : islands) {
+        const auto contacts = std::span(world.islands.contacts).subspan(island.first_contact, island.contact_count);
+        order.insert(order.end(), contacts.begin(), contacts.end());
+        const auto members = std::span(world.islands.bodies).subspan(island.first_body, island.body_count);
+        bodies.insert(bodies.end(), members.begin(), members.end());
+    }
+    WideContactSolver& solver = world.wide_solver;
+    build_schedule(order, world.contacts, world.motion, kind, solver.lanes(), world.schedule);
+    solver.begin(bodies, world.motion, world.constants, h, world.settings.substeps);
+    for (const SolveSchedule::Batch& batch : world.schedule.batches) {
+        const auto contacts = std::span(world.schedule.contacts).subspan(batch.first, batch.count);
+        solver.add_batch(contacts, world.contacts, world.motion);
+    }
+    const std::size_t contacts = islands.front().contact_count;
+    solver.run(contact_passes(contacts), contact_softness(h, contacts));
+    solver.finish(world.motion, world.constants, world.contacts);
+}
+
+void solve_islands(WorldState& world, const std::vector<Island>& islands, SolvePhase phase, double h) {
+    for (const Island& island : islands) {
         const ConstraintList list{
             .contacts = world.contacts,
-            .contact_order = std::span(islands.contacts).subspan(island.first_contact, island.contact_count),
+            .contact_order = std::span(world.islands.contacts).subspan(island.first_contact, island.contact_count),
             .joints = world.active_joints,
-            .joint_order = std::span(islands.joints).subspan(island.first_joint, island.joint_count)};
+            .joint_order = std::span(world.islands.joints).subspan(island.first_joint, island.joint_count)};
         solve_phase(list, phase, h, world.motion);
+    }
+}
+
+// Calls visit(contact) for each contact of the islands.
+template <class Visit>
+void for_each_contact(WorldState& world, const std::vector<Island>& islands, Visit visit) {
+    for (const Island& island : islands) {
+        for (std::uint32_t k = 0; k < island.contact_count; ++k) {
+            visit(world.contacts[world.islands.contacts[island.first_contact + k]]);
+        }
     }
 }
 
@@ -27,8 +77,8 @@ void solve_islands(WorldState& world, SolvePhase phase, double h) {
 // velocity that the contacts must hold, and the warm start fits.
 bool has_split_kick(const Island& island) { return island.contact_count == 0; }
 
-void kick_before_drift(WorldState& world, double h) {
-    for (const Island& island : world.islands.list) {
+void kick_before_drift(WorldState& world, const std::vector<Island>& islands, double h) {
+    for (const Island& island : islands) {
         const double time = has_split_kick(island) ? h / 2 : h;
         for (std::uint32_t k = 0; k < island.body_count; ++k) {
             const std::uint32_t body = world.islands.bodies[island.first_body + k];
@@ -39,8 +89,8 @@ void kick_before_drift(WorldState& world, double h) {
     }
 }
 
-void kick_after_drift(WorldState& world, double h) {
-    for (const Island& island : world.islands.list) {
+void kick_after_drift(WorldState& world, const std::vector<Island>& islands, double h) {
+    for (const Island& island : islands) {
         if (!has_split_kick(island)) continue;
         for (std::uint32_t k = 0; k < island.body_count; ++k) {
             const std::uint32_t body = world.islands.bodies[island.first_body + k];
@@ -49,8 +99,8 @@ void kick_after_drift(WorldState& world, double h) {
     }
 }
 
-void drift_all(WorldState& world, double h) {
-    for (const Island& island : world.islands.list) {
+void drift_all(WorldState& world, const std::vector<Island>& islands, double h) {
+    for (const Island& island : islands) {
         for (std::uint32_t k = 0; k < island.body_count; ++k) {
             const std::uint32_t body = world.islands.bodies[island.first_body + k];
             BodyState& state = world.motion[body];
@@ -104,27 +154,36 @@ void clamp_speeds(WorldState& world) {
     }
 }
 
+// Free bodies and those that joints hold: one constraint after the other, in double.
+void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, double h) {
+    for_each_contact(world, islands, [&](Contact& contact) { prepare_contact(contact, world.motion); });
+    prepare_joints(world);
+    world.kicked_velocity.resize(world.motion.size());
+    for (int k = 1; k <= world.settings.substeps; ++k) {
+        // Forces, constraints that also mend positions, motion.
+        for_each_contact(world, islands, [&](Contact& contact) { activate_points(contact, k * h); });
+        kick_before_drift(world, islands, h);
+        solve_islands(world, islands, SolvePhase::position, h);
+        drift_all(world, islands, h);
+
+        // Constraints on the velocity alone.
+        prepare_joints(world);
+        kick_after_drift(world, islands, h);
+        solve_islands(world, islands, SolvePhase::velocity, h);
+        for_each_contact(world, islands, [](Contact& contact) { add_to_totals(contact); });
+    }
+}
+
 }  // namespace
 
 void run_substeps(WorldState& world) {
     const double h = world.settings.time_step / world.settings.substeps;
-    for (Contact& contact : world.contacts) prepare_contact(contact, world.motion);
-    prepare_joints(world);
-    world.kicked_velocity.resize(world.motion.size());
+    const SolveWays ways = sort_islands(world.islands);
 
-    for (int k = 1; k <= world.settings.substeps; ++k) {
-        // Forces, constraints that also mend positions, motion.
-        for (Contact& contact : world.contacts) activate_points(contact, k * h);
-        kick_before_drift(world, h);
-        solve_islands(world, SolvePhase::position, h);
-        drift_all(world, h);
-
-        // Constraints on the velocity alone.
-        prepare_joints(world);
-        kick_after_drift(world, h);
-        solve_islands(world, SolvePhase::velocity, h);
-        for (Contact& contact : world.contacts) add_to_totals(contact);
-    }
+    // The last one moves the kinematic bodies, which the others take from where the step found them.
+    solve_wide(world, ways.few, ScheduleKind::ordered, h);
+    solve_wide(world, ways.many, ScheduleKind::coloured, h);
+    solve_one_by_one(world, ways.one_by_one, h);
 
     if (world.settings.shock_propagation) {
         for (const Island& island : world.islands.list) {

@@ -11,11 +11,13 @@
 #include "physics/collision/collision_shape.h"
 #include "physics/constraint/contact.h"
 #include "physics/constraint/joint.h"
+#include "physics/constraint/wide_contact_solver.h"
 #include "physics/inter/definitions/events.h"
 #include "physics/inter/definitions/step_report.h"
 #include "physics/inter/definitions/world_settings.h"
 #include "physics/optimization/island_sleep.h"
 #include "physics/optimization/islands.h"
+#include "physics/optimization/solve_schedule.h"
 
 namespace embody::physics {
 
@@ -75,7 +77,9 @@ struct WorldState {
     std::vector<std::uint32_t> active_joint_slots;         // islands
     Islands islands;                                       // islands
 
-    std::vector<Vec3> kicked_velocity;  // substeps: linear velocity before the constraints, m/s
+    WideContactSolver wide_solver{widest_contact_kernels()};  // substeps: memory only
+    SolveSchedule schedule;                                   // substeps: memory only
+    std::vector<Vec3> kicked_velocity;                        // substeps: linear velocity before the constraints, m/s
 
     std::map<std::uint32_t, SleepingGroup> sleepers;  // sleep, wake
     std::uint32_t next_group = 1;                     // sleep

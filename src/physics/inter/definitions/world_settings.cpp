@@ -1,16 +1,24 @@
 // SPDX-License-Identifier: MIT
 #include "physics/inter/definitions/world_settings.h"
 
+#include <string>
+
 #include "physics/inter/definitions/field_check.h"
 
 namespace embody::physics {
+
+static Result<void> check_lanes(int lanes) {
+    if (lanes == 0 || lanes == 4 || lanes == 8 || lanes == 16) return {};
+    return Error{"lanes", "is " + std::to_string(lanes), "set 4, 8, 16, or 0 for as many as the processor can"};
+}
 
 Result<void> validate(const WorldSettings& settings) {
     return first_error(check_vector("gravity", settings.gravity, 1e4, "m/s²"),
                        check_number("time_step", settings.time_step, 1e-5, 0.1, "s"),
                        check_number("substeps", settings.substeps, 1, 64),
                        check_number("time_to_sleep", settings.time_to_sleep, 0.05, 60, "s"),
-                       check_number("max_linear_speed", settings.max_linear_speed, 1, largest_linear_speed, "m/s"));
+                       check_number("max_linear_speed", settings.max_linear_speed, 1, largest_linear_speed, "m/s"),
+                       check_lanes(settings.lanes));
 }
 
 }  // namespace embody::physics

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+//
+// How contacts lie in memory for the wide solver (docs/physics/wide-solver.md). A batch is a block of floats: a head,
+// then up to four points; each quantity is one float a lane. Only numbers here: kernels include this file, and inline
+// code would be merged across instruction sets.
+#pragma once
+
+#include <cstdint>
+
+namespace embody::physics {
+
+/// Quantities of a contact, in floats times lanes from the start of its batch.
+struct BatchHead {
+    enum Quantity : int {
+        body_a,  ///< row of the body, an integer
+        body_b,
+        writable,  ///< lane 0: bit mask of the lanes whose body a may move; 1: the same for b; 2: of those that resist
+                   ///< turning
+        inverse_mass_a,
+        inverse_mass_b,
+        inverse_inertia_a,  ///< world, at the step's start: xx xy xz yy yz zz
+        inverse_inertia_b = inverse_inertia_a + 6,
+        normal = inverse_inertia_b + 6,  ///< from a to b: x y z; so are the next two
+        tangent_1 = normal + 3,
+        tangent_2 = tangent_1 + 3,
+        friction_static = tangent_2 + 3,
+        friction_dynamic,
+        friction_torsional,
+        friction_rolling,
+        start_spin,                ///< ω of b less that of a at the step's start, world: x y z
+        turning = start_spin + 3,  ///< angular impulse by torsion and rolling resistance, world: x y z
+        round_a = turning + 3,     ///< mask: the point of contact does not turn with the body
+        round_b,
+        size
+    };
+};
+
+/// Quantities of a point, in floats times lanes from its own start.
+struct BatchPoint {
+    enum Quantity : int {
+        arm_a,  ///< from the centre of mass, world: x y z
+        arm_b = arm_a + 3,
+        separation_found = arm_b + 3,
+        separation,                     ///< now
+        start_speed,                    ///< relative velocity at the step's start along normal, tangent_1, tangent_2
+        normal_mass = start_speed + 3,  ///< kg; 0 where there is no point
+        tangent_11,
+        tangent_12,
+        tangent_22,
+        slide_mass,
+        impulse_normal,
+        impulse_1,
+        impulse_2,
+        total_normal,
+        total_1,
+        total_2,
+        sticks,          ///< mask
+        inactive_until,  ///< s in the step
+        size
+    };
+};
+
+/// Floats of a batch of `lanes` contacts with up to `points` points.
+constexpr int batch_floats(int lanes, int points) { return lanes * (BatchHead::size + points * BatchPoint::size); }
+
+/// Numbers of one sweep.
+struct ContactSweep {
+    float* velocity = nullptr;      ///< rows of eight floats: change of v and of ω since the step began
+    const float* motion = nullptr;  ///< rows: way, turn (x y z w)
+    float substep = 0;              ///< s
+    float time = 0;                 ///< of the substep's end in the step, s
+    float bias_rate = 0, mass_scale = 1, impulse_scale = 0;
+    float push_speed = 0;  ///< m/s
+};
+
+/// Rows of the bodies and what moves them. A kick is v ← v damping + kick.
+struct BodyRows {
+    float* velocity = nullptr;       ///< as in ContactSweep
+    float* motion = nullptr;         ///< as in ContactSweep
+    const float* start = nullptr;    ///< v, ω when the step began
+    const float* kick = nullptr;     ///< change of v and ω by the forces of a substep
+    const float* damping = nullptr;  ///< factors
+    float* kicked = nullptr;         ///< velocity after the kick
+};
+
+/// One width's code. `batches` are offsets in floats into `data`, whose batches have `points` points each.
+struct ContactKernels {
+    int lanes = 0;
+    /// Effective masses, from arms, masses and inertias.
+    void (*prepare)(float* batch, int points) = nullptr;
+    /// Takes points whose time has not come out, applies the last substep's impulses of the others.
+    void (*warm_start)(float* batch, int points, const ContactSweep& sweep) = nullptr;
+    /// Before the drift: takes position errors out as well.
+    void (*solve_positions)(float* batch, int points, const ContactSweep& sweep) = nullptr;
+    /// Gaps from the bodies' motion; after the drift, before the next two.
+    void (*separate)(float* batch, int points, const ContactSweep& sweep) = nullptr;
+    /// After the drift: velocities alone.
+    void (*solve_velocities)(float* batch, int points, const ContactSweep& sweep) = nullptr;
+    /// Adds the substep's impulses to the step's.
+    void (*add_to_totals)(float* batch, int points) = nullptr;
+    /// Forces of a substep on the rows [first, last).
+    void (*kick)(const BodyRows& rows, std::int32_t first, std::int32_t last) = nullptr;
+    /// Moves the rows [first, last) by their velocities.
+    void (*drift)(const BodyRows& rows, float substep, std::int32_t first, std::int32_t last) = nullptr;
+};
+
+/// Code for that many lanes, or nullptr where the processor or the build has none.
+const ContactKernels* contact_kernels(int lanes);
+/// The widest there is.
+const ContactKernels& widest_contact_kernels();
+
+}  // namespace embody::physics

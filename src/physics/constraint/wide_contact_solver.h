@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "physics/constraint/contact.h"
+#include "physics/constraint/contact_batch.h"
+#include "physics/constraint/contact_solver.h"
+
+namespace embody::physics {
+
+/// Contacts of bodies without joints, as many at once as the processor has lanes (docs/physics/wide-solver.md). Knows
+/// no island: it is given bodies, and batches in the order in which they are to be solved. Keeps its memory from step
+/// to step.
+class WideContactSolver {
+public:
+    explicit WideContactSolver(const ContactKernels& kernels) : kernels_(&kernels) {}
+    [[nodiscard]] int lanes() const { return kernels_->lanes; }
+
+    /// Starts a step of `substeps` substeps of `substep` s for the `movable` bodies (slots).
+    void begin(std::span<const std::uint32_t> movable, std::span<BodyState> bodies,
+               std::span<const BodyConstants> constants, double substep, int substeps);
+    /// Adds contacts of different movable bodies, at most lanes() of them, to be solved after those added before.
+    void add_batch(std::span<const std::uint32_t> batch, std::span<const Contact> contacts,
+                   std::span<const BodyState> bodies);
+    /// Solves the step, with `passes` sweeps before and after the drift of each substep.
+    void run(int passes, const ContactSoftness& softness);
+    /// Hands the motion to the bodies and the impulses to the contacts.
+    void finish(std::span<BodyState> bodies, std::span<const BodyConstants> constants,
+                std::span<Contact> contacts) const;
+
+private:
+    struct alignas(32) Row {
+        float value[8] = {};
+    };
+    struct alignas(64) CacheLine {
+        float value[16];
+    };
+    struct Batch {
+        std::uint32_t first_line = 0;  ///< into lines_
+        std::uint32_t first_contact = 0, contact_count = 0;
+        int points = 0;
+    };
+
+    std::int32_t row_of(std::uint32_t body, std::span<const BodyState> bodies);
+    void append_row(std::uint32_t body, const BodyState& state);
+    void write_body(std::size_t row, BodyState& state, const BodyConstants& constants) const;
+    void write_contact(const Batch& batch, std::uint32_t lane, Contact& contact) const;
+    /// Calls kernel(batch's floats, points) for all batches in the order of adding or against it.
+    template <class Kernel>
+    void sweep_up(Kernel kernel);
+    template <class Kernel>
+    void sweep_down(Kernel kernel);
+
+    const ContactKernels* kernels_;
+    double substep_ = 0;  // s
+    int substeps_ = 0;
+
+    // Row 0 is the immovable world; then the movable bodies, then the kinematic ones that contacts meet.
+    std::vector<Row> velocity_, motion_, start_, kick_, damping_, kicked_;
+    std::vector<std::uint32_t> slot_of_row_;
+    std::vector<std::int32_t> row_of_slot_;  // valid where slot_of_row_ agrees
+    std::size_t movable_rows_ = 0;
+
+    std::vector<Batch> batches_;
+    std::vector<std::uint32_t> contacts_;  // batch by batch
+    std::vector<CacheLine> lines_;
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+//
+// Ordered: list scheduling. Coloured: greedy edge colouring of the contact graph (as E. Catto's "Solver2D", 2024, and
+// R. Tonge's "Iterative rigid body solvers", GDC 2013, use it), by masks of 64 colours a body.
+#include "physics/optimization/solve_schedule.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace embody::physics {
+
+namespace {
+
+constexpr std::uint32_t most_points = Manifold::max_points;
+
+bool is_movable(const BodyState& body) { return body.inverse_mass > 0; }
+
+// A contact comes right after the last earlier contact of either body. Returns the number of stages.
+std::uint32_t order_stages(std::span<const std::uint32_t> order, std::span<const Contact> contacts,
+                           std::span<const BodyState> bodies, SolveSchedule& s) {
+    s.next_stage.resize(std::max(s.next_stage.size(), bodies.size()));
+    for (const std::uint32_t i : order) s.next_stage[contacts[i].a] = s.next_stage[contacts[i].b] = 0;
+    std::uint32_t count = 0;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const Contact& c = contacts[order[k]];
+        std::uint32_t stage = 0;
+        if (is_movable(bodies[c.a])) stage = std::max(stage, s.next_stage[c.a]);
+        if (is_movable(bodies[c.b])) stage = std::max(stage, s.next_stage[c.b]);
+        s.next_stage[c.a] = s.next_stage[c.b] = stage + 1;
+        s.stage_of[k] = stage;
+        count = std::max(count, stage + 1);
+    }
+    return count;
+}
+
+// The lowest colour that neither body has; what finds none is left for another round of 64 colours.
+std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<const Contact> contacts,
+                            std::span<const BodyState> bodies, SolveSchedule& s) {
+    constexpr std::uint32_t colours = 64, none = 0xFFFFFFFFu;
+    s.colours.resize(std::max(s.colours.size(), bodies.size()));
+    std::fill(s.stage_of.begin(), s.stage_of.end(), none);
+    std::uint32_t count = 0;
+    std::size_t left = order.size();
+    for (std::uint32_t base = 0; left > 0; base += colours) {
+        for (const std::uint32_t i : order) s.colours[contacts[i].a] = s.colours[contacts[i].b] = 0;
+        for (std::size_t k = 0; k < order.size(); ++k) {
+            if (s.stage_of[k] != none) continue;
+            const Contact& c = contacts[order[k]];
+            const bool a_moves = is_movable(bodies[c.a]), b_moves = is_movable(bodies[c.b]);
+            const std::uint64_t used = (a_moves ? s.colours[c.a] : 0) | (b_moves ? s.colours[c.b] : 0);
+            if (~used == 0) continue;
+            const auto colour = static_cast<std::uint32_t>(std::countr_one(used));
+            if (a_moves) s.colours[c.a] |= std::uint64_t{1} << colour;
+            if (b_moves) s.colours[c.b] |= std::uint64_t{1} << colour;
+            s.stage_of[k] = base + colour;
+            count = std::max(count, base + colour + 1);
+            --left;
+        }
+    }
+    return count;
+}
+
+}  // namespace
+
+void build_schedule(std::span<const std::uint32_t> order, std::span<const Contact> contacts,
+                    std::span<const BodyState> bodies, ScheduleKind kind, int lanes, SolveSchedule& s) {
+    s.stage_of.resize(order.size());
+    const std::uint32_t stages = kind == ScheduleKind::ordered ? order_stages(order, contacts, bodies, s)
+                                                               : colour_stages(order, contacts, bodies, s);
+
+    // By stage, and in it by falling number of points: one counting sort.
+    const auto key_of = [&](std::size_t k) {
+        return s.stage_of[k] * most_points + (most_points - static_cast<std::uint32_t>(contacts[order[k]].count));
+    };
+    s.first_of_key.assign(stages * most_points + 1, 0);
+    for (std::size_t k = 0; k < order.size(); ++k) ++s.first_of_key[key_of(k) + 1];
+    for (std::size_t i = 1; i < s.first_of_key.size(); ++i) s.first_of_key[i] += s.first_of_key[i - 1];
+    s.contacts.resize(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) s.contacts[s.first_of_key[key_of(k)]++] = order[k];
+
+    // Each stage cut into batches. After the sort a key's entry tells where the next one begins.
+    s.batches.clear();
+    s.stages.clear();
+    std::uint32_t first = 0;
+    for (std::uint32_t stage = 0; stage < stages; ++stage) {
+        const std::uint32_t end = s.first_of_key[(stage + 1) * most_points - 1];
+        const auto first_batch = static_cast<std::uint32_t>(s.batches.size());
+        for (; first < end; first += static_cast<std::uint32_t>(lanes)) {
+            const std::uint32_t count = std::min<std::uint32_t>(static_cast<std::uint32_t>(lanes), end - first);
+            s.batches.push_back({first, static_cast<std::uint8_t>(count),
+                                 static_cast<std::uint8_t>(contacts[s.contacts[first]].count)});
+        }
+        first = end;
+        s.stages.push_back({first_batch, static_cast<std::uint32_t>(s.batches.size()) - first_batch});
+    }
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "physics/constraint/contact.h"
+
+namespace embody::physics {
+
+/// In which order contacts are solved, and which of them at once (docs/physics/wide-solver.md).
+struct SolveSchedule {
+    /// Contacts of different movable bodies, solved by one instruction each.
+    struct Batch {
+        std::uint32_t first = 0;             ///< into `contacts`
+        std::uint8_t count = 0, points = 0;  ///< contacts; most points among them
+    };
+    /// Batches that touch different movable bodies: any order, or any thread, gives the same.
+    struct Stage {
+        std::uint32_t first_batch = 0, batch_count = 0;
+    };
+    std::vector<std::uint32_t> contacts;  ///< batch by batch
+    std::vector<Batch> batches;           ///< stage by stage
+    std::vector<Stage> stages;            ///< in the order of the sweep upwards
+
+    // Scratch of build_schedule, kept for its memory.
+    std::vector<std::uint32_t> stage_of, next_stage, first_of_key;
+    std::vector<std::uint64_t> colours;
+};
+
+/// ordered: exactly the sequential sweep, for islands of few contacts. coloured: few stages, for large ones.
+enum class ScheduleKind { ordered, coloured };
+
+/// `order`: contacts in the order of the sequential sweep. Arrays over bodies are indexed by slot. Equal inputs give
+/// equal schedules, and the solution does not depend on `lanes`.
+void build_schedule(std::span<const std::uint32_t> order, std::span<const Contact> contacts,
+                    std::span<const BodyState> bodies, ScheduleKind kind, int lanes, SolveSchedule& schedule);
+
+}  // namespace embody::physics
