@@ -58,6 +58,7 @@ struct BroadPhase::State {
     std::vector<std::uint32_t> wide;  ///< bodies without a leaf, ascending
     std::vector<std::uint32_t> changed;
     std::vector<Pair> pairs;
+    std::uint64_t version = 0;  ///< of pairs
 
     void place(std::uint32_t body, const Bounds& fat) {
         Proxy& proxy = proxies[body];
@@ -121,6 +122,7 @@ void BroadPhase::remove(std::uint32_t body) {
     s.proxies[body].used = false;
     // Its pairs go at once: a new body may take the index before the next update.
     std::erase_if(s.pairs, [body](const Pair& pair) { return pair.a == body || pair.b == body; });
+    ++s.version;
 }
 
 void BroadPhase::move(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion) {
@@ -134,9 +136,12 @@ void BroadPhase::move(std::uint32_t body, const Bounds& bounds, Vec3 expected_mo
     s.place(body, wanted);
 }
 
+std::uint64_t BroadPhase::pairs_version() const { return state_->version; }
+
 const std::vector<BroadPhase::Pair>& BroadPhase::update_pairs() {
     State& s = *state_;
     if (s.changed.empty()) return s.pairs;
+    ++s.version;
     // Changed bodies lose their pairs and look for them anew; the others keep theirs.
     std::sort(s.changed.begin(), s.changed.end());
     std::erase_if(s.pairs, [&s](const Pair& p) { return s.proxies[p.a].changed || s.proxies[p.b].changed; });

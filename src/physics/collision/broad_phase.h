@@ -31,6 +31,9 @@ public:
     /// All pairs with overlapping enlarged bounds, sorted; each once.
     const std::vector<Pair>& update_pairs();
 
+    /// Another number after each change of the pairs.
+    [[nodiscard]] std::uint64_t pairs_version() const;
+
     /// Calls `visit` for each body whose enlarged bounds overlap `box`, in ascending order of index.
     void query(const Bounds& box, const std::function<void(std::uint32_t)>& visit) const;
     /// Calls `visit` for bodies whose bounds the ray may meet; it returns the new maximal distance (smaller after a

@@ -5,15 +5,34 @@
 
 namespace embody::physics {
 
-Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold, std::span<const BodyState> bodies) {
+namespace {
+
+void set_normal(Contact& contact, Vec3 normal) {
+    contact.normal = normal;
+    contact.tangent_1 = any_perpendicular(normal);
+    contact.tangent_2 = cross(normal, contact.tangent_1);
+}
+
+// Arms to the middle between the surface points, and how fast they approach.
+void set_arms(Contact& contact, ContactPoint& point, std::span<const BodyState> bodies) {
+    point.arm_a = point.position - bodies[contact.a].center;
+    point.arm_b = point.position - bodies[contact.b].center;
+    contact.approach_speed =
+        std::max(contact.approach_speed, -dot(relative_velocity(contact, point, bodies), contact.normal));
+}
+
+}  // namespace
+
+Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold, std::span<const BodyState> bodies,
+                     bool turns_with_b) {
     Contact contact;
     contact.a = a;
     contact.b = b;
     contact.piece_a = manifold.piece_a;
     contact.piece_b = manifold.piece_b;
-    contact.normal = manifold.normal;
-    contact.tangent_1 = any_perpendicular(manifold.normal);
-    contact.tangent_2 = cross(manifold.normal, contact.tangent_1);
+    contact.turns_with_b = turns_with_b;
+    set_normal(contact, manifold.normal);
+    contact.local_normal = rotate_inverse(bodies[turns_with_b ? b : a].rotation, manifold.normal);
     contact.count = manifold.count;
     for (int i = 0; i < manifold.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
@@ -21,10 +40,10 @@ Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold,
         point.position = found.position;
         point.separation = found.separation;
         point.feature = found.feature;
-        point.arm_a = found.position - bodies[a].center;
-        point.arm_b = found.position - bodies[b].center;
-        contact.approach_speed =
-            std::max(contact.approach_speed, -dot(relative_velocity(contact, point, bodies), contact.normal));
+        set_arms(contact, point, bodies);
+        const Vec3 half_gap = contact.normal * (0.5 * found.separation);
+        point.local_a = rotate_inverse(bodies[a].rotation, point.arm_a - half_gap);
+        point.local_b = rotate_inverse(bodies[b].rotation, point.arm_b + half_gap);
     }
     return contact;
 }
@@ -69,6 +88,33 @@ void match_points(const Contact& old_contact, Contact& new_contact) {
     new_contact.turning = old_contact.turning;
     new_contact.was_touching = is_touching(old_contact);
     new_contact.was_loaded = is_pressed(old_contact);
+}
+
+void follow_bodies(Contact& contact, std::span<const BodyState> bodies) {
+    const BodyState &a = bodies[contact.a], &b = bodies[contact.b];
+    contact.was_touching = is_touching(contact);
+    contact.was_loaded = is_pressed(contact);
+    contact.had_impact = false;
+    contact.approach_speed = 0;
+
+    const Vec3 normal = rotate((contact.turns_with_b ? b : a).rotation, contact.local_normal);
+    const Vec3 old_1 = contact.tangent_1, old_2 = contact.tangent_2;
+    set_normal(contact, normal);
+    for (int i = 0; i < contact.count; ++i) {
+        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        const Vec3 arm_a = rotate(a.rotation, point.local_a), arm_b = rotate(b.rotation, point.local_b);
+        const Vec3 on_a = a.center + arm_a, gap = (b.center - a.center) + arm_b - arm_a;
+        point.separation = dot(normal, gap);
+        point.position = on_a + 0.5 * gap;
+        set_arms(contact, point, bodies);
+
+        // The friction impulse keeps its world direction.
+        const Vec3 friction = point.impulse.tangent_1 * old_1 + point.impulse.tangent_2 * old_2;
+        point.impulse.tangent_1 = dot(friction, contact.tangent_1);
+        point.impulse.tangent_2 = dot(friction, contact.tangent_2);
+        point.total = {};
+        point.inactive_until = 0;
+    }
 }
 
 namespace {

@@ -20,6 +20,7 @@ struct PointImpulse {
 struct ContactPoint {
     Vec3 position;          ///< world, when found
     Vec3 arm_a, arm_b;      ///< from the centres of mass, world, when found; fixed during the step
+    Vec3 local_a, local_b;  ///< the surface points, from the centres of mass in the bodies' axes
     double separation = 0;  ///< when found, m
     std::uint32_t feature = 0;
 
@@ -40,11 +41,13 @@ struct Contact {
     std::uint32_t a = 0, b = 0;              ///< body slots, a < b
     std::uint32_t piece_a = 0, piece_b = 0;  ///< convex pieces; key of the region within the pair
     Vec3 normal, tangent_1, tangent_2;       ///< world; normal from a to b
+    Vec3 local_normal;                       ///< in the axes of the body that has the region's face, see turns_with_b
     Material material;                       ///< of the pair
     int count = 0;
     std::array<ContactPoint, Manifold::max_points> points;
 
     Vec3 turning;  ///< angular impulse by torsion (along n) and rolling resistance of the last substep, N m s
+    bool turns_with_b = false;                    ///< the normal does; else with a
     bool a_is_round = false, b_is_round = false;  ///< rolls: the point of contact does not turn with the body
     double approach_speed = 0;                    ///< fastest point when found, m/s, >= 0
     bool was_touching = false;                    ///< in the last step
@@ -56,7 +59,12 @@ struct Contact {
 inline std::array<std::uint32_t, 4> contact_key(const Contact& c) { return {c.a, c.b, c.piece_a, c.piece_b}; }
 
 /// Frame and arms from what the narrow phase found.
-Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold, std::span<const BodyState> bodies);
+Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold, std::span<const BodyState> bodies,
+                     bool turns_with_b = false);
+
+/// Follows the bodies of a contact that was found in an earlier step: its surface points stay where they are on each
+/// body. Keeps impulses for the warm start, clears what belongs to a step.
+void follow_bodies(Contact& contact, std::span<const BodyState> bodies);
 
 /// Hands the last step's impulses to the new points that lie where an old one did (warm start; paper, contact caching).
 void match_points(const Contact& old_contact, Contact& new_contact);

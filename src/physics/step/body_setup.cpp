@@ -25,6 +25,9 @@ Result<void> set_up_shape(const WorldState& world, const BodyDefinition& definit
 // Distances that bound how far the surface moves by turning and how thin it is.
 void set_up_sizes(BodySetup& setup) {
     if (!setup.record.shape || is_static_only(setup.record.shape->definition())) return;
+    const ShapeDefinition& shape = setup.record.shape->definition();
+    setup.record.is_round = std::holds_alternative<SphereShape>(shape) || std::holds_alternative<CapsuleShape>(shape) ||
+                            std::holds_alternative<CylinderShape>(shape) || std::holds_alternative<ConeShape>(shape);
     setup.record.reach = setup.record.shape->radius_about(setup.constants.local_center);
     const Vec3 half = setup.record.shape->local_bounds().half_extents();
     setup.record.inner_radius = std::min({half.x, half.y, half.z});
@@ -79,6 +82,7 @@ void place_body(WorldState& world, std::uint32_t body, BodySetup setup) {
     world.constants.resize(slots);
     world.sleep.resize(slots);
     world.record(body) = std::move(setup.record);
+    world.record(body).version = ++world.last_body_version;
     world.constants[body] = setup.constants;
     world.motion[body] = setup.state;
     world.sleep[body] = setup.sleep;

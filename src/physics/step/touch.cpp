@@ -83,20 +83,121 @@ void wake_touched(WorldState& world, std::vector<Manifold>& manifolds) {
     if (woke) gather_awake(world);
 }
 
-bool is_round(const WorldState& world, std::uint32_t body) {
-    const ShapeDefinition& shape = world.record(body).shape->definition();
-    return std::holds_alternative<SphereShape>(shape) || std::holds_alternative<CapsuleShape>(shape) ||
-           std::holds_alternative<CylinderShape>(shape) || std::holds_alternative<ConeShape>(shape);
+// Contacts follow their bodies for as long as the pair has moved less than this since it was compared, m: what was
+// not within the margin then is not within it now. Half of what the next comparison looks farther for.
+constexpr double follow_window = 0.0025;
+
+/// A pair seen from its larger body: turning that one moves surface points the least.
+struct RelativePose {
+    Vec3 center;
+    Quat rotation;
+};
+
+// Planes and meshes have no reach; they count as larger than all else.
+double size_of(const BodyRecord& body) { return body.reach > 0 ? body.reach : 1e300; }
+
+bool b_is_larger(const WorldState& world, const BroadPhase::Pair& pair) {
+    return size_of(world.record(pair.b)) > size_of(world.record(pair.a));
 }
 
-// Contacts of both steps are sorted by key, so one pass over the two finds all old partners.
-void take_over_impulses(const std::vector<Contact>& last, std::vector<Contact>& contacts) {
-    auto old_contact = last.begin();
-    for (Contact& contact : contacts) {
-        while (old_contact != last.end() && contact_key(*old_contact) < contact_key(contact)) ++old_contact;
-        if (old_contact != last.end() && contact_key(*old_contact) == contact_key(contact)) {
+RelativePose relative_pose(const WorldState& world, const BroadPhase::Pair& pair) {
+    const bool from_b = b_is_larger(world, pair);
+    const BodyState& larger = world.motion[from_b ? pair.b : pair.a];
+    const BodyState& smaller = world.motion[from_b ? pair.a : pair.b];
+    return {rotate_inverse(larger.rotation, smaller.center - larger.center),
+            conjugate(larger.rotation) * smaller.rotation};
+}
+
+// Farthest that a surface point of the smaller body has moved relative to the larger one since they were compared.
+double moved_since(const WorldState& world, const PairRecord& record, const RelativePose& now) {
+    const double reach = std::min(size_of(world.record(record.pair.a)), size_of(world.record(record.pair.b)));
+    const Quat turn = now.rotation * conjugate(record.relative_rotation);
+    const double sine = length(Vec3{turn.x, turn.y, turn.z});
+    return distance(now.center, record.relative_center) + 2 * sine * reach;
+}
+
+// Brings the records in step with the pairs of the broad phase; both are sorted.
+void update_records(WorldState& world) {
+    if (world.pairs_version == world.broad_phase.pairs_version()) return;
+    world.pairs_version = world.broad_phase.pairs_version();
+    std::vector<PairRecord> records;
+    records.reserve(world.pairs->size());
+    auto old_record = world.pair_records.begin();
+    for (const BroadPhase::Pair& pair : *world.pairs) {
+        while (old_record != world.pair_records.end() && old_record->pair < pair) ++old_record;
+        const bool is_known = old_record != world.pair_records.end() && old_record->pair == pair;
+        records.push_back(is_known ? *old_record : PairRecord{.pair = pair});
+    }
+    world.pair_records = std::move(records);
+}
+
+/// The contacts of one pair in the last step.
+using OldContacts = std::span<const Contact>;
+
+// Whether the last comparison still tells all: same bodies, hardly moved, and searched as far as now needed.
+bool may_follow(const WorldState& world, const PairRecord& record, OldContacts old, double margin,
+                const RelativePose& now) {
+    const BodyRecord &a = world.record(record.pair.a), &b = world.record(record.pair.b);
+    if (record.version_a != a.version || record.version_b != b.version) return false;
+    if (record.contact_count != old.size()) return false;
+    if (!old.empty() && (a.is_round || b.is_round)) return false;
+    const double moved = moved_since(world, record, now);
+    return moved <= follow_window && margin + moved <= record.margin;
+}
+
+// Finds the contacts of a pair anew and hands them the impulses of the old ones.
+void compare_pair(WorldState& world, PairRecord& record, OldContacts old, double margin, const RelativePose& now,
+                  std::vector<Manifold>& manifolds) {
+    const BroadPhase::Pair pair = record.pair;
+    const BodyRecord &a = world.record(pair.a), &b = world.record(pair.b);
+    if (record.version_a != a.version || record.version_b != b.version) record.memory = {};
+    manifolds.clear();
+    const double searched = margin + follow_window;
+    collide(*a.shape, world.pose(pair.a), *b.shape, world.pose(pair.b), searched, record.memory, manifolds);
+    record.version_a = a.version;
+    record.version_b = b.version;
+    record.contact_count = static_cast<std::uint32_t>(manifolds.size());
+    record.margin = searched;
+    record.relative_center = now.center;
+    record.relative_rotation = now.rotation;
+    if (manifolds.empty()) return;
+
+    const std::size_t first = world.contacts.size();
+    const Material material = combine(a.definition.material, b.definition.material);
+    for (const Manifold& manifold : manifolds) {
+        world.contacts.push_back(make_contact(pair.a, pair.b, manifold, world.motion, b_is_larger(world, pair)));
+        Contact& contact = world.contacts.back();
+        contact.material = material;
+        contact.a_is_round = a.is_round;
+        contact.b_is_round = b.is_round;
+    }
+    std::sort(world.contacts.begin() + static_cast<std::ptrdiff_t>(first), world.contacts.end(),
+              [](const Contact& c, const Contact& d) { return contact_key(c) < contact_key(d); });
+    auto old_contact = old.begin();
+    for (std::size_t i = first; i < world.contacts.size(); ++i) {
+        Contact& contact = world.contacts[i];
+        while (old_contact != old.end() && contact_key(*old_contact) < contact_key(contact)) ++old_contact;
+        if (old_contact != old.end() && contact_key(*old_contact) == contact_key(contact)) {
             match_points(*old_contact, contact);
         }
+    }
+}
+
+void touch_pair(WorldState& world, PairRecord& record, OldContacts old, std::vector<Manifold>& manifolds) {
+    // One of the two must be able to answer an impulse, and neither may sleep.
+    const auto [a, b] = record.pair;
+    if (world.motion[a].inverse_mass == 0 && world.motion[b].inverse_mass == 0) return;
+    if (world.is_asleep(a) || world.is_asleep(b)) return;
+    if (!may_collide(world, a, b)) return;
+    const double margin = margin_of(world, a, b);
+    const RelativePose now = relative_pose(world, record.pair);
+    if (!may_follow(world, record, old, margin, now)) {
+        compare_pair(world, record, old, margin, now, manifolds);
+        return;
+    }
+    for (const Contact& contact : old) {
+        world.contacts.push_back(contact);
+        follow_bodies(world.contacts.back(), world.motion);
     }
 }
 
@@ -113,28 +214,20 @@ void find_contacts(WorldState& world) {
         state.turn = {};
     }
 
+    // Pairs and the last contacts are sorted alike: one pass over the two meets every old partner.
+    update_records(world);
     world.last_contacts.swap(world.contacts);
     world.contacts.clear();
-    for (const BroadPhase::Pair& pair : *world.pairs) {
-        // One of the two must be able to answer an impulse, and neither may sleep.
-        const bool a_moves = world.motion[pair.a].inverse_mass > 0, b_moves = world.motion[pair.b].inverse_mass > 0;
-        if (!a_moves && !b_moves) continue;
-        if (world.is_asleep(pair.a) || world.is_asleep(pair.b)) continue;
-        if (!may_collide(world, pair.a, pair.b)) continue;
-        collide_pair(world, pair.a, pair.b, manifolds);
-        if (manifolds.empty()) continue;
-        const Material material =
-            combine(world.record(pair.a).definition.material, world.record(pair.b).definition.material);
-        for (const Manifold& manifold : manifolds) {
-            world.contacts.push_back(make_contact(pair.a, pair.b, manifold, world.motion));
-            world.contacts.back().material = material;
-            world.contacts.back().a_is_round = is_round(world, pair.a);
-            world.contacts.back().b_is_round = is_round(world, pair.b);
-        }
+    const std::span<const Contact> last = world.last_contacts;
+    std::size_t next = 0;
+    for (PairRecord& record : world.pair_records) {
+        const auto is_before = [&](const Contact& c) { return BroadPhase::Pair{c.a, c.b} < record.pair; };
+        while (next < last.size() && is_before(last[next])) ++next;
+        std::size_t end = next;
+        while (end < last.size() && BroadPhase::Pair{last[end].a, last[end].b} == record.pair) ++end;
+        touch_pair(world, record, last.subspan(next, end - next), manifolds);
+        next = end;
     }
-    std::sort(world.contacts.begin(), world.contacts.end(),
-              [](const Contact& a, const Contact& b) { return contact_key(a) < contact_key(b); });
-    take_over_impulses(world.last_contacts, world.contacts);
 }
 
 }  // namespace embody::physics

@@ -9,6 +9,7 @@
 #include "foundation/handle_table.h"
 #include "physics/collision/broad_phase.h"
 #include "physics/collision/collision_shape.h"
+#include "physics/collision/pair_memory.h"
 #include "physics/constraint/contact.h"
 #include "physics/constraint/joint.h"
 #include "physics/constraint/wide_contact_solver.h"
@@ -31,6 +32,8 @@ struct BodyRecord {
     BodyDefinition definition;
     const CollisionShape* shape = nullptr;  ///< nullptr: none
     double reach = 0;                       ///< farthest surface point from the centre of mass, m
+    bool is_round = false;                  ///< rolls: its contacts do not stay where they are on it
+    std::uint32_t version = 0;     ///< another one after each change of the body's shape, kind or pose by the user
     double inner_radius = 0;       ///< half the thinnest extent: a body that moves farther in a step may tunnel, m
     Vec3 next_force, next_torque;  ///< for the next step only, cleared by report; N, N m about the centre of mass
     Vec3 last_center;              ///< last finite pose, to freeze the body at
@@ -46,6 +49,17 @@ struct JointRecord {
 struct SleepingGroup {
     std::vector<std::uint32_t> bodies;
     std::vector<Contact> contacts;
+};
+
+/// What the touch stage remembers of a pair of bodies that may touch.
+struct PairRecord {
+    BroadPhase::Pair pair;
+    std::uint32_t version_a = 0, version_b = 0;  ///< of the bodies when last compared; 0: never
+    std::uint32_t contact_count = 0;             ///< found then
+    double margin = 0;                           ///< searched then, m
+    Vec3 relative_center;                        ///< of the smaller body seen from the larger one, then
+    Quat relative_rotation;
+    PairMemory memory;
 };
 
 /// Two touching bodies as the contact events know them.
@@ -70,6 +84,9 @@ struct WorldState {
 
     BroadPhase broad_phase;                                // find pairs
     const std::vector<BroadPhase::Pair>* pairs = nullptr;  // find pairs
+    std::vector<PairRecord> pair_records;                  // touch: one for each of pairs
+    std::uint64_t pairs_version = 0;                       // touch: of pair_records
+    std::uint32_t last_body_version = 0;                   // face
     std::vector<std::uint32_t> awake;                      // wake: slots of moving bodies, ascending
     std::vector<Contact> contacts;                         // touch; impulses: impact, substeps
     std::vector<Contact> last_contacts;                    // touch: those of the step before, for the warm start
