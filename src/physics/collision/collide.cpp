@@ -52,7 +52,7 @@ void find_region(const ConvexPair& pair, double margin, PairMemory& memory, Cont
     }
     const bool has_corners = pair.a->kind == ConvexKind::polytope && pair.b->kind == ConvexKind::polytope;
     if (has_corners && collide_polytopes(pair, margin, memory, region)) return;
-    collide_round(pair.placed_a(), pair.placed_b(), margin, region);
+    collide_round(pair.placed_a(), pair.placed_b(), margin, memory, region);
 }
 
 // Two convex pieces in world axes with the origin at `origin`; at most one manifold.

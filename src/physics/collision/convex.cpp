@@ -11,30 +11,11 @@ namespace embody::physics {
 
 namespace {
 
-Vec3 rim_support(const Convex& round, Vec3 local_direction, double height) {
+Vec3 rim_support(double radius, Vec3 local_direction, double height) {
     const double squared = local_direction.x * local_direction.x + local_direction.z * local_direction.z;
-    if (!(squared > 1e-300)) return {round.radius, height, 0};
-    const double s = round.radius / std::sqrt(squared);
+    if (!(squared > 1e-300)) return {radius, height, 0};
+    const double s = radius / std::sqrt(squared);
     return {local_direction.x * s, height, local_direction.z * s};
-}
-
-Vec3 local_core_support(const Convex& convex, Vec3 d) {
-    switch (convex.kind) {
-        case ConvexKind::sphere:
-            return {};
-        case ConvexKind::capsule:
-            return {0, d.y < 0 ? -convex.half_height : convex.half_height, 0};
-        case ConvexKind::polytope:
-            return convex.polytope.vertices[support_vertex(convex.polytope, d)];
-        case ConvexKind::cylinder:
-            return rim_support(convex, d, d.y < 0 ? -convex.half_height : convex.half_height);
-        case ConvexKind::cone:
-            break;
-    }
-    // Cone: the apex or the rim of the base.
-    const Vec3 rim = rim_support(convex, d, -convex.half_height);
-    const Vec3 apex{0, convex.half_height, 0};
-    return dot(d, apex) > dot(d, rim) ? apex : rim;
 }
 
 // How far each face's normal reaches over all vertices, and lanes of vertices and normals.
@@ -151,9 +132,75 @@ std::uint32_t support_face(const Polytope& polytope, Vec3 direction) {
     return farthest(polytope.normal_lanes, direction).index;
 }
 
-Vec3 core_support(const PlacedConvex& convex, Vec3 direction) {
-    return convex.to_frame(local_core_support(*convex.shape, convex.direction_to_local(direction)));
+Core::Core(const PlacedConvex& placed, double shrink)
+    : shape(placed.shape),
+      rotation(placed.rotation),
+      position(placed.position),
+      is_turned(placed.rotation != Mat3{} || placed.position != Vec3{}),
+      depth(shrink + rounding(*placed.shape)) {
+    const Convex& convex = *placed.shape;
+    const double h = convex.half_height;
+    radius = convex.radius - shrink;
+    top = h - shrink;
+    bottom = -top;
+    if (convex.kind == ConvexKind::capsule) {
+        top = h;
+        bottom = -h;
+    } else if (convex.kind == ConvexKind::cone && shrink > 0) {
+        const ConeSlope slope = cone_slope(convex);
+        radius = convex.radius - shrink * (1 + slope.axial) / slope.radial;
+        top = h - shrink / slope.axial;
+    } else if (convex.is_box) {
+        half = convex.bounds.upper - Vec3{shrink, shrink, shrink};
+    }
 }
+
+Vec3 Core::local_support(Vec3 d) const {
+    switch (shape->kind) {
+        case ConvexKind::sphere:
+            return {};
+        case ConvexKind::capsule:
+            return {0, d.y < 0 ? bottom : top, 0};
+        case ConvexKind::polytope:
+            if (!shape->is_box) return shape->polytope.vertices[support_vertex(shape->polytope, d)];
+            return {d.x < 0 ? -half.x : half.x, d.y < 0 ? -half.y : half.y, d.z < 0 ? -half.z : half.z};
+        case ConvexKind::cylinder:
+            return rim_support(radius, d, d.y < 0 ? bottom : top);
+        case ConvexKind::cone:
+            break;
+    }
+    // Cone: the apex or the rim of the base.
+    const Vec3 rim = rim_support(radius, d, bottom);
+    const Vec3 apex{0, top, 0};
+    return dot(d, apex) > dot(d, rim) ? apex : rim;
+}
+
+Vec3 Core::support(Vec3 d) const {
+    if (!is_turned) return local_support(d);
+    return position + rotation * local_support({dot(rotation.x, d), dot(rotation.y, d), dot(rotation.z, d)});
+}
+
+double shrinkable(const Convex& convex) {
+    constexpr double share = 0.1;
+    switch (convex.kind) {
+        case ConvexKind::sphere:
+        case ConvexKind::capsule:
+            return 0;
+        case ConvexKind::polytope: {
+            const Vec3 h = convex.bounds.upper;
+            return convex.is_box ? share * std::fmin(h.x, std::fmin(h.y, h.z)) : 0;
+        }
+        case ConvexKind::cylinder:
+            return share * std::fmin(convex.radius, convex.half_height);
+        case ConvexKind::cone:
+            break;
+    }
+    // Of the radius of the largest ball inside.
+    const ConeSlope slope = cone_slope(convex);
+    return share * convex.radius * slope.radial / (1 + slope.axial);
+}
+
+Vec3 core_support(const PlacedConvex& convex, Vec3 direction) { return Core(convex).support(direction); }
 
 Vec3 interior_point(const PlacedConvex& convex) {
     if (convex.shape->kind == ConvexKind::polytope) return convex.to_frame(convex.shape->polytope.center);
@@ -162,11 +209,15 @@ Vec3 interior_point(const PlacedConvex& convex) {
 }
 
 double separation_along(const PlacedConvex& a, const PlacedConvex& b, Vec3 normal) {
-    return dot(normal, core_support(b, -normal) - core_support(a, normal)) - rounding(*a.shape) - rounding(*b.shape);
+    return separation_along(Core(a), Core(b), normal);
+}
+
+double separation_along(const Core& a, const Core& b, Vec3 normal) {
+    return dot(normal, b.support(-normal) - a.support(normal)) - a.depth - b.depth;
 }
 
 ConeSlope cone_slope(const Convex& cone) {
-    const double slant = std::hypot(2 * cone.half_height, cone.radius);
+    const double slant = std::sqrt(4 * cone.half_height * cone.half_height + cone.radius * cone.radius);
     return {2 * cone.half_height / slant, cone.radius / slant};
 }
 

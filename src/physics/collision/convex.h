@@ -79,21 +79,48 @@ struct PlacedConvex {
     }
 };
 
+/// A point well inside.
+Vec3 interior_point(const PlacedConvex& convex);
+/// Radius around the core.
+inline double rounding(const Convex& convex) {
+    return convex.kind == ConvexKind::sphere || convex.kind == ConvexKind::capsule ? convex.radius : 0.0;
+}
+
+/// What lies inside a placed convex by at least a depth: the solid without the radius around it (sphere, capsule) and,
+/// if `shrink` is not zero, every face and side moved inwards by it. Its support points are quick to find.
+struct Core {
+    const Convex* shape = nullptr;
+    Mat3 rotation;
+    Vec3 position;
+    bool is_turned = true;       ///< false: rotation and position change nothing
+    double radius = 0;           ///< of cylinder and cone
+    double top = 0, bottom = 0;  ///< heights of caps, base, apex, or ends of a capsule's axis
+    Vec3 half;                   ///< of a box
+    double depth = 0;            ///< how far inside the solid's faces and smooth sides it lies
+
+    explicit Core(const PlacedConvex& placed, double shrink = 0);
+    [[nodiscard]] Vec3 support(Vec3 direction) const;
+    /// A point well inside.
+    [[nodiscard]] Vec3 interior() const { return interior_point({shape, rotation, position}); }
+
+private:
+    [[nodiscard]] Vec3 local_support(Vec3 direction) const;
+};
+/// How far a core is shrunk where it shall lie inside the solid: a small part of its thickness, deeper than resting
+/// contacts are; 0 for polytopes other than boxes.
+double shrinkable(const Convex& convex);
+
 /// Index of the vertex farthest along `direction` (local).
 std::uint32_t support_vertex(const Polytope& polytope, Vec3 direction);
 /// Index of the face whose normal is nearest to `direction` (local).
 std::uint32_t support_face(const Polytope& polytope, Vec3 direction);
 /// Farthest point of the core along `direction` (frame, any length).
 Vec3 core_support(const PlacedConvex& convex, Vec3 direction);
-/// Radius around the core.
-inline double rounding(const Convex& convex) {
-    return convex.kind == ConvexKind::sphere || convex.kind == ConvexKind::capsule ? convex.radius : 0.0;
-}
-/// A point well inside.
-Vec3 interior_point(const PlacedConvex& convex);
 /// Gap between the two solids along the unit direction `normal` from a to b: never more than their true distance, and
 /// equal to it (or to minus the penetration depth) along the best normal.
 double separation_along(const PlacedConvex& a, const PlacedConvex& b, Vec3 normal);
+/// The same of two cores, less their depths.
+double separation_along(const Core& a, const Core& b, Vec3 normal);
 
 /// Cone: slope of the side's normal: unit (radial, axial) components.
 struct ConeSlope {

@@ -31,6 +31,7 @@ void collide_plane(const PlacedConvex& a, const PlacedPlane& plane, double margi
 /// would have to be paired.
 bool collide_polytopes(const ConvexPair& pair, double margin, PairMemory& memory, ContactRegion& region);
 /// Any pair of convexes, by GJK and EPA: those with a round side, and triangles.
-void collide_round(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region);
+void collide_round(const PlacedConvex& a, const PlacedConvex& b, double margin, PairMemory& memory,
+                   ContactRegion& region);
 
 }  // namespace embody::physics

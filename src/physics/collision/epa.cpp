@@ -93,7 +93,7 @@ struct Expansion {
 };
 
 // Makes the simplex a tetrahedron with volume by probing new directions; false for a flat difference.
-bool widen_to_tetrahedron(const PlacedConvex& a, const PlacedConvex& b, std::vector<Vec3>& points) {
+bool widen_to_tetrahedron(const Core& a, const Core& b, std::vector<Vec3>& points) {
     const Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const auto probe = [&](Vec3 direction, auto&& far_enough) {
         for (const double sign : {1.0, -1.0}) {
@@ -126,9 +126,9 @@ bool widen_to_tetrahedron(const PlacedConvex& a, const PlacedConvex& b, std::vec
 
 }  // namespace
 
-bool penetration_normal(const PlacedConvex& a, const PlacedConvex& b, const CoreDistance& overlap, Vec3& normal) {
+bool penetration_normal(const Core& a, const Core& b, const CoreDistance& overlap, Vec3& normal) {
     constexpr int most_iterations = 96;
-    constexpr double converged = 1e-9;
+    constexpr double converged = 1e-6;
     thread_local Expansion expansion;
     expansion.clear();
     for (int i = 0; i < overlap.simplex_size; ++i) {

@@ -119,19 +119,18 @@ void read_witnesses(CoreDistance& state, const NearestPoint& nearest) {
 
 }  // namespace
 
-DifferencePoint difference_support(const PlacedConvex& a, const PlacedConvex& b, Vec3 direction) {
-    const Vec3 on_a = core_support(a, -direction), on_b = core_support(b, direction);
+DifferencePoint difference_support(const Core& a, const Core& b, Vec3 direction) {
+    const Vec3 on_a = a.support(-direction), on_b = b.support(direction);
     return {on_b - on_a, on_a, on_b};
 }
 
-CoreDistance core_distance(const PlacedConvex& a, const PlacedConvex& b, double enough, Vec3 start) {
+CoreDistance core_distance(const Core& a, const Core& b, double enough, Vec3 start, double converged) {
     constexpr int most_iterations = 100;
     // Relative to the size of the coordinates: what rounding leaves of a distance of zero.
     constexpr double zero = 1e-14;
-    constexpr double converged = 1e-12;
 
     CoreDistance state;
-    if (length_squared(start) == 0) start = interior_point(b) - interior_point(a);
+    if (length_squared(start) == 0) start = b.interior() - a.interior();
     if (length_squared(start) == 0) start = {1, 0, 0};
     state.simplex[0] = difference_support(a, b, -start);
     state.simplex_size = 1;
@@ -154,6 +153,7 @@ CoreDistance core_distance(const PlacedConvex& a, const PlacedConvex& b, double 
             read_witnesses(state, nearest);
             state.distance = lower / std::sqrt(squared);
             state.direction = nearest.point;
+            state.is_final = false;
             return state;
         }
         state.simplex[static_cast<std::size_t>(state.simplex_size)] = next;

@@ -11,11 +11,12 @@ namespace embody::physics {
 struct DifferencePoint {
     Vec3 difference, on_a, on_b;
 };
-DifferencePoint difference_support(const PlacedConvex& a, const PlacedConvex& b, Vec3 direction);
+DifferencePoint difference_support(const Core& a, const Core& b, Vec3 direction);
 
-/// Nearest points of two cores (the shapes without the radius around sphere and capsule).
+/// Nearest points of two cores.
 struct CoreDistance {
     bool overlap = false;
+    bool is_final = true;  ///< false where it stopped early
     double distance = 0;
     Vec3 on_a, on_b;
     Vec3 direction;  ///< along which the cores are apart, of any length; zero where they overlap
@@ -24,9 +25,10 @@ struct CoreDistance {
 };
 /// May stop as soon as the gap along some direction is known to exceed `enough`: then `distance` is that gap. `start`
 /// is a direction from a to b to begin with, where one is known.
-CoreDistance core_distance(const PlacedConvex& a, const PlacedConvex& b, double enough = 1e300, Vec3 start = {});
+CoreDistance core_distance(const Core& a, const Core& b, double enough = 1e300, Vec3 start = {},
+                           double converged = 1e-12);
 
 /// Direction in which overlapping cores part soonest, unit, from a to b; false if no volume was found to search.
-bool penetration_normal(const PlacedConvex& a, const PlacedConvex& b, const CoreDistance& overlap, Vec3& normal);
+bool penetration_normal(const Core& a, const Core& b, const CoreDistance& overlap, Vec3& normal);
 
 }  // namespace embody::physics

@@ -17,8 +17,6 @@ struct PairMemory {
         face_of_a,  ///< the pair met on face `feature_a` of a
         face_of_b,  ///< … on face `feature_b` of b
         edges,      ///< … where edge `feature_a` of a crosses edge `feature_b` of b
-        core_of_a,  ///< the parting direction was certified by a's core (round pairs)
-        core_of_b,  ///< … by b's core
     };
     Vec3 axis;  ///< unit, in the frame of the piece compared first, towards the other
     std::uint16_t feature_a = 0, feature_b = 0;

@@ -55,38 +55,25 @@ FaceAxis best_face_axis(const Polytope& faces, const PlacedConvex& other, double
     FaceAxis best;
     best.separation = least;
     const std::size_t count = faces.faces.size();
-    s.bounds.resize(faces.normal_lanes.size());
-    s.heights.resize(faces.normal_lanes.size());
-    heights_over_faces(faces, start, s.bounds.data());
-    if (first >= count) first = none;
+    const Polytope& points = other.shape->polytope;
+    s.bounds.assign(faces.normal_lanes.size(), 1e300);
+    Extreme next{1e300, first};
+    if (first >= count) next = lower_bounds(faces, start, s.bounds.data());
     for (std::size_t rounds = 0; rounds <= count; ++rounds) {
         // The face that promises most; of equal ones the first, whatever was measured before.
-        std::uint32_t face = first;
-        if (face == none) {
-            double most = -1e300;
-            for (std::uint32_t f = 0; f < count; ++f) {
-                if (s.bounds[f] > most) {
-                    most = s.bounds[f];
-                    face = f;
-                }
-            }
-            if (face == none || most < best.separation) break;
-            if (most == best.separation && (best.face == none || face > best.face)) break;
-        }
-        first = none;
+        if (next.along < best.separation) break;
+        if (next.along == best.separation && (best.face == none || next.index > best.face)) break;
 
-        const Vec3 normal = faces.faces[face].normal;
-        const Extreme lowest = farthest(other.shape->polytope.vertex_lanes, -other.direction_to_local(normal));
-        const Vec3 witness = other.to_frame(other.shape->polytope.vertices[lowest.index]);
-        heights_over_faces(faces, witness, s.heights.data());
-        const double separation = s.heights[face];
-        const bool is_tie = separation == best.separation && best.face != none && face < best.face;
-        if (separation > best.separation || is_tie) {
-            best = {separation, face, witness};
-        }
+        const Vec3 normal = faces.faces[next.index].normal;
+        const Extreme lowest = farthest(points.vertex_lanes, -other.direction_to_local(normal));
+        const Vec3 witness = other.to_frame(points.vertices[lowest.index]);
+        const double separation = dot(normal, witness) - faces.reach[next.index];
+        const bool is_tie = separation == best.separation && best.face != none && next.index < best.face;
+        if (separation > best.separation || is_tie) best = {separation, next.index, witness};
         if (separation > s.margin) break;
-        for (std::size_t f = 0; f < count; ++f) s.bounds[f] = std::min(s.bounds[f], s.heights[f]);
-        s.bounds[face] = -1e300;
+        // Measured: it promises nothing any more.
+        s.bounds[next.index] = -1e300;
+        next = lower_bounds(faces, witness, s.bounds.data());
     }
     return best;
 }
@@ -106,15 +93,25 @@ void gather_edges(const Polytope& polytope, Vec3 witness, double depth, Polytope
     s.edges.resize(count);
 }
 
-void place_arcs(const Polytope& polytope, const PlacedConvex& placed, double sign, const PolytopeSearch& s,
-                std::vector<EdgeArc>& arcs) {
-    arcs.clear();
+void place_arcs_of_a(PolytopeSearch& s) {
+    s.arcs_a.clear();
     for (const std::uint32_t e : s.edges) {
-        const Polytope::Edge& edge = polytope.edges[e];
-        const Vec3 left = placed.direction_to_frame(polytope.faces[edge.left].normal) * sign;
-        const Vec3 right = placed.direction_to_frame(polytope.faces[edge.right].normal) * sign;
-        const Vec3 from = placed.to_frame(polytope.vertices[edge.from]);
-        arcs.push_back({left, right, cross(right, left), from, placed.to_frame(polytope.vertices[edge.to]) - from, e});
+        const Polytope::Edge& edge = s.a->edges[e];
+        const Vec3 left = s.a->faces[edge.left].normal, right = s.a->faces[edge.right].normal;
+        const Vec3 from = s.a->vertices[edge.from];
+        s.arcs_a.push_back({left, right, cross(right, left), from, s.a->vertices[edge.to] - from, e});
+    }
+}
+
+void place_arcs_of_b(PolytopeSearch& s) {
+    s.arcs_b.clear();
+    for (const std::uint32_t e : s.edges) {
+        const Polytope::Edge& edge = s.b->edges[e];
+        const Vec3 left = -s.b_in_a.direction_to_frame(s.b->faces[edge.left].normal);
+        const Vec3 right = -s.b_in_a.direction_to_frame(s.b->faces[edge.right].normal);
+        const Vec3 from = s.b_in_a.to_frame(s.b->vertices[edge.from]);
+        const Vec3 along = s.b_in_a.direction_to_frame(s.b->vertices[edge.to] - s.b->vertices[edge.from]);
+        s.arcs_b.push_back({left, right, cross(right, left), from, along, e});
     }
 }
 
@@ -147,10 +144,10 @@ bool best_edge_axis(double least, Vec3 witness_of_b, Vec3 witness_of_a, Polytope
     best.separation = least;
     const double depth = std::max(0.0, -least);
     gather_edges(*s.a, witness_of_b, depth, s);
-    place_arcs(*s.a, {nullptr, {}, {}}, 1, s, s.arcs_a);
+    place_arcs_of_a(s);
     gather_edges(*s.b, witness_of_a, depth, s);
     if (s.arcs_a.size() * s.edges.size() > most_pairs) return false;
-    place_arcs(*s.b, s.b_in_a, -1, s, s.arcs_b);
+    place_arcs_of_b(s);
     for (const EdgeArc& a : s.arcs_a) {
         for (const EdgeArc& b : s.arcs_b) {
             if (!arcs_cross(a, b)) continue;
@@ -200,7 +197,7 @@ void add_face_region(const PlacedConvex& owner, const PlacedConvex& other, const
 // Where the faces' sides cut everything off though the shapes are within the margin, the nearest points alone.
 void add_nearest_points(const PlacedConvex& a, const PlacedConvex& b, double margin, PairMemory& memory,
                         ContactRegion& region) {
-    const CoreDistance gap = core_distance(a, b, margin);
+    const CoreDistance gap = core_distance(Core(a), Core(b), margin);
     if (gap.overlap) {
         const double separation = separation_along(a, b, region.normal);
         region.add(core_support(b, -region.normal) - region.normal * separation, separation, 1);
@@ -251,8 +248,8 @@ bool collide_polytopes(const ConvexPair& pair, double margin, PairMemory& memory
     }
     // Faces are preferred by a little: they give a region, and the choice does not flicker by rounding.
     const double bias = 1e-4 * std::min(least_extent(*pair.a), least_extent(*pair.b));
-    heights_over_faces(*s.a, face_a.witness, s.heights.data());
-    const bool is_inside_a = *std::max_element(s.heights.begin(), s.heights.end()) <= 0;
+    s.heights.resize(s.a->normal_lanes.size());
+    const bool is_inside_a = heights_over_faces(*s.a, face_a.witness, s.heights.data()) <= 0;
     Vec3 witness_of_a = is_inside_a ? face_a.witness : nearest_corner(*s.a, face_a.face, face_a.witness);
     witness_of_a = s.a_in_b.to_frame(witness_of_a);
     const FaceAxis face_b = best_face_axis(*s.b, s.a_in_b, face_a.separation + bias, witness_of_a,

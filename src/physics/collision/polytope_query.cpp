@@ -1,46 +1,102 @@
 // SPDX-License-Identifier: MIT
 #include "physics/collision/polytope_query.h"
 
-#include <algorithm>
+#include <cstring>
 
 namespace embody::physics {
 
 namespace {
 
-constexpr std::size_t block = 64;
+// Two doubles in one register: what every 64-bit x86 and ARM machine has, without a choice at run time.
+using Two = double __attribute__((vector_size(16)));
+using TwoIndices = long long __attribute__((vector_size(16)));
+
+Two load(const double* from) {
+    Two two;
+    std::memcpy(&two, from, sizeof two);
+    return two;
+}
+void store(double* to, Two two) { std::memcpy(to, &two, sizeof two); }
+Two both(double value) { return Two{value, value}; }
+
+/// The highest values of four strands and where they were met first.
+struct Strands {
+    Two high_0 = both(-1e300), high_1 = both(-1e300);
+    TwoIndices at_0{0, 1}, at_1{2, 3}, now_0{0, 1}, now_1{2, 3};
+
+    void add(Two value_0, Two value_1) {
+        const auto is_higher_0 = value_0 > high_0, is_higher_1 = value_1 > high_1;
+        high_0 = is_higher_0 ? value_0 : high_0;
+        high_1 = is_higher_1 ? value_1 : high_1;
+        at_0 = is_higher_0 ? now_0 : at_0;
+        at_1 = is_higher_1 ? now_1 : at_1;
+        now_0 += 4;
+        now_1 += 4;
+    }
+    [[nodiscard]] Extreme best() const {
+        double along = high_0[0];
+        long long index = at_0[0];
+        const auto take = [&](double value, long long at) {
+            const bool is_better = value > along || (value == along && at < index);
+            along = is_better ? value : along;
+            index = is_better ? at : index;
+        };
+        take(high_0[1], at_0[1]);
+        take(high_1[0], at_1[0]);
+        take(high_1[1], at_1[1]);
+        return {along, static_cast<std::uint32_t>(index)};
+    }
+};
+
+/// Dot products of lanes with one vector.
+struct Products {
+    const double *x, *y, *z;
+    Two dx, dy, dz;
+
+    Products(const Lanes& lanes, Vec3 d)
+        : x(lanes.x.data()), y(lanes.y.data()), z(lanes.z.data()), dx(both(d.x)), dy(both(d.y)), dz(both(d.z)) {}
+    [[nodiscard]] Two at(std::size_t i) const { return load(x + i) * dx + load(y + i) * dy + load(z + i) * dz; }
+};
 
 }  // namespace
 
 Extreme farthest(const Lanes& lanes, Vec3 direction) {
-    // Block after block: all products, their maximum in four strands, then where the maximum is.
-    Extreme best{-1e300, 0};
-    double along[block];
-    for (std::size_t start = 0; start < lanes.size(); start += block) {
-        const std::size_t count = std::min(block, lanes.size() - start);
-        const double *x = lanes.x.data() + start, *y = lanes.y.data() + start, *z = lanes.z.data() + start;
-        double high[4] = {-1e300, -1e300, -1e300, -1e300};
-        for (std::size_t i = 0; i < count; i += 4) {
-            for (std::size_t k = 0; k < 4; ++k) {
-                along[i + k] = x[i + k] * direction.x + y[i + k] * direction.y + z[i + k] * direction.z;
-                high[k] = high[k] > along[i + k] ? high[k] : along[i + k];
-            }
-        }
-        const double highest = std::max(std::max(high[0], high[1]), std::max(high[2], high[3]));
-        if (!(highest > best.along)) continue;
-        std::size_t at = 0;
-        while (at + 1 < count && along[at] != highest) ++at;
-        best = {highest, static_cast<std::uint32_t>(start + at)};
-    }
-    return best;
+    const Products products(lanes, direction);
+    Strands strands;
+    const std::size_t count = lanes.size();
+    for (std::size_t i = 0; i < count; i += 4) strands.add(products.at(i), products.at(i + 2));
+    return strands.best();
 }
 
-void heights_over_faces(const Polytope& polytope, Vec3 point, double* __restrict heights) {
-    const Lanes& normals = polytope.normal_lanes;
-    const double *x = normals.x.data(), *y = normals.y.data(), *z = normals.z.data(), *reach = polytope.reach.data();
-    const std::size_t count = normals.size();
-    for (std::size_t i = 0; i < count; ++i) {
-        heights[i] = (x[i] * point.x + y[i] * point.y + z[i] * point.z) - reach[i];
+double heights_over_faces(const Polytope& polytope, Vec3 point, double* heights) {
+    const Products products(polytope.normal_lanes, point);
+    const double* reach = polytope.reach.data();
+    const std::size_t count = polytope.normal_lanes.size();
+    Two high = both(-1e300);
+    for (std::size_t i = 0; i < count; i += 2) {
+        const Two height = products.at(i) - load(reach + i);
+        store(heights + i, height);
+        high = height > high ? height : high;
     }
+    return high[0] > high[1] ? high[0] : high[1];
+}
+
+Extreme lower_bounds(const Polytope& polytope, Vec3 point, double* bounds) {
+    const Products products(polytope.normal_lanes, point);
+    const double* reach = polytope.reach.data();
+    const std::size_t count = polytope.normal_lanes.size();
+    Strands strands;
+    const auto lowered = [&](std::size_t i) {
+        const Two height = products.at(i) - load(reach + i), bound = load(bounds + i);
+        const Two lower = height < bound ? height : bound;
+        store(bounds + i, lower);
+        return lower;
+    };
+    for (std::size_t i = 0; i < count; i += 4) {
+        const Two first = lowered(i);
+        strands.add(first, lowered(i + 2));
+    }
+    return strands.best();
 }
 
 }  // namespace embody::physics

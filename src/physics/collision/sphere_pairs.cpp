@@ -33,13 +33,13 @@ SurfaceDistance distance_from_capsule(const Convex& capsule, Vec3 p) {
 
 SurfaceDistance distance_from_cylinder(const Convex& cylinder, Vec3 p) {
     const Vec3 outward = outward_at(p);
-    const double beyond_side = std::hypot(p.x, p.z) - cylinder.radius;
+    const double beyond_side = std::sqrt(p.x * p.x + p.z * p.z) - cylinder.radius;
     const double beyond_cap = std::fabs(p.y) - cylinder.half_height;
     const Vec3 cap_normal{0, p.y < 0 ? -1.0 : 1.0, 0};
 
     // Beyond both the rim is nearest; else the side or the cap, whichever is less deep.
     if (beyond_side > 0 && beyond_cap > 0) {
-        const double distance = std::hypot(beyond_side, beyond_cap);
+        const double distance = std::sqrt(beyond_side * beyond_side + beyond_cap * beyond_cap);
         return {(outward * beyond_side + cap_normal * beyond_cap) / distance, distance};
     }
     if (beyond_side > beyond_cap) return {outward, beyond_side};
@@ -48,7 +48,7 @@ SurfaceDistance distance_from_cylinder(const Convex& cylinder, Vec3 p) {
 
 SurfaceDistance distance_from_cone(const Convex& cone, Vec3 p) {
     const Vec3 outward = outward_at(p);
-    const double rho = std::hypot(p.x, p.z), h = cone.half_height, r = cone.radius;
+    const double rho = std::sqrt(p.x * p.x + p.z * p.z), h = cone.half_height, r = cone.radius;
     const ConeSlope slope = cone_slope(cone);
     const double beyond_base = -h - p.y;
     const double beyond_side = (rho - r) * slope.radial + (p.y + h) * slope.axial;
@@ -60,7 +60,7 @@ SurfaceDistance distance_from_cone(const Convex& cone, Vec3 p) {
                                          : SurfaceDistance{{0, -1, 0}, beyond_base};
     }
     // Outside: along the slope from the rim (0) to the apex (slant length), or over the base, the apex, the rim.
-    const double slant = std::hypot(2 * h, r);
+    const double slant = std::sqrt(4 * h * h + r * r);
     const double along = (rho - r) * -slope.axial + (p.y + h) * slope.radial;
     if (beyond_side > 0 && along >= 0 && along <= slant) return {side_normal, beyond_side};
     if (along > slant) return to_point({0, h, 0}, p, {0, 1, 0});
@@ -91,7 +91,7 @@ SurfaceDistance distance_from_polytope(const Convex& convex, Vec3 p) {
     }
     if (over_face) return {face.normal, most};
     Convex point;
-    const CoreDistance gap = core_distance({&convex, {}, {}}, {&point, {}, p});
+    const CoreDistance gap = core_distance(Core({&convex, {}, {}}), Core({&point, {}, p}));
     return to_point(gap.on_a, p, face.normal);
 }
 

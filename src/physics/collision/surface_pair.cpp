@@ -135,7 +135,8 @@ void collide_triangle(const PlacedConvex& convex, const PlacedTriangle& t, doubl
     set_triangle(shape.polytope, t.corners[0], t.corners[1], t.corners[2]);
     shape.bounds = {};
     for (const Vec3& p : t.corners) shape.bounds.add(p);
-    collide_round(convex, {&shape, {}, {}}, margin, region);
+    PairMemory nothing;
+    collide_round(convex, {&shape, {}, {}}, margin, nothing, region);
     if (region.points.empty()) return;
     if (!is_flat_to(t, -region.normal) && !leans_too_far(t, -region.normal)) return;
     region.points.clear();

@@ -22,7 +22,7 @@ struct Gap {
 
 Gap gap_between(const PlacedConvex& a, const PlacedConvex& b, double enough) {
     const double radii = rounding(*a.shape) + rounding(*b.shape);
-    const CoreDistance gap = core_distance(a, b, enough + radii);
+    const CoreDistance gap = core_distance(Core(a), Core(b), enough + radii);
     return {gap.distance - radii, gap.distance > 0 ? (gap.on_b - gap.on_a) / gap.distance : Vec3{}};
 }
 

@@ -127,7 +127,7 @@ TEST_P(PairMemoryOf, of_a_stranger_does_no_harm) {
             SCOPED_TRACE(std::string(solid.name) + ", trial " + std::to_string(trial));
             PairMemory memory;
             memory.axis = random_direction(random);
-            memory.kind = static_cast<PairMemory::Kind>(random.below(7));
+            memory.kind = static_cast<PairMemory::Kind>(random.below(5));
             memory.feature_a = static_cast<std::uint16_t>(random.below(65536));
             memory.feature_b = static_cast<std::uint16_t>(random.below(65536));
             const Transform pose{random_direction(random) * random.between(0.2, 1.2), random_rotation(random)};
