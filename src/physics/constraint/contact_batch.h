@@ -70,7 +70,9 @@ struct ContactSweep {
     float substep = 0;              ///< s
     float time = 0;                 ///< of the substep's end in the step, s
     float bias_rate = 0, mass_scale = 1, impulse_scale = 0;
-    float push_speed = 0;  ///< m/s
+    float push_speed = 0;   ///< m/s
+    bool is_first = false;  ///< of the passes after a drift: finds the gaps anew
+    bool is_last = false;   ///< adds the substep's impulses to the step's
 };
 
 /// Rows of the bodies and what moves them. A kick is v ← v damping + kick.
@@ -92,12 +94,10 @@ struct ContactKernels {
     void (*warm_start)(float* batch, int points, const ContactSweep& sweep) = nullptr;
     /// Before the drift: takes position errors out as well.
     void (*solve_positions)(float* batch, int points, const ContactSweep& sweep) = nullptr;
-    /// Gaps from the bodies' motion; after the drift, before the next two.
+    /// Gaps from the bodies' motion; before the first substep.
     void (*separate)(float* batch, int points, const ContactSweep& sweep) = nullptr;
     /// After the drift: velocities alone.
     void (*solve_velocities)(float* batch, int points, const ContactSweep& sweep) = nullptr;
-    /// Adds the substep's impulses to the step's.
-    void (*add_to_totals)(float* batch, int points) = nullptr;
     /// Forces of a substep on the rows [first, last).
     void (*kick)(const BodyRows& rows, std::int32_t first, std::int32_t last) = nullptr;
     /// Moves the rows [first, last) by their velocities.

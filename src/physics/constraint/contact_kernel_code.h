@@ -323,11 +323,7 @@ EMBODY_WIDE_INLINE void solve(float* batch, int points, const ContactSweep& swee
 void solve_positions(float* batch, int points, const ContactSweep& sweep) {
     solve<Sweep::positions>(batch, points, sweep);
 }
-void solve_velocities(float* batch, int points, const ContactSweep& sweep) {
-    solve<Sweep::velocities>(batch, points, sweep);
-}
-
-void add_to_totals(float* batch, int points) {
+EMBODY_WIDE_INLINE void add_to_totals(float* batch, int points) {
     for (int k = 0; k < points; ++k) {
         float* point = point_of(batch, k);
         for (int i = 0; i < 3; ++i) {
@@ -335,6 +331,12 @@ void add_to_totals(float* batch, int points) {
             store(total, load(total) + quantity(point, BatchPoint::impulse_normal + i));
         }
     }
+}
+
+void solve_velocities(float* batch, int points, const ContactSweep& sweep) {
+    if (sweep.is_first) separate(batch, points, sweep);
+    solve<Sweep::velocities>(batch, points, sweep);
+    if (sweep.is_last) add_to_totals(batch, points);
 }
 
 // Rows of one body are eight numbers that are all treated alike; whatever the width, they are done in fours.
@@ -394,7 +396,7 @@ void drift(const BodyRows& rows, float substep, std::int32_t first, std::int32_t
 }  // namespace
 
 extern const physics::ContactKernels kernels;
-const physics::ContactKernels kernels{lanes,         prepare, warm_start, solve_positions, separate, solve_velocities,
-                                      add_to_totals, kick,    drift};
+const physics::ContactKernels kernels{lanes,    prepare,          warm_start, solve_positions,
+                                      separate, solve_velocities, kick,       drift};
 
 }  // namespace embody::EMBODY_WIDE

@@ -218,11 +218,11 @@ void WideContactSolver::run(int passes, const ContactSoftness& softness) {
         k.drift(rows, sweep.substep, 1, row_count);
 
         // Constraints on the velocity alone.
-        sweep_up([&](float* batch, int points) { k.separate(batch, points, sweep); });
         for (int pass = 0; pass < passes; ++pass) {
+            sweep.is_first = pass == 0;
+            sweep.is_last = pass + 1 == passes;
             sweep_down([&](float* batch, int points) { k.solve_velocities(batch, points, sweep); });
         }
-        sweep_up([&](float* batch, int points) { k.add_to_totals(batch, points); });
     }
 }
 

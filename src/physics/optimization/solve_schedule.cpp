@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Ordered: list scheduling. Coloured: greedy edge colouring of the contact graph (as E. Catto's "Solver2D", 2024, and
-// R. Tonge's "Iterative rigid body solvers", GDC 2013, use it), by masks of 64 colours a body.
+// Greedy edge colouring of the contact graph (as E. Catto's "Solver2D", 2024, and R. Tonge's "Iterative rigid body
+// solvers", GDC 2013, use it), by masks of 64 colours a body.
 #include "physics/optimization/solve_schedule.h"
 
 #include <algorithm>
@@ -14,24 +14,6 @@ namespace {
 constexpr std::uint32_t most_points = Manifold::max_points;
 
 bool is_movable(const BodyState& body) { return body.inverse_mass > 0; }
-
-// A contact comes right after the last earlier contact of either body. Returns the number of stages.
-std::uint32_t order_stages(std::span<const std::uint32_t> order, std::span<const Contact> contacts,
-                           std::span<const BodyState> bodies, SolveSchedule& s) {
-    s.next_stage.resize(std::max(s.next_stage.size(), bodies.size()));
-    for (const std::uint32_t i : order) s.next_stage[contacts[i].a] = s.next_stage[contacts[i].b] = 0;
-    std::uint32_t count = 0;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        const Contact& c = contacts[order[k]];
-        std::uint32_t stage = 0;
-        if (is_movable(bodies[c.a])) stage = std::max(stage, s.next_stage[c.a]);
-        if (is_movable(bodies[c.b])) stage = std::max(stage, s.next_stage[c.b]);
-        s.next_stage[c.a] = s.next_stage[c.b] = stage + 1;
-        s.stage_of[k] = stage;
-        count = std::max(count, stage + 1);
-    }
-    return count;
-}
 
 // The lowest colour that neither body has; what finds none is left for another round of 64 colours.
 std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<const Contact> contacts,
@@ -63,10 +45,9 @@ std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<cons
 }  // namespace
 
 void build_schedule(std::span<const std::uint32_t> order, std::span<const Contact> contacts,
-                    std::span<const BodyState> bodies, ScheduleKind kind, int lanes, SolveSchedule& s) {
+                    std::span<const BodyState> bodies, int lanes, SolveSchedule& s) {
     s.stage_of.resize(order.size());
-    const std::uint32_t stages = kind == ScheduleKind::ordered ? order_stages(order, contacts, bodies, s)
-                                                               : colour_stages(order, contacts, bodies, s);
+    const std::uint32_t stages = colour_stages(order, contacts, bodies, s);
 
     // By stage, and in it by falling number of points: one counting sort.
     const auto key_of = [&](std::size_t k) {

@@ -25,16 +25,13 @@ struct SolveSchedule {
     std::vector<Stage> stages;            ///< in the order of the sweep upwards
 
     // Scratch of build_schedule, kept for its memory.
-    std::vector<std::uint32_t> stage_of, next_stage, first_of_key;
+    std::vector<std::uint32_t> stage_of, first_of_key;
     std::vector<std::uint64_t> colours;
 };
 
-/// ordered: exactly the sequential sweep, for islands of few contacts. coloured: few stages, for large ones.
-enum class ScheduleKind { ordered, coloured };
-
-/// `order`: contacts in the order of the sequential sweep. Arrays over bodies are indexed by slot. Equal inputs give
-/// equal schedules, and the solution does not depend on `lanes`.
+/// `order`: contacts from the ground up. Arrays over bodies are indexed by slot. Equal inputs give equal schedules, and
+/// the solution does not depend on `lanes`.
 void build_schedule(std::span<const std::uint32_t> order, std::span<const Contact> contacts,
-                    std::span<const BodyState> bodies, ScheduleKind kind, int lanes, SolveSchedule& schedule);
+                    std::span<const BodyState> bodies, int lanes, SolveSchedule& schedule);
 
 }  // namespace embody::physics

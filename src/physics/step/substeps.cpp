@@ -30,7 +30,7 @@ SolveWays sort_islands(const Islands& islands) {
 }
 
 // Solves all given islands, of contacts only, through the step.
-void solve_wide(WorldState& world, const std::vector<Island>& islands, ScheduleKind kind, double h) {
+void solve_wide(WorldState& world, const std::vector<Island>& islands, double h) {
     if (islands.empty()) return;
     std::vector<std::uint32_t> order, bodies;
     for (const Island& island : islands) {
@@ -40,7 +40,7 @@ void solve_wide(WorldState& world, const std::vector<Island>& islands, ScheduleK
         bodies.insert(bodies.end(), members.begin(), members.end());
     }
     WideContactSolver& solver = world.wide_solver;
-    build_schedule(order, world.contacts, world.motion, kind, solver.lanes(), world.schedule);
+    build_schedule(order, world.contacts, world.motion, solver.lanes(), world.schedule);
     solver.begin(bodies, world.motion, world.constants, h, world.settings.substeps);
     for (const SolveSchedule::Batch& batch : world.schedule.batches) {
         const auto contacts = std::span(world.schedule.contacts).subspan(batch.first, batch.count);
@@ -181,8 +181,8 @@ void run_substeps(WorldState& world) {
     const SolveWays ways = sort_islands(world.islands);
 
     // The last one moves the kinematic bodies, which the others take from where the step found them.
-    solve_wide(world, ways.few, ScheduleKind::ordered, h);
-    solve_wide(world, ways.many, ScheduleKind::coloured, h);
+    solve_wide(world, ways.few, h);
+    solve_wide(world, ways.many, h);
     solve_one_by_one(world, ways.one_by_one, h);
 
     if (world.settings.shock_propagation) {

@@ -37,12 +37,10 @@ Graph random_graph(std::uint32_t bodies, std::uint32_t contacts) {
     return graph;
 }
 
-class EachKind : public ::testing::TestWithParam<ScheduleKind> {};
-
-TEST_P(EachKind, HoldsEachContactOnceInStagesOfDifferentBodies) {
+TEST(SolveSchedule, HoldsEachContactOnceInStagesOfDifferentBodies) {
     const Graph graph = random_graph(60, 900);
     SolveSchedule schedule;
-    build_schedule(graph.order, graph.contacts, graph.bodies, GetParam(), 8, schedule);
+    build_schedule(graph.order, graph.contacts, graph.bodies, 8, schedule);
     std::vector<std::uint32_t> sorted = schedule.contacts;
     std::sort(sorted.begin(), sorted.end());
     EXPECT_EQ(sorted, graph.order);
@@ -64,23 +62,8 @@ TEST_P(EachKind, HoldsEachContactOnceInStagesOfDifferentBodies) {
         }
     }
 }
-INSTANTIATE_TEST_SUITE_P(Schedule, EachKind, ::testing::Values(ScheduleKind::ordered, ScheduleKind::coloured));
 
-TEST(OrderedSchedule, KeepsTheOrderOfContactsOfOneBody) {
-    const Graph graph = random_graph(20, 200);
-    SolveSchedule schedule;
-    build_schedule(graph.order, graph.contacts, graph.bodies, ScheduleKind::ordered, 4, schedule);
-    std::vector<std::uint32_t> last(graph.bodies.size(), 0);
-    for (const std::uint32_t i : schedule.contacts) {
-        for (const std::uint32_t body : {graph.contacts[i].a, graph.contacts[i].b}) {
-            if (body == 0) continue;
-            EXPECT_GE(i + 1, last[body]);
-            last[body] = i + 1;
-        }
-    }
-}
-
-TEST(ColouredSchedule, TakesMoreThanSixtyFourColoursWhereOneBodyMeetsMany) {
+TEST(SolveSchedule, TakesMoreThanSixtyFourColoursWhereOneBodyMeetsMany) {
     Graph graph = random_graph(202, 1);
     graph.contacts.clear();
     graph.order.clear();
@@ -93,15 +76,15 @@ TEST(ColouredSchedule, TakesMoreThanSixtyFourColoursWhereOneBodyMeetsMany) {
         graph.contacts.push_back(contact);
     }
     SolveSchedule schedule;
-    build_schedule(graph.order, graph.contacts, graph.bodies, ScheduleKind::coloured, 16, schedule);
+    build_schedule(graph.order, graph.contacts, graph.bodies, 16, schedule);
     EXPECT_EQ(schedule.contacts.size(), 200u);
     EXPECT_EQ(schedule.stages.size(), 200u);
 }
 
-TEST(AnySchedule, IsEmptyWithoutContacts) {
+TEST(SolveSchedule, IsEmptyWithoutContacts) {
     const Graph graph = random_graph(3, 1);
     SolveSchedule schedule;
-    build_schedule({}, graph.contacts, graph.bodies, ScheduleKind::coloured, 16, schedule);
+    build_schedule({}, graph.contacts, graph.bodies, 16, schedule);
     EXPECT_TRUE(schedule.batches.empty());
     EXPECT_TRUE(schedule.stages.empty());
 }
