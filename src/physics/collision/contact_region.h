@@ -16,10 +16,13 @@ struct ContactFeature {
     std::vector<Vec3> points;
     std::uint32_t id = 0;  ///< of the face, edge or vertex within its shape
     Vec3 normal;           ///< outwards, of a polygon only
+    double radius = 0;     ///< of a cap, whose rim the points lie on; else 0
+    Vec3 center;           ///< of a cap
 
     void clear() {
         points.clear();
         id = 0;
+        radius = 0;
     }
 };
 

@@ -13,7 +13,7 @@ namespace {
 // Names of the features of round shapes; those of polytopes are their indices.
 constexpr std::uint32_t top_cap = 0x10000, bottom_cap = 0x10001, side_line = 0x10002;
 constexpr double aligned_cosine = 1 - 1e-9;
-constexpr double across = 3e-5;
+constexpr double square = 3e-5;
 
 struct UnitCircle {
     std::array<double, rim_corners> cosine{}, sine{};
@@ -42,9 +42,11 @@ void get_cap(const PlacedConvex& convex, bool top, Vec3 local_direction, Contact
     feature.clear();
     feature.id = top ? top_cap : bottom_cap;
     feature.normal = convex.direction_to_frame(normal);
+    feature.radius = r;
+    feature.center = convex.to_frame({0, y, 0});
+    const Vec3 along = convex.direction_to_frame(start.along * r), across = convex.direction_to_frame(second * r);
     for (std::size_t i = 0; i < rim_corners; ++i) {
-        const Vec3 on_rim = start.along * (r * circle.cosine[i]) + second * (r * circle.sine[i]);
-        feature.points.push_back(convex.to_frame(on_rim + Vec3{0, y, 0}));
+        feature.points.push_back(feature.center + along * circle.cosine[i] + across * circle.sine[i]);
     }
 }
 
@@ -89,7 +91,7 @@ bool get_polytope_edge(const PlacedConvex& convex, Vec3 d, ContactFeature& featu
     // Of the edges at the farthest vertex, the one most across the direction.
     const Polytope& polytope = convex.shape->polytope;
     const std::uint32_t vertex = support_vertex(polytope, d);
-    double least = across;
+    double least = square;
     std::uint32_t best = Polytope::no_face;
     for (std::uint32_t i = 0; i < polytope.edges.size(); ++i) {
         const Polytope::Edge& edge = polytope.edges[i];
@@ -143,7 +145,7 @@ bool get_aligned_line(const PlacedConvex& convex, Vec3 direction, ContactFeature
             break;
     }
     const Vec3 normal = side_normal(shape, d);
-    if (length(normal - d) > across) return false;
+    if (length(normal - d) > square) return false;
     get_side(convex, d, feature);
     return true;
 }

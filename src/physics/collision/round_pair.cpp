@@ -9,6 +9,7 @@
 
 #include "physics/collision/convex_pairs.h"
 #include "physics/collision/curve_crossing.h"
+#include "physics/collision/disc_region.h"
 #include "physics/collision/gjk.h"
 #include "physics/collision/round_features.h"
 
@@ -257,8 +258,12 @@ void add_face_region(const PlacedConvex& a, const PlacedConvex& b, const Parting
     const PlacedConvex& incident = is_face_a ? b : a;
     const Vec3 outwards = is_face_a ? -axis.normal : axis.normal;
     get_facing(incident, outwards, f.other);
-    add_near_corners(is_face_a ? f.face_a : f.face_b, incident, is_face_a, margin, region);
-    clip_to_region(is_face_a ? f.face_a : f.face_b, f.other, is_face_a, rounding(*incident.shape), margin, region);
+    const ContactFeature& reference = is_face_a ? f.face_a : f.face_b;
+    if (!add_disc_region(reference, f.other, is_face_a, margin, region)) {
+        thin_out_cap(reference, f.other);
+        add_near_corners(reference, incident, is_face_a, margin, region);
+        clip_to_region(reference, f.other, is_face_a, rounding(*incident.shape), margin, region);
+    }
     const Vec3 deepest = core_support(incident, outwards) + outwards * rounding(*incident.shape);
     const Vec3 on_a = is_face_a ? deepest - axis.normal * axis.separation : deepest;
     keep_deepest(on_a, axis.separation, 1e-6 * smaller_size(a, b), region);

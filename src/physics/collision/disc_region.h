@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/collision/contact_region.h"
+
+namespace embody::physics {
+
+/// Two caps that face each other nearly squarely: the common part of two discs, exact where a polygon of many corners
+/// is a little too small. Adds four points; false, and nothing added, where they are too oblique for it.
+bool add_disc_region(const ContactFeature& reference, const ContactFeature& incident, bool reference_is_a,
+                     double margin, ContactRegion& region);
+
+/// Leaves a cap only four of its corners where all of it lies over the face `reference`.
+void thin_out_cap(const ContactFeature& reference, ContactFeature& cap);
+
+}  // namespace embody::physics
