@@ -5,14 +5,15 @@
 
 namespace embody::physics {
 
-/// Where an edge or rim of one solid crosses one of the other: the points on both and the normal there.
+/// Where a corner, edge, rim or smooth side of one solid is nearest to one of the other.
 struct CurveCrossing {
-    Vec3 on_a, on_b;
-    Vec3 normal;  ///< unit, from a to b, across both curves
+    Vec3 on_a, on_b;  ///< on the cores (the solids without the radius around sphere and capsule)
+    Vec3 normal;      ///< unit, from a to b, across both
 };
 
-/// Crossing of the rims or edges that lie farthest along `direction` (from a to b, unit), by Newton steps on their
-/// tangents. False where one of the two has neither there, or where they run side by side.
+/// The nearest points of what lies farthest along `direction` (from a to b, unit, right to a few hundredths), by
+/// Newton's method. A side stands for its axis with the radius around it. False where it does not converge, where the
+/// two run side by side, and at the side of a cone. Whether the solids do touch there the caller has to measure.
 bool cross_curves(const PlacedConvex& a, const PlacedConvex& b, Vec3 direction, CurveCrossing& crossing);
 
 }  // namespace embody::physics

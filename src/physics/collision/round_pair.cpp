@@ -146,6 +146,21 @@ bool measure_cores(AxisSearch& s, const CorePair& p, double enough, double conve
     return measure_cores(s, p, 1e300, converged);
 }
 
+// The exact normal of the curves that meet near the one found, if it is where both solids reach farthest along it and
+// falls short of the cores' limit by no more than `loss`.
+bool search_by_curves(AxisSearch& s, double loss) {
+    CurveCrossing crossing;
+    if (!s.axis.found || !cross_curves(s.a, s.b, s.axis.normal, crossing)) return false;
+    const double separation = s.separation(crossing.normal);
+    const double radii = s.core_a.depth + s.core_b.depth;
+    const double between = dot(crossing.normal, crossing.on_b - crossing.on_a) - radii;
+    if (std::fabs(separation - between) > 1e-9 * s.size || separation < s.most - loss) return false;
+    if (separation < s.axis.separation - 1e-9 * s.size) return false;
+    s.axis = {true, crossing.normal, separation, true, crossing.on_a, crossing.on_b};
+    prefer_candidate(s, {.hair = 1e-4 * s.size + 0.02 * std::fabs(separation), .exact_only = true});
+    return s.accept();
+}
+
 // The normal between one solid's shrunk core and the other solid. No direction can part the solids farther than the
 // gap there less the core's depth: where the solids themselves are parted as far along that normal, it is the best one,
 // whether they overlap or not. That is so wherever a face, a smooth side or a crossing line of the shrunk one is met.
@@ -168,6 +183,7 @@ bool search_by_core(AxisSearch& s, bool is_core_of_a) {
         const bool is_exact = prefer_candidate(s, {.hair = bias, .within = near, .exact_only = true});
         if (is_exact && s.axis.separation >= s.most - bias) return s.accept();
         s.axis = rough;
+        if (search_by_curves(s, 1e-5 * s.size)) return true;
         // Far below what the cores allow it is a corner of the core that was met, which never tells.
         if (rough.separation < s.most - corner_met * (shrink + rounding(inner))) return false;
         if (!measure_cores(s, p, 1e300, 1e-12)) return false;
@@ -175,22 +191,6 @@ bool search_by_core(AxisSearch& s, bool is_core_of_a) {
     if (s.axis.separation > s.margin) return s.accept();
     if (s.axis.separation < s.most - 1e-7 * s.size) return false;
     prefer_candidate(s, {.hair = 1e-7 * s.size, .within = near});
-    return s.accept();
-}
-
-// Where an edge or rim crosses one of the other, a little deep: the crossing itself, if it is where both solids reach
-// farthest along its normal and no more than what shrinking takes away at rims is left to the cores' limit.
-bool search_by_curves(AxisSearch& s) {
-    constexpr double rim_loss = 0.45;
-    const double shrink = std::max(shrinkable(*s.a.shape), shrinkable(*s.b.shape));
-    CurveCrossing crossing;
-    if (!s.axis.found || !cross_curves(s.a, s.b, s.axis.normal, crossing)) return false;
-    const double separation = s.separation(crossing.normal);
-    const double between = dot(crossing.normal, crossing.on_b - crossing.on_a);
-    if (std::fabs(separation - between) > 1e-9 * s.size || separation < s.most - rim_loss * shrink) return false;
-    if (separation < s.axis.separation - 1e-9 * s.size) return false;
-    s.axis = {true, crossing.normal, separation, true, crossing.on_a, crossing.on_b};
-    prefer_candidate(s, {.hair = 1e-4 * s.size + 0.02 * std::fabs(separation), .exact_only = true});
     return s.accept();
 }
 
@@ -220,7 +220,11 @@ PartingAxis find_axis(AxisSearch& s, PairMemory& memory) {
     using Kind = PairMemory::Kind;
     if (memory.kind == Kind::apart && s.separation(memory.axis) > s.margin) return {};
     memory.kind = Kind::nothing;
-    if (!search_by_core(s, true) && !search_by_core(s, false) && !search_by_curves(s)) search_by_penetration(s);
+    if (!search_by_core(s, true) && !search_by_core(s, false)) {
+        // Rims and edges, at which shrinking takes away more than its depth.
+        const double shrink = std::max(shrinkable(*s.a.shape), shrinkable(*s.b.shape));
+        if (!search_by_curves(s, 0.45 * shrink)) search_by_penetration(s);
+    }
     if (length_squared(s.apart) > 0) {
         memory.part_along(s.apart);
         return {};
