@@ -10,7 +10,7 @@ namespace embody::physics {
 namespace {
 
 // Directions within this sine of a side's or an edge's normal plane are taken to mean the side or the edge.
-constexpr double beside = 0.03;
+constexpr double beside = 0.05;
 
 /// A point (tangent zero), a straight line, or the circle of a rim; and the point on it where the other is looked for.
 struct Curve {

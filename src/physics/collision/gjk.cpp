@@ -38,9 +38,9 @@ void take_nearer(NearestPoint& best, const NearestPoint& other) {
     if (best.size == 0 || length_squared(other.point) < length_squared(best.point)) best = other;
 }
 
-NearestPoint nearest_on_triangle(const Simplex& s, int a, int b, int c) {
+// `n`: its normal, of any length.
+NearestPoint nearest_on_triangle(const Simplex& s, int a, int b, int c, Vec3 n) {
     const Vec3 p = corner(s, a), q = corner(s, b), r = corner(s, c);
-    const Vec3 n = cross(q - p, r - p);
     const double nn = dot(n, n);
 
     // Barycentric weights of the origin's projection, as areas against the normal.
@@ -59,11 +59,8 @@ NearestPoint nearest_on_triangle(const Simplex& s, int a, int b, int c) {
     return best;
 }
 
-// Whether the origin lies beyond the face a b c as seen from corner d.
-bool beyond_face(const Simplex& s, int a, int b, int c, int d) {
-    const Vec3 p = corner(s, a);
-    const Vec3 n = cross(corner(s, b) - p, corner(s, c) - p);
-    return -dot(n, p) * dot(n, corner(s, d) - p) <= 0;
+Vec3 triangle_normal(const Simplex& s, int a, int b, int c) {
+    return cross(corner(s, b) - corner(s, a), corner(s, c) - corner(s, a));
 }
 
 // The last corner is the new one: the origin is on its side of the three others' face.
@@ -72,7 +69,10 @@ NearestPoint nearest_on_tetrahedron(const Simplex& s) {
     NearestPoint best;
     best.size = 0;
     for (const auto& f : faces) {
-        if (beyond_face(s, f[0], f[1], f[2], f[3])) take_nearer(best, nearest_on_triangle(s, f[0], f[1], f[2]));
+        // The origin and the fourth corner on the same side: not beyond this face.
+        const Vec3 n = triangle_normal(s, f[0], f[1], f[2]), p = corner(s, f[0]);
+        if (-dot(n, p) * dot(n, corner(s, f[3]) - p) > 0) continue;
+        take_nearer(best, nearest_on_triangle(s, f[0], f[1], f[2], n));
     }
     // Beyond no face: the origin is inside.
     if (best.size == 0) best.size = 4;
@@ -82,7 +82,7 @@ NearestPoint nearest_on_tetrahedron(const Simplex& s) {
 NearestPoint nearest_on_simplex(const Simplex& s, int size) {
     if (size == 1) return nearest_on_vertex(s, 0);
     if (size == 2) return nearest_on_edge(s, 0, 1);
-    if (size == 3) return nearest_on_triangle(s, 0, 1, 2);
+    if (size == 3) return nearest_on_triangle(s, 0, 1, 2, triangle_normal(s, 0, 1, 2));
     return nearest_on_tetrahedron(s);
 }
 

@@ -176,14 +176,14 @@ bool search_by_core(AxisSearch& s, bool is_core_of_a) {
     p.depth = p.a.depth + p.b.depth;
 
     // Roughly first: exact normals near by are preferred by a little, as among the axes of polytopes.
-    if (!measure_cores(s, p, s.margin + p.depth + corner_loss * shrink, 1e-4)) return false;
+    if (!measure_cores(s, p, s.margin + p.depth + corner_loss * shrink, shrink > 0 ? 1e-3 : 1e-4)) return false;
     if (s.axis.separation <= s.margin) {
         const PartingAxis rough = s.axis;
         const double bias = 1e-4 * s.size + 0.02 * std::fabs(s.axis.separation);
         const bool is_exact = prefer_candidate(s, {.hair = bias, .within = near, .exact_only = true});
         if (is_exact && s.axis.separation >= s.most - bias) return s.accept();
         s.axis = rough;
-        if (search_by_curves(s, 1e-5 * s.size)) return true;
+        if (search_by_curves(s, 5e-5 * s.size)) return true;
         // Far below what the cores allow it is a corner of the core that was met, which never tells.
         if (rough.separation < s.most - corner_met * (shrink + rounding(inner))) return false;
         if (!measure_cores(s, p, 1e300, 1e-12)) return false;

@@ -68,6 +68,22 @@ SurfaceDistance distance_from_cone(const Convex& cone, Vec3 p) {
     return to_point(outward * r + Vec3{0, -h, 0}, p, outward);
 }
 
+SurfaceDistance distance_from_box(const Convex& box, Vec3 p) {
+    const Vec3 h = box.bounds.upper, beyond = abs(p) - h;
+    const Vec3 side{p.x < 0 ? -1.0 : 1.0, p.y < 0 ? -1.0 : 1.0, p.z < 0 ? -1.0 : 1.0};
+    const int outside = (beyond.x > 0 ? 1 : 0) + (beyond.y > 0 ? 1 : 0) + (beyond.z > 0 ? 1 : 0);
+
+    // Over a face or inside: the face that is nearest, by its exact normal. Else an edge or a corner.
+    if (outside <= 1) {
+        if (beyond.x >= beyond.y && beyond.x >= beyond.z) return {{side.x, 0, 0}, beyond.x};
+        if (beyond.y >= beyond.z) return {{0, side.y, 0}, beyond.y};
+        return {{0, 0, side.z}, beyond.z};
+    }
+    const Vec3 away = scale(side, max(beyond, {0, 0, 0}));
+    const double distance = length(away);
+    return {away / distance, distance};
+}
+
 SurfaceDistance distance_from_polytope(const Convex& convex, Vec3 p) {
     const Polytope& polytope = convex.polytope;
     std::uint32_t nearest = 0;
@@ -113,7 +129,7 @@ SurfaceDistance distance_from_surface(const Convex& convex, Vec3 p) {
         case ConvexKind::polytope:
             break;
     }
-    return distance_from_polytope(convex, p);
+    return convex.is_box ? distance_from_box(convex, p) : distance_from_polytope(convex, p);
 }
 
 void collide_sphere(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region) {
