@@ -33,13 +33,37 @@ struct NormalGroup {
 
 constexpr double flat_sine = 1e-3;
 
-PlacedTriangle place_triangle(const PlacedSurface& placed, const Mat3& rotation, Vec3 origin, std::uint32_t index) {
-    PlacedTriangle t;
+/// The convex that is held against triangles: its core and a point inside, turned once.
+struct Probe {
+    Core core;
+    Vec3 inside;
+    double margin;
+
+    // Whether all of the convex lies beyond the plane through `point` by more than the margin.
+    [[nodiscard]] bool is_beyond(Vec3 point, Vec3 outwards) const {
+        return dot(core.support(-outwards) - point, outwards) - core.depth > margin;
+    }
+};
+
+// The corners and normal; false where the convex is behind the triangle, or higher above it than the margin. Most
+// triangles go here, before their neighbours are looked at.
+bool place_corners(const PlacedSurface& placed, const Mat3& rotation, Vec3 origin, std::uint32_t index,
+                   const Probe& probe, PlacedTriangle& t) {
     const auto corners = placed.surface.corners(index);
     for (std::size_t i = 0; i < 3; ++i) t.corners[i] = origin + rotation * corners[i];
     t.normal = rotation * placed.surface.normal(index);
+    if (length_squared(t.normal) == 0 || dot(probe.inside - t.corners[0], t.normal) <= 0) return false;
+    return !probe.is_beyond(t.corners[0], t.normal);
+}
+
+// The sides and what lies beyond them; false where the convex is farther beyond one of them than the margin.
+bool place_sides(const PlacedSurface& placed, const Mat3& rotation, std::uint32_t index, const Probe& probe,
+                 PlacedTriangle& t) {
     for (std::size_t i = 0; i < 3; ++i) {
         t.outward[i] = normalized(cross(t.corners[(i + 1) % 3] - t.corners[i], t.normal));
+        if (probe.is_beyond(t.corners[i], t.outward[i])) return false;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
         const std::uint32_t neighbour = placed.surface.neighbour(index, static_cast<int>(i));
         if (neighbour == TriangleSurface::no_neighbour) {
             t.bend_sine[i] = 0;
@@ -55,7 +79,7 @@ PlacedTriangle place_triangle(const PlacedSurface& placed, const Mat3& rotation,
         t.bend_cosine[i] = convex ? dot(other, t.normal) : 1;
         t.open = t.open || convex;
     }
-    return t;
+    return true;
 }
 
 // Whether a normal (from the triangle outwards) leans over an edge beyond the bend there.
@@ -118,14 +142,10 @@ void collide_sphere_triangle(const PlacedConvex& sphere, const PlacedTriangle& t
 // Region of the convex with one triangle, in region.
 void collide_triangle(const PlacedConvex& convex, const PlacedTriangle& t, double margin, ContactRegion& region) {
     region.points.clear();
-    // Seen from behind the triangle is not there; nor is it where the shape is above it by more than the margin.
-    if (dot(interior_point(convex) - t.corners[0], t.normal) <= 0) return;
     if (convex.shape->kind == ConvexKind::sphere) {
         collide_sphere_triangle(convex, t, margin, region);
         return;
     }
-    const double above = dot(core_support(convex, -t.normal) - t.corners[0], t.normal) - rounding(*convex.shape);
-    if (above > margin) return;
     if (!t.open) {
         collide_along_normal(convex, t, margin, region);
         return;
@@ -184,9 +204,11 @@ void collide_surface(const ConvexPiece& piece, std::uint32_t piece_index, const 
     std::size_t count = 0;
     const Mat3 rotation = to_matrix(placed.pose.rotation);
     const Vec3 origin = placed.pose.position - pose.position;
+    const Probe probe{Core(convex), interior_point(convex), margin};
     for (const std::uint32_t index : near) {
-        const PlacedTriangle triangle = place_triangle(placed, rotation, origin, index);
-        if (length_squared(triangle.normal) == 0) continue;
+        PlacedTriangle triangle;
+        if (!place_corners(placed, rotation, origin, index, probe, triangle)) continue;
+        if (!place_sides(placed, rotation, index, probe, triangle)) continue;
         collide_triangle(convex, triangle, margin, region);
         if (!region.points.empty()) add_to_groups(region, index, groups, count);
     }
