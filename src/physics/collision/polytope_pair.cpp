@@ -122,6 +122,13 @@ bool arcs_cross(const EdgeArc& a, const EdgeArc& b) {
     return (cba * dba < 0) & (adc * bdc < 0) & (cba * bdc > 0);
 }
 
+// How far the two polytopes are apart along a direction from a to b, in a's frame.
+double gap_along(const PolytopeSearch& s, Vec3 n) {
+    const double reach_a = farthest(s.a->vertex_lanes, n).along;
+    const double reach_b = farthest(s.b->vertex_lanes, -s.b_in_a.direction_to_local(n)).along;
+    return dot(n, s.b_in_a.position) - reach_b - reach_a;
+}
+
 // Gap along an edge pair's own normal. Edges of merged faces lie a little beside the faces' planes; where they are
 // short, the normal may not touch the shapes at these edges at all. The shapes' own extent along it is what separates.
 void measure_edge_pair(const EdgeArc& a, const EdgeArc& b, PolytopeSearch& s, EdgeAxis& best) {
@@ -132,9 +139,7 @@ void measure_edge_pair(const EdgeArc& a, const EdgeArc& b, PolytopeSearch& s, Ed
     n = n / std::sqrt(squared);
     if (dot(n, a.left + a.right) < 0) n = -n;
     if (dot(n, b.from - a.from) <= best.separation) return;
-    const double reach_a = farthest(s.a->vertex_lanes, n).along;
-    const double reach_b = farthest(s.b->vertex_lanes, -s.b_in_a.direction_to_local(n)).along;
-    const double separation = dot(n, s.b_in_a.position) - reach_b - reach_a;
+    const double separation = gap_along(s, n);
     if (separation > best.separation) best = {separation, a.edge, b.edge, n};
 }
 
@@ -238,6 +243,7 @@ bool collide_polytopes(const ConvexPair& pair, double margin, PairMemory& memory
     s.a_in_b = {pair.a, transpose(pair.turn), s.b_in_a.direction_to_local(-pair.place)};
     s.margin = margin;
     using Kind = PairMemory::Kind;
+    if (memory.kind == Kind::apart && gap_along(s, memory.axis) > margin) return true;
 
     // The face of a that parts them most, beginning with the remembered one.
     const FaceAxis face_a = best_face_axis(*s.a, s.b_in_a, -1e300, s.b_in_a.to_frame(s.b->center),

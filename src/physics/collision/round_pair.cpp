@@ -221,9 +221,14 @@ PartingAxis find_axis(AxisSearch& s, PairMemory& memory) {
     if (memory.kind == Kind::apart && s.separation(memory.axis) > s.margin) return {};
     memory.kind = Kind::nothing;
     if (!search_by_core(s, true) && !search_by_core(s, false)) {
-        // Rims and edges, at which shrinking takes away more than its depth.
+        // Rims and edges, at which shrinking takes away more than its depth: the cores prove little there, so only a
+        // shallow crossing is taken for the best.
         const double shrink = std::max(shrinkable(*s.a.shape), shrinkable(*s.b.shape));
-        if (!search_by_curves(s, 0.45 * shrink)) search_by_penetration(s);
+        const PartingAxis rough = s.axis;
+        if (!search_by_curves(s, 0.45 * shrink) || s.axis.separation < -0.1 * shrink) {
+            s.axis = rough;
+            search_by_penetration(s);
+        }
     }
     if (length_squared(s.apart) > 0) {
         memory.part_along(s.apart);

@@ -33,6 +33,22 @@ TEST(ContactPairs, nothing_touches_beyond_the_margin) {
     EXPECT_EQ(contacts(*a, {}, *box, {{1.509, 0, 0}, {}}, 0.01).size(), 1u);
 }
 
+TEST(ContactPairs, caps_meet_in_the_common_part_of_two_discs) {
+    // Two discs of radius 0.5 whose centres are 0.6 m apart: the lens is 0.4 m wide and 0.8 m long.
+    const auto cylinder = make_shape(CylinderShape{0.5, 0.5});
+    const auto manifolds = contacts(*cylinder, {}, *cylinder, {{0.6, 0.999, 0}, {}}, 0);
+    ASSERT_EQ(manifolds.size(), 1u);
+    ASSERT_EQ(manifolds[0].count, 4);
+    const Vec3 corners[] = {{0.1, 0, 0}, {0.5, 0, 0}, {0.3, 0, 0.4}, {0.3, 0, -0.4}};
+    for (const Vec3& corner : corners) {
+        double nearest = HUGE_VAL;
+        for (const ManifoldPoint& p : manifolds[0].points) {
+            nearest = std::min(nearest, distance(p.position, corner + Vec3{0, 0.4995, 0}));
+        }
+        EXPECT_LT(nearest, 1e-12);
+    }
+}
+
 // Every solid lying on a plane and on a big box: the corners of its region.
 struct Standing {
     const char* name;
