@@ -15,8 +15,8 @@ public:
     explicit MemoryStream(std::vector<std::uint8_t> bytes) : bytes_(std::move(bytes)) {}
 
     size_t Read(void* out, size_t size, size_t count) override {
-        if (size == 0) return 0;
-        const size_t whole = std::min(count, (bytes_.size() - at_) / size);
+        const size_t whole = size == 0 ? 0 : std::min(count, (bytes_.size() - at_) / size);
+        if (whole == 0) return 0;
         std::memcpy(out, bytes_.data() + at_, whole * size);
         at_ += whole * size;
         return whole;

@@ -35,6 +35,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // A sliding speed below this share of the start velocity counts as zero.
 constexpr double stop_share = 1e-9;
+// A slide that would miss its straight path by less than this share of its start velocity is taken as straight.
+constexpr double straight_share = 1e-8;
 // Most collisions end within the first short steps. Where A is ill-conditioned u_t decays slowly, and steps may grow.
 constexpr int short_steps = 400;
 constexpr double longest_share = 1.5;
@@ -136,16 +138,24 @@ ImpactState step_to_end(const Collision& k, double tau) {
     return best;
 }
 
+// Slides along the constant direction `d`. True if the phase ended, false if the sliding did.
+bool slide_straight(const Collision& k, Vec3 d);
+
 // Slides while the direction turns. True if the phase ended; false if the point stopped sliding first.
 bool slide_curved(const Collision& k) {
+    const double start_slip = length(tangential(k.s.velocity));
     const double norm_tt = std::fabs(k.a.x.x) + std::fabs(k.a.y.y) + 2 * std::fabs(k.a.x.y);
     const double norm_tn = std::fabs(k.a.z.x) + std::fabs(k.a.z.y);
     const double fastest_decay = k.c.friction_slide * norm_tt + norm_tn;
     const double shortest = k.precision.step_share / fastest_decay, longest = longest_share / fastest_decay;
     for (int i = 0; i < max_steps; ++i) {
         // A slow decay gets longer steps, within what keeps RK4 stable.
-        const double slip = length(tangential(k.s.velocity));
-        const double change = length(tangential(rate_over_tau(k, k.s.velocity).velocity));
+        const Vec3 sliding = tangential(k.s.velocity), rate = tangential(rate_over_tau(k, sliding).velocity);
+        const double slip = length(sliding), change = length(rate);
+
+        // Towards its end the sliding hardly turns any more: what the rest of a straight path would miss is nothing.
+        const double turning = std::fabs(sliding.x * rate.y - sliding.y * rate.x);
+        if (turning <= straight_share * start_slip * change) return slide_straight(k, sliding / slip);
         const double wanted = change > 0 ? k.precision.step_share * slip / change : longest;
         const double tau = i < short_steps ? shortest : std::clamp(wanted, shortest, longest);
         const ImpactState next = runge_kutta_step(k, k.s, tau);
@@ -159,7 +169,6 @@ bool slide_curved(const Collision& k) {
     return false;
 }
 
-// Slides along the constant direction `d`. True if the phase ended, false if the sliding did.
 bool slide_straight(const Collision& k, Vec3 d) {
     const Vec3 ratio = -k.c.friction_slide * d;
     const Vec3 rate = k.a * Vec3{ratio.x, ratio.y, 1};
