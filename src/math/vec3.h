@@ -48,14 +48,14 @@ inline Vec3 any_perpendicular(Vec3 n) {
     return std::fabs(n.x) < 0.57735 ? normalized(cross(n, {1, 0, 0})) : normalized(cross(n, {0, 1, 0}));
 }
 
-/// Three floats: vertices of meshes, where memory counts more than digits.
+/// Three floats, where memory counts more than digits: vertices of meshes, arms of contacts.
 struct Vec3f {
     float x = 0, y = 0, z = 0;
     friend constexpr bool operator==(const Vec3f&, const Vec3f&) = default;
+    /// Loses nothing.
+    constexpr operator Vec3() const { return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)}; }
 };
-constexpr Vec3 to_vec3(Vec3f a) {
-    return {static_cast<double>(a.x), static_cast<double>(a.y), static_cast<double>(a.z)};
-}
+constexpr Vec3 to_vec3(Vec3f a) { return a; }
 constexpr Vec3f to_vec3f(Vec3 a) { return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)}; }
 
 }  // namespace embody

@@ -8,17 +8,18 @@ namespace embody::physics {
 namespace {
 
 void set_normal(Contact& contact, Vec3 normal) {
-    contact.normal = normal;
-    contact.tangent_1 = any_perpendicular(normal);
-    contact.tangent_2 = cross(normal, contact.tangent_1);
+    const Vec3 tangent = any_perpendicular(normal);
+    contact.normal = to_vec3f(normal);
+    contact.tangent_1 = to_vec3f(tangent);
+    contact.tangent_2 = to_vec3f(cross(normal, tangent));
 }
 
 // Arms to the middle between the surface points, and how fast they approach.
-void set_arms(Contact& contact, ContactPoint& point, std::span<const BodyState> bodies) {
-    point.arm_a = point.position - bodies[contact.a].center;
-    point.arm_b = point.position - bodies[contact.b].center;
-    contact.approach_speed =
-        std::max(contact.approach_speed, -dot(relative_velocity(contact, point, bodies), contact.normal));
+void set_arms(Contact& contact, ContactPoint& point, Vec3 arm_a, Vec3 arm_b, std::span<const BodyState> bodies) {
+    point.arm_a = to_vec3f(arm_a);
+    point.arm_b = to_vec3f(arm_b);
+    const double speed = -dot(relative_velocity(contact, point, bodies), contact.normal);
+    contact.approach_speed = std::max(contact.approach_speed, static_cast<float>(speed));
 }
 
 }  // namespace
@@ -32,18 +33,18 @@ Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold,
     contact.piece_b = manifold.piece_b;
     contact.turns_with_b = turns_with_b;
     set_normal(contact, manifold.normal);
-    contact.local_normal = rotate_inverse(bodies[turns_with_b ? b : a].rotation, manifold.normal);
+    contact.local_normal = to_vec3f(rotate_inverse(bodies[turns_with_b ? b : a].rotation, manifold.normal));
     contact.count = manifold.count;
     for (int i = 0; i < manifold.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const ManifoldPoint& found = manifold.points[static_cast<std::size_t>(i)];
-        point.position = found.position;
-        point.separation = found.separation;
+        point.separation = static_cast<float>(found.separation);
         point.feature = found.feature;
-        set_arms(contact, point, bodies);
-        const Vec3 half_gap = contact.normal * (0.5 * found.separation);
-        point.local_a = rotate_inverse(bodies[a].rotation, point.arm_a - half_gap);
-        point.local_b = rotate_inverse(bodies[b].rotation, point.arm_b + half_gap);
+        const Vec3 arm_a = found.position - bodies[a].center, arm_b = found.position - bodies[b].center;
+        set_arms(contact, point, arm_a, arm_b, bodies);
+        const Vec3 half_gap = manifold.normal * (0.5 * found.separation);
+        point.local_a = to_vec3f(rotate_inverse(bodies[a].rotation, arm_a - half_gap));
+        point.local_b = to_vec3f(rotate_inverse(bodies[b].rotation, arm_b + half_gap));
     }
     return contact;
 }
@@ -51,9 +52,10 @@ Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold,
 namespace {
 
 // The tangents of the two steps differ by a turn about the normal; the friction impulse keeps its world direction.
-PointImpulse carried_over(const PointImpulse& old_impulse, const Contact& old_contact, const Contact& new_contact) {
-    const Vec3 friction = old_impulse.tangent_1 * old_contact.tangent_1 + old_impulse.tangent_2 * old_contact.tangent_2;
-    return {old_impulse.normal, dot(friction, new_contact.tangent_1), dot(friction, new_contact.tangent_2)};
+PointImpulse carried_over(const PointImpulse& impulse, Vec3 old_1, Vec3 old_2, const Contact& new_contact) {
+    const Vec3 friction = impulse.tangent_1 * old_1 + impulse.tangent_2 * old_2;
+    return {impulse.normal, static_cast<float>(dot(friction, new_contact.tangent_1)),
+            static_cast<float>(dot(friction, new_contact.tangent_2))};
 }
 
 }  // namespace
@@ -69,7 +71,7 @@ void match_points(const Contact& old_contact, Contact& new_contact) {
         for (int j = 0; j < old_contact.count; ++j) {
             const ContactPoint& old_point = old_contact.points[static_cast<std::size_t>(j)];
             if (taken[static_cast<std::size_t>(j)]) continue;
-            const double squared = length_squared(old_point.position - point.position);
+            const double squared = length_squared(Vec3(old_point.local_a) - point.local_a);
             if (old_point.feature == point.feature && squared < 25 * reach * reach) {
                 best = j;
                 break;
@@ -82,7 +84,7 @@ void match_points(const Contact& old_contact, Contact& new_contact) {
         if (best < 0) continue;
         const ContactPoint& old_point = old_contact.points[static_cast<std::size_t>(best)];
         taken[static_cast<std::size_t>(best)] = true;
-        point.impulse = carried_over(old_point.impulse, old_contact, new_contact);
+        point.impulse = carried_over(old_point.impulse, old_contact.tangent_1, old_contact.tangent_2, new_contact);
         point.sticks = old_point.sticks;
     }
     new_contact.turning = old_contact.turning;
@@ -103,15 +105,10 @@ void follow_bodies(Contact& contact, std::span<const BodyState> bodies) {
     for (int i = 0; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const Vec3 arm_a = rotate(a.rotation, point.local_a), arm_b = rotate(b.rotation, point.local_b);
-        const Vec3 on_a = a.center + arm_a, gap = (b.center - a.center) + arm_b - arm_a;
-        point.separation = dot(normal, gap);
-        point.position = on_a + 0.5 * gap;
-        set_arms(contact, point, bodies);
-
-        // The friction impulse keeps its world direction.
-        const Vec3 friction = point.impulse.tangent_1 * old_1 + point.impulse.tangent_2 * old_2;
-        point.impulse.tangent_1 = dot(friction, contact.tangent_1);
-        point.impulse.tangent_2 = dot(friction, contact.tangent_2);
+        const Vec3 apart = b.center - a.center, gap = apart + arm_b - arm_a, middle = arm_a + 0.5 * gap;
+        point.separation = static_cast<float>(dot(normal, gap));
+        set_arms(contact, point, middle, middle - apart, bodies);
+        point.impulse = carried_over(point.impulse, old_1, old_2, contact);
         point.total = {};
         point.inactive_until = 0;
     }
@@ -139,7 +136,7 @@ double current_separation(const Contact& contact, const ContactPoint& point, std
 void activate_points(Contact& contact, double time) {
     for (int i = 0; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        point.is_active = time > point.inactive_until;
+        point.is_active = static_cast<float>(time) > point.inactive_until;
         if (!point.is_active) point.impulse = {};
     }
 }

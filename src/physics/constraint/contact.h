@@ -13,47 +13,53 @@ namespace embody::physics {
 
 /// Impulse at a contact point: along the normal and along the two tangents, N s.
 struct PointImpulse {
-    double normal = 0;
-    double tangent_1 = 0, tangent_2 = 0;
+    float normal = 0;
+    float tangent_1 = 0, tangent_2 = 0;
 };
 
-struct ContactPoint {
-    Vec3 position;          ///< world, when found
-    Vec3 arm_a, arm_b;      ///< from the centres of mass, world, when found; fixed during the step
-    Vec3 local_a, local_b;  ///< the surface points, from the centres of mass in the bodies' axes
-    double separation = 0;  ///< when found, m
-    std::uint32_t feature = 0;
+// Contacts are what a step reads and writes most, so their numbers are floats: they are lengths from the bodies' own
+// centres, speeds between two bodies and impulses, never places in the world.
 
-    double normal_mass = 0;                                 ///< 1/(nᵀAn), kg
-    double tangent_11 = 0, tangent_12 = 0, tangent_22 = 0;  ///< inverse of the 2×2 tangent block, kg
-    double slide_mass = 0;                                  ///< 1 over the block's larger eigenvalue, kg
-    double inactive_until =
-        0;                  ///< s in the step: until then an impact lets the surfaces part, or they are not there yet
-    bool is_active = true;  ///< in this substep
-    bool sticks = true;     ///< holds by static friction until the cone is left
+struct ContactPoint {
+    Vec3f arm_a, arm_b;      ///< from the centres of mass, world axes, when found; fixed during the step
+    Vec3f local_a, local_b;  ///< the surface points, from the centres of mass in the bodies' axes
+    float separation = 0;    ///< when found, m
+    std::uint32_t feature = 0;
 
     PointImpulse impulse;  ///< of the last substep; warm start of the next
     PointImpulse total;    ///< of the whole step, impacts included
+
+    float normal_mass = 0;                                 ///< 1/(nᵀAn), kg
+    float tangent_11 = 0, tangent_12 = 0, tangent_22 = 0;  ///< inverse of the 2×2 tangent block, kg
+    float slide_mass = 0;                                  ///< 1 over the block's larger eigenvalue, kg
+    float inactive_until = 0;  ///< s in the step: until then an impact lets the surfaces part, or they are not there
+    bool is_active = true;     ///< in this substep
+    bool sticks = true;        ///< holds by static friction until the cone is left
 };
 
 /// One contact region (paper, III.B) as a constraint between two bodies.
 struct Contact {
     std::uint32_t a = 0, b = 0;              ///< body slots, a < b
     std::uint32_t piece_a = 0, piece_b = 0;  ///< convex pieces; key of the region within the pair
-    Vec3 normal, tangent_1, tangent_2;       ///< world; normal from a to b
-    Vec3 local_normal;                       ///< in the axes of the body that has the region's face, see turns_with_b
-    Material material;                       ///< of the pair
     int count = 0;
     std::array<ContactPoint, Manifold::max_points> points;
 
-    Vec3 turning;  ///< angular impulse by torsion (along n) and rolling resistance of the last substep, N m s
+    Vec3f normal, tangent_1, tangent_2;  ///< world; normal from a to b
+    Vec3f local_normal;                  ///< in the axes of the body that it turns with
+    Vec3f turning;  ///< angular impulse by torsion (along n) and rolling resistance of the last substep, N m s
+    float approach_speed = 0;                     ///< fastest point when found, m/s, >= 0
     bool turns_with_b = false;                    ///< the normal does; else with a
     bool a_is_round = false, b_is_round = false;  ///< rolls: the point of contact does not turn with the body
-    double approach_speed = 0;                    ///< fastest point when found, m/s, >= 0
     bool was_touching = false;                    ///< in the last step
     bool was_loaded = false;                      ///< pressed in the last step
     bool had_impact = false;                      ///< solved by the impact stage in this step
+    Material material;                            ///< of the pair
 };
+
+/// Where the point was found, world.
+inline Vec3 position_of(const Contact& contact, const ContactPoint& point, std::span<const BodyState> bodies) {
+    return bodies[contact.a].start_center + point.arm_a;
+}
 
 /// Same bodies and pieces, in the order contacts are kept.
 inline std::array<std::uint32_t, 4> contact_key(const Contact& c) { return {c.a, c.b, c.piece_a, c.piece_b}; }

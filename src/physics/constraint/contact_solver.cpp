@@ -104,7 +104,7 @@ void solve_turning(Contact& contact, std::span<BodyState> bodies) {
     if (size > rolling_limit) rolling *= rolling_limit / size;
 
     const Vec3 change = torsion * n + rolling - contact.turning;
-    contact.turning += change;
+    contact.turning = to_vec3f(contact.turning + change);
     apply_angular_impulse(b, change);
     apply_angular_impulse(a, -change);
 }

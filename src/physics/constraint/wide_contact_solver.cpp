@@ -251,7 +251,7 @@ void WideContactSolver::write_contact(const Batch& batch, std::uint32_t lane, Co
     for (int i = 0; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const float* from = head + (BatchHead::size + i * BatchPoint::size) * lanes;
-        const auto read = [&](int quantity) { return static_cast<double>(from[quantity * lanes]); };
+        const auto read = [&](int quantity) { return from[quantity * lanes]; };
         point.normal_mass = read(BatchPoint::normal_mass);
         point.impulse = {read(BatchPoint::impulse_normal), read(BatchPoint::impulse_1), read(BatchPoint::impulse_2)};
         point.total = {read(BatchPoint::total_normal), read(BatchPoint::total_1), read(BatchPoint::total_2)};

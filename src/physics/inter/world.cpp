@@ -130,8 +130,8 @@ std::vector<ContactView> World::contacts() const {
             if (point.total.normal <= 0 && separation > 0) continue;
             const Vec3 impulse = point.total.normal * contact.normal + point.total.tangent_1 * contact.tangent_1 +
                                  point.total.tangent_2 * contact.tangent_2;
-            views.push_back({state_->bodies.handle_at(contact.a), state_->bodies.handle_at(contact.b), point.position,
-                             contact.normal, separation, impulse});
+            views.push_back({state_->bodies.handle_at(contact.a), state_->bodies.handle_at(contact.b),
+                             position_of(contact, point, state_->motion), contact.normal, separation, impulse});
         }
     };
     for (const Contact& contact : state_->contacts) add(contact);

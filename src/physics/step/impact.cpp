@@ -197,8 +197,8 @@ void ImpactStage::leave_open_points(Contact& contact, bool pass) {
         const Gap now = gap_at(contact, point, 0);
         const bool stays_open = now.size > 0 && (pass || gap_at(contact, point, step_).size > 0);
         if (now.rate < -slowest && stays_open) {
-            point.inactive_until = step_;
-        } else if (point.inactive_until >= step_) {
+            point.inactive_until = static_cast<float>(step_);
+        } else if (point.inactive_until >= static_cast<float>(step_)) {
             point.inactive_until = 0;
         }
     }
@@ -335,11 +335,14 @@ void ImpactStage::note_impulse(Contact& contact, Vec3 position, Vec3 impulse, do
     ContactPoint* nearest = &contact.points[0];
     for (int i = 1; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        if (length_squared(point.position - position) < length_squared(nearest->position - position)) nearest = &point;
+        const auto far = [&](const ContactPoint& p) {
+            return length_squared(position_of(contact, p, world_.motion) - position);
+        };
+        if (far(point) < far(*nearest)) nearest = &point;
     }
-    nearest->total.normal += dot(impulse, contact.normal);
-    nearest->total.tangent_1 += dot(impulse, contact.tangent_1);
-    nearest->total.tangent_2 += dot(impulse, contact.tangent_2);
+    nearest->total.normal += static_cast<float>(dot(impulse, contact.normal));
+    nearest->total.tangent_1 += static_cast<float>(dot(impulse, contact.tangent_1));
+    nearest->total.tangent_2 += static_cast<float>(dot(impulse, contact.tangent_2));
     if (!contact.had_impact) ++world_.report.impacts;
     contact.had_impact = true;
 
@@ -347,7 +350,7 @@ void ImpactStage::note_impulse(Contact& contact, Vec3 position, Vec3 impulse, do
     for (int i = 0; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const double parting = dot(relative_velocity(contact, point, world_.motion), contact.normal);
-        point.inactive_until = parting > 0 ? time : 0;
+        point.inactive_until = parting > 0 ? static_cast<float>(time) : 0;
     }
 }
 

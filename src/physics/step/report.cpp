@@ -24,10 +24,16 @@ ContactEvent begin_event(const WorldState& world, const TouchingPair& pair) {
     for (; contact != world.contacts.end() && contact->a == pair.a.index && contact->b == pair.b.index; ++contact) {
         if (!is_touching(*contact)) continue;
         if (!first) first = &*contact;
-        approach = std::max(approach, contact->approach_speed);
+        approach = std::max<double>(approach, contact->approach_speed);
     }
-    return {ContactEvent::Kind::begin, pair.a,        pair.b,  user_data_of(world, pair.a), user_data_of(world, pair.b),
-            first->points[0].position, first->normal, approach};
+    return {ContactEvent::Kind::begin,
+            pair.a,
+            pair.b,
+            user_data_of(world, pair.a),
+            user_data_of(world, pair.b),
+            position_of(*first, first->points[0], world.motion),
+            first->normal,
+            approach};
 }
 
 // Compares the pairs that touch now with those of the last step; both lists are sorted.
