@@ -36,29 +36,41 @@ ContactEvent begin_event(const WorldState& world, const TouchingPair& pair) {
             approach};
 }
 
-// Compares the pairs that touch now with those of the last step; both lists are sorted.
-void write_contact_events(WorldState& world) {
-    std::vector<TouchingPair> now;
+// The pairs that touch now, sorted; contacts are sorted by body slot and so nearly always give them in order.
+void list_touching(const WorldState& world, std::vector<TouchingPair>& pairs) {
+    pairs.clear();
     for (const Contact& contact : world.contacts) {
         if (!is_touching(contact)) continue;
         const TouchingPair pair{world.bodies.handle_at(contact.a), world.bodies.handle_at(contact.b)};
-        if (now.empty() || now.back() != pair) now.push_back(pair);
+        if (pairs.empty() || pairs.back() != pair) pairs.push_back(pair);
     }
-    std::sort(now.begin(), now.end());
-    now.erase(std::unique(now.begin(), now.end()), now.end());
+    if (!std::is_sorted(pairs.begin(), pairs.end())) std::sort(pairs.begin(), pairs.end());
+}
 
+void end_touching(WorldState& world, const TouchingPair& pair) {
     // Pairs that fell asleep touch on, without an event.
+    const auto sleeps = [&](BodyHandle body) { return world.bodies.contains(body) && world.is_asleep(body.index); };
+    if (sleeps(pair.a) || sleeps(pair.b)) return;
+    world.contact_events.push_back({ContactEvent::Kind::end, pair.a, pair.b, user_data_of(world, pair.a),
+                                    user_data_of(world, pair.b), Vec3{}, Vec3{}, 0});
+}
+
+// Walks through the pairs that touched in the last step and those that touch now, both sorted: ends first.
+void write_contact_events(WorldState& world) {
+    list_touching(world, world.touching_now);
+    auto now = world.touching_now.begin();
+    const auto last = world.touching_now.end();
     for (const TouchingPair& pair : world.touching) {
-        const auto sleeps = [&](BodyHandle body) { return world.bodies.contains(body) && world.is_asleep(body.index); };
-        if (sleeps(pair.a) || sleeps(pair.b) || std::binary_search(now.begin(), now.end(), pair)) continue;
-        world.contact_events.push_back({ContactEvent::Kind::end, pair.a, pair.b, user_data_of(world, pair.a),
-                                        user_data_of(world, pair.b), Vec3{}, Vec3{}, 0});
+        while (now != last && *now < pair) ++now;
+        if (now == last || *now != pair) end_touching(world, pair);
     }
-    for (const TouchingPair& pair : now) {
-        if (std::binary_search(world.touching.begin(), world.touching.end(), pair)) continue;
-        world.contact_events.push_back(begin_event(world, pair));
+    auto before = world.touching.begin();
+    for (const TouchingPair& pair : world.touching_now) {
+        while (before != world.touching.end() && *before < pair) ++before;
+        const bool is_new = before == world.touching.end() || *before != pair;
+        if (is_new) world.contact_events.push_back(begin_event(world, pair));
     }
-    world.touching = std::move(now);
+    world.touching.swap(world.touching_now);
 }
 
 void count_bodies(WorldState& world) {

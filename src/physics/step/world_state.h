@@ -103,6 +103,7 @@ struct WorldState {
     std::vector<std::uint32_t> to_wake;               // face, touch: slots
 
     std::vector<TouchingPair> touching;        // report: awake pairs that touch, sorted
+    std::vector<TouchingPair> touching_now;    // report: memory only
     std::vector<ContactEvent> contact_events;  // report
     std::vector<SleepEvent> sleep_events;      // wake, sleep
     StepReport report;                         // all
