@@ -133,8 +133,8 @@ TEST(Friction, BallLeavesAFixedSphereAtTheKnownAngle) {
     const auto reference = reference_case("leave_sphere");
     const auto leave = [](double mu) {
         const double big = 1, small = 0.1, reach = big + small;
-        // The contact's normal stands still within a step, so a ball parts with up to v² dt / r too much speed: at 1 kHz
-        // that alone makes a degree, at 4 kHz a quarter of one.
+        // The contact's normal stands still within a step, so a ball parts with up to v² dt / r too much speed: at 1
+        // kHz that alone makes a degree, at 4 kHz a quarter of one.
         const auto world = make_world({.time_step = 1.0 / 4000});
         const auto globe = world->create_shape(SphereShape{big}).value();
         const auto ball = world->create_shape(SphereShape{small}).value();
