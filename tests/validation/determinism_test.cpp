@@ -48,6 +48,32 @@ TEST(Determinism, AnyNumberOfLanesGivesTheSameBits) {
     }
 }
 
+// A pile that is large enough for all workers to take part.
+std::unique_ptr<World> make_large_heap(int workers) {
+    auto world = make_world({.workers = workers});
+    add_plane(*world, friction(0.5));
+    const auto box = world->create_shape(BoxShape{{0.3, 0.2, 0.25}}).value();
+    Random random(9);
+    for (int i = 0; i < 500; ++i) {
+        EXPECT_TRUE(world->create_body(
+            {.shape = box, .position = {random.between(-2, 2), 0.3 + 0.02 * i, random.between(-2, 2)}}));
+    }
+    return world;
+}
+
+TEST(Determinism, AnyNumberOfWorkersGivesTheSameBits) {
+    const auto one = make_large_heap(1);
+    std::vector<std::unique_ptr<World>> others;
+    for (const int workers : {2, 3, 8}) others.push_back(make_large_heap(workers));
+    for (int i = 0; i < 80; ++i) {
+        one->step();
+        for (const auto& world : others) {
+            world->step();
+            ASSERT_EQ(one->state_hash(), world->state_hash()) << world->settings().workers << " workers, step " << i;
+        }
+    }
+}
+
 TEST(Determinism, AnotherInputGivesOtherBits) {
     const auto first = make_heap(), second = make_heap();
     ASSERT_TRUE(second->set_velocity(second->bodies()[1], {1e-9, 0, 0}, {}));

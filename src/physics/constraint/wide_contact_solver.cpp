@@ -11,6 +11,8 @@ namespace embody::physics {
 namespace {
 
 constexpr double push_speed = 3;  // m/s: overlapping bodies part no faster than this
+// Below this a step is done before a second worker has begun, or a stage before both have met at its end.
+constexpr std::size_t fewest_contacts_shared = 400, fewest_batches_shared = 2;
 constexpr float mask_set = std::bit_cast<float>(0xFFFFFFFFu);
 
 float to_float(double number) { return static_cast<float>(number); }
@@ -91,8 +93,10 @@ void WideContactSolver::begin(std::span<const std::uint32_t> movable, std::span<
     for (std::vector<Row>* rows : {&velocity_, &motion_, &start_, &kick_, &damping_}) rows->clear();
     slot_of_row_.clear();
     batches_.clear();
+    stages_.clear();
     contacts_.clear();
-    lines_.clear();
+    rows_of_contact_.clear();
+    used_lines_ = 0;
 
     // The immovable world.
     velocity_.push_back({});
@@ -132,24 +136,34 @@ std::int32_t WideContactSolver::row_of(std::uint32_t body, std::span<const BodyS
     return row_of_slot_[body];
 }
 
-void WideContactSolver::add_batch(std::span<const std::uint32_t> batch, std::span<const Contact> contacts,
+void WideContactSolver::begin_stage() { stages_.push_back(static_cast<std::uint32_t>(batches_.size())); }
+
+void WideContactSolver::add_batch(std::span<const std::uint32_t> batch, int points, std::span<const Contact> contacts,
                                   std::span<const BodyState> bodies) {
+    batches_.push_back({static_cast<std::uint32_t>(used_lines_), static_cast<std::uint32_t>(contacts_.size()),
+                        static_cast<std::uint32_t>(batch.size()), points});
+    for (const std::uint32_t i : batch) {
+        contacts_.push_back(i);
+        rows_of_contact_.push_back({row_of(contacts[i].a, bodies), row_of(contacts[i].b, bodies)});
+    }
+    const auto floats = static_cast<std::size_t>(batch_floats(kernels_->lanes, points));
+    used_lines_ += (floats + 15) / 16;
+}
+
+void WideContactSolver::fill_batch(const Batch& batch, std::span<const Contact> contacts,
+                                   std::span<const BodyState> bodies) {
     const int lanes = kernels_->lanes;
-    Batch placed{static_cast<std::uint32_t>(lines_.size()), static_cast<std::uint32_t>(contacts_.size()),
-                 static_cast<std::uint32_t>(batch.size()), 0};
-    contacts_.insert(contacts_.end(), batch.begin(), batch.end());
-    for (const std::uint32_t i : batch) placed.points = std::max(placed.points, contacts[i].count);
-    const auto floats = static_cast<std::size_t>(batch_floats(lanes, placed.points));
-    lines_.resize(lines_.size() + (floats + 15) / 16, CacheLine{});
-    float* data = lines_[placed.first_line].value;
+    float* data = lines_[batch.first_line].value;
+    std::fill_n(data, batch_floats(lanes, batch.points), 0.0F);
 
     std::int32_t writable_a = 0, writable_b = 0, turning = 0;
-    for (std::size_t k = 0; k < batch.size(); ++k) {
-        const Contact& contact = contacts[batch[k]];
+    for (std::size_t k = 0; k < batch.contact_count; ++k) {
+        const Contact& contact = contacts[contacts_[batch.first_contact + k]];
+        const auto [row_a, row_b] = rows_of_contact_[batch.first_contact + k];
         const BodyState &a = bodies[contact.a], &b = bodies[contact.b];
         Lane head(data, lanes, k);
-        head.set_integer(BatchHead::body_a, row_of(contact.a, bodies));
-        head.set_integer(BatchHead::body_b, row_of(contact.b, bodies));
+        head.set_integer(BatchHead::body_a, row_a);
+        head.set_integer(BatchHead::body_b, row_b);
         head.set(BatchHead::inverse_mass_a, a.inverse_mass);
         head.set(BatchHead::inverse_mass_b, b.inverse_mass);
         head.set_symmetric(BatchHead::inverse_inertia_a, a.inverse_inertia);
@@ -176,53 +190,102 @@ void WideContactSolver::add_batch(std::span<const std::uint32_t> batch, std::spa
     Lane(data, lanes, 0).set_integer(BatchHead::writable, writable_a);
     Lane(data, lanes, 1).set_integer(BatchHead::writable, writable_b);
     Lane(data, lanes, 2).set_integer(BatchHead::writable, turning);
-    kernels_->prepare(data, placed.points);
-    batches_.push_back(placed);
+    kernels_->prepare(data, batch.points);
 }
 
 template <class Kernel>
-void WideContactSolver::sweep_up(Kernel kernel) {
-    for (const Batch& batch : batches_) kernel(lines_[batch.first_line].value, batch.points);
+void WideContactSolver::for_each_batch(const Work& work, int worker, Kernel kernel) {
+    const Share share = share_of(batches_.size(), worker, work.workers);
+    for (std::size_t i = share.first; i < share.last; ++i) kernel(batches_[i]);
 }
 
 template <class Kernel>
-void WideContactSolver::sweep_down(Kernel kernel) {
-    for (auto batch = batches_.rbegin(); batch != batches_.rend(); ++batch) {
-        kernel(lines_[batch->first_line].value, batch->points);
+void WideContactSolver::sweep_down(const Work& work, int worker, Kernel kernel) {
+    // Stages of few batches are worker 0's; nobody waits between two of them.
+    bool is_pending = false;
+    for (std::size_t stage = stages_.size(); stage-- > 0;) {
+        const std::size_t first = stages_[stage];
+        const std::size_t last = stage + 1 < stages_.size() ? stages_[stage + 1] : batches_.size();
+        const bool is_shared = last - first >= fewest_batches_shared * static_cast<std::size_t>(work.workers);
+        if (is_shared && is_pending) work.barrier.wait();
+        const Share share = is_shared     ? share_of(last - first, worker, work.workers)
+                            : worker == 0 ? Share{0, last - first}
+                                          : Share{};
+        for (std::size_t i = first + share.first; i < first + share.last; ++i) {
+            kernel(lines_[batches_[i].first_line].value, batches_[i].points);
+        }
+        if (is_shared) work.barrier.wait();
+        is_pending = !is_shared;
     }
+    if (is_pending) work.barrier.wait();
 }
 
-void WideContactSolver::run(int passes, const ContactSoftness& softness) {
-    kicked_ = velocity_;
-    const auto row_count = static_cast<std::int32_t>(velocity_.size());
+void WideContactSolver::solve_share(const Work& work, int worker) {
     const BodyRows rows{velocity_[0].value, motion_[0].value,  start_[0].value,
                         kick_[0].value,     damping_[0].value, kicked_[0].value};
-    ContactSweep sweep{.velocity = rows.velocity,
-                       .motion = rows.motion,
-                       .substep = to_float(substep_),
-                       .bias_rate = to_float(softness.bias_rate),
-                       .mass_scale = to_float(softness.mass_scale),
-                       .impulse_scale = to_float(softness.impulse_scale),
-                       .push_speed = to_float(push_speed)};
     const ContactKernels& k = *kernels_;
+    ContactSweep sweep = work.sweep;
 
-    sweep_up([&](float* batch, int points) { k.separate(batch, points, sweep); });
+    // Row 0 never moves.
+    const Share share = share_of(velocity_.size() - 1, worker, work.workers);
+    const auto first_row = static_cast<std::int32_t>(share.first + 1),
+               last_row = static_cast<std::int32_t>(share.last + 1);
+    for_each_batch(work, worker, [&](const Batch& batch) {
+        fill_batch(batch, work.contacts, work.bodies);
+        k.separate(lines_[batch.first_line].value, batch.points, sweep);
+    });
     for (int substep = 1; substep <= substeps_; ++substep) {
         // Forces, constraints that also mend positions, motion.
         sweep.time = to_float(substep * substep_);
-        k.kick(rows, 1, row_count);
-        sweep_up([&](float* batch, int points) { k.warm_start(batch, points, sweep); });
-        for (int pass = 0; pass < passes; ++pass) {
-            sweep_down([&](float* batch, int points) { k.solve_positions(batch, points, sweep); });
+        k.kick(rows, first_row, last_row);
+        work.barrier.wait();
+        sweep_down(work, worker, [&](float* batch, int points) { k.warm_start(batch, points, sweep); });
+        for (int pass = 0; pass < work.passes; ++pass) {
+            sweep_down(work, worker, [&](float* batch, int points) { k.solve_positions(batch, points, sweep); });
         }
-        k.drift(rows, sweep.substep, 1, row_count);
+        k.drift(rows, sweep.substep, first_row, last_row);
+        work.barrier.wait();
 
         // Constraints on the velocity alone.
-        for (int pass = 0; pass < passes; ++pass) {
+        for (int pass = 0; pass < work.passes; ++pass) {
             sweep.is_first = pass == 0;
-            sweep.is_last = pass + 1 == passes;
-            sweep_down([&](float* batch, int points) { k.solve_velocities(batch, points, sweep); });
+            sweep.is_last = pass + 1 == work.passes;
+            sweep_down(work, worker, [&](float* batch, int points) { k.solve_velocities(batch, points, sweep); });
         }
+    }
+
+    // Results.
+    for (std::int32_t row = first_row; row < last_row; ++row) {
+        const auto r = static_cast<std::size_t>(row);
+        const std::uint32_t body = slot_of_row_[r];
+        if (r < movable_rows_) write_body(r, work.bodies[body], work.constants[body]);
+    }
+    for_each_batch(work, worker, [&](const Batch& batch) {
+        for (std::uint32_t lane = 0; lane < batch.contact_count; ++lane) {
+            write_contact(batch, lane, work.contacts[contacts_[batch.first_contact + lane]]);
+        }
+    });
+}
+
+void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::span<BodyState> bodies,
+                              std::span<const BodyConstants> constants, std::span<Contact> contacts, TaskPool& pool) {
+    if (lines_.size() < used_lines_) lines_.resize(used_lines_ + used_lines_ / 2);
+    kicked_.resize(velocity_.size());
+    const ContactSweep sweep{.velocity = velocity_[0].value,
+                             .motion = motion_[0].value,
+                             .substep = to_float(substep_),
+                             .bias_rate = to_float(softness.bias_rate),
+                             .mass_scale = to_float(softness.mass_scale),
+                             .impulse_scale = to_float(softness.impulse_scale),
+                             .push_speed = to_float(push_speed)};
+    const int workers =
+        batches_.size() * static_cast<std::size_t>(lanes()) < fewest_contacts_shared ? 1 : pool.workers();
+    Barrier barrier(workers);
+    const Work work{bodies, constants, contacts, sweep, passes, workers, barrier};
+    if (workers == 1) {
+        solve_share(work, 0);
+    } else {
+        pool.run([&](int worker) { solve_share(work, worker); });
     }
 }
 
@@ -256,19 +319,6 @@ void WideContactSolver::write_contact(const Batch& batch, std::uint32_t lane, Co
         point.impulse = {read(BatchPoint::impulse_normal), read(BatchPoint::impulse_1), read(BatchPoint::impulse_2)};
         point.total = {read(BatchPoint::total_normal), read(BatchPoint::total_1), read(BatchPoint::total_2)};
         point.sticks = std::bit_cast<std::uint32_t>(from[BatchPoint::sticks * lanes]) != 0;
-    }
-}
-
-void WideContactSolver::finish(std::span<BodyState> bodies, std::span<const BodyConstants> constants,
-                               std::span<Contact> contacts) const {
-    for (std::size_t row = 1; row < movable_rows_; ++row) {
-        const std::uint32_t body = slot_of_row_[row];
-        write_body(row, bodies[body], constants[body]);
-    }
-    for (const Batch& batch : batches_) {
-        for (std::uint32_t lane = 0; lane < batch.contact_count; ++lane) {
-            write_contact(batch, lane, contacts[contacts_[batch.first_contact + lane]]);
-        }
     }
 }
 

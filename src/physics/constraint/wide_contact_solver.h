@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "foundation/task_pool.h"
 #include "physics/constraint/contact.h"
 #include "physics/constraint/contact_batch.h"
 #include "physics/constraint/contact_solver.h"
@@ -22,14 +24,16 @@ public:
     /// Starts a step of `substeps` substeps of `substep` s for the `movable` bodies (slots).
     void begin(std::span<const std::uint32_t> movable, std::span<BodyState> bodies,
                std::span<const BodyConstants> constants, double substep, int substeps);
-    /// Adds contacts of different movable bodies, at most lanes() of them, to be solved after those added before.
-    void add_batch(std::span<const std::uint32_t> batch, std::span<const Contact> contacts,
+    /// Begins a stage: what is added from here on is solved after all that was added before.
+    void begin_stage();
+    /// Adds contacts of different movable bodies, at most lanes() of them, with up to `points` points. The batches of
+    /// one stage have no movable body in common.
+    void add_batch(std::span<const std::uint32_t> batch, int points, std::span<const Contact> contacts,
                    std::span<const BodyState> bodies);
-    /// Solves the step, with `passes` sweeps before and after the drift of each substep.
-    void run(int passes, const ContactSoftness& softness);
-    /// Hands the motion to the bodies and the impulses to the contacts.
-    void finish(std::span<BodyState> bodies, std::span<const BodyConstants> constants,
-                std::span<Contact> contacts) const;
+    /// Solves the step, with `passes` sweeps before and after the drift of each substep, and hands the motion to the
+    /// bodies and the impulses to the contacts. The same for any number of workers.
+    void solve(int passes, const ContactSoftness& softness, std::span<BodyState> bodies,
+               std::span<const BodyConstants> constants, std::span<Contact> contacts, TaskPool& pool);
 
 private:
     struct alignas(32) Row {
@@ -43,16 +47,29 @@ private:
         std::uint32_t first_contact = 0, contact_count = 0;
         int points = 0;
     };
+    /// What the workers of a step share.
+    struct Work {
+        std::span<BodyState> bodies;
+        std::span<const BodyConstants> constants;
+        std::span<Contact> contacts;
+        ContactSweep sweep;
+        int passes;
+        int workers;
+        Barrier& barrier;
+    };
 
     std::int32_t row_of(std::uint32_t body, std::span<const BodyState> bodies);
     void append_row(std::uint32_t body, const BodyState& state);
+    void fill_batch(const Batch& batch, std::span<const Contact> contacts, std::span<const BodyState> bodies);
+    void solve_share(const Work& work, int worker);
+    /// Calls kernel(batch's floats, points) for this worker's batches, stage after stage from the top down.
+    template <class Kernel>
+    void sweep_down(const Work& work, int worker, Kernel kernel);
+    /// The same for batches in any order.
+    template <class Kernel>
+    void for_each_batch(const Work& work, int worker, Kernel kernel);
     void write_body(std::size_t row, BodyState& state, const BodyConstants& constants) const;
     void write_contact(const Batch& batch, std::uint32_t lane, Contact& contact) const;
-    /// Calls kernel(batch's floats, points) for all batches in the order of adding or against it.
-    template <class Kernel>
-    void sweep_up(Kernel kernel);
-    template <class Kernel>
-    void sweep_down(Kernel kernel);
 
     const ContactKernels* kernels_;
     double substep_ = 0;  // s
@@ -65,8 +82,11 @@ private:
     std::size_t movable_rows_ = 0;
 
     std::vector<Batch> batches_;
+    std::vector<std::uint32_t> stages_;    // first batch of each
     std::vector<std::uint32_t> contacts_;  // batch by batch
-    std::vector<CacheLine> lines_;
+    std::vector<std::array<std::int32_t, 2>> rows_of_contact_;
+    std::vector<CacheLine> lines_;  // never shrinks
+    std::size_t used_lines_ = 0;
 };
 
 }  // namespace embody::physics

@@ -23,6 +23,7 @@ const WorldSettings& World::settings() const { return state_->settings; }
 Result<void> World::set_settings(const WorldSettings& settings) {
     if (auto result = validate(settings); !result) return result;
     if (auto result = choose_lanes(*state_, settings.lanes); !result) return result;
+    if (settings.workers != state_->workers->workers()) state_->workers = std::make_unique<TaskPool>(settings.workers);
     state_->settings = settings;
 
     // Another gravity or no sleeping moves everything.

@@ -42,13 +42,17 @@ void solve_wide(WorldState& world, const std::vector<Island>& islands, double h)
     WideContactSolver& solver = world.wide_solver;
     build_schedule(order, world.contacts, world.motion, solver.lanes(), world.schedule);
     solver.begin(bodies, world.motion, world.constants, h, world.settings.substeps);
-    for (const SolveSchedule::Batch& batch : world.schedule.batches) {
-        const auto contacts = std::span(world.schedule.contacts).subspan(batch.first, batch.count);
-        solver.add_batch(contacts, world.contacts, world.motion);
+    for (const SolveSchedule::Stage& stage : world.schedule.stages) {
+        solver.begin_stage();
+        for (std::uint32_t i = 0; i < stage.batch_count; ++i) {
+            const SolveSchedule::Batch& batch = world.schedule.batches[stage.first_batch + i];
+            const auto contacts = std::span(world.schedule.contacts).subspan(batch.first, batch.count);
+            solver.add_batch(contacts, batch.points, world.contacts, world.motion);
+        }
     }
     const std::size_t contacts = islands.front().contact_count;
-    solver.run(contact_passes(contacts), contact_softness(h, contacts));
-    solver.finish(world.motion, world.constants, world.contacts);
+    solver.solve(contact_passes(contacts), contact_softness(h, contacts), world.motion, world.constants, world.contacts,
+                 *world.workers);
 }
 
 void solve_islands(WorldState& world, const std::vector<Island>& islands, SolvePhase phase, double h) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "foundation/handle_table.h"
+#include "foundation/task_pool.h"
 #include "physics/collision/broad_phase.h"
 #include "physics/collision/collision_shape.h"
 #include "physics/collision/pair_memory.h"
@@ -94,6 +95,7 @@ struct WorldState {
     std::vector<std::uint32_t> active_joint_slots;         // islands
     Islands islands;                                       // islands
 
+    std::unique_ptr<TaskPool> workers = std::make_unique<TaskPool>(1);
     WideContactSolver wide_solver{widest_contact_kernels()};  // substeps: memory only
     SolveSchedule schedule;                                   // substeps: memory only
     std::vector<Vec3> kicked_velocity;                        // substeps: linear velocity before the constraints, m/s

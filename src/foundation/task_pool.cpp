@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "foundation/task_pool.h"
+
+#include <thread>
+#include <vector>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+#include "foundation/assert.h"
+
+namespace embody {
+
+namespace {
+
+// Rounds of looking before a thread gives its core away: some 20 microseconds at a barrier, 100 between tasks.
+constexpr int spins_at_barrier = 1000, spins_between_tasks = 5000;
+
+void relax() {
+#if defined(__x86_64__)
+    _mm_pause();
+#endif
+}
+
+}  // namespace
+
+void Barrier::wait() {
+    if (workers_ == 1) return;
+    const unsigned round = round_.load(std::memory_order_relaxed);
+    if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == workers_) {
+        arrived_.store(0, std::memory_order_relaxed);
+        round_.store(round + 1, std::memory_order_release);
+        return;
+    }
+    for (int i = 0; round_.load(std::memory_order_acquire) == round; ++i) {
+        if (i < spins_at_barrier) {
+            relax();
+        } else {
+            std::this_thread::yield();
+        }
+    }
+}
+
+struct TaskPool::State {
+    const std::function<void(int)>* task = nullptr;  // of the present round
+    std::atomic<unsigned> round{0};
+    std::atomic<int> running{0};
+    std::atomic<bool> stops{false};
+    std::vector<std::thread> threads;
+
+    void work(int worker) {
+        unsigned seen = 0;
+        while (true) {
+            // Look for a while, then sleep until the round changes.
+            for (int i = 0; i < spins_between_tasks && round.load(std::memory_order_acquire) == seen; ++i) relax();
+            round.wait(seen, std::memory_order_acquire);
+            seen = round.load(std::memory_order_acquire);
+            if (stops.load(std::memory_order_relaxed)) return;
+            (*task)(worker);
+            running.fetch_sub(1, std::memory_order_acq_rel);
+        }
+    }
+};
+
+TaskPool::TaskPool(int workers) : state_(std::make_unique<State>()) {
+    EMBODY_ASSERT(workers >= 1);
+    for (int worker = 1; worker < workers; ++worker) {
+        state_->threads.emplace_back([state = state_.get(), worker] { state->work(worker); });
+    }
+}
+
+TaskPool::~TaskPool() {
+    state_->stops.store(true, std::memory_order_relaxed);
+    state_->round.fetch_add(1, std::memory_order_release);
+    state_->round.notify_all();
+    for (std::thread& thread : state_->threads) thread.join();
+}
+
+int TaskPool::workers() const { return static_cast<int>(state_->threads.size()) + 1; }
+
+void TaskPool::run(const std::function<void(int)>& task) {
+    State& s = *state_;
+    if (s.threads.empty()) return task(0);
+    s.task = &task;
+    s.running.store(static_cast<int>(s.threads.size()), std::memory_order_relaxed);
+    s.round.fetch_add(1, std::memory_order_release);
+    s.round.notify_all();
+    task(0);
+    for (int i = 0; s.running.load(std::memory_order_acquire) > 0; ++i) {
+        if (i < spins_at_barrier) {
+            relax();
+        } else {
+            std::this_thread::yield();
+        }
+    }
+}
+
+}  // namespace embody

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+
+namespace embody {
+
+/// Lets the workers of one task wait for each other, again and again. Spins first: stages are microseconds apart.
+class Barrier {
+public:
+    explicit Barrier(int workers) : workers_(workers) {}
+    /// Returns when all workers have called it.
+    void wait();
+
+private:
+    const int workers_;
+    std::atomic<int> arrived_{0};
+    std::atomic<unsigned> round_{0};
+};
+
+/// A fixed set of threads that run one task together. The calling thread is worker 0, so a pool of one has no threads.
+/// Between tasks the threads sleep, after a short while of looking for the next one.
+class TaskPool {
+public:
+    /// `workers` >= 1.
+    explicit TaskPool(int workers);
+    ~TaskPool();
+    TaskPool(const TaskPool&) = delete;
+    TaskPool& operator=(const TaskPool&) = delete;
+
+    [[nodiscard]] int workers() const;
+    /// Calls task(worker) once on each worker, 0 … workers() - 1, and returns when all have returned. `task` must not
+    /// throw. One caller at a time.
+    void run(const std::function<void(int worker)>& task);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// Worker `worker`'s share of `count` things: the same for each call with the same numbers.
+struct Share {
+    std::size_t first = 0, last = 0;
+};
+inline Share share_of(std::size_t count, int worker, int workers) {
+    const auto w = static_cast<std::size_t>(worker), n = static_cast<std::size_t>(workers);
+    return {count * w / n, count * (w + 1) / n};
+}
+
+}  // namespace embody

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include "foundation/task_pool.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <vector>
+
+namespace embody {
+namespace {
+
+class EachPool : public ::testing::TestWithParam<int> {};
+
+TEST_P(EachPool, RunsATaskOnceOnEachWorkerAgainAndAgain) {
+    TaskPool pool(GetParam());
+    ASSERT_EQ(pool.workers(), GetParam());
+    std::vector<int> calls(static_cast<std::size_t>(GetParam()), 0);
+    for (int round = 0; round < 2000; ++round) pool.run([&](int worker) { ++calls[static_cast<std::size_t>(worker)]; });
+    for (const int count : calls) EXPECT_EQ(count, 2000);
+}
+
+TEST_P(EachPool, WorkersMeetAtTheBarrier) {
+    // Each adds to its neighbour's number in turns; without the barrier sums would be lost.
+    const int workers = GetParam();
+    TaskPool pool(workers);
+    Barrier barrier(workers);
+    std::vector<long> numbers(static_cast<std::size_t>(workers), 1);
+    pool.run([&](int worker) {
+        for (int round = 0; round < 500; ++round) {
+            const auto target = static_cast<std::size_t>((worker + round) % workers);
+            numbers[target] += round;
+            barrier.wait();
+        }
+    });
+    const long sum = std::accumulate(numbers.begin(), numbers.end(), 0L);
+    EXPECT_EQ(sum, workers * (1 + 500L * 499 / 2));
+}
+
+TEST_P(EachPool, SharesCoverAllOnce) {
+    for (const std::size_t count : {0u, 1u, 7u, 64u, 1001u}) {
+        std::size_t next = 0;
+        for (int worker = 0; worker < GetParam(); ++worker) {
+            const Share share = share_of(count, worker, GetParam());
+            EXPECT_EQ(share.first, next);
+            next = share.last;
+        }
+        EXPECT_EQ(next, count);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Workers, EachPool, ::testing::Values(1, 2, 3, 8));
+
+}  // namespace
+}  // namespace embody
