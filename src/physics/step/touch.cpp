@@ -146,67 +146,114 @@ bool may_follow(const WorldState& world, const PairRecord& record, OldContacts o
 }
 
 // Finds the contacts of a pair anew and hands them the impulses of the old ones.
-void compare_pair(WorldState& world, PairRecord& record, OldContacts old, double margin, const RelativePose& now,
-                  std::vector<Manifold>& manifolds) {
+void compare_pair(const WorldState& world, PairRecord& record, OldContacts old, double margin, const RelativePose& now,
+                  TouchMemory::Worker& worker) {
     const BroadPhase::Pair pair = record.pair;
     const BodyRecord &a = world.record(pair.a), &b = world.record(pair.b);
     if (record.version_a != a.version || record.version_b != b.version) record.memory = {};
-    manifolds.clear();
+    worker.manifolds.clear();
     const double searched = margin + follow_window;
-    collide(*a.shape, world.pose(pair.a), *b.shape, world.pose(pair.b), searched, record.memory, manifolds);
+    collide(*a.shape, world.pose(pair.a), *b.shape, world.pose(pair.b), searched, record.memory, worker.manifolds);
     record.version_a = a.version;
     record.version_b = b.version;
-    record.contact_count = static_cast<std::uint32_t>(manifolds.size());
+    record.contact_count = static_cast<std::uint32_t>(worker.manifolds.size());
     record.margin = searched;
     record.relative_center = now.center;
     record.relative_rotation = now.rotation;
-    if (manifolds.empty()) return;
+    if (worker.manifolds.empty()) return;
 
-    const std::size_t first = world.contacts.size();
+    const auto first = static_cast<std::ptrdiff_t>(worker.found.size());
     const Material material = combine(a.definition.material, b.definition.material);
-    for (const Manifold& manifold : manifolds) {
-        world.contacts.push_back(make_contact(pair.a, pair.b, manifold, world.motion, b_is_larger(world, pair)));
-        Contact& contact = world.contacts.back();
+    const bool turns_with_b = b_is_larger(world, pair);
+    for (const Manifold& manifold : worker.manifolds) {
+        worker.found.push_back(make_contact(pair.a, pair.b, manifold, world.motion, turns_with_b));
+        Contact& contact = worker.found.back();
         contact.material = material;
         contact.a_is_round = a.is_round;
         contact.b_is_round = b.is_round;
     }
-    std::sort(world.contacts.begin() + static_cast<std::ptrdiff_t>(first), world.contacts.end(),
+
+    // Both are sorted by key.
+    std::sort(worker.found.begin() + first, worker.found.end(),
               [](const Contact& c, const Contact& d) { return contact_key(c) < contact_key(d); });
     auto old_contact = old.begin();
-    for (std::size_t i = first; i < world.contacts.size(); ++i) {
-        Contact& contact = world.contacts[i];
-        while (old_contact != old.end() && contact_key(*old_contact) < contact_key(contact)) ++old_contact;
-        if (old_contact != old.end() && contact_key(*old_contact) == contact_key(contact)) {
-            match_points(*old_contact, contact);
+    for (auto contact = worker.found.begin() + first; contact != worker.found.end(); ++contact) {
+        while (old_contact != old.end() && contact_key(*old_contact) < contact_key(*contact)) ++old_contact;
+        if (old_contact != old.end() && contact_key(*old_contact) == contact_key(*contact)) {
+            match_points(*old_contact, *contact);
         }
     }
 }
 
-void touch_pair(WorldState& world, PairRecord& record, OldContacts old, std::vector<Manifold>& manifolds) {
+// Decides what a pair has in this step; finds it where it does not follow the last one.
+void touch_pair(const WorldState& world, PairRecord& record, PairTouch& touch, std::uint8_t finder,
+                TouchMemory::Worker& worker) {
     // One of the two must be able to answer an impulse, and neither may sleep.
+    touch.count = 0;
+    touch.finder = PairTouch::follows;
     const auto [a, b] = record.pair;
     if (world.motion[a].inverse_mass == 0 && world.motion[b].inverse_mass == 0) return;
     if (world.is_asleep(a) || world.is_asleep(b)) return;
     if (!may_collide(world, a, b)) return;
+    const OldContacts old = OldContacts(world.last_contacts).subspan(touch.old_first, touch.old_count);
     const double margin = margin_of(world, a, b);
     const RelativePose now = relative_pose(world, record.pair);
-    if (!may_follow(world, record, old, margin, now)) {
-        compare_pair(world, record, old, margin, now, manifolds);
+    if (may_follow(world, record, old, margin, now)) {
+        touch.count = touch.old_count;
         return;
     }
-    for (const Contact& contact : old) {
-        world.contacts.push_back(contact);
-        follow_bodies(world.contacts.back(), world.motion);
+    touch.finder = finder;
+    touch.found_first = static_cast<std::uint32_t>(worker.found.size());
+    compare_pair(world, record, old, margin, now, worker);
+    touch.count = static_cast<std::uint32_t>(worker.found.size()) - touch.found_first;
+}
+
+// Pairs and the last contacts are sorted alike: one pass over the two meets every old partner.
+void list_old_contacts(WorldState& world) {
+    const std::vector<Contact>& last = world.last_contacts;
+    std::vector<PairTouch>& touches = world.touch_memory.pairs;
+    touches.resize(world.pair_records.size());
+    std::uint32_t next = 0;
+    const auto count = static_cast<std::uint32_t>(last.size());
+    for (std::size_t i = 0; i < touches.size(); ++i) {
+        const BroadPhase::Pair pair = world.pair_records[i].pair;
+        while (next < count && BroadPhase::Pair{last[next].a, last[next].b} < pair) ++next;
+        touches[i].old_first = next;
+        while (next < count && BroadPhase::Pair{last[next].a, last[next].b} == pair) ++next;
+        touches[i].old_count = next - touches[i].old_first;
     }
+}
+
+// Puts a pair's contacts to their place among this step's.
+void place_contacts(WorldState& world, const PairTouch& touch) {
+    for (std::uint32_t k = 0; k < touch.count; ++k) {
+        Contact& contact = world.contacts[touch.first + k];
+        if (touch.finder == PairTouch::follows) {
+            contact = world.last_contacts[touch.old_first + k];
+            follow_bodies(contact, world.motion);
+        } else {
+            contact = world.touch_memory.workers[touch.finder].found[touch.found_first + k];
+        }
+    }
+}
+
+// Calls work(worker, first, last) for shares of the pairs, on all workers where there are enough pairs.
+template <class Work>
+void share_pairs(WorldState& world, Work work) {
+    constexpr std::size_t fewest_shared = 200;
+    const std::size_t count = world.pair_records.size();
+    if (count < fewest_shared) return work(0, Share{0, count});
+    const int workers = world.workers->workers();
+    world.workers->run([&](int worker) { work(worker, share_of(count, worker, workers)); });
 }
 
 }  // namespace
 
 void find_contacts(WorldState& world) {
     // From here on the bodies' motion tells how contacts change.
-    std::vector<Manifold> manifolds;
-    wake_touched(world, manifolds);
+    TouchMemory& memory = world.touch_memory;
+    memory.workers.resize(static_cast<std::size_t>(world.workers->workers()));
+    wake_touched(world, memory.workers[0].manifolds);
     for (const std::uint32_t body : world.awake) {
         BodyState& state = world.motion[body];
         state.start_center = state.center;
@@ -214,20 +261,28 @@ void find_contacts(WorldState& world) {
         state.turn = {};
     }
 
-    // Pairs and the last contacts are sorted alike: one pass over the two meets every old partner.
+    // What each pair has.
     update_records(world);
     world.last_contacts.swap(world.contacts);
-    world.contacts.clear();
-    const std::span<const Contact> last = world.last_contacts;
-    std::size_t next = 0;
-    for (PairRecord& record : world.pair_records) {
-        const auto is_before = [&](const Contact& c) { return BroadPhase::Pair{c.a, c.b} < record.pair; };
-        while (next < last.size() && is_before(last[next])) ++next;
-        std::size_t end = next;
-        while (end < last.size() && BroadPhase::Pair{last[end].a, last[end].b} == record.pair) ++end;
-        touch_pair(world, record, last.subspan(next, end - next), manifolds);
-        next = end;
+    list_old_contacts(world);
+    share_pairs(world, [&](int worker, Share share) {
+        TouchMemory::Worker& own = memory.workers[static_cast<std::size_t>(worker)];
+        own.found.clear();
+        for (std::size_t i = share.first; i < share.last; ++i) {
+            touch_pair(world, world.pair_records[i], memory.pairs[i], static_cast<std::uint8_t>(worker), own);
+        }
+    });
+
+    // Its place in the order of the pairs, which does not depend on who found it.
+    std::uint32_t total = 0;
+    for (PairTouch& touch : memory.pairs) {
+        touch.first = total;
+        total += touch.count;
     }
+    world.contacts.resize(total);
+    share_pairs(world, [&](int, Share share) {
+        for (std::size_t i = share.first; i < share.last; ++i) place_contacts(world, memory.pairs[i]);
+    });
 }
 
 }  // namespace embody::physics

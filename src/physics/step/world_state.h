@@ -63,6 +63,25 @@ struct PairRecord {
     PairMemory memory;
 };
 
+/// What one pair has in a step: contacts that follow its bodies, or newly found ones.
+struct PairTouch {
+    std::uint32_t old_first = 0, old_count = 0;  ///< in the last step's contacts
+    std::uint32_t first = 0, count = 0;          ///< in this step's
+    std::uint32_t found_first = 0;               ///< in its finder's
+    std::uint8_t finder = follows;               ///< worker that found them
+    static constexpr std::uint8_t follows = 255;
+};
+
+/// Memory of the touch stage.
+struct TouchMemory {
+    struct Worker {
+        std::vector<Contact> found;
+        std::vector<Manifold> manifolds;
+    };
+    std::vector<PairTouch> pairs;  ///< one for each of pair_records
+    std::vector<Worker> workers;
+};
+
 /// Two touching bodies as the contact events know them.
 struct TouchingPair {
     BodyHandle a, b;
@@ -87,6 +106,7 @@ struct WorldState {
     const std::vector<BroadPhase::Pair>* pairs = nullptr;  // find pairs
     std::vector<PairRecord> pair_records;                  // touch: one for each of pairs
     std::uint64_t pairs_version = 0;                       // touch: of pair_records
+    TouchMemory touch_memory;                              // touch
     std::uint32_t last_body_version = 0;                   // face
     std::vector<std::uint32_t> awake;                      // wake: slots of moving bodies, ascending
     std::vector<Contact> contacts;                         // touch; impulses: impact, substeps
