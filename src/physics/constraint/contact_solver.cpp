@@ -21,7 +21,7 @@ namespace {
 constexpr double push_speed = 3;      // m/s: overlapping bodies part no faster than this
 constexpr double damping_ratio = 10;  // overdamped: penetration fades without a bounce
 // Contact frequency over substep frequency: the stiffest that stays quiet with one pass and with many.
-constexpr double stiffness_one_pass = 0.125, stiffness_many_passes = 0.5;
+constexpr double stiffness_one_pass = 0.15, stiffness_many_passes = 0.5;
 constexpr double pi = 3.14159265358979323846;
 
 void apply(const Contact& contact, const ContactPoint& point, Vec3 impulse, std::span<BodyState> bodies) {
