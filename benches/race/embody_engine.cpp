@@ -63,8 +63,10 @@ physics::MeshShape mesh_of(const Terrain& terrain) {
 class EmbodyEngine : public RaceEngine {
 public:
     Result<void> build(const RaceScene& scene, const EngineSetup& setup) {
-        auto world = physics::World::create(
-            {.gravity = {0, -race_gravity, 0}, .time_step = race_time_step, .sleeping = setup.sleep});
+        auto world = physics::World::create({.gravity = {0, -race_gravity, 0},
+                                             .time_step = race_time_step,
+                                             .sleeping = setup.sleep,
+                                             .workers = setup.threads});
         if (!world) return world.error();
         world_ = std::move(*world);
         material_ = {
@@ -82,8 +84,7 @@ public:
     [[nodiscard]] std::string settings() const override {
         return fmt::format("{}, {} substeps", version_text, world_->settings().substeps);
     }
-    // The world has no setting for threads yet.
-    [[nodiscard]] int threads() const override { return 1; }
+    [[nodiscard]] int threads() const override { return world_->settings().workers; }
 
     Result<void> add_body(const RaceBody& body) override {
         auto handle = world_->create_body({.shape = shapes_[body.shape],
