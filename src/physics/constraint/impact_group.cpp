@@ -60,6 +60,7 @@ int compress_all(std::vector<Work>& works, std::span<BodyState> bodies) {
     for (const Work& work : works) fastest = std::max(fastest, -work.velocity_before.z);
     // Many sites need not come to the last digit: the substeps hold what is left.
     const double tolerance = (works.size() > 8 ? 1e-2 : 1e-4) * fastest + 1e-12;
+    const ImpactPrecision fine{.step_share = 0.25, .stop_speed = 1e-5 * fastest};
     const ImpactPrecision coarse{.step_share = 0.5, .stop_speed = 1e-3 * fastest};
     const std::size_t most_rounds = 64 + 64 * works.size();
     for (std::size_t round = 0; round < most_rounds; ++round) {
@@ -79,7 +80,7 @@ int compress_all(std::vector<Work>& works, std::span<BodyState> bodies) {
         }
         const Vec3 before = worst->state.impulse;
         worst->state.velocity = site_velocity(*worst, bodies);
-        compress(worst->inverse_mass, worst->site->coefficients, worst->state, round == 0 ? ImpactPrecision{} : coarse);
+        compress(worst->inverse_mass, worst->site->coefficients, worst->state, round == 0 ? fine : coarse);
         worst->compression_work -= worst->state.normal_work;
         apply(*worst, worst->state.impulse - before, bodies);
     }
