@@ -58,6 +58,8 @@ struct BroadPhase::State {
     std::vector<std::uint32_t> wide;  ///< bodies without a leaf, ascending
     std::vector<std::uint32_t> changed;
     std::vector<Pair> pairs;
+    std::vector<Pair> found;  ///< scratch of sort_pairs, as is the next
+    std::vector<std::uint32_t> first_of_a;
     std::uint64_t version = 0;  ///< of pairs
 
     void place(std::uint32_t body, const Bounds& fat) {
@@ -91,6 +93,8 @@ struct BroadPhase::State {
         }
     }
 
+    void sort_pairs_from(std::size_t first);
+
     void add_pairs_of(std::uint32_t body) {
         const Proxy& proxy = proxies[body];
         visit_overlapping(proxy.fat, [&](std::uint32_t other) {
@@ -101,6 +105,25 @@ struct BroadPhase::State {
         });
     }
 };
+
+// Sorts the pairs from `first` on and merges them with the sorted ones before: by the first body by counting, then each
+// body's few by the second.
+void BroadPhase::State::sort_pairs_from(std::size_t first) {
+    found.assign(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end());
+    first_of_a.assign(proxies.size() + 1, 0);
+    for (const Pair& pair : found) ++first_of_a[pair.a + 1];
+    for (std::size_t a = 1; a < first_of_a.size(); ++a) first_of_a[a] += first_of_a[a - 1];
+    for (const Pair& pair : found) pairs[first + first_of_a[pair.a]++] = pair;
+
+    // After the distribution an entry tells where the next body's pairs begin.
+    const auto at = [&](std::size_t i) { return pairs.begin() + static_cast<std::ptrdiff_t>(first + i); };
+    std::uint32_t begin = 0;
+    for (std::size_t a = 0; a + 1 < first_of_a.size(); ++a) {
+        if (first_of_a[a] - begin > 1) std::sort(at(begin), at(first_of_a[a]));
+        begin = first_of_a[a];
+    }
+    std::inplace_merge(pairs.begin(), at(0), pairs.end());
+}
 
 BroadPhase::BroadPhase() : state_(std::make_unique<State>()) {}
 BroadPhase::~BroadPhase() = default;
@@ -145,12 +168,13 @@ const std::vector<BroadPhase::Pair>& BroadPhase::update_pairs() {
     // Changed bodies lose their pairs and look for them anew; the others keep theirs.
     std::sort(s.changed.begin(), s.changed.end());
     std::erase_if(s.pairs, [&s](const Pair& p) { return s.proxies[p.a].changed || s.proxies[p.b].changed; });
+    const std::size_t kept = s.pairs.size();
     for (const std::uint32_t body : s.changed) {
         if (s.proxies[body].used) s.add_pairs_of(body);
     }
     for (const std::uint32_t body : s.changed) s.proxies[body].changed = false;
     s.changed.clear();
-    std::sort(s.pairs.begin(), s.pairs.end());
+    s.sort_pairs_from(kept);
     return s.pairs;
 }
 
