@@ -119,12 +119,12 @@ ImpactState step_to_end(const Collision& k, double tau) {
     double low = 0, high = tau;
     double at_low = overshoot(k, k.s), at_high = overshoot(k, runge_kutta_step(k, k.s, tau));
     ImpactState best = runge_kutta_step(k, k.s, tau);
-    for (int i = 0; i < 60 && high - low > 1e-15 * tau; ++i) {
+    for (int i = 0; i < 60 && high - low > k.precision.end_share * tau; ++i) {
         const double guess = at_high > at_low ? high - at_high * (high - low) / (at_high - at_low) : (low + high) / 2;
         const double middle = std::clamp(guess, low, high);
         best = runge_kutta_step(k, k.s, middle);
         const double value = overshoot(k, best);
-        if (value == 0) break;
+        if (std::fabs(value) <= k.precision.end_share * std::max(at_high, -at_low)) break;
         if (value > 0) {
             high = middle;
             at_high = value;
@@ -234,7 +234,8 @@ void run_phase(const Collision& k) {
 }
 
 ImpactPrecision at_least_relative(const ImpactPrecision& precision, const ImpactState& state) {
-    return {precision.step_share, std::max(precision.stop_speed, stop_share * length(state.velocity) + 1e-300)};
+    return {precision.step_share, precision.end_share,
+            std::max(precision.stop_speed, stop_share * length(state.velocity) + 1e-300)};
 }
 
 }  // namespace

@@ -60,8 +60,8 @@ int compress_all(std::vector<Work>& works, std::span<BodyState> bodies) {
     for (const Work& work : works) fastest = std::max(fastest, -work.velocity_before.z);
     // Many sites need not come to the last digit: the substeps hold what is left.
     const double tolerance = (works.size() > 8 ? 1e-2 : 1e-4) * fastest + 1e-12;
-    const ImpactPrecision fine{.step_share = 0.25, .stop_speed = 1e-5 * fastest};
-    const ImpactPrecision coarse{.step_share = 0.5, .stop_speed = 1e-3 * fastest};
+    const ImpactPrecision fine{.step_share = 0.25, .end_share = 1e-6, .stop_speed = 1e-5 * fastest};
+    const ImpactPrecision coarse{.step_share = 0.5, .end_share = 1e-3, .stop_speed = 1e-3 * fastest};
     const std::size_t most_rounds = 64 + 64 * works.size();
     for (std::size_t round = 0; round < most_rounds; ++round) {
         // The earlier site wins unless a later one is faster by more than rounding: a patch stands before its corners.
