@@ -108,7 +108,8 @@ double depth_in_terrain(const Terrain& terrain, Vec3 p) {
     if (column < 0 || row < 0 || column >= terrain.cells || row >= terrain.cells) return 0;
     const double u = from_edge_x - column, v = from_edge_z - row;
     const auto height = [&](int x, int z) {
-        return terrain.vertices[static_cast<std::size_t>((row + z) * (terrain.cells + 1) + column + x)].y;
+        const auto across = static_cast<std::size_t>(terrain.cells) + 1;
+        return terrain.vertices[static_cast<std::size_t>(row + z) * across + static_cast<std::size_t>(column + x)].y;
     };
     const double right = height(1, 0), front = height(0, 1);
     const bool near_half = u + v <= 1;

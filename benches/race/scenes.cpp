@@ -120,7 +120,8 @@ void build_pile_5k(RaceScene& scene) {
     for (int k = 0; k < 5000; ++k) {
         const int layer = k / 289, place = k % 289;
         const double off_x = random.between(-.04, .04), off_z = random.between(-.04, .04);
-        const Vec3 position{(place % 17 - 8) * 0.8 + off_x, 0.6 + 0.8 * layer, (place / 17 - 8) * 0.8 + off_z};
+        const int row = place / 17, column = place % 17;
+        const Vec3 position{(column - 8) * 0.8 + off_x, 0.6 + 0.8 * layer, (row - 8) * 0.8 + off_z};
         const int shape = k % 3 == 2 ? 2 + (k / 3) % 8 : k % 3;
         add_body(scene, static_cast<std::size_t>(shape), position, random_rotation(random));
     }
@@ -155,7 +156,8 @@ void build_mesh_1k(RaceScene& scene) {
     for (int k = 0; k < 1000; ++k) {
         const int layer = k / 256, place = k % 256;
         const double off_x = random.between(-.5, .5), off_z = random.between(-.5, .5);
-        const Vec3 position{(place % 16 - 7.5) * 3 + off_x, 6.0 + 2.0 * layer, (place / 16 - 7.5) * 3 + off_z};
+        const int row = place / 16, column = place % 16;
+        const Vec3 position{(column - 7.5) * 3 + off_x, 6.0 + 2.0 * layer, (row - 7.5) * 3 + off_z};
         add_body(scene, static_cast<std::size_t>(k % 17), position, random_rotation(random));
     }
 }

@@ -173,6 +173,7 @@ ImpactReport solve_impact_group(std::span<ImpactSite> sites, std::span<BodyState
     const int taking_part = compress_all(works, bodies);
     report.converged = taking_part >= 0;
     std::vector<Vec3> compression;
+    compression.reserve(works.size());
     for (const Work& work : works) compression.push_back(work.state.impulse);
 
     // Expansion; what it drives together again is stopped without a bounce.

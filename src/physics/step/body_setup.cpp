@@ -81,7 +81,7 @@ void place_body(WorldState& world, std::uint32_t body, BodySetup setup) {
     world.motion.resize(slots);
     world.constants.resize(slots);
     world.sleep.resize(slots);
-    world.record(body) = std::move(setup.record);
+    world.record(body) = setup.record;
     world.record(body).version = ++world.last_body_version;
     world.constants[body] = setup.constants;
     world.motion[body] = setup.state;
