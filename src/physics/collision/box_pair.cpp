@@ -275,6 +275,7 @@ void fill_face_manifold(const BoxView& v, const FaceAxis& face, bool is_face_of_
     manifold.normal = reference.rotation.column(static_cast<int>(f.axis)) * (is_face_of_a ? f.side : -f.side);
     if (region.is_proper_quad(std::min(v.half_b[0], std::min(v.half_b[1], v.half_b[2])))) {
         for (int i = 0; i < 4; ++i) put(i);
+        manifold.is_whole = true;
     } else {
         const ChosenPoints chosen = choose_four(region.points.data(), region.count);
         for (int k = 0; k < chosen.count; ++k) put(chosen.index[static_cast<std::size_t>(k)]);

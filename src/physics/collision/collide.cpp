@@ -25,9 +25,11 @@ void collide_with_plane(const CollisionShape::Data& a, const Transform& pose_a, 
     for (std::uint32_t i = 0; i < a.pieces.size(); ++i) {
         region.points.clear();
         collide_plane(place(a.pieces[i], pose_a, pose_a.position), placed, margin, region);
-        const std::size_t before = manifolds.size();
+        if (region.points.empty()) continue;
+        const auto corners = static_cast<int>(region.points.size());
         append_manifold(region, {}, pose_a.position, manifolds);
-        if (manifolds.size() > before) manifolds.back().piece_a = i;
+        manifolds.back().piece_a = i;
+        manifolds.back().is_whole = manifolds.back().count == corners;
     }
 }
 

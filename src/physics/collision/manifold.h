@@ -21,6 +21,7 @@ struct Manifold {
     Vec3 normal;                             ///< world, unit, from shape a to shape b
     std::uint32_t piece_a = 0, piece_b = 0;  ///< child of a compound, triangle of a mesh; 0 otherwise
     int count = 0;
+    bool is_whole = false;  ///< no other corner of the two pieces is within the margin
     std::array<ManifoldPoint, max_points> points;
 };
 
