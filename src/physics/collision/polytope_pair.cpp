@@ -11,6 +11,7 @@
 #include "physics/collision/convex_pairs.h"
 #include "physics/collision/gjk.h"
 #include "physics/collision/polytope_query.h"
+#include "physics/collision/round_features.h"
 
 namespace embody::physics {
 
@@ -163,17 +164,6 @@ bool best_edge_axis(double least, Vec3 witness_of_b, Vec3 witness_of_a, Polytope
     return true;
 }
 
-void get_face(const PlacedConvex& placed, std::uint32_t face, ContactFeature& feature) {
-    const Polytope& polytope = placed.shape->polytope;
-    const Polytope::Face& f = polytope.faces[face];
-    feature.clear();
-    feature.id = face;
-    feature.normal = placed.direction_to_frame(f.normal);
-    for (std::uint32_t i = 0; i < f.count; ++i) {
-        feature.points.push_back(placed.to_frame(polytope.vertices[polytope.loops[f.first + i]]));
-    }
-}
-
 void get_edge(const PlacedConvex& placed, std::uint32_t edge, ContactFeature& feature) {
     const Polytope& polytope = placed.shape->polytope;
     feature.clear();
@@ -185,10 +175,10 @@ void get_edge(const PlacedConvex& placed, std::uint32_t edge, ContactFeature& fe
 // A face of `owner` against what the other turns to it. `deepest` is the other's point nearest to the face.
 void add_face_region(const PlacedConvex& owner, const PlacedConvex& other, const FaceAxis& axis, Vec3 deepest,
                      bool is_face_of_a, double margin, double bias, ContactRegion& region) {
-    get_face(owner, axis.face, region.reference);
+    get_polytope_face(owner, axis.face, region.reference);
     const Vec3 normal = region.reference.normal;
-    get_face(other, farthest(other.shape->polytope.normal_lanes, -other.direction_to_local(normal)).index,
-             region.incident);
+    get_polytope_face(other, farthest(other.shape->polytope.normal_lanes, -other.direction_to_local(normal)).index,
+                      region.incident);
     region.normal = is_face_of_a ? normal : -normal;
     add_near_corners(region.reference, other, is_face_of_a, margin, region);
     clip_to_region(region.reference, region.incident, is_face_of_a, 0, margin, region);

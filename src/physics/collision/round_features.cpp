@@ -68,17 +68,6 @@ void get_axis(const PlacedConvex& capsule, ContactFeature& feature) {
     feature.points.push_back(capsule.to_frame({0, capsule.shape->half_height, 0}));
 }
 
-void get_polytope_face(const PlacedConvex& convex, std::uint32_t face, ContactFeature& feature) {
-    const Polytope& polytope = convex.shape->polytope;
-    const Polytope::Face& f = polytope.faces[face];
-    feature.clear();
-    feature.id = face;
-    feature.normal = convex.direction_to_frame(f.normal);
-    for (std::uint32_t i = 0; i < f.count; ++i) {
-        feature.points.push_back(convex.to_frame(polytope.vertices[polytope.loops[f.first + i]]));
-    }
-}
-
 // Normal of the side of a cylinder or cone nearest to the direction (local).
 Vec3 side_normal(const Convex& shape, Vec3 local_direction) {
     const Vec3 outward = rim_start(local_direction).along;
@@ -110,6 +99,17 @@ bool get_polytope_edge(const PlacedConvex& convex, Vec3 d, ContactFeature& featu
 }
 
 }  // namespace
+
+void get_polytope_face(const PlacedConvex& convex, std::uint32_t face, ContactFeature& feature) {
+    const Polytope& polytope = convex.shape->polytope;
+    const Polytope::Face& f = polytope.faces[face];
+    feature.clear();
+    feature.id = face;
+    feature.normal = convex.direction_to_frame(f.normal);
+    for (std::uint32_t i = 0; i < f.count; ++i) {
+        feature.points.push_back(convex.to_frame(polytope.vertices[polytope.loops[f.first + i]]));
+    }
+}
 
 bool get_aligned_face(const PlacedConvex& convex, Vec3 direction, ContactFeature& feature) {
     const Vec3 d = convex.direction_to_local(direction);

@@ -14,6 +14,8 @@ inline constexpr int rim_corners = 24;
 bool get_aligned_face(const PlacedConvex& convex, Vec3 direction, ContactFeature& feature);
 /// The straight line of the surface (edge, side of a round shape, axis of a capsule) that lies across `direction`.
 bool get_aligned_line(const PlacedConvex& convex, Vec3 direction, ContactFeature& feature);
+/// A polytope's face by its index.
+void get_polytope_face(const PlacedConvex& convex, std::uint32_t face, ContactFeature& feature);
 /// The face or line that faces most along `direction`, at whatever angle: what is clipped by another's face.
 void get_facing(const PlacedConvex& convex, Vec3 direction, ContactFeature& feature);
 

@@ -85,7 +85,7 @@ struct BodyRows {
     float* kicked = nullptr;         ///< velocity after the kick
 };
 
-/// One width's code. `batches` are offsets in floats into `data`, whose batches have `points` points each.
+/// One width's code. Each function works on one batch of up to `points` points, or on rows of bodies.
 struct ContactKernels {
     int lanes = 0;
     /// Effective masses, from arms, masses and inertias.

@@ -18,7 +18,6 @@ namespace embody::physics {
 
 namespace {
 
-constexpr double push_speed = 3;      // m/s: overlapping bodies part no faster than this
 constexpr double damping_ratio = 10;  // overdamped: penetration fades without a bounce
 // Contact frequency over substep frequency: the stiffest that stays quiet with one pass and with many.
 constexpr double stiffness_one_pass = 0.15, stiffness_many_passes = 0.5;
@@ -37,7 +36,7 @@ void solve_normal(const Contact& contact, ContactPoint& point, SolvePhase phase,
     if (separation > 0) {
         bias = separation / softness.substep;
     } else if (phase == SolvePhase::position) {
-        bias = std::max(softness.bias_rate * separation, -push_speed);
+        bias = std::max(softness.bias_rate * separation, -softness.push_speed);
         mass_scale = softness.mass_scale;
         impulse_scale = softness.impulse_scale;
     }
@@ -107,10 +106,6 @@ void solve_turning(Contact& contact, std::span<BodyState> bodies) {
     contact.turning = to_vec3f(contact.turning + change);
     apply_angular_impulse(b, change);
     apply_angular_impulse(a, -change);
-}
-
-bool resists_turning(const Contact& contact) {
-    return contact.material.friction_rolling > 0 || contact.material.friction_torsional > 0;
 }
 
 }  // namespace

@@ -17,7 +17,14 @@ struct ContactSoftness {
     double substep = 0;    ///< s
     double bias_rate = 0;  ///< share of the penetration taken out a second, 1/s
     double mass_scale = 1, impulse_scale = 0;
+    double push_speed = 3;  ///< overlapping bodies part no faster than this, m/s
 };
+
+/// Whether the patch resists spinning or rolling.
+inline bool resists_turning(const Contact& contact) {
+    return contact.material.friction_rolling > 0 || contact.material.friction_torsional > 0;
+}
+
 /// The stiffest that converges: a short list gets more passes (contact_passes()) and so may be stiffer.
 ContactSoftness contact_softness(double substep, std::size_t contacts);
 

@@ -10,7 +10,6 @@ namespace embody::physics {
 
 namespace {
 
-constexpr double push_speed = 3;  // m/s: overlapping bodies part no faster than this
 // Below this a step is done before a second worker has begun, or a stage before both have met at its end.
 constexpr std::size_t fewest_contacts_shared = 400, fewest_batches_shared = 2;
 constexpr float mask_set = std::bit_cast<float>(0xFFFFFFFFu);
@@ -56,10 +55,6 @@ void fill_point(Lane lane, const Contact& contact, const ContactPoint& point, st
     lane.set(BatchPoint::total_2, point.total.tangent_2);
     lane.set_mask(BatchPoint::sticks, point.sticks);
     lane.set(BatchPoint::inactive_until, point.inactive_until);
-}
-
-bool resists_turning(const Material& material) {
-    return material.friction_rolling > 0 || material.friction_torsional > 0;
 }
 
 // Slower than this in a step the inertia hardly turns with the body: no gyroscopic torque, rad.
@@ -181,7 +176,7 @@ void WideContactSolver::fill_batch(const Batch& batch, std::span<const Contact> 
         head.set_mask(BatchHead::round_b, contact.b_is_round);
         writable_a |= (a.inverse_mass > 0 ? 1 : 0) << k;
         writable_b |= (b.inverse_mass > 0 ? 1 : 0) << k;
-        turning |= (resists_turning(contact.material) ? 1 : 0) << k;
+        turning |= (resists_turning(contact) ? 1 : 0) << k;
         for (int i = 0; i < contact.count; ++i) {
             float* point = data + (BatchHead::size + i * BatchPoint::size) * lanes;
             fill_point(Lane(point, lanes, k), contact, contact.points[static_cast<std::size_t>(i)], bodies);
@@ -277,7 +272,7 @@ void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::
                              .bias_rate = to_float(softness.bias_rate),
                              .mass_scale = to_float(softness.mass_scale),
                              .impulse_scale = to_float(softness.impulse_scale),
-                             .push_speed = to_float(push_speed)};
+                             .push_speed = to_float(softness.push_speed)};
     const int workers =
         batches_.size() * static_cast<std::size_t>(lanes()) < fewest_contacts_shared ? 1 : pool.workers();
     Barrier barrier(workers);
