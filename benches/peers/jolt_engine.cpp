@@ -98,7 +98,7 @@ public:
             jobs_ = std::make_unique<JPH::JobSystemThreadPool>(JPH::cMaxPhysicsJobs, JPH::cMaxPhysicsBarriers,
                                                                setup.threads - 1);
         system_.Init(most_bodies, 0, most_pairs, most_pairs, layers_, broad_phase_filter_, pair_filter_);
-        system_.SetGravity(to_jolt({0, -race_gravity, 0}));
+        system_.SetGravity(to_jolt(Vec3{0, -race_gravity, 0}));
         JPH::PhysicsSettings settings = system_.GetPhysicsSettings();
         settings.mAllowSleeping = setup.sleep;
         system_.SetPhysicsSettings(settings);
