@@ -181,13 +181,14 @@ void solve_bound(Joint& joint, SolvePhase phase, double substep, double bound, d
     double& impulse = is_lower ? impulses_of(joint, phase).lower : impulses_of(joint, phase).upper;
 
     // How fast the coordinate leaves the allowed range: by where the drift would take it, or by its speed where it
-    // is held already.
+    // is held already. What the warm start gave to a bound that holds no more is taken back.
     double leaving = 0;
     if (phase == SolvePhase::position) {
         leaving = -sign * (coordinate_of(joint, frames_after_drift(joint, substep, bodies)) - bound) / substep;
     } else if (earlier > 0) {
         leaving = -sign * row_speed(joint, joint.free_row, bodies);
     } else {
+        change_free_impulse(joint, impulse, 0, sign, bodies);
         return;
     }
     change_free_impulse(joint, impulse, std::max(impulse + joint.free_mass * leaving, -earlier), sign, bodies);
@@ -245,6 +246,8 @@ void warm_start_joint(Joint& joint, SolvePhase phase, std::span<BodyState> bodie
     }
     apply_row(joint, joint.free_row, impulses.motor + impulses.lower - impulses.upper, bodies);
 }
+
+void forget_impulses(Joint& joint, SolvePhase phase) { impulses_of(joint, phase) = {}; }
 
 double solve_joint(Joint& joint, SolvePhase phase, double substep, std::span<BodyState> bodies) {
     solve_free_row(joint, phase, substep, bodies);

@@ -46,6 +46,8 @@ struct Joint {
 void prepare_joint(Joint& joint, std::span<const BodyState> bodies);
 
 void warm_start_joint(Joint& joint, SolvePhase phase, std::span<BodyState> bodies);
+/// The phase begins from nothing.
+void forget_impulses(Joint& joint, SolvePhase phase);
 
 /// One pass. Returns the largest speed that it still had to correct, m/s or rad/s.
 double solve_joint(Joint& joint, SolvePhase phase, double substep, std::span<BodyState> bodies);
