@@ -175,9 +175,11 @@ private:
                                      "Time the paper's scenes beside the paper's own numbers, or race other engines",
                                      "embody bench table1 --scene table1_f --json");
         add_race(c);
-        c.app->add_option("suite", c.into->suite, "table1")->capture_default_str()->check(CLI::IsMember({"table1"}));
+        c.app->add_option("suite", c.into->suite, "table1, or stability: do structures stand, tight and quiet")
+            ->capture_default_str()
+            ->check(CLI::IsMember({"table1", "stability"}));
         c.app->add_option("--scene", c.into->scene, "Only this scene");
-        c.app->add_option("--steps", c.into->steps, "Steps of each scene (default: its own number)")
+        c.app->add_option("--steps", c.into->steps, "Steps of each scene of table1 (default: its own number)")
             ->check(CLI::Range(0, 10'000'000));
         add_json(c);
     }

@@ -70,7 +70,7 @@ struct SceneArguments {
     bool json = false;
 };
 struct BenchArguments {
-    std::string suite = "table1";         ///< or "race"
+    std::string suite = "table1";         ///< or "stability", "race"
     std::vector<std::string> race_words;  ///< for the race's own program
     std::string scene;                    ///< only this one
     int steps = 0;                        ///< 0: as many as the scene says

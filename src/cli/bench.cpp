@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/bench_race.h"
+#include "cli/bench_stability.h"
 #include "cli/commands.h"
 #include "cli/output.h"
 
@@ -41,6 +42,7 @@ void print_row(const scenes::SceneBuilder& builder, const scenes::BenchResult& r
 
 int run_bench(const BenchArguments& arguments) {
     if (arguments.suite == "race") return run_race(arguments.race_words);
+    if (arguments.suite == "stability") return run_stability(arguments);
     if (!arguments.scene.empty() && scenes::find_scene_builder(arguments.scene) == nullptr)
         return report({"--scene " + arguments.scene, "there is no such scene", "embody scene lists them"});
     if (!arguments.json) {

@@ -213,6 +213,15 @@ class Scenes(unittest.TestCase):
         self.assertLessEqual(row["min_ms"], row["average_ms"])
         self.assertLessEqual(row["average_ms"], row["max_ms"])
 
+    def test_bench_stability_tells_how_a_structure_stands(self):
+        result = run("bench", "stability", "--scene", "card_pair", "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        row = json.loads(result.stdout)["scenes"][0]
+        self.assertTrue(row["stands"])
+        self.assertEqual(row["misses"], "")
+        self.assertLess(row["asleep_after_s"], 60)
+        self.assertEqual(run("bench", "stability", "--scene", "castle in the air").returncode, 1)
+
 
 class Server(unittest.TestCase):
     """What a client may do to the server: nothing that stops it."""
