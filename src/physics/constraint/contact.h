@@ -56,6 +56,19 @@ struct Contact {
     Material material;                            ///< of the pair
 };
 
+/// What the impact stage must know of every contact, small enough to walk through all of them.
+struct ContactGlance {
+    std::uint32_t a = 0, b = 0;
+    float approach_speed = 0;
+    bool was_touching = false, was_loaded = false;
+    bool bounces = false;
+};
+static_assert(sizeof(ContactGlance) == 16);
+
+inline ContactGlance glance_at(const Contact& c) {
+    return {c.a, c.b, c.approach_speed, c.was_touching, c.was_loaded, c.material.restitution > 0};
+}
+
 /// Where the point was found, world.
 inline Vec3 position_of(const Contact& contact, const ContactPoint& point, std::span<const BodyState> bodies) {
     return bodies[contact.a].start_center + point.arm_a;

@@ -24,7 +24,32 @@ struct ImpactReport {
     double energy_change = 0;  ///< J, <= 0 up to rounding
 };
 
+/// How the path of each site's sliding over the normal impulse is found.
+enum class SlidePath {
+    followed,   ///< eq. (3) integrated
+    estimated,  ///< sites without a bounce: by the impulse that ends in sticking, else along the slide's mean direction
+};
+
+/// A site at work: its frame and what has happened to it.
+struct ImpactWork {
+    ImpactSite* site = nullptr;
+    Vec3 velocity_before;   ///< of b relative to a, world
+    Vec3 turn_a, turn_b;    ///< arm × normal
+    bool is_ready = false;  ///< the next two are known
+    Mat3 frame;             ///< columns t1, t2, n
+    Mat3 inverse_mass;      ///< A of eq. (3) in the frame
+    ImpactState state;
+    double compression_work = 0;
+    Vec3 compression, expansion;  ///< impulses in the frame
+};
+
+/// Kept from group to group, so that a steady step allocates nothing.
+struct ImpactGroupMemory {
+    std::vector<ImpactWork> works;
+};
+
 /// Solves the collision of all sites together and changes the bodies' velocities.
-ImpactReport solve_impact_group(std::span<ImpactSite> sites, std::span<BodyState> bodies);
+ImpactReport solve_impact_group(std::span<ImpactSite> sites, std::span<BodyState> bodies, ImpactGroupMemory& memory,
+                                SlidePath path = SlidePath::followed);
 
 }  // namespace embody::physics

@@ -8,270 +8,155 @@
 // and the motion goes on from there. To keep one step for all bodies, the body is put on the path that leads through
 // the place of impact with the new velocity:  x ← x − t Δv,  v ← v + Δv  at the start of the step. A ball with
 // restitution 1 so keeps its energy exactly, whatever the time step.
+//
+// What hits a heap without a bounce is kept cheap: its time is that of straight paths, its region found anew only where
+// the bodies have moved on, and the sliding estimated. Many contacts at once stop it, in an order that no model knows.
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <queue>
+#include <functional>
 
 #include "physics/constraint/impact_group.h"
 #include "physics/dynamic/equations_of_motion.h"
+#include "physics/step/impact_paths.h"
 #include "physics/step/step.h"
 
 namespace embody::physics {
 
 namespace {
 
-constexpr double never = 1e300;
-constexpr double touch_gap = 1e-6;       // m: bodies this near touch
-constexpr double patch_gap = 5e-4;       // m: corners this near to the first one collide together with it
-constexpr int most_bounces = 3;          // of one contact in a step; later impacts do not bounce (Zeno's ball)
-constexpr int most_impacts = 5;          // of one contact in a step; then the contact solver stops it
-constexpr double slowest_impact = 0.02;  // m/s: slower contacts rest
-
-// A predicted impact. Outdated once one of the bodies has had another one (its version has moved on).
-struct Event {
-    double time;
-    std::uint32_t contact;
-    std::uint32_t version;
-    bool operator>(const Event& other) const {
-        return time != other.time ? time > other.time : contact > other.contact;
-    }
-};
+constexpr double patch_gap = 5e-4;   // m: corners this near to the first one collide together with it
+constexpr double near_share = 0.05;  // of a body's size
+constexpr int most_bounces = 3;      // of one contact in a step; later impacts do not bounce (Zeno's ball)
+constexpr int most_impacts = 5;      // of one contact in a step; then the contact solver stops it
 
 class ImpactStage {
 public:
     explicit ImpactStage(WorldState& world)
-        : world_(world), step_(world.settings.time_step), substep_(step_ / world.settings.substeps) {}
+        : world_(world), memory_(world.impact_memory), paths_(world), step_(world.settings.time_step) {}
 
     void run();
 
 private:
-    struct Gap {
-        double size, rate;  // m, m/s
-    };
-    Gap gap_at(const Contact& contact, const ContactPoint& point, double time) const;
-    double touch_time(const Contact& contact, const ContactPoint& point, double start) const;
-    double next_impact(const Contact& contact) const;
-    void leave_open_points(Contact& contact, bool pass);
-    bool is_open_at_end(const Contact& contact);
-    double slowest_speed(const Contact& contact, double acceleration) const;
-    Vec3 free_acceleration(std::uint32_t body) const;
-    double earliest_time(const Contact& contact) const;
-    bool is_slow(const Contact& contact) const;
-    void prepare();
-    void push(std::uint32_t contact);
+    void predict(std::uint32_t contact);
+    void list_contacts();
+    void take(const ImpactEvent& event);
+    bool is_near(const Contact& contact, double time) const;
     bool refine(const Contact& contact, double& time, Manifold& manifold);
-    void collide_at(const Contact& contact, double time, std::vector<Manifold>& manifolds) const;
-    Transform pose_at(std::uint32_t body, double time) const;
-    Vec3 center_at(std::uint32_t body, double time) const;
-    void handle(std::uint32_t contact, double time, const Manifold& manifold);
+    double closing_speed(const Contact& contact, const Manifold& manifold, double time, double gap) const;
+    void collide_at(const Contact& contact, double time);
+    bool is_open_at_end(const Contact& contact);
+    void add_site(const Contact& contact, Vec3 arm_a, Vec3 arm_b, Vec3 normal, bool may_bounce);
     void add_manifold_sites(const Contact& contact, const Manifold& manifold, double time, bool may_bounce);
+    void add_point_sites(const Contact& contact, double time);
     void add_loaded_neighbours(std::uint32_t contact, double time);
+    void list_bodies();
+    void solve(std::uint32_t contact, double time, SlidePath path);
+    void bend_path(const ImpactMemory::Moved& before, double time);
     void note_impulse(Contact& contact, Vec3 position, Vec3 impulse, double time);
 
     WorldState& world_;
-    const double step_, substep_;
-    std::vector<double> last_time_;               // by body: its last impact in this step, s
-    std::vector<std::uint8_t> is_supported_;      // by body: a contact carried it in the last step
-    std::vector<std::uint32_t> first_, of_body_;  // contacts of each body
-    std::vector<std::uint32_t> version_;          // by contact
-    std::vector<std::uint8_t> impacts_;           // by contact, in this step
-    std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
-    std::vector<ImpactSite> sites_;
-    std::vector<std::uint32_t> site_contact_;  // contact of each site
-    std::vector<Manifold> manifolds_;
+    ImpactMemory& memory_;
+    ImpactPaths paths_;
+    const double step_;
 };
 
-// What carries a body cancels its weight: only bodies in free motion gain speed before the impact.
-Vec3 ImpactStage::free_acceleration(std::uint32_t body) const {
-    return world_.motion[body].inverse_mass > 0 && !is_supported_[body] ? world_.constants[body].acceleration : Vec3{};
+void ImpactStage::predict(std::uint32_t contact) {
+    if (memory_.impacts[contact] >= most_impacts) return;
+    const double time = paths_.predict(world_.contacts[contact]);
+    if (time > step_) return;
+    memory_.events.push_back({time, contact, memory_.version[contact]});
+    std::push_heap(memory_.events.begin(), memory_.events.end(), std::greater<>());
 }
 
-double ImpactStage::earliest_time(const Contact& contact) const {
-    return std::max(last_time_[contact.a], last_time_[contact.b]);
-}
-
-// Classification (paper, eq. 4): slower contacts rest. Loaded ones and ones that do not bounce must be far faster to
-// count as a collision: the contact solver stops them as well. If they also touch already there is none to come.
-double ImpactStage::slowest_speed(const Contact& contact, double acceleration) const {
-    const bool bounces = contact.material.restitution > 0;
-    if (contact.was_touching && !bounces) return never;
-    const double slowest = std::max(slowest_impact, 2 * std::fabs(acceleration) * substep_);
-    return contact.was_loaded || !bounces ? 5 * slowest : slowest;
-}
-
-// Gap and its rate at `time`, the turning of the bodies included: a foot of a spinning chair does not move straight.
-ImpactStage::Gap ImpactStage::gap_at(const Contact& contact, const ContactPoint& point, double time) const {
-    const auto move = [&](std::uint32_t body, Vec3 arm, bool is_round, Vec3& velocity) {
-        const BodyState& state = world_.motion[body];
-        const Quat turn = normalized(cayley(state.angular_velocity * time) * state.turn);
-        const Vec3 turned = is_round ? arm : rotate(turn, arm);
-        velocity = state.linear_velocity + free_acceleration(body) * time + cross(state.angular_velocity, turned);
-        const Vec3 by_turning = is_round ? cross(state.angular_velocity * time, arm) : turned - arm;
-        return center_at(body, time) - state.start_center + by_turning;
-    };
-    Vec3 velocity_a, velocity_b;
-    const Vec3 move_a = move(contact.a, point.arm_a, contact.a_is_round, velocity_a);
-    const Vec3 move_b = move(contact.b, point.arm_b, contact.b_is_round, velocity_b);
-    return {point.separation + dot(contact.normal, move_b - move_a), dot(contact.normal, velocity_b - velocity_a)};
-}
-
-// The first time at which the point touches, `never` if it does not within the step.
-double ImpactStage::touch_time(const Contact& contact, const ContactPoint& point, double start) const {
-    const Gap first = gap_at(contact, point, start);
-    if (first.size <= touch_gap) return start;
-    const Gap last = gap_at(contact, point, step_);
-    if (last.size > 0) {
-        // Open at both ends; a parabola that opens upwards may dip through in between.
-        const double acceleration = step_ > start ? (last.rate - first.rate) / (step_ - start) : 0;
-        const double discriminant = first.rate * first.rate - 2 * acceleration * first.size;
-        if (first.rate >= 0 || discriminant < 0) return never;
-        const double time = start + 2 * first.size / (-first.rate + std::sqrt(discriminant));
-        return time <= step_ ? time : never;
+// The contacts of each body.
+void ImpactStage::list_contacts() {
+    if (memory_.has_lists) return;
+    memory_.has_lists = true;
+    const std::vector<ContactGlance>& contacts = world_.contact_glances;
+    std::vector<std::uint32_t>& first = memory_.first_of_body;
+    first.assign(world_.motion.size() + 2, 0);
+    for (const ContactGlance& contact : contacts) {
+        ++first[contact.a + 2];
+        ++first[contact.b + 2];
     }
+    for (std::size_t i = 2; i < first.size(); ++i) first[i] += first[i - 1];
 
-    // Closed at the end: the root between, by the regula falsi (Illinois).
-    double low = start, high = step_, at_low = first.size, at_high = last.size;
-    double time = high;
-    for (int i = 0; i < 8; ++i) {
-        time = low + (high - low) * at_low / (at_low - at_high);
-        const double gap = gap_at(contact, point, time).size;
-        if (std::fabs(gap) < touch_gap) break;
-        (gap > 0 ? low : high) = time;
-        (gap > 0 ? at_low : at_high) = gap;
-        (gap > 0 ? at_high : at_low) /= 2;
-    }
-    return time;
-}
-
-// The first time at which a point of the contact closes fast enough to be an impact; `never` if none does.
-double ImpactStage::next_impact(const Contact& contact) const {
-    const double start = earliest_time(contact);
-    const double slowest = slowest_speed(contact, dot(contact.normal, world_.settings.gravity));
-    double first = never;
-    if (slowest == never) return never;
-    for (int i = 0; i < contact.count; ++i) {
-        const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        const double time = touch_time(contact, point, start);
-        if (time < first && gap_at(contact, point, time).rate < -slowest) first = time;
-    }
-    return first;
-}
-
-void ImpactStage::prepare() {
-    const auto& contacts = world_.contacts;
-    is_supported_.assign(world_.motion.size(), 0);
-    for (const Contact& contact : contacts) {
-        if (contact.was_loaded) is_supported_[contact.a] = is_supported_[contact.b] = 1;
-    }
-    last_time_.assign(world_.motion.size(), 0);
-    version_.assign(contacts.size(), 0);
-    impacts_.assign(contacts.size(), 0);
-    first_.assign(world_.motion.size() + 1, 0);
-    for (const Contact& contact : contacts) {
-        ++first_[contact.a + 1];
-        ++first_[contact.b + 1];
-    }
-    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-    of_body_.resize(2 * contacts.size());
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    // While the lists are filled, an entry moves on to where the next body's begins.
+    memory_.of_body.resize(2 * contacts.size());
     for (std::uint32_t i = 0; i < contacts.size(); ++i) {
-        of_body_[next[contacts[i].a]++] = i;
-        of_body_[next[contacts[i].b]++] = i;
+        memory_.of_body[first[contacts[i].a + 1]++] = i;
+        memory_.of_body[first[contacts[i].b + 1]++] = i;
     }
 }
 
-// Whether no point can close as fast as an impact does: most contacts of a heap at rest, told without a root search.
-bool ImpactStage::is_slow(const Contact& contact) const {
-    if (earliest_time(contact) > 0) return false;
-    const double slowest = slowest_speed(contact, dot(contact.normal, world_.settings.gravity));
-    if (slowest == never) return true;
-    double gain = 0;
-    for (const std::uint32_t body : {contact.a, contact.b}) {
-        const double turning = length_squared(world_.motion[body].angular_velocity) * world_.record(body).reach;
-        gain += step_ * (length(free_acceleration(body)) + turning);
-    }
-    return contact.approach_speed + gain < slowest;
-}
+void ImpactStage::collide_at(const Contact& contact, double time) {
+    memory_.manifolds.clear();
+    const BodyRecord &a = world_.record(contact.a), &b = world_.record(contact.b);
 
-void ImpactStage::push(std::uint32_t contact) {
-    if (impacts_[contact] >= most_impacts || is_slow(world_.contacts[contact])) return;
-    const double time = next_impact(world_.contacts[contact]);
-    if (time <= step_) events_.push({time, contact, version_[contact]});
-
-    leave_open_points(world_.contacts[contact], false);
-}
-
-// What closes fast but meets after this step is the next step's impact: the substeps must not brake it before. Tells by
-// the path of each point, unless the surfaces are known to `pass` each other.
-void ImpactStage::leave_open_points(Contact& contact, bool pass) {
-    const double slowest = slowest_speed(contact, dot(contact.normal, world_.settings.gravity));
-    if (slowest == never) return;
-    for (int i = 0; i < contact.count; ++i) {
-        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        const Gap now = gap_at(contact, point, 0);
-        const bool stays_open = now.size > 0 && (pass || gap_at(contact, point, step_).size > 0);
-        if (now.rate < -slowest && stays_open) {
-            point.inactive_until = static_cast<float>(step_);
-        } else if (point.inactive_until >= static_cast<float>(step_)) {
-            point.inactive_until = 0;
-        }
-    }
-}
-
-Vec3 ImpactStage::center_at(std::uint32_t body, double time) const {
-    const BodyState& state = world_.motion[body];
-    return state.center + state.linear_velocity * time + free_acceleration(body) * (time * time / 2);
-}
-
-Transform ImpactStage::pose_at(std::uint32_t body, double time) const {
-    BodyState state = world_.motion[body];
-    state.center = center_at(body, time);
-    state.rotation = normalized(cayley(state.angular_velocity * time) * state.rotation);
-    return body_pose(state, world_.constants[body].local_center);
-}
-
-void ImpactStage::collide_at(const Contact& contact, double time, std::vector<Manifold>& manifolds) const {
-    manifolds.clear();
-    collide(*world_.record(contact.a).shape, pose_at(contact.a, time), *world_.record(contact.b).shape,
-            pose_at(contact.b, time), 0.02, manifolds);
+    // The touch stage's memory of the pair is of other poses, and stays so.
+    const BroadPhase::Pair pair{contact.a, contact.b};
+    const auto record = std::lower_bound(world_.pair_records.begin(), world_.pair_records.end(), pair,
+                                         [](const PairRecord& r, const BroadPhase::Pair& p) { return r.pair < p; });
+    PairMemory pair_memory = record->memory;
+    collide(*a.shape, paths_.pose_at(contact.a, time), *b.shape, paths_.pose_at(contact.b, time), 0.02, pair_memory,
+            memory_.manifolds);
 }
 
 double least_separation(const Manifold& manifold) {
-    double least = never;
+    double least = ImpactPaths::never;
     for (int i = 0; i < manifold.count; ++i) {
         least = std::min(least, manifold.points[static_cast<std::size_t>(i)].separation);
     }
     return least;
 }
 
+// How fast the nearest points of the region close, m/s.
+double ImpactStage::closing_speed(const Contact& contact, const Manifold& manifold, double time, double gap) const {
+    double speed = 0;
+    for (int i = 0; i < manifold.count; ++i) {
+        const ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
+        if (point.separation > gap + patch_gap) continue;
+        const auto velocity = [&](std::uint32_t body) {
+            return velocity_at(world_.motion[body], point.position - paths_.center_at(body, time)) +
+                   paths_.free_acceleration(body) * time;
+        };
+        speed = std::max(speed, -dot(velocity(contact.b) - velocity(contact.a), manifold.normal));
+    }
+    return speed;
+}
+
+// Whether the region found at the start of the step is still right at `time`: the bodies have hardly moved on.
+bool ImpactStage::is_near(const Contact& contact, double time) const {
+    const BodyState &a = world_.motion[contact.a], &b = world_.motion[contact.b];
+    const double reach_a = world_.record(contact.a).reach, reach_b = world_.record(contact.b).reach;
+    const double way = time * (length(b.linear_velocity - a.linear_velocity) + length(a.angular_velocity) * reach_a +
+                               length(b.angular_velocity) * reach_b);
+    double size = ImpactPaths::never;
+    for (const double reach : {reach_a, reach_b}) {
+        if (reach > 0) size = std::min(size, reach);
+    }
+    return way < near_share * size;
+}
+
 // The contact region at the moment of impact, found at the bodies' places then: the prediction used the normal of the
 // start of the step. Follows the closing surfaces (secant) for a few rounds. False: they pass each other.
 bool ImpactStage::refine(const Contact& contact, double& time, Manifold& manifold) {
-    constexpr int most_rounds = 8;
-    const double start = earliest_time(contact);
+    const bool is_rough = paths_.hits_heap(contact);
+    const int most_rounds = is_rough ? 2 : 8;
+    const double start = paths_.earliest_time(contact);
+    const double tolerance = is_rough ? patch_gap : ImpactPaths::touch_gap;
     for (int round = 0; round < most_rounds; ++round) {
-        collide_at(contact, time, manifolds_);
-        const Manifold* found = nullptr;
-        for (const Manifold& m : manifolds_) {
-            if (m.piece_a == contact.piece_a && m.piece_b == contact.piece_b) found = &m;
-        }
-        if (!found || found->count == 0) return false;
+        collide_at(contact, time);
+        const auto found = std::find_if(memory_.manifolds.begin(), memory_.manifolds.end(), [&](const Manifold& m) {
+            return m.piece_a == contact.piece_a && m.piece_b == contact.piece_b;
+        });
+        if (found == memory_.manifolds.end() || found->count == 0) return false;
         manifold = *found;
 
-        // Gap and closing speed of the nearest point.
-        const double gap = least_separation(manifold);
-        double speed = 0;
-        for (int i = 0; i < manifold.count; ++i) {
-            const ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
-            if (point.separation > gap + patch_gap) continue;
-            const auto velocity = [&](std::uint32_t body) {
-                return velocity_at(world_.motion[body], point.position - center_at(body, time)) +
-                       free_acceleration(body) * time;
-            };
-            speed = std::max(speed, -dot(velocity(contact.b) - velocity(contact.a), manifold.normal));
-        }
-        if (speed < slowest_impact) return false;
-        const bool is_touching = std::fabs(gap) <= touch_gap || (gap < 0 && time <= start);
+        const double gap = least_separation(manifold), speed = closing_speed(contact, manifold, time, gap);
+        if (speed < ImpactPaths::slowest_impact) return false;
+        const bool is_touching = std::fabs(gap) <= tolerance || (gap < 0 && time <= start);
         if (is_touching || (round + 1 == most_rounds && gap < 10 * patch_gap)) return true;
         time = std::max(start, time + gap / speed);
         if (time > step_) return false;
@@ -281,8 +166,8 @@ bool ImpactStage::refine(const Contact& contact, double& time, Manifold& manifol
 
 // Whether the bodies are apart at the end of the step, if nothing else happens to them.
 bool ImpactStage::is_open_at_end(const Contact& contact) {
-    collide_at(contact, step_, manifolds_);
-    return std::all_of(manifolds_.begin(), manifolds_.end(),
+    collide_at(contact, step_);
+    return std::all_of(memory_.manifolds.begin(), memory_.manifolds.end(),
                        [](const Manifold& manifold) { return least_separation(manifold) > 0; });
 }
 
@@ -290,21 +175,19 @@ ImpactCoefficients coefficients_of(const Material& material, double restitution)
     return {material.friction_dynamic, material.friction_static, restitution};
 }
 
+void ImpactStage::add_site(const Contact& contact, Vec3 arm_a, Vec3 arm_b, Vec3 normal, bool may_bounce) {
+    const Vec3 velocity = velocity_at(world_.motion[contact.b], arm_b) - velocity_at(world_.motion[contact.a], arm_a);
+    const bool bounces = may_bounce && -dot(velocity, normal) >= contact.material.restitution_threshold;
+    memory_.sites.push_back({contact.a, contact.b, arm_a, arm_b, normal,
+                             coefficients_of(contact.material, bounces ? contact.material.restitution : 0), Vec3{}});
+}
+
 // A flat region collides as one patch at its middle and, where it tilts, at its corners.
 void ImpactStage::add_manifold_sites(const Contact& contact, const Manifold& manifold, double time, bool may_bounce) {
     const double nearest = least_separation(manifold);
+    const Vec3 center_a = paths_.center_at(contact.a, time), center_b = paths_.center_at(contact.b, time);
     const auto add = [&](Vec3 position) {
-        ImpactSite site;
-        site.a = contact.a;
-        site.b = contact.b;
-        site.arm_a = position - center_at(contact.a, time);
-        site.arm_b = position - center_at(contact.b, time);
-        site.normal = manifold.normal;
-        const Vec3 velocity =
-            velocity_at(world_.motion[site.b], site.arm_b) - velocity_at(world_.motion[site.a], site.arm_a);
-        const bool bounces = may_bounce && -dot(velocity, site.normal) >= contact.material.restitution_threshold;
-        site.coefficients = coefficients_of(contact.material, bounces ? contact.material.restitution : 0);
-        sites_.push_back(site);
+        add_site(contact, position - center_a, position - center_b, manifold.normal, may_bounce);
     };
     Vec3 sum;
     int count = 0;
@@ -321,24 +204,49 @@ void ImpactStage::add_manifold_sites(const Contact& contact, const Manifold& man
     }
 }
 
+// The same by the region found at the start of the step.
+void ImpactStage::add_point_sites(const Contact& contact, double time) {
+    std::array<double, Manifold::max_points> gap{};
+    double nearest = ImpactPaths::never;
+    const auto count = static_cast<std::size_t>(contact.count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const ImpactPaths::Gap now = paths_.gap_at(contact, contact.points[i], 0);
+        gap[i] = now.size + now.rate * time;
+        nearest = std::min(nearest, gap[i]);
+    }
+    Vec3 arm_a, arm_b;
+    int touching = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (gap[i] > nearest + patch_gap) continue;
+        arm_a += contact.points[i].arm_a;
+        arm_b += contact.points[i].arm_b;
+        ++touching;
+    }
+    if (touching > 1) add_site(contact, arm_a / touching, arm_b / touching, contact.normal, false);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (gap[i] > nearest + patch_gap) continue;
+        add_site(contact, contact.points[i].arm_a, contact.points[i].arm_b, contact.normal, false);
+    }
+}
+
 // Loaded contacts of the colliding bodies take part, without a bounce. Others that collide at the same time have their
 // own events: one after the other, as the balls of Newton's cradle do it, keeps the energy of elastic bodies.
 void ImpactStage::add_loaded_neighbours(std::uint32_t contact, double time) {
     const Contact& first = world_.contacts[contact];
     for (const std::uint32_t body : {first.a, first.b}) {
         if (world_.motion[body].inverse_mass == 0) continue;
-        for (std::uint32_t k = first_[body]; k < first_[body + 1]; ++k) {
-            const std::uint32_t other = of_body_[k];
+        for (std::uint32_t k = memory_.first_of_body[body]; k < memory_.first_of_body[body + 1]; ++k) {
+            const std::uint32_t other = memory_.of_body[k];
+            if (!world_.contact_glances[other].was_loaded) continue;
+            const auto& known = memory_.site_contact;
+            if (std::find(known.begin(), known.end(), other) != known.end()) continue;
             const Contact& c = world_.contacts[other];
-            const bool is_known = std::find(site_contact_.begin(), site_contact_.end(), other) != site_contact_.end();
-            if (!c.was_loaded || is_known) continue;
             for (int i = 0; i < c.count; ++i) {
                 const ContactPoint& point = c.points[static_cast<std::size_t>(i)];
-                const double speed = dot(relative_velocity(c, point, world_.motion), c.normal);
-                if (current_separation(c, point, world_.motion) + speed * time > patch_gap) continue;
-                sites_.push_back(
-                    {c.a, c.b, point.arm_a, point.arm_b, c.normal, coefficients_of(c.material, 0), Vec3{}});
-                site_contact_.push_back(other);
+                const ImpactPaths::Gap now = paths_.gap_at(c, point, 0);
+                if (now.size + now.rate * time > patch_gap) continue;
+                add_site(c, point.arm_a, point.arm_b, c.normal, false);
+                memory_.site_contact.push_back(other);
             }
         }
     }
@@ -368,90 +276,130 @@ void ImpactStage::note_impulse(Contact& contact, Vec3 position, Vec3 impulse, do
     }
 }
 
-void ImpactStage::handle(std::uint32_t contact, double time, const Manifold& manifold) {
-    sites_.clear();
-    site_contact_.clear();
-    const bool may_bounce = impacts_[contact]++ < most_bounces;
-    add_manifold_sites(world_.contacts[contact], manifold, time, may_bounce);
-    site_contact_.assign(sites_.size(), contact);
-    add_loaded_neighbours(contact, time);
-
-    // Velocities at the time of impact, the collision, and back to the start of the step on the new path.
-    std::vector<std::uint32_t> bodies;
-    for (const ImpactSite& site : sites_) {
+// The movable bodies of the sites, each once.
+void ImpactStage::list_bodies() {
+    memory_.bodies.clear();
+    for (const ImpactSite& site : memory_.sites) {
         for (const std::uint32_t body : {site.a, site.b}) {
-            if (world_.motion[body].inverse_mass > 0) bodies.push_back(body);
+            const auto is_it = [body](const ImpactMemory::Moved& moved) { return moved.body == body; };
+            const bool is_known = std::any_of(memory_.bodies.begin(), memory_.bodies.end(), is_it);
+            if (world_.motion[body].inverse_mass > 0 && !is_known) memory_.bodies.push_back({body, false, {}, {}});
         }
     }
-    std::sort(bodies.begin(), bodies.end());
-    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-    std::vector<BodyState> before;
-    for (const std::uint32_t body : bodies) {
-        world_.motion[body].linear_velocity += free_acceleration(body) * time;
-        before.push_back(world_.motion[body]);
+}
+
+// Puts a body back to the start of the step, on the path that leads through the place of impact with the new velocity.
+void ImpactStage::bend_path(const ImpactMemory::Moved& before, double time) {
+    BodyState& state = world_.motion[before.body];
+    state.center -= (state.linear_velocity - before.linear_velocity) * time;
+    if (state.angular_velocity != before.angular_velocity) {
+        state.rotation = normalized(cayley(-time * state.angular_velocity) *
+                                    (cayley(time * before.angular_velocity) * state.rotation));
+        state.turn = state.rotation * conjugate(state.start_rotation);
     }
-    const ImpactReport report = solve_impact_group(sites_, world_.motion);
+}
+
+// Solves the collision of the sites, which `contact` began.
+void ImpactStage::solve(std::uint32_t contact, double time, SlidePath path) {
+    memory_.site_contact.assign(memory_.sites.size(), contact);
+    add_loaded_neighbours(contact, time);
+    list_bodies();
+
+    // Velocities at the time of impact, the collision, and back to the start of the step on the new path.
+    for (ImpactMemory::Moved& moved : memory_.bodies) {
+        BodyState& state = world_.motion[moved.body];
+        state.linear_velocity += paths_.free_acceleration(moved.body) * time;
+        moved.linear_velocity = state.linear_velocity;
+        moved.angular_velocity = state.angular_velocity;
+    }
+    const ImpactReport report = solve_impact_group(memory_.sites, world_.motion, memory_.group, path);
     if (!report.converged) {
         world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
     }
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        BodyState& state = world_.motion[bodies[i]];
-        const bool changed =
-            state.linear_velocity != before[i].linear_velocity || state.angular_velocity != before[i].angular_velocity;
-        state.center -= (state.linear_velocity - before[i].linear_velocity) * time;
-        if (state.angular_velocity != before[i].angular_velocity) {
-            state.rotation = normalized(cayley(-time * state.angular_velocity) *
-                                        (cayley(time * before[i].angular_velocity) * state.rotation));
-            state.turn = state.rotation * conjugate(state.start_rotation);
-        }
-        state.linear_velocity -= free_acceleration(bodies[i]) * time;
-        if (changed) last_time_[bodies[i]] = time;
+    for (ImpactMemory::Moved& moved : memory_.bodies) {
+        BodyState& state = world_.motion[moved.body];
+        moved.has_changed =
+            state.linear_velocity != moved.linear_velocity || state.angular_velocity != moved.angular_velocity;
+        bend_path(moved, time);
+        state.linear_velocity -= paths_.free_acceleration(moved.body) * time;
+        if (moved.has_changed) memory_.last_time[moved.body] = time;
     }
-    for (std::size_t i = 0; i < sites_.size(); ++i) {
-        if (sites_[i].impulse == Vec3{}) continue;
-        note_impulse(world_.contacts[site_contact_[i]], sites_[i].arm_b + center_at(sites_[i].b, time),
-                     sites_[i].impulse, time);
+    for (std::size_t i = 0; i < memory_.sites.size(); ++i) {
+        const ImpactSite& site = memory_.sites[i];
+        if (site.impulse == Vec3{}) continue;
+        note_impulse(world_.contacts[memory_.site_contact[i]], site.arm_b + paths_.center_at(site.b, time),
+                     site.impulse, time);
     }
+}
 
-    // What these bodies touch next is to be predicted anew.
-    for (const std::uint32_t body : bodies) {
-        for (std::uint32_t k = first_[body]; k < first_[body + 1]; ++k) {
-            ++version_[of_body_[k]];
-            push(of_body_[k]);
+// The next impact, if its place and time are right; else it comes back with better ones.
+void ImpactStage::take(const ImpactEvent& event) {
+    Contact& contact = world_.contacts[event.contact];
+    double time = event.time;
+    Manifold manifold;
+    const bool is_rough = paths_.hits_heap(contact), as_found = is_rough && is_near(contact, time);
+    if (!as_found) {
+        if (!refine(contact, time, manifold)) {
+            // They pass each other: the region found at the start must not hold them up.
+            if (is_open_at_end(contact)) paths_.leave_open(contact);
+            return;
+        }
+        if (!memory_.events.empty() && time > memory_.events.front().time + 1e-12) {
+            memory_.events.push_back({time, event.contact, ++memory_.version[event.contact]});
+            std::push_heap(memory_.events.begin(), memory_.events.end(), std::greater<>());
+            return;
+        }
+    }
+    list_contacts();
+    memory_.sites.clear();
+    const bool may_bounce = memory_.impacts[event.contact]++ < most_bounces;
+    if (as_found) {
+        add_point_sites(contact, time);
+    } else {
+        add_manifold_sites(contact, manifold, time, may_bounce);
+    }
+    solve(event.contact, time, is_rough ? SlidePath::estimated : SlidePath::followed);
+
+    // What the moved bodies touch next is to be predicted anew.
+    for (const ImpactMemory::Moved& moved : memory_.bodies) {
+        if (!moved.has_changed) continue;
+        for (std::uint32_t k = memory_.first_of_body[moved.body]; k < memory_.first_of_body[moved.body + 1]; ++k) {
+            const std::uint32_t other = memory_.of_body[k];
+            const ContactGlance& glance = world_.contact_glances[other];
+            if (glance.was_touching && !glance.bounces) continue;
+            ++memory_.version[other];
+            predict(other);
         }
     }
 }
 
 void ImpactStage::run() {
-    if (world_.contacts.empty()) return;
-    prepare();
-    for (std::uint32_t i = 0; i < world_.contacts.size(); ++i) push(i);
-    std::size_t left = 64 + 32 * world_.contacts.size();
-    while (!events_.empty()) {
-        const Event event = events_.top();
-        events_.pop();
-        if (event.version != version_[event.contact]) continue;
+    const std::size_t count = world_.contacts.size();
+    memory_.version.assign(count, 0);
+    memory_.impacts.assign(count, 0);
+    memory_.events.clear();
+    memory_.has_lists = false;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (!paths_.is_surely_slow(world_.contact_glances[i])) predict(i);
+    }
+    std::size_t left = 64 + 32 * count;
+    while (!memory_.events.empty()) {
+        const ImpactEvent event = memory_.events.front();
+        std::pop_heap(memory_.events.begin(), memory_.events.end(), std::greater<>());
+        memory_.events.pop_back();
+        if (event.version != memory_.version[event.contact]) continue;
         if (left-- == 0) {
             world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
             return;
         }
-        Contact& contact = world_.contacts[event.contact];
-        double time = event.time;
-        Manifold manifold;
-        if (!refine(contact, time, manifold)) {
-            // They pass each other: the region found at the start must not hold them up.
-            if (is_open_at_end(contact)) leave_open_points(contact, true);
-        } else if (!events_.empty() && time > events_.top().time + 1e-12) {
-            ++version_[event.contact];
-            events_.push({time, event.contact, version_[event.contact]});
-        } else {
-            handle(event.contact, time, manifold);
-        }
+        take(event);
     }
 }
 
 }  // namespace
 
-void solve_impacts(WorldState& world) { ImpactStage(world).run(); }
+void solve_impacts(WorldState& world) {
+    if (!world.contacts.empty()) ImpactStage(world).run();
+}
 
 }  // namespace embody::physics

@@ -239,6 +239,7 @@ void place_contacts(WorldState& world, const PairTouch& touch) {
         } else {
             contact = world.touch_memory.workers[touch.finder].found[touch.found_first + k];
         }
+        world.contact_glances[touch.first + k] = glance_at(contact);
     }
 }
 
@@ -285,6 +286,7 @@ void find_contacts(WorldState& world) {
         total += touch.count;
     }
     world.contacts.resize(total);
+    world.contact_glances.resize(total);
     share_pairs(world, [&](int, Share share) {
         for (std::size_t i = share.first; i < share.last; ++i) place_contacts(world, memory.pairs[i]);
     });

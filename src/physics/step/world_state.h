@@ -20,6 +20,7 @@
 #include "physics/optimization/island_sleep.h"
 #include "physics/optimization/islands.h"
 #include "physics/optimization/solve_schedule.h"
+#include "physics/step/impact_memory.h"
 
 namespace embody::physics {
 
@@ -111,6 +112,8 @@ struct WorldState {
     std::uint32_t last_body_version = 0;                   // face
     std::vector<std::uint32_t> awake;                      // wake: slots of moving bodies, ascending
     std::vector<Contact> contacts;                         // touch; impulses: impact, substeps
+    std::vector<ContactGlance> contact_glances;            // touch
+    ImpactMemory impact_memory;                            // impact
     std::vector<Contact> last_contacts;                    // touch: those of the step before, for the warm start
     std::vector<Joint> active_joints;                      // islands; impulses: substeps
     std::vector<std::uint32_t> active_joint_slots;         // islands

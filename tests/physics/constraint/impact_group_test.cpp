@@ -37,6 +37,7 @@ TEST(FrictionalImpact, NeverAddsEnergyAndStaysInTheCone) {
 }
 
 TEST(ImpactGroup, FlatBoxBouncesWithoutTurning) {
+    ImpactGroupMemory memory;
     std::vector<BodyState> bodies(2);
     bodies[1].inverse_mass = 1;
     bodies[1].inverse_inertia = Mat3::identity() * 6;
@@ -51,14 +52,50 @@ TEST(ImpactGroup, FlatBoxBouncesWithoutTurning) {
         site.coefficients = {0.5, 0.5, 0.8};
         sites.push_back(site);
     }
-    const ImpactReport report = solve_impact_group(sites, bodies);
+    const ImpactReport report = solve_impact_group(sites, bodies, memory);
     EXPECT_TRUE(report.converged);
     EXPECT_NEAR(bodies[1].linear_velocity.y, 1.6, 1e-9);
     EXPECT_LT(length(bodies[1].angular_velocity), 1e-9);
     EXPECT_NEAR(report.energy_change, 0.5 * (1.6 * 1.6 - 4), 1e-9);
 }
 
+// A site without a bounce on a random body: the impulse that ends in sticking does not depend on the path.
+TEST(ImpactGroup, EstimatedSlidesEndAsFollowedOnesAndAddNoEnergy) {
+    Random random(11);
+    const auto number = [&] { return random.between(-1, 1); };
+    int sticking = 0, sliding = 0, rough = 0;
+    for (int i = 0; i < 2000; ++i) {
+        std::vector<BodyState> start(2);
+        start[1].inverse_mass = random.between(0.5, 2);
+        start[1].inverse_inertia = Mat3::diagonal({random.between(3, 8), random.between(3, 8), random.between(3, 8)});
+        start[1].linear_velocity = {number(), -random.between(0.5, 2), number()};
+        start[1].angular_velocity = {number(), number(), number()};
+        const double mu = random.between(0, 1);
+        const Vec3 arm{0.5 * number(), -random.between(0.3, 0.6), 0.5 * number()};
+        const ImpactSite site{0, 1, {}, arm, {0, 1, 0}, {mu, mu, 0}, {}};
+        const double approach = -velocity_at(start[1], arm).y;
+        if (approach < 0.1) continue;
+
+        std::vector<BodyState> followed = start, estimated = start;
+        ImpactSite followed_site = site, estimated_site = site;
+        ImpactGroupMemory memory;
+        solve_impact_group({&followed_site, 1}, followed, memory);
+        const ImpactReport report = solve_impact_group({&estimated_site, 1}, estimated, memory, SlidePath::estimated);
+        ASSERT_LE(report.energy_change, 1e-12) << i;
+        const Vec3 end = velocity_at(followed[1], arm), estimated_end = velocity_at(estimated[1], arm);
+        const bool sticks = length(end) < 1e-3 * approach;
+        const double error = length(estimated_end - end) / length(velocity_at(start[1], arm));
+        ASSERT_LT(error, sticks ? 0.02 : 0.2) << i;
+        (sticks ? sticking : sliding) += 1;
+        if (error > 0.02) ++rough;
+    }
+    EXPECT_GT(sticking, 300);
+    EXPECT_GT(sliding, 300);
+    EXPECT_LT(rough, (sticking + sliding) / 10);
+}
+
 TEST(ImpactGroup, ConservesMomentumOfTwoFreeBodies) {
+    ImpactGroupMemory memory;
     std::vector<BodyState> bodies(2);
     bodies[0].inverse_mass = 1;
     bodies[0].inverse_inertia = Mat3::identity() * 10;
@@ -68,7 +105,7 @@ TEST(ImpactGroup, ConservesMomentumOfTwoFreeBodies) {
     bodies[1].linear_velocity = {-2, 0, 0.1};
     const Vec3 before = bodies[0].linear_velocity + 2 * bodies[1].linear_velocity;
     ImpactSite site{0, 1, {0.1, 0.05, 0}, {-0.1, 0, 0.02}, {1, 0, 0}, {0.4, 0.4, 0.6}, {}};
-    solve_impact_group({&site, 1}, bodies);
+    solve_impact_group({&site, 1}, bodies, memory);
     EXPECT_LT(length(bodies[0].linear_velocity + 2 * bodies[1].linear_velocity - before), 1e-12);
     EXPECT_GT(dot(site.impulse, site.normal), 0);
 }

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "physics/collision/manifold.h"
+#include "physics/constraint/impact_group.h"
+
+namespace embody::physics {
+
+/// A predicted impact. Outdated once one of the bodies has had another one (the contact's version has moved on).
+struct ImpactEvent {
+    double time;
+    std::uint32_t contact;
+    std::uint32_t version;
+    bool operator>(const ImpactEvent& other) const {
+        return time != other.time ? time > other.time : contact > other.contact;
+    }
+};
+
+/// Memory of the impact stage: nothing in it outlives a step, but a steady step allocates nothing.
+struct ImpactMemory {
+    // By body.
+    std::vector<std::uint8_t> is_supported;  ///< a contact carried it in the last step
+    std::vector<double> last_time;           ///< its last impact in this step, s
+    std::vector<float> speed_gain;           ///< most that its free motion can add to an approach in the step, m/s
+
+    // By contact; the lists of each body's contacts once there is an impact at all.
+    std::vector<std::uint32_t> version;
+    std::vector<std::uint8_t> impacts;  ///< in this step
+    std::vector<std::uint32_t> first_of_body, of_body;
+    bool has_lists = false;
+
+    // Of the present impact.
+    std::vector<ImpactEvent> events;  ///< a heap, the earliest on top
+    std::vector<ImpactSite> sites;
+    std::vector<std::uint32_t> site_contact;  ///< contact of each site
+    std::vector<Manifold> manifolds;
+    struct Moved {
+        std::uint32_t body;
+        bool has_changed;
+        Vec3 linear_velocity, angular_velocity;  ///< before
+    };
+    std::vector<Moved> bodies;
+    ImpactGroupMemory group;
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+#include "physics/step/impact_paths.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "physics/dynamic/equations_of_motion.h"
+
+namespace embody::physics {
+
+ImpactPaths::ImpactPaths(WorldState& world)
+    : world_(world),
+      memory_(world.impact_memory),
+      step_(world.settings.time_step),
+      substep_(step_ / world.settings.substeps) {
+    const std::size_t count = world.motion.size();
+    memory_.last_time.assign(count, 0);
+    memory_.is_supported.assign(count, 0);
+    for (const ContactGlance& contact : world.contact_glances) {
+        if (contact.was_loaded) memory_.is_supported[contact.a] = memory_.is_supported[contact.b] = 1;
+    }
+
+    // What the end of a free path can be faster than its start.
+    memory_.speed_gain.assign(count, 0);
+    for (const std::uint32_t body : world.awake) {
+        const double turning = length_squared(world.motion[body].angular_velocity) * world.record(body).reach;
+        memory_.speed_gain[body] = static_cast<float>(step_ * (length(free_acceleration(body)) + turning));
+    }
+}
+
+Vec3 ImpactPaths::free_acceleration(std::uint32_t body) const {
+    const bool is_free = world_.motion[body].inverse_mass > 0 && !memory_.is_supported[body];
+    return is_free ? world_.constants[body].acceleration : Vec3{};
+}
+
+Vec3 ImpactPaths::center_at(std::uint32_t body, double time) const {
+    const BodyState& state = world_.motion[body];
+    return state.center + state.linear_velocity * time + free_acceleration(body) * (time * time / 2);
+}
+
+Transform ImpactPaths::pose_at(std::uint32_t body, double time) const {
+    BodyState state = world_.motion[body];
+    state.center = center_at(body, time);
+    state.rotation = normalized(cayley(state.angular_velocity * time) * state.rotation);
+    return body_pose(state, world_.constants[body].local_center);
+}
+
+double ImpactPaths::earliest_time(const Contact& contact) const {
+    return std::max(memory_.last_time[contact.a], memory_.last_time[contact.b]);
+}
+
+bool ImpactPaths::hits_heap(const Contact& contact) const {
+    const auto is_carried = [&](std::uint32_t body) {
+        return memory_.is_supported[body] && world_.motion[body].inverse_mass > 0;
+    };
+    return contact.material.restitution <= 0 && (is_carried(contact.a) || is_carried(contact.b));
+}
+
+// Classification (paper, eq. 4): slower contacts rest. Loaded ones and ones that do not bounce must be far faster to
+// count as a collision: the contact solver stops them as well. If they also touch already there is none to come.
+double ImpactPaths::slowest_speed(const Contact& contact) const {
+    const bool bounces = contact.material.restitution > 0;
+    if (contact.was_touching && !bounces) return never;
+    const double acceleration = dot(contact.normal, world_.settings.gravity);
+    const double slowest = std::max(slowest_impact, 2 * std::fabs(acceleration) * substep_);
+    return contact.was_loaded || !bounces ? 5 * slowest : slowest;
+}
+
+bool ImpactPaths::is_surely_slow(const ContactGlance& glance) const {
+    if (glance.was_touching && !glance.bounces) return true;
+    const double slowest = glance.was_loaded || !glance.bounces ? 5 * slowest_impact : slowest_impact;
+    return glance.approach_speed + memory_.speed_gain[glance.a] + memory_.speed_gain[glance.b] < slowest;
+}
+
+ImpactPaths::Motion ImpactPaths::motion_at(std::uint32_t body, double time) const {
+    const BodyState& state = world_.motion[body];
+    Motion motion{center_at(body, time) - state.start_center, state.linear_velocity + free_acceleration(body) * time,
+                  state.angular_velocity, state.turn, state.angular_velocity * time};
+    if (time > 0) motion.turn = normalized(cayley(motion.tilt) * state.turn);
+    return motion;
+}
+
+namespace {
+
+// Way and velocity of the surface point at `arm`.
+template <class Motion>
+void move_point(const Motion& motion, Vec3 arm, bool is_round, Vec3& way, Vec3& velocity) {
+    const Vec3 turned = is_round ? arm : rotate(motion.turn, arm);
+    way = motion.shift + (is_round ? cross(motion.tilt, arm) : turned - arm);
+    velocity = motion.velocity + cross(motion.spin, turned);
+}
+
+template <class Motion>
+ImpactPaths::Gap gap_between(const Contact& contact, const ContactPoint& point, const Motion& a, const Motion& b) {
+    Vec3 way_a, way_b, velocity_a, velocity_b;
+    move_point(a, point.arm_a, contact.a_is_round, way_a, velocity_a);
+    move_point(b, point.arm_b, contact.b_is_round, way_b, velocity_b);
+    return {point.separation + dot(contact.normal, way_b - way_a), dot(contact.normal, velocity_b - velocity_a)};
+}
+
+// Whether the point closes as fast as an impact now and is still apart at the end of the step: the next step's impact.
+void mark_open(ContactPoint& point, bool stays_open, double step) {
+    const auto to_the_end = static_cast<float>(step);
+    if (stays_open) {
+        point.inactive_until = to_the_end;
+    } else if (point.inactive_until >= to_the_end) {
+        point.inactive_until = 0;
+    }
+}
+
+}  // namespace
+
+ImpactPaths::Gap ImpactPaths::gap_at(const Contact& contact, const ContactPoint& point, double time) const {
+    return gap_between(contact, point, motion_at(contact.a, time), motion_at(contact.b, time));
+}
+
+// The first time at which the point touches, `never` if it does not within the step.
+double ImpactPaths::touch_time(const Contact& contact, const ContactPoint& point, double start) const {
+    const Gap first = gap_at(contact, point, start);
+    if (first.size <= touch_gap) return start;
+    const Gap last = gap_at(contact, point, step_);
+    if (last.size > 0) {
+        // Open at both ends; a parabola that opens upwards may dip through in between.
+        const double acceleration = step_ > start ? (last.rate - first.rate) / (step_ - start) : 0;
+        const double discriminant = first.rate * first.rate - 2 * acceleration * first.size;
+        if (first.rate >= 0 || discriminant < 0) return never;
+        const double time = start + 2 * first.size / (-first.rate + std::sqrt(discriminant));
+        return time <= step_ ? time : never;
+    }
+
+    // Closed at the end: the root between, by the regula falsi (Illinois).
+    double low = start, high = step_, at_low = first.size, at_high = last.size;
+    double time = high;
+    for (int i = 0; i < 8; ++i) {
+        time = low + (high - low) * at_low / (at_low - at_high);
+        const double gap = gap_at(contact, point, time).size;
+        if (std::fabs(gap) < touch_gap) break;
+        (gap > 0 ? low : high) = time;
+        (gap > 0 ? at_low : at_high) = gap;
+        (gap > 0 ? at_high : at_low) /= 2;
+    }
+    return time;
+}
+
+double ImpactPaths::predict(Contact& contact) {
+    const double slowest = slowest_speed(contact);
+    if (slowest == never) return never;
+
+    // How far the true paths can leave the straight ones.
+    const Motion a = motion_at(contact.a, 0), b = motion_at(contact.b, 0);
+    const auto count = static_cast<std::size_t>(contact.count);
+    double arm_a = 0, arm_b = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        arm_a = std::max<double>(arm_a, length_squared(contact.points[i].arm_a));
+        arm_b = std::max<double>(arm_b, length_squared(contact.points[i].arm_b));
+    }
+    const double bend = length_squared(a.spin) * std::sqrt(arm_a) + length_squared(b.spin) * std::sqrt(arm_b) +
+                        length(free_acceleration(contact.a) - free_acceleration(contact.b));
+    const double slack = bend * step_ * step_ / 2, gain = bend * step_;
+
+    // Along straight paths: certain for what keeps away or is slow, and enough for what hits a heap.
+    const double start = earliest_time(contact);
+    const bool straight = hits_heap(contact);
+    double first = never;
+    bool is_certain = true;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Gap now = gap_between(contact, contact.points[i], a, b);
+        const double end = now.size + now.rate * step_;
+        const bool may_meet = now.size <= touch_gap || std::min(now.size, end) < slack;
+        if (may_meet && now.rate - gain < -slowest) is_certain = false;
+        mark_open(contact.points[i], now.rate < -slowest && now.size > 0 && end > 0, step_);
+        if (now.rate < -slowest && end <= 0) first = std::min(first, std::max(start, now.size / -now.rate));
+    }
+    if (straight) return first;
+    return is_certain ? never : predict_exactly(contact, slowest);
+}
+
+double ImpactPaths::predict_exactly(Contact& contact, double slowest) {
+    const double start = earliest_time(contact);
+    double first = never;
+    for (int i = 0; i < contact.count; ++i) {
+        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        const Gap now = gap_at(contact, point, 0);
+        const bool stays_open = now.size > 0 && gap_at(contact, point, step_).size > 0;
+        mark_open(point, now.rate < -slowest && stays_open, step_);
+        const double time = touch_time(contact, point, start);
+        if (time < first && gap_at(contact, point, time).rate < -slowest) first = time;
+    }
+    return first;
+}
+
+void ImpactPaths::leave_open(Contact& contact) {
+    const double slowest = slowest_speed(contact);
+    if (slowest == never) return;
+    for (int i = 0; i < contact.count; ++i) {
+        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        const Gap now = gap_at(contact, point, 0);
+        mark_open(point, now.rate < -slowest && now.size > 0, step_);
+    }
+}
+
+}  // namespace embody::physics
