@@ -175,10 +175,16 @@ private:
                                      "Time the paper's scenes beside the paper's own numbers, or race other engines",
                                      "embody bench table1 --scene table1_f --json");
         add_race(c);
-        c.app->add_option("suite", c.into->suite, "table1, or stability: do structures stand, tight and quiet")
+        c.app
+            ->add_option("suite", c.into->suite,
+                         "table1; stability: do structures stand, tight and quiet; simbenchmark: accuracy beside "
+                         "published figures; scaling: cost of 1,000 to 100,000 bodies")
             ->capture_default_str()
-            ->check(CLI::IsMember({"table1", "stability"}));
+            ->check(CLI::IsMember({"table1", "stability", "simbenchmark", "scaling"}).description(""));
         c.app->add_option("--scene", c.into->scene, "Only this scene");
+        c.app->add_option("--bodies", c.into->bodies, "Most bodies of a scene of scaling")
+            ->capture_default_str()
+            ->check(CLI::Range(1'000, 1'000'000));
         c.app->add_option("--steps", c.into->steps, "Steps of each scene of table1 (default: its own number)")
             ->check(CLI::Range(0, 10'000'000));
         add_json(c);

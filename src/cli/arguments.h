@@ -70,10 +70,11 @@ struct SceneArguments {
     bool json = false;
 };
 struct BenchArguments {
-    std::string suite = "table1";         ///< or "stability", "race"
+    std::string suite = "table1";         ///< or "stability", "simbenchmark", "scaling", "race"
     std::vector<std::string> race_words;  ///< for the race's own program
     std::string scene;                    ///< only this one
     int steps = 0;                        ///< 0: as many as the scene says
+    int bodies = 100'000;                 ///< scaling stops at this many
     bool json = false;
 };
 

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/bench_race.h"
+#include "cli/bench_scaling.h"
+#include "cli/bench_simbenchmark.h"
 #include "cli/bench_stability.h"
 #include "cli/commands.h"
 #include "cli/output.h"
@@ -43,6 +45,8 @@ void print_row(const scenes::SceneBuilder& builder, const scenes::BenchResult& r
 int run_bench(const BenchArguments& arguments) {
     if (arguments.suite == "race") return run_race(arguments.race_words);
     if (arguments.suite == "stability") return run_stability(arguments);
+    if (arguments.suite == "simbenchmark") return run_simbenchmark(arguments);
+    if (arguments.suite == "scaling") return run_scaling(arguments);
     if (!arguments.scene.empty() && scenes::find_scene_builder(arguments.scene) == nullptr)
         return report({"--scene " + arguments.scene, "there is no such scene", "embody scene lists them"});
     if (!arguments.json) {

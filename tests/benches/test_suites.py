@@ -1,0 +1,52 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""`embody bench simbenchmark` and `embody bench scaling` as a person or a program meets them.
+
+Usage: test_suites.py EMBODY
+"""
+import json
+import math
+import subprocess
+import sys
+import unittest
+
+EMBODY = ""
+
+
+def bench(*words: str) -> subprocess.CompletedProcess:
+    return subprocess.run([EMBODY, "bench", *words], capture_output=True, text=True, timeout=120)
+
+
+class Suites(unittest.TestCase):
+    def test_wrong_words_are_named(self):
+        for suite in ("simbenchmark", "scaling"):
+            result = bench(suite, "--scene", "no_such_scene")
+            self.assertEqual(result.returncode, 1)
+            self.assertIn("no_such_scene", result.stderr)
+        for words in (("scaling", "--bodies", "999"), ("scaling", "--bodies", "many"), ("no_such_suite",)):
+            result = bench(*words)
+            self.assertEqual(result.returncode, 2, words)
+            self.assertIn(words[-1], result.stderr)
+
+    def test_simbenchmark_stands_beside_the_published_figures(self):
+        result = bench("simbenchmark", "--scene", "bouncing", "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        answer = json.loads(result.stdout)
+        self.assertEqual([row["time_step"] for row in answer["scenes"]], [0.01, 0.001])
+        for row, published in zip(answer["scenes"], (185.953, 0.0186204), strict=True):
+            self.assertEqual(row["published"], {"error": published, "engine": "RaiSim"})
+            self.assertTrue(math.isfinite(row["error"]))
+            self.assertAlmostEqual(row["over_published"], row["error"] / published)
+            self.assertEqual(row["verdict"], "better" if row["error"] <= published else "worse")
+            self.assertAlmostEqual(row["steps"] * row["time_step"], 20)
+
+    def test_scaling_prints_a_row_a_size(self):
+        result = bench("scaling", "--scene", "columns_asleep", "--bodies", "1000")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        (row,) = [line.split() for line in result.stdout.splitlines() if line.startswith("columns_asleep")]
+        self.assertEqual((row[1], row[2], row[-1]), ("1000", "0", "right"))
+
+
+if __name__ == "__main__":
+    EMBODY = sys.argv.pop(1)
+    unittest.main()
