@@ -6,12 +6,13 @@
 #include <memory>
 #include <vector>
 
+#include "foundation/task_pool.h"
 #include "math/bounds.h"
 
 namespace embody::physics {
 
 /// Finds the pairs of bodies whose bounds overlap. Bounds are kept enlarged by a margin, so that a body that moves
-/// little costs nothing; pairs persist until their enlarged bounds part.
+/// little costs nothing; pairs persist until their enlarged bounds part. Movable and immovable bodies have a tree each.
 class BroadPhase {
 public:
     BroadPhase();
@@ -28,10 +29,15 @@ public:
         std::uint32_t a = 0, b = 0;  ///< a < b
         friend auto operator<=>(const Pair&, const Pair&) = default;
     };
-    /// All pairs with overlapping enlarged bounds, sorted; each once.
-    const std::vector<Pair>& update_pairs();
+    /// All pairs with overlapping enlarged bounds, sorted; each once, whatever the number of workers.
+    const std::vector<Pair>& update_pairs(TaskPool& workers);
 
-    /// Another number after each change of the pairs.
+    /// Whether more bodies lie in each other than pairs may be: then each movable body keeps pairs with `most_partners`
+    /// movable and `most_immovable_partners` immovable ones, those of the lowest indices above its own.
+    [[nodiscard]] bool has_too_many_pairs() const;
+    static constexpr std::size_t most_partners = 32, most_immovable_partners = 256;
+
+    /// Another number after each change of the pairs or of who has an index.
     [[nodiscard]] std::uint64_t pairs_version() const;
 
     /// Calls `visit` for each body whose enlarged bounds overlap `box`, in ascending order of index.

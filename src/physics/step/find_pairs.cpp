@@ -17,7 +17,10 @@ void find_pairs(WorldState& world) {
         swept.add(Bounds{swept.lower + motion, swept.upper + motion});
         world.broad_phase.move(body, swept, motion);
     }
-    world.pairs = &world.broad_phase.update_pairs();
+    world.pairs = &world.broad_phase.update_pairs(*world.workers);
+    if (world.broad_phase.has_too_many_pairs()) {
+        world.report.limits |= static_cast<std::uint32_t>(StepLimit::too_many_pairs);
+    }
     world.report.pairs = static_cast<std::uint32_t>(world.pairs->size());
 }
 

@@ -15,34 +15,37 @@ namespace {
 Bounds cube_at(Vec3 p, double half) { return enlarged(Bounds{p, p}, half); }
 
 TEST(BroadPhase, two_immovable_bodies_are_no_pair) {
+    TaskPool one_worker(1);
     BroadPhase phase;
     phase.insert(0, cube_at({}, 1), false);
     phase.insert(1, cube_at({}, 1), false);
-    EXPECT_TRUE(phase.update_pairs().empty());
+    EXPECT_TRUE(phase.update_pairs(one_worker).empty());
     phase.insert(2, cube_at({}, 1), true);
-    EXPECT_EQ(phase.update_pairs().size(), 2u);
+    EXPECT_EQ(phase.update_pairs(one_worker).size(), 2u);
 }
 
 TEST(BroadPhase, an_endless_plane_pairs_with_what_moves) {
+    TaskPool one_worker(1);
     BroadPhase phase;
     const auto plane = make_shape(PlaneShape{});
     phase.insert(7, plane->bounds({}), false);
     phase.insert(3, cube_at({100, 0.5, -5000}, 0.5), true);
     phase.insert(4, cube_at({0, 50, 0}, 0.5), true);
-    const auto& pairs = phase.update_pairs();
+    const auto& pairs = phase.update_pairs(one_worker);
     ASSERT_EQ(pairs.size(), 1u);
     EXPECT_EQ(pairs[0], (BroadPhase::Pair{3, 7}));
 }
 
 TEST(BroadPhase, a_removed_body_takes_its_pairs_along) {
+    TaskPool one_worker(1);
     BroadPhase phase;
     phase.insert(0, cube_at({}, 1), true);
     phase.insert(1, cube_at({}, 1), true);
-    ASSERT_EQ(phase.update_pairs().size(), 1u);
+    ASSERT_EQ(phase.update_pairs(one_worker).size(), 1u);
     phase.remove(0);
-    EXPECT_TRUE(phase.update_pairs().empty());
+    EXPECT_TRUE(phase.update_pairs(one_worker).empty());
     phase.insert(0, cube_at({50, 0, 0}, 1), true);
-    EXPECT_TRUE(phase.update_pairs().empty());
+    EXPECT_TRUE(phase.update_pairs(one_worker).empty());
 }
 
 // Against all pairs by brute force, while bodies come, move and go; twice, for the same order.
@@ -50,6 +53,7 @@ TEST(BroadPhase, finds_every_overlap_in_a_crowd) {
     std::vector<BroadPhase::Pair> first_run;
     for (int run = 0; run < 2; ++run) {
         Random random(5);
+        TaskPool one_worker(1);
         BroadPhase phase;
         std::map<std::uint32_t, Bounds> bodies;
         std::vector<BroadPhase::Pair> all;
@@ -69,7 +73,7 @@ TEST(BroadPhase, finds_every_overlap_in_a_crowd) {
                 }
                 bodies[body] = bounds;
             }
-            const auto& pairs = phase.update_pairs();
+            const auto& pairs = phase.update_pairs(one_worker);
             EXPECT_TRUE(std::is_sorted(pairs.begin(), pairs.end()));
             EXPECT_EQ(std::adjacent_find(pairs.begin(), pairs.end()), pairs.end());
             const std::set<BroadPhase::Pair> known(pairs.begin(), pairs.end());
@@ -90,6 +94,7 @@ TEST(BroadPhase, finds_every_overlap_in_a_crowd) {
 }
 
 TEST(BroadPhase, queries_ascend_and_rays_shorten) {
+    TaskPool one_worker(1);
     BroadPhase phase;
     for (std::uint32_t i = 0; i < 50; ++i)
         phase.insert(49 - i, cube_at({static_cast<double>(49 - i), 0, 0}, 0.2), true);
@@ -107,6 +112,66 @@ TEST(BroadPhase, queries_ascend_and_rays_shorten) {
     });
     EXPECT_NEAR(best, 4.8, 1e-12);
     EXPECT_LT(visits, 50);
+}
+
+// A thousand balls of many sizes 10 km from the origin, all of them moving, on one worker and on three.
+TEST(BroadPhase, finds_the_same_pairs_on_any_number_of_workers_far_from_the_origin) {
+    TaskPool one_worker(1), three_workers(3);
+    BroadPhase serial, parallel;
+    Random random(8);
+    std::vector<Bounds> bounds;
+    for (std::uint32_t body = 0; body < 1000; ++body) {
+        const Vec3 p{10000 + random.between(-3, 3), random.between(-3, 3), -10000 + random.between(-3, 3)};
+        bounds.push_back(cube_at(p, body % 100 == 0 ? 3 : random.between(0.01, 0.3)));
+        for (BroadPhase* phase : {&serial, &parallel}) phase->insert(body, bounds.back(), true);
+    }
+    for (int step = 0; step < 5; ++step) {
+        const auto& pairs = serial.update_pairs(one_worker);
+        EXPECT_EQ(pairs, parallel.update_pairs(three_workers));
+        std::size_t missing = 0;
+        for (std::uint32_t a = 0; a < 1000; ++a) {
+            for (std::uint32_t b = a + 1; b < 1000; ++b) {
+                if (!overlaps(bounds[a], bounds[b])) continue;
+                missing += !std::binary_search(pairs.begin(), pairs.end(), BroadPhase::Pair{a, b});
+            }
+        }
+        EXPECT_EQ(missing, 0u);
+        for (std::uint32_t body = 0; body < 1000; ++body) {
+            const Vec3 way{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+            bounds[body] = {bounds[body].lower + way, bounds[body].upper + way};
+            for (BroadPhase* phase : {&serial, &parallel}) phase->move(body, bounds[body], {});
+        }
+    }
+}
+
+// Eight million pairs; what is kept must not depend on the workers, and all must come back.
+TEST(BroadPhase, four_thousand_bodies_in_one_point_keep_a_bounded_number_of_pairs) {
+    constexpr std::uint32_t count = 4000;
+    TaskPool one_worker(1), two_workers(2);
+    BroadPhase phase, other;
+    for (BroadPhase* p : {&phase, &other}) {
+        p->insert(count, cube_at({0, -1, 0}, 1), false);
+        for (std::uint32_t body = 0; body < count; ++body) p->insert(body, cube_at({}, 0.1), true);
+    }
+    const auto pairs = phase.update_pairs(one_worker);
+    EXPECT_TRUE(phase.has_too_many_pairs());
+    EXPECT_LE(pairs.size(), count * (BroadPhase::most_partners + 1));
+    EXPECT_EQ(pairs, other.update_pairs(two_workers));
+    for (std::uint32_t body = 0; body < count; ++body) {
+        EXPECT_TRUE(std::binary_search(pairs.begin(), pairs.end(), BroadPhase::Pair{body, count})) << body;
+    }
+
+    // Half of them far apart, then the others: nothing is missing.
+    for (std::uint32_t body = 0; body < count; ++body) {
+        phase.move(body, cube_at({body < count / 2 ? 10.0 * body : 0, 0, 0}, 0.1), {});
+    }
+    phase.update_pairs(one_worker);
+    EXPECT_TRUE(phase.has_too_many_pairs());
+    for (std::uint32_t body = 1; body < count; ++body) {
+        phase.move(body, cube_at({10.0 * (body / 2), 0, 0}, 0.1), {});
+    }
+    EXPECT_GE(phase.update_pairs(one_worker).size(), count / 2);
+    EXPECT_FALSE(phase.has_too_many_pairs());
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ enum class StepLimit : std::uint32_t {
     not_finite_body_frozen = 1u << 1,   ///< a body's state left the finite numbers; it was disabled where it last was
     impact_rounds_exhausted = 1u << 2,  ///< an impact needed more rounds than allowed; a smaller time_step helps
     deep_penetration = 1u << 3,         ///< bodies overlap deeply; place them apart or use a smaller time_step
+    too_many_pairs = 1u << 4,           ///< so many bodies are in each other that some pairs are left out
 };
 
 struct StepReport {

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+#include "math/bounds.h"
+
+namespace embody::physics {
+
+/// Box in floats that holds a box in doubles: 10 km from the origin it is a millimetre larger.
+struct FloatBox {
+    static constexpr double farthest = 1e38;  ///< m
+    float lower[3] = {}, upper[3] = {};
+
+    FloatBox() = default;
+    explicit FloatBox(const Bounds& bounds) {
+        for (int k = 0; k < 3; ++k) {
+            const auto low = static_cast<float>(std::clamp(bounds.lower[k], -farthest, farthest));
+            const auto high = static_cast<float>(std::clamp(bounds.upper[k], -farthest, farthest));
+            lower[k] = low - (std::fabs(low) * 1.2e-7f + 1e-30f);
+            upper[k] = high + (std::fabs(high) * 1.2e-7f + 1e-30f);
+        }
+    }
+    [[nodiscard]] bool contains(const Bounds& b) const {
+        return lower[0] <= b.lower.x && lower[1] <= b.lower.y && lower[2] <= b.lower.z && upper[0] >= b.upper.x &&
+               upper[1] >= b.upper.y && upper[2] >= b.upper.z;
+    }
+    [[nodiscard]] bool overlaps(const FloatBox& b) const {
+        bool meets = true;
+        for (int k = 0; k < 3; ++k) meets = meets && lower[k] <= b.upper[k] && upper[k] >= b.lower[k];
+        return meets;
+    }
+    [[nodiscard]] Bounds bounds() const { return {{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}}; }
+};
+
+/// Eight boxes side by side: what one comparison of a query looks at.
+struct alignas(32) BoxNode {
+    static constexpr std::uint32_t lanes = 8;
+    float lower[3][lanes], upper[3][lanes];
+
+    BoxNode() {
+        for (std::uint32_t lane = 0; lane < lanes; ++lane) clear(lane);
+    }
+    /// Makes a box that nothing overlaps.
+    void clear(std::uint32_t lane) {
+        for (int k = 0; k < 3; ++k) {
+            lower[k][lane] = 3e38f;
+            upper[k][lane] = -3e38f;
+        }
+    }
+    [[nodiscard]] bool is_clear(std::uint32_t lane) const { return lower[0][lane] > upper[0][lane]; }
+    void set(std::uint32_t lane, const FloatBox& box) {
+        for (int k = 0; k < 3; ++k) {
+            lower[k][lane] = box.lower[k];
+            upper[k][lane] = box.upper[k];
+        }
+    }
+    [[nodiscard]] FloatBox box(std::uint32_t lane) const;
+    [[nodiscard]] FloatBox joined() const;
+    /// Bit i: box i overlaps `box`.
+    [[nodiscard]] std::uint32_t overlap_mask(const FloatBox& box) const;
+};
+
+/// Tree of boxes, eight to a node, without pointers: the boxes lie sorted along a space-filling curve (G. Morton,
+/// 1966), large ones apart from small ones, and node i of a level holds the nodes 8 i … 8 i + 7 of the level below. It
+/// is sorted anew when moving boxes have spread its nodes; new boxes wait behind the sorted ones until then.
+class BoxTree {
+public:
+    static constexpr std::uint32_t none = 0xFFFFFFFFu;
+
+    /// `value` is the caller's index, unique within the tree.
+    void insert(std::uint32_t value, const FloatBox& box);
+    void remove(std::uint32_t value);
+    void set(std::uint32_t value, const FloatBox& box);
+    /// Brings the upper levels in step with the boxes; to be called after changes and before queries.
+    void refresh();
+
+    /// Leaf nodes, and which of their boxes are new or have changed since forget_changes().
+    [[nodiscard]] std::uint32_t leaf_count() const { return static_cast<std::uint32_t>(leaves_.size()); }
+    [[nodiscard]] const BoxNode& leaf(std::uint32_t node) const { return leaves_[node]; }
+    [[nodiscard]] std::uint32_t changed_mask(std::uint32_t node) const { return changed_[node]; }
+    [[nodiscard]] std::uint32_t used_mask(std::uint32_t node) const;
+    [[nodiscard]] std::uint32_t value(std::uint32_t node, std::uint32_t lane) const {
+        return values_[node * BoxNode::lanes + lane];
+    }
+    [[nodiscard]] bool are_all_changed() const;
+    void change_all();
+    void forget_changes() { changed_.assign(changed_.size(), 0); }
+
+    /// Calls visit(node, mask) for each leaf node, from `first` on, with boxes that overlap `box`; ascending in node.
+    template <class Visit>
+    void query(const FloatBox& box, Visit&& visit, std::uint32_t first = 0) const {
+        walk([&box](const BoxNode& node) { return node.overlap_mask(box); }, visit, first);
+    }
+    /// The same for boxes of which `meets(node)` gives the mask.
+    template <class Meets, class Visit>
+    void walk(Meets&& meets, Visit&& visit, std::uint32_t first = 0) const {
+        struct Place {
+            std::uint32_t level, node;
+        };
+        Place waiting[BoxNode::lanes * most_levels];
+        int count = 0;
+        if (sorted_leaves_ > 0) waiting[count++] = {static_cast<std::uint32_t>(levels_.size()), 0};
+        while (count > 0) {
+            const Place place = waiting[--count];
+            const BoxNode& node = place.level == 0 ? leaves_[place.node] : levels_[place.level - 1][place.node];
+            std::uint32_t mask = meets(node);
+            if (mask == 0) continue;
+            if (place.level == 0) {
+                visit(place.node, mask);
+                continue;
+            }
+            const std::uint32_t level = place.level - 1, first_there = first >> (3 * level);
+            for (; mask != 0; mask &= ~std::bit_floor(mask)) {
+                const std::uint32_t child =
+                    place.node * BoxNode::lanes + static_cast<std::uint32_t>(std::bit_width(mask) - 1);
+                if (child < first_there) break;
+                waiting[count++] = {level, child};
+            }
+        }
+        for (std::uint32_t i = std::max(first, sorted_leaves_); i < leaf_count(); ++i) {
+            if (const std::uint32_t mask = meets(leaves_[i])) visit(i, mask);
+        }
+    }
+
+private:
+    static constexpr int most_levels = 12;  // 8^11 boxes
+    struct Entry {
+        std::uint64_t key;
+        std::uint32_t value, slot;
+    };
+    [[nodiscard]] bool wants_sorting() const;
+    void sort();
+    void place_sorted();
+    void join_levels();
+    void set_slot(std::uint32_t slot, const FloatBox& box);
+
+    std::vector<BoxNode> leaves_;                // sorted ones, then those with new boxes
+    std::vector<std::uint8_t> changed_, stale_;  // by leaf: bits of its boxes; its parents do not know it yet
+    std::vector<std::uint32_t> values_;          // by slot, 8 a leaf
+    std::vector<std::uint32_t> slots_;           // by value
+    std::vector<std::vector<BoxNode>> levels_;   // above the sorted leaves, upwards
+    std::vector<std::vector<std::uint8_t>> stale_above_;
+    std::uint32_t sorted_leaves_ = 0;
+    std::uint32_t used_ = 0, sorted_used_ = 0;  // boxes now; when last sorted
+    bool is_stale_ = false;
+    std::vector<float> area_;                  // by sorted leaf, m²
+    double total_area_ = 0, sorted_area_ = 0;  // of the sorted leaves now; when last sorted
+
+    std::vector<Entry> entries_, other_entries_;  // scratch of sort
+    std::vector<FloatBox> boxes_;
+    std::vector<std::uint8_t> old_changed_;
+};
+
+inline FloatBox BoxNode::box(std::uint32_t lane) const {
+    FloatBox box;
+    for (int k = 0; k < 3; ++k) {
+        box.lower[k] = lower[k][lane];
+        box.upper[k] = upper[k][lane];
+    }
+    return box;
+}
+
+inline std::uint32_t BoxNode::overlap_mask(const FloatBox& box) const {
+#if defined(__SSE2__)
+    std::uint32_t mask = 0;
+    for (int half = 0; half < 2; ++half) {
+        __m128 apart = _mm_setzero_ps();
+        for (int k = 0; k < 3; ++k) {
+            const __m128 low = _mm_load_ps(lower[k] + 4 * half), high = _mm_load_ps(upper[k] + 4 * half);
+            apart = _mm_or_ps(apart, _mm_or_ps(_mm_cmpgt_ps(low, _mm_set1_ps(box.upper[k])),
+                                               _mm_cmplt_ps(high, _mm_set1_ps(box.lower[k]))));
+        }
+        mask |= static_cast<std::uint32_t>(_mm_movemask_ps(apart) ^ 0xF) << (4 * half);
+    }
+    return mask;
+#else
+    std::uint32_t mask = 0;
+    for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+        bool meets = true;
+        for (int k = 0; k < 3; ++k) meets = meets && lower[k][lane] <= box.upper[k] && upper[k][lane] >= box.lower[k];
+        mask |= static_cast<std::uint32_t>(meets) << lane;
+    }
+    return mask;
+#endif
+}
+
+}  // namespace embody::physics
