@@ -71,18 +71,21 @@ Bounds convex_bounds(const Convex& convex, const Transform& pose) {
     return b;
 }
 
+// The library's may differ in its last digit from one machine to the next; sizes are far from overflow.
+double hypotenuse(double a, double b) { return std::sqrt(a * a + b * b); }
+
 double convex_radius_about(const Convex& convex, Vec3 c) {
-    const double flat = std::hypot(c.x, c.z);
+    const double flat = hypotenuse(c.x, c.z);
     switch (convex.kind) {
         case ConvexKind::sphere:
             return length(c) + convex.radius;
         case ConvexKind::capsule:
-            return std::hypot(flat, std::fabs(c.y) + convex.half_height) + convex.radius;
+            return hypotenuse(flat, std::fabs(c.y) + convex.half_height) + convex.radius;
         case ConvexKind::cylinder:
-            return std::hypot(flat + convex.radius, std::fabs(c.y) + convex.half_height);
+            return hypotenuse(flat + convex.radius, std::fabs(c.y) + convex.half_height);
         case ConvexKind::cone:
-            return std::max(std::hypot(flat + convex.radius, c.y + convex.half_height),
-                            std::hypot(flat, c.y - convex.half_height));
+            return std::max(hypotenuse(flat + convex.radius, c.y + convex.half_height),
+                            hypotenuse(flat, c.y - convex.half_height));
         case ConvexKind::polytope:
             break;
     }

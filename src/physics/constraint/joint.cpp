@@ -11,9 +11,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/arc_tangent.h"
 #include "physics/dynamic/equations_of_motion.h"
 
 namespace embody::physics {
+
+JointImpulses& impulses_of(Joint& joint, SolvePhase phase) {
+    return phase == SolvePhase::position ? joint.position_phase : joint.velocity_phase;
+}
 
 namespace {
 
@@ -80,7 +85,7 @@ double coordinate_of(const Joint& joint, const Frames& frames) {
     if (is<SliderJoint>(joint)) return dot(axis_of(frames.a, 0), frames.b.position - frames.a.position);
     if (!is<HingeJoint>(joint)) return 0;
     const Quat q = conjugate(frames.a.rotation) * frames.b.rotation;
-    return 2 * (q.w < 0 ? std::atan2(-q.x, -q.w) : std::atan2(q.x, q.w));
+    return 2 * (q.w < 0 ? arc_tangent(-q.x, -q.w) : arc_tangent(q.x, q.w));
 }
 
 Vec3 angular_effect(const BodyState& body, Vec3 row) { return body.inverse_inertia * row; }
@@ -139,10 +144,6 @@ std::array<double, max_joint_rows> solve_block(const Joint& joint, std::array<do
         x[i] /= l[i][i];
     }
     return x;
-}
-
-JointImpulses& impulses_of(Joint& joint, SolvePhase phase) {
-    return phase == SolvePhase::position ? joint.position_phase : joint.velocity_phase;
 }
 
 const std::optional<JointLimit>* limit_of(const Joint& joint) {
@@ -246,8 +247,6 @@ void warm_start_joint(Joint& joint, SolvePhase phase, std::span<BodyState> bodie
     }
     apply_row(joint, joint.free_row, impulses.motor + impulses.lower - impulses.upper, bodies);
 }
-
-void forget_impulses(Joint& joint, SolvePhase phase) { impulses_of(joint, phase) = {}; }
 
 double solve_joint(Joint& joint, SolvePhase phase, double substep, std::span<BodyState> bodies) {
     solve_free_row(joint, phase, substep, bodies);

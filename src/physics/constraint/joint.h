@@ -21,6 +21,7 @@ inline constexpr int max_joint_rows = 6;
 struct JointImpulses {
     std::array<double, max_joint_rows> rows{};
     double motor = 0, lower = 0, upper = 0;
+    bool are_good = true;  ///< the passes came to an end: worth a warm start
 };
 
 /// A joint between two bodies, or between the world and a body, as up to six rows that are solved as one block, and one
@@ -42,12 +43,12 @@ struct Joint {
     Vec3 total_linear, total_angular;              ///< impulse on b over the step, torque about b's joint frame
 };
 
+JointImpulses& impulses_of(Joint& joint, SolvePhase phase);
+
 /// Rows and masses at the bodies' current poses. Both bodies immovable: no rows.
 void prepare_joint(Joint& joint, std::span<const BodyState> bodies);
 
 void warm_start_joint(Joint& joint, SolvePhase phase, std::span<BodyState> bodies);
-/// The phase begins from nothing.
-void forget_impulses(Joint& joint, SolvePhase phase);
 
 /// One pass. Returns the largest speed that it still had to correct, m/s or rad/s.
 double solve_joint(Joint& joint, SolvePhase phase, double substep, std::span<BodyState> bodies);

@@ -12,22 +12,26 @@ int joint_passes(std::size_t joints) {
     return static_cast<int>(std::clamp<std::size_t>(budget / std::max<std::size_t>(joints, 1), 4, 64));
 }
 
-// More joints than this do not converge in their passes: what is left over would swing up from substep to substep if
-// they began with the last impulses. A chain of 24 links burst within 3 s.
-constexpr std::size_t most_warm_joints = 16;
-
 // A joint list is done when no row has to change its speed by more than this, m/s or rad/s.
 constexpr double joint_tolerance = 1e-10;
+
+// Impulses that the passes did not bring to an end would swing up from substep to substep: such lists begin anew.
+constexpr double warm_tolerance = 1e-3;  // m/s or rad/s
+
+void warm_start_joints(const ConstraintList& list, SolvePhase phase, std::span<BodyState> bodies) {
+    const bool are_good = std::all_of(list.joint_order.begin(), list.joint_order.end(),
+                                      [&](std::uint32_t i) { return impulses_of(list.joints[i], phase).are_good; });
+    for (const std::uint32_t i : list.joint_order) {
+        if (!are_good) impulses_of(list.joints[i], phase) = {};
+        if (are_good) warm_start_joint(list.joints[i], phase, bodies);
+    }
+}
 
 }  // namespace
 
 void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, std::span<BodyState> bodies) {
     const ContactSoftness softness = contact_softness(substep, list.contact_order.size());
-    const bool is_warm = list.joint_order.size() <= most_warm_joints;
-    for (const std::uint32_t i : list.joint_order) {
-        if (!is_warm) forget_impulses(list.joints[i], phase);
-        warm_start_joint(list.joints[i], phase, bodies);
-    }
+    warm_start_joints(list, phase, bodies);
     for (const std::uint32_t i : list.contact_order) {
         const bool is_first = phase == SolvePhase::position;
         if (is_first) warm_start_contact(list.contacts[i], bodies);
@@ -35,8 +39,9 @@ void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, s
 
     const int least = contact_passes(list.contact_order.size());
     const int most = list.joint_order.empty() ? least : std::max(least, joint_passes(list.joint_order.size()));
+    double error = 0;
     for (int pass = 0; pass < most; ++pass) {
-        double error = 0;
+        error = 0;
         for (const std::uint32_t i : list.joint_order) {
             error = std::max(error, solve_joint(list.joints[i], phase, substep, bodies));
         }
@@ -48,7 +53,10 @@ void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, s
         }
         if (pass + 1 >= least && error <= joint_tolerance) break;
     }
-    for (const std::uint32_t i : list.joint_order) add_to_totals(list.joints[i], phase);
+    for (const std::uint32_t i : list.joint_order) {
+        add_to_totals(list.joints[i], phase);
+        impulses_of(list.joints[i], phase).are_good = error <= warm_tolerance;
+    }
 }
 
 }  // namespace embody::physics
