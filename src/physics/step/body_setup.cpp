@@ -77,6 +77,7 @@ Result<BodySetup> set_up_body(const WorldState& world, const BodyDefinition& def
 }
 
 void place_body(WorldState& world, std::uint32_t body, BodySetup setup) {
+    world.awake_changed = true;
     const std::size_t slots = world.bodies.slot_count();
     world.motion.resize(slots);
     world.constants.resize(slots);
@@ -105,6 +106,7 @@ void place_body(WorldState& world, std::uint32_t body, BodySetup setup) {
 }
 
 void lift_body(WorldState& world, std::uint32_t body) {
+    world.awake_changed = true;
     wake_around(world, body);
     wake_group_of(world, body);
     for (const std::uint32_t other : std::vector<std::uint32_t>(world.to_wake)) {

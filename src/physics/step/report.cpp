@@ -74,8 +74,10 @@ void write_contact_events(WorldState& world) {
 }
 
 void count_bodies(WorldState& world) {
-    for (std::uint32_t body = 0; body < world.bodies.slot_count(); ++body) {
-        if (!world.is_used(body) || !world.is_dynamic(body) || !world.record(body).definition.enabled) continue;
+    // Those that slept at the step's start still do, or were listed as awake since.
+    world.report.bodies_asleep = world.asleep_when_gathered;
+    for (const std::uint32_t body : world.awake) {
+        if (!world.is_dynamic(body) || !world.record(body).definition.enabled) continue;
         switch (world.sleep[body].state) {
             case SleepState::active:
                 ++world.report.bodies_active;

@@ -24,6 +24,7 @@ bool touches_moving_kinematic(const WorldState& world, const Island& island) {
 
 // Moves an island's bodies and contacts out of the awake set.
 void fall_asleep(WorldState& world, const Island& island, std::vector<bool>& leaves) {
+    world.awake_changed = true;
     const std::uint32_t group = world.next_group++;
     SleepingGroup& sleepers = world.sleepers[group];
     for (std::uint32_t k = 0; k < island.body_count; ++k) {

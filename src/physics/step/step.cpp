@@ -20,12 +20,8 @@ void run(WorldState& world, StepStage stage, void (*work)(WorldState&)) {
     world.report.stage_milliseconds[static_cast<std::size_t>(stage)] = milliseconds_since(start);
 }
 
-}  // namespace
-
-void step(WorldState& world) {
-    const auto start = Clock::now();
-    world.report = {.step = world.report.step + 1, .time = world.report.time + world.settings.time_step};
-    run(world, StepStage::wake, wake_bodies);       // apply commands, wake touched islands
+// All that moves bodies; nothing to do while all sleep.
+void advance(WorldState& world) {
     run(world, StepStage::find_pairs, find_pairs);  // broad phase
     run(world, StepStage::touch, find_contacts);    // narrow phase → contact regions, warm start
     run(world, StepStage::impact, solve_impacts);   // new, fast contacts by eq. (3)
@@ -33,7 +29,16 @@ void step(WorldState& world) {
     run(world, StepStage::substeps, run_substeps);  // kick → solve → drift → kick → solve, shock propagation
     run(world, StepStage::continuous, stop_tunnelling);  // bodies that would pass through others
     run(world, StepStage::sleep, put_to_sleep);          // quiet islands leave the awake set
-    write_report(world);                                 // events, counts
+}
+
+}  // namespace
+
+void step(WorldState& world) {
+    const auto start = Clock::now();
+    world.report = {.step = world.report.step + 1, .time = world.report.time + world.settings.time_step};
+    run(world, StepStage::wake, wake_bodies);  // apply commands, wake touched islands
+    if (!world.awake.empty() || !world.contacts.empty()) advance(world);
+    write_report(world);  // events, counts
     world.report.milliseconds = milliseconds_since(start);
 }
 

@@ -143,6 +143,7 @@ void freeze_lost_bodies(WorldState& world) {
         state.rotation = record.last_rotation;
         state.linear_velocity = state.angular_velocity = {};
         record.definition.enabled = false;
+        world.awake_changed = true;
         if (record.shape) world.broad_phase.remove(body);
         world.report.limits |= static_cast<std::uint32_t>(StepLimit::not_finite_body_frozen);
     }

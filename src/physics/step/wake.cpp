@@ -18,6 +18,22 @@ void add_touching(std::vector<TouchingPair>& touching, const WorldState& world, 
     touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
 }
 
+// Walks through all bodies: only where the set has changed, so that sleepers cost nothing.
+void list_awake(WorldState& world) {
+    world.awake_changed = false;
+    world.awake.clear();
+    world.asleep_when_gathered = 0;
+    for (std::uint32_t body = 0; body < world.bodies.slot_count(); ++body) {
+        if (!world.is_used(body) || !world.record(body).definition.enabled) continue;
+        if (world.record(body).definition.kind == BodyKind::static_body) continue;
+        if (world.is_asleep(body)) {
+            ++world.asleep_when_gathered;
+        } else {
+            world.awake.push_back(body);
+        }
+    }
+}
+
 // Gravity and forces of the coming step.
 void refresh_forces(WorldState& world, std::uint32_t body) {
     const BodyRecord& record = world.record(body);
@@ -32,6 +48,7 @@ void refresh_forces(WorldState& world, std::uint32_t body) {
 
 void wake_group_of(WorldState& world, std::uint32_t body) {
     if (!world.is_asleep(body)) return;
+    world.awake_changed = true;
     const auto found = world.sleepers.find(world.sleep[body].group);
     for (const std::uint32_t member : found->second.bodies) {
         SleepRecord& record = world.sleep[member];
@@ -75,11 +92,8 @@ void wake_bodies(WorldState& world) {
 }
 
 void gather_awake(WorldState& world) {
-    world.awake.clear();
-    for (std::uint32_t body = 0; body < world.bodies.slot_count(); ++body) {
-        if (!world.is_used(body) || !world.record(body).definition.enabled) continue;
-        if (world.record(body).definition.kind == BodyKind::static_body || world.is_asleep(body)) continue;
-        world.awake.push_back(body);
+    if (world.awake_changed) list_awake(world);
+    for (const std::uint32_t body : world.awake) {
         if (world.is_dynamic(body)) refresh_forces(world, body);
     }
 }

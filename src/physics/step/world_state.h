@@ -111,6 +111,8 @@ struct WorldState {
     TouchMemory touch_memory;                              // touch
     std::uint32_t last_body_version = 0;                   // face
     std::vector<std::uint32_t> awake;                      // wake: slots of moving bodies, ascending
+    std::uint32_t asleep_when_gathered = 0;                // wake: dynamic bodies that slept when awake was listed
+    bool awake_changed = true;                             // face, wake, substeps, sleep: awake must be listed anew
     std::vector<Contact> contacts;                         // touch; impulses: impact, substeps
     std::vector<ContactGlance> contact_glances;            // touch
     ImpactMemory impact_memory;                            // impact
