@@ -94,6 +94,8 @@ double convex_radius_about(const Convex& convex, Vec3 c) {
     return farthest;
 }
 
+Vec3 inner_point(const Convex& convex) { return interior_point({&convex, {}, {}}); }
+
 /// Fills the data of one kind of shape.
 struct Builder {
     CollisionShape::Data& data;
@@ -134,6 +136,7 @@ private:
     Result<void> add_piece(const ConvexShape& shape, const Transform& local) const {
         Result<Convex> convex = make_convex(shape);
         if (!convex) return convex.error();
+        convex->reach = convex_radius_about(*convex, inner_point(*convex));
         const geometry::MassProperties mass = geometry::transformed(local, mass_of(*convex));
         data.mass = data.pieces.empty() ? mass : geometry::combined(data.mass, mass);
         data.pieces.push_back({*std::move(convex), local, local == Transform{}});

@@ -36,6 +36,23 @@ void fill_lanes(Polytope& polytope) {
     polytope.reach.resize(polytope.normal_lanes.size(), polytope.reach[0]);
 }
 
+// The vertices around each vertex, in the order of the edges.
+void fill_spokes(Polytope& polytope) {
+    polytope.spoke_first.assign(polytope.vertices.size() + 1, 0);
+    for (const Polytope::Edge& edge : polytope.edges) {
+        ++polytope.spoke_first[edge.from + 1];
+        ++polytope.spoke_first[edge.to + 1];
+    }
+    for (std::size_t v = 1; v < polytope.spoke_first.size(); ++v)
+        polytope.spoke_first[v] += polytope.spoke_first[v - 1];
+    std::vector<std::uint32_t> next(polytope.spoke_first.begin(), polytope.spoke_first.end() - 1);
+    polytope.spokes.resize(2 * polytope.edges.size());
+    for (const Polytope::Edge& edge : polytope.edges) {
+        polytope.spokes[next[edge.from]++] = edge.to;
+        polytope.spokes[next[edge.to]++] = edge.from;
+    }
+}
+
 }  // namespace
 
 void Lanes::assign(const std::vector<Vec3>& vectors) {
@@ -116,6 +133,7 @@ void link_edges(Polytope& polytope) {
     }
     for (const Vec3& v : polytope.vertices) polytope.center += v / static_cast<double>(polytope.vertices.size());
     fill_lanes(polytope);
+    fill_spokes(polytope);
 }
 
 std::uint32_t support_vertex(const Polytope& polytope, Vec3 direction) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "math/bounds.h"
@@ -42,6 +43,12 @@ struct Polytope {
     Lanes vertex_lanes, normal_lanes;
     std::vector<double> reach;
     double unevenness = 0;
+    // The vertices joined to each one by an edge: those of vertex v from spoke_first[v] to spoke_first[v + 1].
+    std::vector<std::uint32_t> spoke_first, spokes;
+
+    [[nodiscard]] std::span<const std::uint32_t> neighbours(std::uint32_t vertex) const {
+        return {spokes.data() + spoke_first[vertex], spokes.data() + spoke_first[vertex + 1]};
+    }
 };
 
 Polytope box_polytope(Vec3 half_extents);
@@ -49,7 +56,7 @@ Polytope box_polytope(Vec3 half_extents);
 Polytope triangle_polytope(Vec3 a, Vec3 b, Vec3 c);
 /// Moves an existing triangle without allocating.
 void set_triangle(Polytope& triangle, Vec3 a, Vec3 b, Vec3 c);
-/// Fills edges, edge_directions, center, lanes and reach from vertices, faces and loops.
+/// Fills edges, edge_directions, center, lanes, reach and spokes from vertices, faces and loops.
 void link_edges(Polytope& polytope);
 
 enum class ConvexKind : std::uint8_t { sphere, capsule, polytope, cylinder, cone };
@@ -62,6 +69,7 @@ struct Convex {
     Polytope polytope;
     Bounds bounds;
     bool is_box = false;  ///< a polytope whose corners are those of `bounds`, centred
+    double reach = 0;     ///< farthest surface point from the inner point, for whole pieces of shapes
 };
 
 /// A convex seen from the frame in which a pair is compared (world axes, origin near the pair: far from the world's

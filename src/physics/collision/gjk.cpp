@@ -63,8 +63,9 @@ Vec3 triangle_normal(const Simplex& s, int a, int b, int c) {
     return cross(corner(s, b) - corner(s, a), corner(s, c) - corner(s, a));
 }
 
-// The last corner is the new one: the origin is on its side of the three others' face.
-NearestPoint nearest_on_tetrahedron(const Simplex& s) {
+// The last corner is the new one: the origin is on its side of the three others' face. `is_outside`: the origin is
+// known to be outside, which a nearly flat tetrahedron (three points of a rim and a triangle) cannot tell by itself.
+NearestPoint nearest_on_tetrahedron(const Simplex& s, bool is_outside) {
     static constexpr int faces[3][4] = {{0, 1, 3, 2}, {0, 3, 2, 1}, {1, 2, 3, 0}};
     NearestPoint best;
     best.size = 0;
@@ -74,16 +75,22 @@ NearestPoint nearest_on_tetrahedron(const Simplex& s) {
         if (-dot(n, p) * dot(n, corner(s, f[3]) - p) > 0) continue;
         take_nearer(best, nearest_on_triangle(s, f[0], f[1], f[2], n));
     }
+    if (best.size > 0) return best;
     // Beyond no face: the origin is inside.
-    if (best.size == 0) best.size = 4;
+    best.size = 4;
+    if (!is_outside) return best;
+    best.size = 0;
+    for (const auto& f : faces) {
+        take_nearer(best, nearest_on_triangle(s, f[0], f[1], f[2], triangle_normal(s, f[0], f[1], f[2])));
+    }
     return best;
 }
 
-NearestPoint nearest_on_simplex(const Simplex& s, int size) {
+NearestPoint nearest_on_simplex(const Simplex& s, int size, bool is_outside) {
     if (size == 1) return nearest_on_vertex(s, 0);
     if (size == 2) return nearest_on_edge(s, 0, 1);
     if (size == 3) return nearest_on_triangle(s, 0, 1, 2, triangle_normal(s, 0, 1, 2));
-    return nearest_on_tetrahedron(s);
+    return nearest_on_tetrahedron(s, is_outside);
 }
 
 bool holds(const CoreDistance& state, Vec3 difference) {
@@ -157,7 +164,9 @@ CoreDistance core_distance(const Core& a, const Core& b, double enough, Vec3 sta
             return state;
         }
         state.simplex[static_cast<std::size_t>(state.simplex_size)] = next;
-        NearestPoint found = nearest_on_simplex(state.simplex, state.simplex_size + 1);
+        // A plane parts the two for certain where the support point is beyond the origin by more than rounding.
+        const bool is_apart = lower > 1e-12 * scale * std::sqrt(squared);
+        NearestPoint found = nearest_on_simplex(state.simplex, state.simplex_size + 1, is_apart);
         if (found.size == 4) {
             ++state.simplex_size;
             state.overlap = true;

@@ -1,29 +1,17 @@
 // SPDX-License-Identifier: MIT
 // A convex against the triangles near it. One-sided, and without bumps at the edges inside a surface: a normal that
 // leans over an edge farther than the surface itself bends there belongs to the neighbour (the Voronoi region test, cf.
-// P. Terdiman and others on "internal edges"); it is replaced by the triangle's own normal.
+// P. Terdiman and others on "internal edges"). Triangles are looked up and most of them ruled out in the surface's own
+// frame, where they need no turning; the few that are left are met in the convex's.
 #include "physics/collision/surface_pair.h"
 
-#include <algorithm>
 #include <cmath>
 
-#include "physics/collision/convex_pairs.h"
-#include "physics/collision/round_features.h"
+#include "physics/collision/triangle_pairs.h"
 
 namespace embody::physics {
 
 namespace {
-
-/// A triangle in the frame of the pair.
-struct PlacedTriangle {
-    std::array<Vec3, 3> corners;
-    Vec3 normal;
-    std::array<Vec3, 3> outward;  ///< unit, in the plane, across each edge
-    // How far a contact normal may lean over each edge: sine and cosine of the bend to the neighbour there; (0, 1)
-    // where the surface is flat or concave, (0, -1) where it ends.
-    std::array<double, 3> bend_sine{}, bend_cosine{};
-    bool open = false;  ///< some edge lets the normal lean
-};
 
 /// All contacts of triangles whose normals nearly agree.
 struct NormalGroup {
@@ -31,136 +19,80 @@ struct NormalGroup {
     std::uint32_t lowest_triangle = 0;
 };
 
-constexpr double flat_sine = 1e-3;
+// The triangle's point nearest to `p` (C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5).
+Vec3 nearest_on_triangle(Vec3 p, const std::array<Vec3, 3>& corners) {
+    const auto& [a, b, c] = corners;
+    const Vec3 ab = b - a, ac = c - a, from_a = p - a, from_b = p - b, from_c = p - c;
+    const double ab_a = dot(ab, from_a), ac_a = dot(ac, from_a);
+    if (ab_a <= 0 && ac_a <= 0) return a;
+    const double ab_b = dot(ab, from_b), ac_b = dot(ac, from_b);
+    if (ab_b >= 0 && ac_b <= ab_b) return b;
+    const double ab_c = dot(ab, from_c), ac_c = dot(ac, from_c);
+    if (ac_c >= 0 && ab_c <= ac_c) return c;
 
-/// The convex that is held against triangles: its core and a point inside, turned once.
+    // Twice the areas over the sides, times the triangle's own: beyond a side where negative.
+    const double of_c = ab_a * ac_b - ab_b * ac_a;
+    if (of_c <= 0 && ab_a >= 0 && ab_b <= 0) return a + ab * (ab_a / (ab_a - ab_b));
+    const double of_b = ab_c * ac_a - ab_a * ac_c;
+    if (of_b <= 0 && ac_a >= 0 && ac_c <= 0) return a + ac * (ac_a / (ac_a - ac_c));
+    const double of_a = ab_b * ac_c - ab_c * ac_b, to_c = ac_b - ab_b, to_b = ab_c - ac_c;
+    if (of_a <= 0 && to_c >= 0 && to_b >= 0) return b + (c - b) * (to_c / (to_c + to_b));
+    const double sum = of_a + of_b + of_c;
+    return a + ab * (of_b / sum) + ac * (of_c / sum);
+}
+
+/// The convex that is held against triangles, seen in the surface's frame.
 struct Probe {
-    Core core;
-    Vec3 inside;
-    double margin;
+    PlacedConvex placed;
+    Core own;  ///< in its own frame
+    Vec3 inside, own_inside;
+    double reach = 0;  ///< of the convex about `inside` and the margin, m
+    double margin = 0;
 
-    // Whether all of the convex lies beyond the plane through `point` by more than the margin.
-    [[nodiscard]] bool is_beyond(Vec3 point, Vec3 outwards) const {
-        return dot(core.support(-outwards) - point, outwards) - core.depth > margin;
+    Probe(const ConvexPiece& piece, const Transform& pose, const Transform& surface_pose, double extra)
+        : placed{&piece.convex, to_matrix(conjugate(surface_pose.rotation) * (pose.rotation * piece.local.rotation)),
+                 inverse_transform_point(surface_pose, transform_point(pose, piece.local.position))},
+          own({&piece.convex, {}, {}}),
+          inside(interior_point(placed)),
+          own_inside(own.interior()),
+          reach(piece.convex.reach + extra),
+          margin(extra) {}
+
+    [[nodiscard]] Bounds bounds() const {
+        const Bounds& box = placed.shape->bounds;
+        const Vec3 half = box.half_extents(), center = placed.to_frame(box.center());
+        const Mat3& r = placed.rotation;
+        const Vec3 extent = abs(r.x) * half.x + abs(r.y) * half.y + abs(r.z) * half.z;
+        return {center - extent, center + extent};
+    }
+    // Whether the convex may be within the margin of the triangle's front: by its ball, then by its extent along the
+    // shortest way from the triangle to its inside, which parts most of those that are only near.
+    [[nodiscard]] bool may_meet(const std::array<Vec3, 3>& corners, Vec3 across) const {
+        if (!(dot(inside - corners[0], across) > 0)) return false;
+        const Vec3 away = inside - nearest_on_triangle(inside, corners);
+        const double squared = length_squared(away);
+        if (squared > reach * reach) return false;
+        const Vec3 own_away = placed.direction_to_local(away);
+        const double gap = squared + dot(own_away, own.support(-own_away) - own_inside);
+        return !(gap > 0 && gap * gap > (margin + own.depth) * (margin + own.depth) * squared);
     }
 };
 
-// The corners and normal; false where the convex is behind the triangle, or higher above it than the margin. Most
-// triangles go here, before their neighbours are looked at.
-bool place_corners(const PlacedSurface& placed, const Mat3& rotation, Vec3 origin, std::uint32_t index,
-                   const Probe& probe, PlacedTriangle& t) {
-    const auto corners = placed.surface.corners(index);
-    for (std::size_t i = 0; i < 3; ++i) t.corners[i] = origin + rotation * corners[i];
-    t.normal = rotation * placed.surface.normal(index);
-    if (length_squared(t.normal) == 0 || dot(probe.inside - t.corners[0], t.normal) <= 0) return false;
-    return !probe.is_beyond(t.corners[0], t.normal);
-}
-
-// The sides and what lies beyond them; false where the convex is farther beyond one of them than the margin.
-bool place_sides(const PlacedSurface& placed, const Mat3& rotation, std::uint32_t index, const Probe& probe,
-                 PlacedTriangle& t) {
+// Puts a triangle into the convex's frame; false where its plane or one of its sides parts the two.
+bool place_near(const Probe& probe, const std::array<Vec3, 3>& corners, Vec3 normal, PlacedTriangle& t) {
+    t.normal = probe.placed.direction_to_local(normal);
+    t.corners[0] = probe.placed.to_local(corners[0]);
+    t.lowest = probe.own.support(-t.normal) - t.normal * probe.own.depth;
+    t.height = dot(t.normal, t.lowest - t.corners[0]);
+    if (t.height > probe.margin) return false;
+    t.corners[1] = probe.placed.to_local(corners[1]);
+    t.corners[2] = probe.placed.to_local(corners[2]);
     for (std::size_t i = 0; i < 3; ++i) {
-        t.outward[i] = normalized(cross(t.corners[(i + 1) % 3] - t.corners[i], t.normal));
-        if (probe.is_beyond(t.corners[i], t.outward[i])) return false;
-    }
-    for (std::size_t i = 0; i < 3; ++i) {
-        const std::uint32_t neighbour = placed.surface.neighbour(index, static_cast<int>(i));
-        if (neighbour == TriangleSurface::no_neighbour) {
-            t.bend_sine[i] = 0;
-            t.bend_cosine[i] = -1;
-            t.open = true;
-            continue;
-        }
-        // Towards the outside the neighbour's normal leans away over a convex edge, back over a concave one.
-        const Vec3 other = rotation * placed.surface.normal(neighbour);
-        const double sine = dot(other, t.outward[i]);
-        const bool convex = sine > flat_sine || (dot(other, t.normal) < 0 && sine > 0);
-        t.bend_sine[i] = convex ? sine : 0;
-        t.bend_cosine[i] = convex ? dot(other, t.normal) : 1;
-        t.open = t.open || convex;
+        t.outward[i] = normalized(cross(t.along(i), t.normal));
+        if (t.beyond(i, probe.own_inside) <= probe.margin) continue;
+        if (t.beyond(i, probe.own.support(-t.outward[i])) - probe.own.depth > probe.margin) return false;
     }
     return true;
-}
-
-// Whether a normal (from the triangle outwards) leans over an edge beyond the bend there.
-bool leans_too_far(const PlacedTriangle& t, Vec3 outwards) {
-    const double up = dot(outwards, t.normal);
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double over = dot(outwards, t.outward[i]);
-        if (over <= flat_sine) continue;
-        // Angle of lean against angle of bend: positive sine of their difference is too far.
-        const double beyond = over * t.bend_cosine[i] - up * t.bend_sine[i];
-        if (t.bend_cosine[i] <= -1 ? up < 0 : beyond > flat_sine) return true;
-    }
-    return up <= 0;
-}
-
-// Whether the normal is the triangle's own but for a lean too small to mean an edge.
-bool is_flat_to(const PlacedTriangle& t, Vec3 outwards) { return dot(outwards, t.normal) > 1 - flat_sine * flat_sine; }
-
-// The convex against the plane of the triangle, clipped to the triangle.
-void collide_along_normal(const PlacedConvex& convex, const PlacedTriangle& t, double margin, ContactRegion& region) {
-    thread_local ContactFeature face, facing;
-    region.normal = -t.normal;
-    face.clear();
-    face.normal = t.normal;
-    face.points.assign(t.corners.begin(), t.corners.end());
-    get_facing(convex, -t.normal, facing);
-    clip_to_region(face, facing, false, rounding(*convex.shape), margin, region);
-}
-
-void collide_sphere_triangle(const PlacedConvex& sphere, const PlacedTriangle& t, double margin,
-                             ContactRegion& region) {
-    // Nearest point of the triangle, by the edge regions.
-    const Vec3 center = sphere.position;
-    const double height = dot(center - t.corners[0], t.normal);
-    Vec3 nearest = center - t.normal * height;
-    bool inside = true;
-    for (std::size_t i = 0; i < 3; ++i) inside = inside && dot(center - t.corners[i], t.outward[i]) <= 0;
-    if (!inside) {
-        double least = 1e300;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Vec3 u = t.corners[i], along = t.corners[(i + 1) % 3] - u;
-            const double s = std::clamp(dot(center - u, along) / length_squared(along), 0.0, 1.0);
-            const Vec3 p = u + along * s;
-            if (distance(p, center) < least) {
-                least = distance(p, center);
-                nearest = p;
-            }
-        }
-    }
-    const double radius = sphere.shape->radius;
-    const double gap = distance(center, nearest);
-    if (gap - radius > margin) return;
-    Vec3 outwards = inside ? t.normal : normalized(center - nearest, t.normal);
-    if (!inside && leans_too_far(t, outwards)) return;
-    if (is_flat_to(t, outwards)) outwards = t.normal;
-    region.normal = -outwards;
-    region.add(center - outwards * radius, gap - radius, 0);
-}
-
-// Region of the convex with one triangle, in region.
-void collide_triangle(const PlacedConvex& convex, const PlacedTriangle& t, double margin, ContactRegion& region) {
-    region.points.clear();
-    if (convex.shape->kind == ConvexKind::sphere) {
-        collide_sphere_triangle(convex, t, margin, region);
-        return;
-    }
-    if (!t.open) {
-        collide_along_normal(convex, t, margin, region);
-        return;
-    }
-    // An edge where the surface bends away: the best normal of all, if it is this triangle's business.
-    thread_local Convex shape{ConvexKind::polytope, 0, 0, triangle_polytope({}, {1, 0, 0}, {0, 0, 1}), {}};
-    set_triangle(shape.polytope, t.corners[0], t.corners[1], t.corners[2]);
-    shape.bounds = {};
-    for (const Vec3& p : t.corners) shape.bounds.add(p);
-    PairMemory nothing;
-    collide_round(convex, {&shape, {}, {}}, margin, nothing, region);
-    if (region.points.empty()) return;
-    if (!is_flat_to(t, -region.normal) && !leans_too_far(t, -region.normal)) return;
-    region.points.clear();
-    collide_along_normal(convex, t, margin, region);
 }
 
 void add_to_groups(const ContactRegion& region, std::uint32_t triangle, std::vector<NormalGroup>& groups,
@@ -188,32 +120,33 @@ void collide_surface(const ConvexPiece& piece, std::uint32_t piece_index, const 
     thread_local std::vector<std::uint32_t> near;
     thread_local std::vector<NormalGroup> groups;
     thread_local ContactRegion region;
-
-    // Triangles near the convex, looked up in the surface's own frame.
-    const PlacedConvex convex = place(piece, pose, pose.position);
-    const PlacedConvex seen{&piece.convex,
-                            to_matrix(conjugate(placed.pose.rotation) * (pose.rotation * piece.local.rotation)),
-                            inverse_transform_point(placed.pose, transform_point(pose, piece.local.position))};
-    const Vec3 half = piece.convex.bounds.half_extents(), center = seen.to_frame(piece.convex.bounds.center());
-    const Mat3& r = seen.rotation;
-    const Vec3 reach = abs(r.x) * half.x + abs(r.y) * half.y + abs(r.z) * half.z;
+    const Probe probe(piece, pose, placed.pose, margin);
     near.clear();
-    placed.surface.find(enlarged(Bounds{center - reach, center + reach}, margin), near);
+    placed.surface.find(enlarged(probe.bounds(), margin), near);
 
     // Each triangle's contacts join those of others with nearly the same normal.
     std::size_t count = 0;
-    const Mat3 rotation = to_matrix(placed.pose.rotation);
-    const Vec3 origin = placed.pose.position - pose.position;
-    const Probe probe{Core(convex), interior_point(convex), margin};
+    const bool is_polytope = piece.convex.kind == ConvexKind::polytope;
+    PlacedTriangle triangle;
     for (const std::uint32_t index : near) {
-        PlacedTriangle triangle;
-        if (!place_corners(placed, rotation, origin, index, probe, triangle)) continue;
-        if (!place_sides(placed, rotation, index, probe, triangle)) continue;
-        collide_triangle(convex, triangle, margin, region);
+        const auto corners = placed.surface.corners(index);
+        const Vec3 across = cross(corners[1] - corners[0], corners[2] - corners[0]);
+        if (!probe.may_meet(corners, across)) continue;
+        if (!place_near(probe, corners, across / length(across), triangle)) continue;
+        triangle.half_bends = placed.surface.half_bends(index);
+        region.points.clear();
+        if (is_polytope) {
+            collide_polytope_triangle(piece.convex, triangle, margin, region);
+        } else {
+            collide_round_triangle(piece.convex, triangle, margin, region);
+        }
         if (!region.points.empty()) add_to_groups(region, index, groups, count);
     }
+
+    // Into the world.
+    const PlacedConvex own = place(piece, pose, {});
     for (std::size_t g = 0; g < count; ++g) {
-        append_manifold(groups[g].region, {}, pose.position, manifolds);
+        append_manifold(groups[g].region, own.rotation, own.position, manifolds);
         manifolds.back().piece_a = piece_index;
         manifolds.back().piece_b = groups[g].lowest_triangle;
     }

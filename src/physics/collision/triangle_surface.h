@@ -12,25 +12,29 @@
 
 namespace embody::physics {
 
-/// The triangles of a mesh or a heightfield with their neighbours, and a way to find those near a box or a ray.
+/// The triangles of a mesh or a heightfield, how they bend at their edges, and a way to find those near a box or a ray.
+/// A heightfield keeps its samples only: corners follow from a triangle's number.
 class TriangleSurface {
 public:
-    static constexpr std::uint32_t no_neighbour = 0xFFFFFFFFu;
-
     explicit TriangleSurface(const MeshShape& mesh);
     /// Triangle index = 2 * cell + half; cell = r * (columns - 1) + c; half 0 holds the corner (c, r+1).
     explicit TriangleSurface(const HeightfieldShape& field);
     ~TriangleSurface();
 
     [[nodiscard]] const Bounds& bounds() const { return bounds_; }
-    [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(triangles_.size()); }
-    [[nodiscard]] std::array<Vec3, 3> corners(std::uint32_t triangle) const;
+    [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(half_bends_.size()); }
+    [[nodiscard]] std::array<Vec3, 3> corners(std::uint32_t triangle) const {
+        if (!tree_) return corners_in_field(triangle);
+        const auto& t = triangles_[triangle];
+        return {positions_[t[0]], positions_[t[1]], positions_[t[2]]};
+    }
     /// Unit; zero for a triangle without area.
     [[nodiscard]] Vec3 normal(std::uint32_t triangle) const;
-    /// Across the edge from corner `edge` to the next one.
-    [[nodiscard]] std::uint32_t neighbour(std::uint32_t triangle, int edge) const {
-        return neighbours_[triangle][static_cast<std::size_t>(edge)];
-    }
+    /// Over the edges from each corner to the next one: the tangent of half the angle by which the surface bends away
+    /// there. 0 where it is flat (within flat_sine) or concave, infinite where it ends.
+    [[nodiscard]] const std::array<float, 3>& half_bends(std::uint32_t triangle) const { return half_bends_[triangle]; }
+    /// Of all that is kept, bytes.
+    [[nodiscard]] std::size_t memory_bytes() const;
 
     /// Appends the triangles whose bounds meet the box, ascending.
     void find(const Bounds& box, std::vector<std::uint32_t>& found) const;
@@ -40,15 +44,29 @@ public:
 
 private:
     struct Tree;
-    void link_neighbours();
+    static constexpr std::uint32_t no_neighbour = 0xFFFFFFFFu;
+    using Neighbours = std::array<std::uint32_t, 3>;
+    [[nodiscard]] std::vector<Neighbours> find_neighbours() const;
+    [[nodiscard]] Neighbours neighbours_in_field(std::uint32_t triangle) const;
+    void measure_bends(std::uint32_t triangle, const Neighbours& neighbours);
+    [[nodiscard]] std::uint32_t sample(int column, int row) const {
+        return static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(columns_) +
+               static_cast<std::uint32_t>(column);
+    }
+    [[nodiscard]] std::array<Vec3, 3> corners_in_field(std::uint32_t triangle) const;
+    void find_in_field(const Bounds& box, std::vector<std::uint32_t>& found) const;
 
-    std::vector<Vec3> positions_;
+    // Of a mesh.
+    std::vector<Vec3f> positions_;
     std::vector<std::array<std::uint32_t, 3>> triangles_;
-    std::vector<std::array<std::uint32_t, 3>> neighbours_;
-    Bounds bounds_;
-    std::unique_ptr<Tree> tree_;  ///< meshes only: a heightfield finds its cells by division
+    std::unique_ptr<Tree> tree_;
+    // Of a heightfield, which finds its cells by division.
+    std::vector<float> heights_;
     int columns_ = 0, rows_ = 0;
     double cell_x_ = 1, cell_z_ = 1;
+    // Of both.
+    std::vector<std::array<float, 3>> half_bends_;
+    Bounds bounds_;
 };
 
 }  // namespace embody::physics

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "math/vec3.h"
+
+namespace embody::physics {
+
+/// Lean that still counts as none, in radians: what floats leave of a flat surface.
+inline constexpr double flat_sine = 1e-3;
+
+/// A triangle of a surface in the frame of the convex that it meets.
+struct PlacedTriangle {
+    std::array<Vec3, 3> corners;
+    Vec3 normal;                        ///< unit
+    std::array<Vec3, 3> outward;        ///< unit, in the plane, across each edge
+    std::array<float, 3> half_bends{};  ///< of the surface at each edge: see TriangleSurface::half_bends
+
+    // The convex's point that is lowest along the normal, and how high it is over the plane, m.
+    Vec3 lowest;
+    double height = 0;
+
+    /// Whether a normal may lean over the edge.
+    [[nodiscard]] bool is_open(std::size_t edge) const { return half_bends[edge] > 0; }
+    /// Whether a normal (from the triangle outwards) at the triangle's point `at` leans over an edge on which that
+    /// point lies, beyond the bend there: the neighbour's business.
+    [[nodiscard]] bool leans_too_far(Vec3 outwards, Vec3 at) const;
+    /// Whether the normal is the triangle's own but for a lean too small to mean an edge.
+    [[nodiscard]] bool is_flat_to(Vec3 outwards) const;
+    /// How far a point is beyond an edge, in the plane, m.
+    [[nodiscard]] double beyond(std::size_t edge, Vec3 p) const { return dot(p - corners[edge], outward[edge]); }
+    /// Whether its own normal parts it from the convex more than any leaning one can.
+    [[nodiscard]] bool normal_is_best() const;
+    /// From the corner where an edge begins to the next one.
+    [[nodiscard]] Vec3 along(std::size_t edge) const { return corners[edge == 2 ? 0 : edge + 1] - corners[edge]; }
+    /// Its point nearest to `p`.
+    [[nodiscard]] Vec3 nearest_to(Vec3 p) const;
+};
+
+/// A side of the prism over a triangle. Over an edge where the surface bends away a little the side leans halfway to
+/// the neighbour's normal, so that nothing in the wedge between the two prisms is lost.
+struct PrismSide {
+    /// Tangent of half the bend (30 degrees) up to which neighbours share the wedge.
+    static constexpr float shallow_bend = 0.268F;
+
+    Vec3 outwards;
+    double offset = 0;
+
+    PrismSide(const PlacedTriangle& t, std::size_t edge) : outwards(t.outward[edge]) {
+        if (t.half_bends[edge] <= shallow_bend) outwards -= t.normal * static_cast<double>(t.half_bends[edge]);
+        // A tiny slack keeps points that lie on the side.
+        const Vec3 way = abs(t.along(edge));
+        offset = dot(outwards, t.corners[edge]) + 1e-9 * (way.x + way.y + way.z);
+    }
+    [[nodiscard]] double beyond(Vec3 p) const { return dot(outwards, p) - offset; }
+};
+
+}  // namespace embody::physics
