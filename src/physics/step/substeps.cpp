@@ -3,6 +3,7 @@
 
 #include "physics/constraint/substep_solver.h"
 #include "physics/dynamic/equations_of_motion.h"
+#include "physics/optimization/direct_islands.h"
 #include "physics/optimization/shock_propagation.h"
 #include "physics/optimization/solve_schedule.h"
 #include "physics/step/step.h"
@@ -15,13 +16,16 @@ namespace {
 struct SolveWays {
     std::vector<Island> one_by_one;  // free bodies, and all that joints hold
     std::vector<Island> few, many;   // contacts only
+    std::vector<Island> direct;      // contacts only, all at once
 };
 
-SolveWays sort_islands(const Islands& islands) {
+SolveWays sort_islands(const WorldState& world) {
     SolveWays ways;
-    for (const Island& island : islands.list) {
+    for (const Island& island : world.islands.list) {
         const bool is_wide = island.joint_count == 0 && island.contact_count > 0;
-        std::vector<Island>& way = !is_wide                                 ? ways.one_by_one
+        const bool is_direct = suits_direct_solve(island, world.islands, world.contacts, world.motion);
+        std::vector<Island>& way = is_direct                                ? ways.direct
+                                   : !is_wide                               ? ways.one_by_one
                                    : has_few_contacts(island.contact_count) ? ways.few
                                                                             : ways.many;
         way.push_back(island);
@@ -29,14 +33,22 @@ SolveWays sort_islands(const Islands& islands) {
     return ways;
 }
 
+std::span<const std::uint32_t> contacts_of(const WorldState& world, const Island& island) {
+    return std::span(world.islands.contacts).subspan(island.first_contact, island.contact_count);
+}
+
+std::span<const std::uint32_t> bodies_of(const WorldState& world, const Island& island) {
+    return std::span(world.islands.bodies).subspan(island.first_body, island.body_count);
+}
+
 // Solves all given islands, of contacts only, through the step.
 void solve_wide(WorldState& world, const std::vector<Island>& islands, double h) {
     if (islands.empty()) return;
     std::vector<std::uint32_t> order, bodies;
     for (const Island& island : islands) {
-        const auto contacts = std::span(world.islands.contacts).subspan(island.first_contact, island.contact_count);
+        const auto contacts = contacts_of(world, island);
         order.insert(order.end(), contacts.begin(), contacts.end());
-        const auto members = std::span(world.islands.bodies).subspan(island.first_body, island.body_count);
+        const auto members = bodies_of(world, island);
         bodies.insert(bodies.end(), members.begin(), members.end());
     }
     WideContactSolver& solver = world.wide_solver;
@@ -53,6 +65,16 @@ void solve_wide(WorldState& world, const std::vector<Island>& islands, double h)
     const std::size_t contacts = islands.front().contact_count;
     solver.solve(contact_passes(contacts), contact_softness(h, contacts), world.motion, world.constants, world.contacts,
                  *world.workers);
+}
+
+// Small or ill-conditioned islands of contacts only; where that fails, the sweeps take over.
+void solve_directly(WorldState& world, SolveWays& ways, double h) {
+    world.direct_solver.begin(h, world.settings.substeps);
+    for (const Island& island : ways.direct) {
+        const DirectContactSolver::List list{bodies_of(world, island), contacts_of(world, island)};
+        if (world.direct_solver.solve(list, world.motion, world.constants, world.contacts)) continue;
+        (has_few_contacts(island.contact_count) ? ways.few : ways.many).push_back(island);
+    }
 }
 
 void solve_islands(WorldState& world, const std::vector<Island>& islands, SolvePhase phase, double h) {
@@ -183,17 +205,20 @@ void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, dou
 
 void run_substeps(WorldState& world) {
     const double h = world.settings.time_step / world.settings.substeps;
-    const SolveWays ways = sort_islands(world.islands);
+    SolveWays ways = sort_islands(world);
 
     // The last one moves the kinematic bodies, which the others take from where the step found them.
+    solve_directly(world, ways, h);
     solve_wide(world, ways.few, h);
     solve_wide(world, ways.many, h);
     solve_one_by_one(world, ways.one_by_one, h);
 
     if (world.settings.shock_propagation) {
-        for (const Island& island : world.islands.list) {
-            propagate_shock(island, world.islands, world.contacts, contact_softness(h, island.contact_count),
-                            world.motion);
+        for (const std::vector<Island>* way : {&ways.few, &ways.many, &ways.one_by_one}) {
+            for (const Island& island : *way) {
+                propagate_shock(island, world.islands, world.contacts, contact_softness(h, island.contact_count),
+                                world.motion);
+            }
         }
     }
     clamp_speeds(world);

@@ -12,6 +12,7 @@
 #include "physics/collision/collision_shape.h"
 #include "physics/collision/pair_memory.h"
 #include "physics/constraint/contact.h"
+#include "physics/constraint/direct_contact_solver.h"
 #include "physics/constraint/joint.h"
 #include "physics/constraint/wide_contact_solver.h"
 #include "physics/inter/definitions/events.h"
@@ -123,6 +124,7 @@ struct WorldState {
 
     std::unique_ptr<TaskPool> workers = std::make_unique<TaskPool>(1);
     WideContactSolver wide_solver{widest_contact_kernels()};  // substeps: memory only
+    DirectContactSolver direct_solver;                        // substeps: memory only
     SolveSchedule schedule;                                   // substeps: memory only
     std::vector<Vec3> kicked_velocity;                        // substeps: linear velocity before the constraints, m/s
 

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "physics/constraint/contact_newton.h"
+#include "physics/dynamic/body_state.h"
+
+namespace embody::physics {
+
+/// Contacts of few bodies without joints, all at once by a sparse direct solve (docs/physics/direct-solver.md). Knows
+/// no island: it is given lists. Keeps its memory from step to step.
+class DirectContactSolver {
+public:
+    static constexpr std::size_t most_bodies = BlockCholesky::most_nodes;
+
+    /// Slots of movable bodies, and indices of all the contacts that they have with each other and with bodies that
+    /// stand still.
+    struct List {
+        std::span<const std::uint32_t> bodies, contacts;
+    };
+
+    /// Starts a step of `substeps` substeps of `substep` s.
+    void begin(double substep, int substeps);
+    /// Solves one list through the step: moves its bodies and hands the impulses to its contacts. Where the method does
+    /// not converge it returns false and changes nothing.
+    [[nodiscard]] bool solve(const List& list, std::span<BodyState> bodies, std::span<const BodyConstants> constants,
+                             std::span<Contact> contacts);
+
+private:
+    /// How a body moves in this step.
+    struct Motion {
+        std::uint32_t slot = 0;
+        Vec6 kick;                                       // of a substep, m/s, rad/s
+        double linear_damping = 1, angular_damping = 1;  // factors a substep
+        Vec3 acceleration;                               // m/s²
+        Vec3 way;                                        // of the centre of mass, m
+        Quat turn;
+        Vec3 hidden_momentum;  // as in BodyState
+    };
+
+    void number_bodies(std::span<const std::uint32_t> slots, std::size_t all);
+    [[nodiscard]] std::int32_t number_of(std::uint32_t slot) const;
+    bool stays_at_rest(const List& list, std::span<const BodyState> bodies, std::span<const BodyConstants> constants,
+                       std::span<Contact> contacts);
+    bool holds_at_rest(const Contact& contact);
+    void gather(const List& list, std::span<const BodyState> bodies, std::span<const BodyConstants> constants,
+                std::span<const Contact> contacts, int substeps);
+    void scatter(std::span<BodyState> bodies, std::span<const BodyConstants> constants, std::span<Contact> contacts,
+                 int substeps) const;
+    [[nodiscard]] bool is_slow() const;
+    [[nodiscard]] bool run(int substeps, std::span<const Contact> contacts);
+    void kick();
+    void drift();
+    void measure_gaps(std::span<const Contact> contacts);
+    void mend_positions(std::span<const Contact> contacts);
+
+    double substep_ = 0;  // s, of the step's settings
+    int substeps_ = 0;
+    double h_ = 0;  // s, of the running solve
+    std::vector<Motion> motion_;
+    std::vector<NewtonBody> masses_;
+    std::vector<Vec6> velocity_, free_velocity_, shift_;
+    std::vector<DirectPatch> patches_;
+    ContactNewton newton_;
+    std::vector<std::int32_t> number_of_slot_;  // valid where motion_ agrees
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: MIT
+#include "physics/constraint/direct_patch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace embody::physics {
+
+namespace {
+
+constexpr double lag_tolerance = 0.02;  // share of its size by which the metric of friction may be wrong
+constexpr double near = 1e-3;           // m/s: new points that part no faster are taken as loaded first
+
+double wanted_load(const DirectPatch::Point& point, Vec3 normal_part, double stiffness) {
+    return point.guess - stiffness * (dot(row_of(point), normal_part) + point.limit);
+}
+
+// Friction is bounded in the metric of (u_1, u_2, ρ w_n) at the centre of pressure: r = R friction_part.
+Mat3 metric(const DirectPatch& patch) {
+    return {{1, 0, 0}, {0, 1, 0}, {-patch.center_t, patch.center_s, patch.spin_arm}};
+}
+
+Vec3 wanted_friction(const DirectPatch& patch, Vec3 friction_part, double stiffness) {
+    const Vec3 f = patch.friction_guess;
+    const double spin = f.z - patch.center_s * f.y + patch.center_t * f.x;
+    const Vec3 guess{f.x, f.y, patch.spin_arm > 0 ? spin / patch.spin_arm : 0};
+    return guess - stiffness * (metric(patch) * friction_part);
+}
+
+double friction_bound(const DirectPatch& patch) {
+    return (patch.sticks ? patch.friction_static : patch.friction_dynamic) * patch.lagged_load;
+}
+
+// In the metric ℓ (w_1, w_2).
+Vec3 wanted_rolling(const DirectPatch& patch, Vec3 normal_part, double stiffness) {
+    const double arm = patch.rolling_arm;
+    return patch.rolling_guess / arm - Vec3{normal_part.y, normal_part.z, 0} * (stiffness * arm);
+}
+
+Vec3 bounded(Vec3 wanted, double bound) {
+    const double size = length(wanted);
+    return size <= bound ? wanted : wanted * (bound / size);
+}
+
+// −∂ bounded(y) / ∂u for y = … − k u.
+Mat3 slope_of(Vec3 wanted, double bound, double stiffness) {
+    const double size = length(wanted);
+    if (size <= bound) return Mat3::identity() * stiffness;
+    const Vec3 direction = wanted / size;
+    return (Mat3::identity() - outer(direction, direction)) * (stiffness * bound / size);
+}
+
+// From the metric back to the anchor.
+Vec3 friction_at_anchor(const DirectPatch& patch, Vec3 y) { return transpose(metric(patch)) * y; }
+
+Vec3 rolling_at_anchor(const DirectPatch& patch, Vec3 y) {
+    return {y.x * patch.rolling_arm, y.y * patch.rolling_arm, 0};
+}
+
+// Writes down friction and rolling resistance and adds them to the normal part.
+void note_impulse(DirectPatch& patch, Vec3 normal_part, Vec3 friction_y, Vec3 rolling_y) {
+    patch.friction = friction_at_anchor(patch, friction_y);
+    patch.rolling = rolling_at_anchor(patch, rolling_y);
+    patch.impulse = {normal_part + Vec3{0, patch.rolling.x, patch.rolling.y}, patch.friction};
+}
+
+void add_rolling_slope(DirectPatch& patch, const Mat3& slope) {
+    const double square = patch.rolling_arm * patch.rolling_arm;
+    patch.normal_slope.y += Vec3{0, slope.x.x, slope.x.y} * square;
+    patch.normal_slope.z += Vec3{0, slope.y.x, slope.y.y} * square;
+}
+
+}  // namespace
+
+DirectPatch make_patch(std::uint32_t index, const Contact& contact, double substep_share) {
+    DirectPatch patch;
+    patch.contact = index;
+    patch.normal = contact.normal;
+    patch.tangent_1 = contact.tangent_1;
+    patch.tangent_2 = contact.tangent_2;
+    patch.friction_static = contact.material.friction_static;
+    patch.friction_dynamic = contact.material.friction_dynamic;
+    patch.rolling_arm = contact.material.friction_rolling;
+    patch.torsion_arm = contact.material.friction_torsional;
+    patch.count = contact.count;
+
+    // The anchor.
+    for (int i = 0; i < contact.count; ++i) {
+        const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        patch.arm_a += point.arm_a;
+        patch.arm_b += point.arm_b;
+    }
+    patch.arm_a = patch.arm_a / contact.count;
+    patch.arm_b = patch.arm_b / contact.count;
+
+    patch.sticks = true;
+    for (int i = 0; i < contact.count; ++i) {
+        const ContactPoint& from = contact.points[static_cast<std::size_t>(i)];
+        DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
+        const Vec3 offset = from.arm_a - patch.arm_a;
+        point.s = dot(offset, patch.tangent_1);
+        point.t = dot(offset, patch.tangent_2);
+        point.gap = from.separation;
+        point.guess = from.impulse.normal * substep_share;
+        point.total = from.total.normal;
+        point.inactive_until = from.inactive_until;
+        const double f1 = from.impulse.tangent_1 * substep_share, f2 = from.impulse.tangent_2 * substep_share;
+        patch.friction_guess += Vec3{f1, f2, point.s * f2 - point.t * f1};
+        patch.sticks = patch.sticks && from.sticks;
+    }
+    const Vec3 turning = contact.turning * substep_share;
+    patch.friction_guess.z += dot(turning, patch.normal);
+    patch.rolling_guess = {dot(turning, patch.tangent_1), dot(turning, patch.tangent_2), 0};
+    return patch;
+}
+
+void write_patch(const DirectPatch& patch, double substep_share, Contact& contact) {
+    const auto to_float = [](double number) { return static_cast<float>(number); };
+    const Vec3 f = patch.friction_guess * substep_share;
+    for (int i = 0; i < contact.count; ++i) {
+        const DirectPatch::Point& from = patch.points[static_cast<std::size_t>(i)];
+        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        point.impulse = {to_float(from.guess * substep_share), to_float(f.x / contact.count),
+                         to_float(f.y / contact.count)};
+        point.total.normal = to_float(from.total);
+        point.total.tangent_1 += to_float(patch.friction_total.x / contact.count);
+        point.total.tangent_2 += to_float(patch.friction_total.y / contact.count);
+        point.sticks = patch.sticks;
+    }
+    const Vec3 rolling = patch.rolling_guess * substep_share;
+    contact.turning = to_vec3f(f.z * patch.normal + rolling.x * patch.tangent_1 + rolling.y * patch.tangent_2);
+}
+
+namespace {
+
+// Normal load, centre of pressure and lever arm of the spin.
+void lag_loads(DirectPatch& patch, bool from_guess) {
+    double sum = 0, s = 0, t = 0;
+    const auto points = std::span(patch.points).first(static_cast<std::size_t>(patch.count));
+    const auto load_of = [&](const DirectPatch::Point& point) {
+        return from_guess ? point.guess : std::max(point.foretold, 0.0);
+    };
+    for (const DirectPatch::Point& point : points) {
+        sum += load_of(point);
+        s += load_of(point) * point.s;
+        t += load_of(point) * point.t;
+    }
+    patch.lagged_load = sum;
+    if (sum > 0) {
+        s /= sum;
+        t /= sum;
+    }
+    double arm = 0;
+    for (const DirectPatch::Point& point : points) {
+        const double along = point.s - s, across = point.t - t;
+        arm += load_of(point) * std::sqrt(along * along + across * across);
+    }
+    arm = sum > 0 ? arm / sum : 0;
+    if (patch.friction_dynamic > 0) arm += patch.torsion_arm / patch.friction_dynamic;
+
+    // A centre that hardly moved stays, so that the factors serve again.
+    const double change =
+        std::fabs(s - patch.center_s) + std::fabs(t - patch.center_t) + std::fabs(arm - patch.spin_arm);
+    if (change <= lag_tolerance * patch.spin_arm) return;
+    patch.center_s = s;
+    patch.center_t = t;
+    patch.spin_arm = arm;
+}
+
+// The loads that the last step foretold bound the friction: those at a velocity that is not yet the right one may be
+// anything. What sticks keeps its metric, so that the factors serve again.
+void lag_foretold_loads(DirectPatch& patch) {
+    double load = 0;
+    for (int i = 0; i < patch.count; ++i) {
+        load += std::max(patch.points[static_cast<std::size_t>(i)].foretold, 0.0);
+    }
+    if (patch.is_new || patch.is_sliding || patch.is_rolling) {
+        lag_loads(patch, false);
+    } else {
+        patch.lagged_load = load;
+    }
+}
+
+}  // namespace
+
+void begin_substep(DirectPatch& patch, double time, double duration) {
+    for (int i = 0; i < patch.count; ++i) {
+        DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
+        point.is_active = time > point.inactive_until;
+        if (!point.is_active) point.guess = 0;
+        point.limit = std::max(point.gap, 0.0) / duration;
+    }
+    lag_loads(patch, true);
+    patch.is_new = patch.lagged_load == 0;
+}
+
+void end_substep(DirectPatch& patch) {
+    for (int i = 0; i < patch.count; ++i) {
+        DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
+        point.guess = point.load;
+        point.total += point.load;
+    }
+    patch.friction_guess = patch.friction;
+    patch.friction_total += patch.friction;
+    patch.rolling_guess = patch.rolling;
+    if (patch.lagged_load > 0) patch.sticks = !patch.is_sliding;
+}
+
+void foretell_loads(DirectPatch& patch, double stiffness) {
+    for (int i = 0; i < patch.count; ++i) {
+        DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
+        const double change = stiffness * dot(row_of(point), patch.change.normal_part);
+        point.foretold = point.is_loaded ? point.load - change : 0;
+    }
+}
+
+bool breaks_away(DirectPatch& patch) {
+    const bool breaks = patch.is_sliding && patch.sticks && patch.friction_static > patch.friction_dynamic;
+    if (breaks) patch.sticks = false;
+    return breaks;
+}
+
+void evaluate(DirectPatch& patch, double stiffness) {
+    const PatchTwist& velocity = patch.velocity;
+    // Normal loads.
+    Vec3 normal_part;
+    patch.normal_slope = Mat3::zero();
+    for (int i = 0; i < patch.count; ++i) {
+        DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
+        const double wanted = wanted_load(point, velocity.normal_part, stiffness);
+        point.is_loaded = point.is_active && wanted > 0;
+        point.load = point.is_loaded ? wanted : 0;
+        if (!point.is_loaded) continue;
+        const Vec3 row = row_of(point);
+        normal_part += row * point.load;
+        patch.normal_slope += outer(row, row * stiffness);
+    }
+    lag_foretold_loads(patch);
+    const bool is_new = patch.lagged_load == 0 && normal_part.x > 0;
+
+    // Friction. What has just met sticks at first; where the sliding turned round within the step it stops, rather than
+    // slide to and fro for ever.
+    const Vec3 wanted = wanted_friction(patch, velocity.friction_part, stiffness);
+    const bool turned_round = patch.is_sliding && dot(wanted, patch.slide_direction) < 0;
+    const double bound = is_new || turned_round ? length(wanted) : friction_bound(patch);
+    patch.is_sliding = length(wanted) > bound;
+    if (patch.is_sliding) patch.slide_direction = normalized(wanted);
+    const Mat3 r = metric(patch);
+    patch.friction_slope = transpose(r) * slope_of(wanted, bound, stiffness) * r;
+
+    // Rolling resistance.
+    Vec3 rolling;
+    patch.is_rolling = false;
+    if (patch.rolling_arm > 0) {
+        const Vec3 wanted_turn = wanted_rolling(patch, velocity.normal_part, stiffness);
+        patch.is_rolling = length_squared(wanted_turn) > patch.lagged_load * patch.lagged_load;
+        rolling = bounded(wanted_turn, patch.lagged_load);
+        add_rolling_slope(patch, slope_of(wanted_turn, patch.lagged_load, stiffness));
+    }
+    note_impulse(patch, normal_part, bounded(wanted, bound), rolling);
+}
+
+void evaluate_as_before(DirectPatch& patch, double stiffness) {
+    // A new patch has no memory: what does not part is loaded, and sticks.
+    const PatchTwist& velocity = patch.velocity;
+    Vec3 normal_part;
+    patch.normal_slope = Mat3::zero();
+    for (int i = 0; i < patch.count; ++i) {
+        DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
+        const double wanted = wanted_load(point, velocity.normal_part, stiffness);
+        point.is_loaded = point.is_active && (point.guess > 0 || (patch.is_new && wanted > -near * stiffness));
+        point.load = point.is_loaded ? wanted : 0;
+        if (!point.is_loaded) continue;
+        const Vec3 row = row_of(point);
+        normal_part += row * point.load;
+        patch.normal_slope += outer(row, row * stiffness);
+    }
+    const bool is_loaded = patch.normal_slope != Mat3::zero();
+    if (!is_loaded) patch.sticks = true;
+
+    // What slid goes on with the same friction; the next round turns it.
+    const Mat3 r = metric(patch);
+    patch.is_sliding = !patch.sticks;
+    patch.slide_direction = {};
+    patch.is_rolling = false;
+    const bool has_friction = is_loaded && patch.friction_static > 0;
+    Vec3 stopping;
+    if (has_friction) stopping = wanted_friction(patch, patch.sticks ? velocity.friction_part : Vec3{}, stiffness);
+    patch.friction_slope = has_friction && patch.sticks ? transpose(r) * r * stiffness : Mat3::zero();
+    Vec3 rolling;
+    if (patch.rolling_arm > 0 && is_loaded) {
+        rolling = wanted_rolling(patch, velocity.normal_part, stiffness);
+        add_rolling_slope(patch, Mat3::identity() * stiffness);
+    }
+    note_impulse(patch, normal_part, stopping, rolling);
+}
+
+PatchTwist relative_twist(const DirectPatch& patch, std::span<const Vec6> bodies) {
+    Vec3 velocity, spin;
+    if (patch.b >= 0) {
+        const Vec6& b = bodies[static_cast<std::size_t>(patch.b)];
+        spin = b.angular();
+        velocity = b.linear() + cross(spin, patch.arm_b);
+    }
+    if (patch.a >= 0) {
+        const Vec6& a = bodies[static_cast<std::size_t>(patch.a)];
+        spin = spin - a.angular();
+        velocity = velocity - (a.linear() + cross(a.angular(), patch.arm_a));
+    }
+    return {{dot(velocity, patch.normal), dot(spin, patch.tangent_1), dot(spin, patch.tangent_2)},
+            {dot(velocity, patch.tangent_1), dot(velocity, patch.tangent_2), dot(spin, patch.normal)}};
+}
+
+void add_impulse(const DirectPatch& patch, const PatchTwist& impulse, std::span<Vec6> bodies) {
+    const Vec3 n = impulse.normal_part, f = impulse.friction_part;
+    const Vec3 force = n.x * patch.normal + f.x * patch.tangent_1 + f.y * patch.tangent_2;
+    const Vec3 torque = f.z * patch.normal + n.y * patch.tangent_1 + n.z * patch.tangent_2;
+    const auto add = [](Vec6& to, Vec3 linear, Vec3 angular) {
+        for (int i = 0; i < 3; ++i) {
+            to.value[i] += linear[i];
+            to.value[i + 3] += angular[i];
+        }
+    };
+    if (patch.b >= 0) add(bodies[static_cast<std::size_t>(patch.b)], force, torque + cross(patch.arm_b, force));
+    if (patch.a >= 0) add(bodies[static_cast<std::size_t>(patch.a)], -force, -(torque + cross(patch.arm_a, force)));
+}
+
+}  // namespace embody::physics

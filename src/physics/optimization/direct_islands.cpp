@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "physics/optimization/direct_islands.h"
+
+#include <algorithm>
+#include <array>
+
+#include "physics/constraint/direct_contact_solver.h"
+
+namespace embody::physics {
+
+namespace {
+
+constexpr std::uint32_t least_levels = 4;        // lower ones converge in the sweeps
+constexpr double least_mass_ratio = 20;          // of what lies above to what is below
+constexpr std::size_t most_products = 300;       // of 6×6 blocks, for what the sweeps could do as well
+constexpr std::size_t most_products_bad = 4000;  // where they could not
+
+/// Bodies of each level, and the extremes of their masses.
+struct Levels {
+    struct Level {
+        std::size_t bodies = 0;
+        double least_inverse_mass = 1e300, largest_inverse_mass = 0;
+    };
+    std::array<Level, DirectContactSolver::most_bodies + 1> level;
+};
+
+Levels count_levels(const Island& island, const Islands& islands, std::span<const BodyState> bodies) {
+    Levels levels;
+    for (std::uint32_t k = 0; k < island.body_count; ++k) {
+        const std::uint32_t body = islands.bodies[island.first_body + k];
+        const std::size_t place = std::min<std::size_t>(islands.level[body], island.deepest_level + 1);
+        Levels::Level& level = levels.level[std::min(place, levels.level.size() - 1)];
+        ++level.bodies;
+        level.least_inverse_mass = std::min(level.least_inverse_mass, bodies[body].inverse_mass);
+        level.largest_inverse_mass = std::max(level.largest_inverse_mass, bodies[body].inverse_mass);
+    }
+    return levels;
+}
+
+// An upper bound of what elimination level by level takes.
+std::size_t block_products(const Levels& levels) {
+    std::size_t sum = 0;
+    for (std::size_t i = 0; i + 1 < levels.level.size(); ++i) {
+        const std::size_t here = levels.level[i].bodies, both = here + levels.level[i + 1].bodies;
+        sum += here * both * both;
+    }
+    return sum;
+}
+
+// The heaviest body above another one, over that one.
+double mass_ratio(const Levels& levels) {
+    double ratio = 1, least_inverse_above = 1e300;
+    for (std::size_t i = levels.level.size(); i-- > 0;) {
+        const Levels::Level& level = levels.level[i];
+        if (level.bodies == 0) continue;
+        ratio = std::max(ratio, level.largest_inverse_mass / least_inverse_above);
+        least_inverse_above = std::min(least_inverse_above, level.least_inverse_mass);
+    }
+    return ratio;
+}
+
+bool is_moving_kinematic(const BodyState& body) {
+    return body.inverse_mass == 0 && (body.linear_velocity != Vec3{} || body.angular_velocity != Vec3{});
+}
+
+}  // namespace
+
+bool suits_direct_solve(const Island& island, const Islands& islands, std::span<const Contact> contacts,
+                        std::span<const BodyState> bodies) {
+    if (island.joint_count > 0 || island.contact_count == 0 || island.body_count < 2) return false;
+    if (island.body_count > DirectContactSolver::most_bodies) return false;
+    const Levels levels = count_levels(island, islands, bodies);
+    const bool is_bad = mass_ratio(levels) > least_mass_ratio;
+    if (!is_bad && island.deepest_level < least_levels) return false;
+    if (block_products(levels) > (is_bad ? most_products_bad : most_products)) return false;
+    for (std::uint32_t k = 0; k < island.contact_count; ++k) {
+        const Contact& contact = contacts[islands.contacts[island.first_contact + k]];
+        if (is_moving_kinematic(bodies[contact.a]) || is_moving_kinematic(bodies[contact.b])) return false;
+    }
+    return true;
+}
+
+}  // namespace embody::physics
