@@ -85,10 +85,11 @@ void sort_by_key(std::vector<Entry>& entries, std::vector<Entry>& scratch) {
 
 }  // namespace
 
-FloatBox BoxNode::joined() const {
-    FloatBox all = box(0);
+FloatBox BoxNode::joined(std::uint32_t mask) const {
+    FloatBox all = BoxNode().box(0);
     for (int k = 0; k < 3; ++k) {
-        for (std::uint32_t lane = 1; lane < lanes; ++lane) {
+        for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+            if (!(mask >> lane & 1u)) continue;
             all.lower[k] = std::min(all.lower[k], lower[k][lane]);
             all.upper[k] = std::max(all.upper[k], upper[k][lane]);
         }

@@ -63,7 +63,8 @@ struct alignas(32) BoxNode {
         }
     }
     [[nodiscard]] FloatBox box(std::uint32_t lane) const;
-    [[nodiscard]] FloatBox joined() const;
+    /// The box around those of the mask's lanes.
+    [[nodiscard]] FloatBox joined(std::uint32_t mask = 0xFF) const;
     /// Bit i: box i overlaps `box`.
     [[nodiscard]] std::uint32_t overlap_mask(const FloatBox& box) const;
 };

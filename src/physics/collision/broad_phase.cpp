@@ -63,7 +63,7 @@ struct BroadPhase::State {
     /// One worker's share of the new pairs.
     struct Finder {
         std::vector<Pair> pairs;
-        std::vector<std::uint32_t> partners;  ///< scratch
+        std::vector<std::uint32_t> partners, movable_leaves, immovable_leaves;  ///< scratch
     };
     BoxTree movable, immovable;
     std::vector<Proxy> proxies;             ///< by body
@@ -153,22 +153,32 @@ void share_among(TaskPool& workers, std::size_t count, bool is_worth_it, Work wo
 
 }  // namespace
 
-// The changed boxes of one leaf against all others. Of two movable boxes that changed, the earlier one finds the pair.
+// The changed boxes of one leaf against all others: first all of them together, then each against the leaves that they
+// meet. Of two movable boxes that changed, the earlier one finds the pair.
 void BroadPhase::State::find_pairs_of_leaf(std::uint32_t leaf, Finder& finder) const {
-    for (std::uint32_t mine = movable.changed_mask(leaf); mine != 0; mine &= mine - 1) {
-        const std::uint32_t lane = lowest_lane(mine), body = movable.value(leaf, lane);
+    const std::uint32_t mine = movable.changed_mask(leaf);
+    if (mine == 0) return;
+    const FloatBox together = movable.leaf(leaf).joined(mine);
+    const auto collect = [&](std::vector<std::uint32_t>& leaves) {
+        leaves.clear();
+        return [&leaves](std::uint32_t node, std::uint32_t) { leaves.push_back(node); };
+    };
+    movable.query(together, collect(finder.movable_leaves), all_changed ? leaf : 0);
+    immovable.query(together, collect(finder.immovable_leaves));
+
+    for (std::uint32_t rest = mine; rest != 0; rest &= rest - 1) {
+        const std::uint32_t lane = lowest_lane(rest), body = movable.value(leaf, lane);
         const FloatBox box = movable.leaf(leaf).box(lane);
-        const auto add = [&](std::uint32_t node, std::uint32_t mask) {
-            if (node <= leaf) {
-                const std::uint32_t earlier = node < leaf ? 0xFFu : (2u << lane) - 1;
-                mask &= ~(movable.changed_mask(node) & earlier);
-            }
+        for (const std::uint32_t node : finder.movable_leaves) {
+            std::uint32_t mask = movable.leaf(node).overlap_mask(box);
+            if (node < leaf) mask &= ~movable.changed_mask(node);
+            if (node == leaf) mask &= ~(mine & ((2u << lane) - 1));
             for (; mask != 0; mask &= mask - 1) add_pair(finder.pairs, body, movable.value(node, lowest_lane(mask)));
-        };
-        movable.query(box, add, all_changed ? leaf : 0);
-        immovable.query(box, [&](std::uint32_t node, std::uint32_t mask) {
+        }
+        for (const std::uint32_t node : finder.immovable_leaves) {
+            std::uint32_t mask = immovable.leaf(node).overlap_mask(box);
             for (; mask != 0; mask &= mask - 1) add_pair(finder.pairs, body, immovable.value(node, lowest_lane(mask)));
-        });
+        }
         for (const std::uint32_t other : wide) {
             if (proxies[other].fat.overlaps(box)) add_pair(finder.pairs, body, other);
         }

@@ -247,11 +247,12 @@ void compress(const Mat3& inverse_mass, const ImpactCoefficients& coefficients, 
     run_phase({inverse_mass, coefficients, Phase::compression, 0, at_least_relative(precision, state), state});
 }
 
-void release(const Mat3& inverse_mass, const ImpactCoefficients& coefficients, double work, ImpactState& state) {
+void release(const Mat3& inverse_mass, const ImpactCoefficients& coefficients, double work, ImpactState& state,
+             const ImpactPrecision& precision) {
     state.normal_work = 0;
     if (work <= 0) return;
     state.velocity.z = std::max(state.velocity.z, 0.0);
-    run_phase({inverse_mass, coefficients, Phase::restitution, work, at_least_relative({}, state), state});
+    run_phase({inverse_mass, coefficients, Phase::restitution, work, at_least_relative(precision, state), state});
 }
 
 ImpactOutcome solve_frictional_impact(const Mat3& inverse_mass, Vec3 velocity, const ImpactCoefficients& coefficients) {

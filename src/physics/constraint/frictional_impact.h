@@ -41,7 +41,8 @@ void compress(const Mat3& inverse_mass, const ImpactCoefficients& coefficients, 
               const ImpactPrecision& precision = {});
 
 /// Integrates eq. (3) on until the normal work of this phase has reached `work` (J, >= 0).
-void release(const Mat3& inverse_mass, const ImpactCoefficients& coefficients, double work, ImpactState& state);
+void release(const Mat3& inverse_mass, const ImpactCoefficients& coefficients, double work, ImpactState& state,
+             const ImpactPrecision& precision = {});
 
 /// One point's collision from start to end. `inverse_mass` is A = J M⁻¹ Jᵀ, symmetric and positive definite (1/kg).
 ImpactOutcome solve_frictional_impact(const Mat3& inverse_mass, Vec3 velocity, const ImpactCoefficients& coefficients);

@@ -63,8 +63,7 @@ void make_ready(ImpactWork& work, std::span<const BodyState> bodies) {
 
 // The end of a compression without its path. If it ends in sticking, the impulse is the one that stops the point,
 // whatever the path; a slide that hardly turns goes along its mean direction. False: neither.
-bool estimate_compression(const Mat3& a, const ImpactCoefficients& c, ImpactState& state) {
-    constexpr double least_cosine = 0.9;  // of the turning of a slide
+bool estimate_compression(const Mat3& a, const ImpactCoefficients& c, double least_cosine, ImpactState& state) {
     const Vec3 u = state.velocity;
     const double slip = std::sqrt(u.x * u.x + u.y * u.y);
     Vec3 direction = slip > 0 ? Vec3{u.x / slip, u.y / slip, 0} : Vec3{};
@@ -94,10 +93,10 @@ bool estimate_compression(const Mat3& a, const ImpactCoefficients& c, ImpactStat
     return true;
 }
 
-// Whether the compression of one more round may be estimated: sites that only rest on each other, once the collision
-// itself has been followed, or all of them.
+// Whether the compression of one more round may be estimated: all sites, or those that only rest on each other once
+// the collision itself has been followed.
 bool may_estimate(const ImpactWork& work, SlidePath path, std::size_t round) {
-    return work.site->coefficients.restitution <= 0 && (path == SlidePath::estimated || round > 0);
+    return path == SlidePath::estimated || (work.site->coefficients.restitution <= 0 && round > 0);
 }
 
 // The site that approaches fastest, nullptr if none does. The earlier site wins unless a later one is faster by more
@@ -123,7 +122,7 @@ int compress_all(std::vector<ImpactWork>& works, std::span<BodyState> bodies, Sl
     }
     // Many sites need not come to the last digit: the substeps hold what is left.
     const bool is_rough = works.size() > 8 || path == SlidePath::estimated;
-    const double tolerance = (is_rough ? 1e-2 : 1e-4) * fastest + 1e-12;
+    const double tolerance = (path == SlidePath::estimated ? 1e-2 : is_rough ? 1e-2 : 1e-4) * fastest + 1e-12;
     const ImpactPrecision fine{.step_share = 0.25, .end_share = 1e-6, .stop_speed = 1e-5 * fastest};
     const ImpactPrecision coarse{.step_share = 0.5, .end_share = 1e-3, .stop_speed = 1e-3 * fastest};
     const std::size_t most_rounds = 64 + 64 * works.size();
@@ -137,9 +136,14 @@ int compress_all(std::vector<ImpactWork>& works, std::span<BodyState> bodies, Sl
         const Vec3 before = worst->state.impulse;
         const ImpactCoefficients& coefficients = worst->site->coefficients;
         worst->state.velocity = site_velocity(*worst, bodies);
+        const double approach = -worst->state.velocity.z;
         const bool is_done =
-            may_estimate(*worst, path, round) && estimate_compression(worst->inverse_mass, coefficients, worst->state);
-        if (!is_done) {
+            may_estimate(*worst, path, round) &&
+            estimate_compression(worst->inverse_mass, coefficients, round == 0 ? 0.9 : 0.5, worst->state);
+        if (is_done) {
+            // Along a straight path.
+            worst->compression_work += 0.5 * approach * (worst->state.impulse.z - before.z);
+        } else {
             const bool is_fine = round == 0 && path == SlidePath::followed;
             compress(worst->inverse_mass, coefficients, worst->state, is_fine ? fine : coarse);
             worst->compression_work -= worst->state.normal_work;
@@ -150,11 +154,13 @@ int compress_all(std::vector<ImpactWork>& works, std::span<BodyState> bodies, Sl
 }
 
 // Stronge's expansion of a site that collided alone.
-void expand_alone(ImpactWork& work, std::span<BodyState> bodies) {
+void expand_alone(ImpactWork& work, std::span<BodyState> bodies, SlidePath path) {
+    const ImpactPrecision precision =
+        path == SlidePath::estimated ? ImpactPrecision{.step_share = 0.5, .end_share = 1e-3} : ImpactPrecision{};
     const double e = work.site->coefficients.restitution;
     const Vec3 before = work.state.impulse;
     work.state.velocity = site_velocity(work, bodies);
-    release(work.inverse_mass, work.site->coefficients, e * e * work.compression_work, work.state);
+    release(work.inverse_mass, work.site->coefficients, e * e * work.compression_work, work.state, precision);
     work.expansion = work.state.impulse - before;
     apply(work, work.expansion, bodies);
 }
@@ -226,7 +232,7 @@ void limit_expansion(std::vector<ImpactWork>& works, std::span<BodyState> bodies
 }
 
 // Restitution of all sites. Returns whether there was any.
-bool expand(std::vector<ImpactWork>& works, std::span<BodyState> bodies, int taking_part) {
+bool expand(std::vector<ImpactWork>& works, std::span<BodyState> bodies, int taking_part, SlidePath path) {
     bool any = false;
     for (ImpactWork& work : works) {
         work.compression = work.state.impulse;
@@ -235,7 +241,7 @@ bool expand(std::vector<ImpactWork>& works, std::span<BodyState> bodies, int tak
     if (!any) return false;
     if (taking_part == 1) {
         for (ImpactWork& work : works) {
-            if (work.compression_work > 0) expand_alone(work, bodies);
+            if (work.compression_work > 0) expand_alone(work, bodies, path);
         }
     } else {
         expand_together(works, bodies);
@@ -257,7 +263,7 @@ ImpactReport solve_impact_group(std::span<ImpactSite> sites, std::span<BodyState
     ImpactReport report;
     const int taking_part = compress_all(works, bodies, path);
     report.converged = taking_part >= 0;
-    const bool expanded = expand(works, bodies, taking_part);
+    const bool expanded = expand(works, bodies, taking_part, path);
     if (expanded && works.size() > 1 && report.converged) report.converged = compress_all(works, bodies, path) >= 0;
 
     for (ImpactWork& work : works) {

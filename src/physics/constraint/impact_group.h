@@ -27,7 +27,7 @@ struct ImpactReport {
 /// How the path of each site's sliding over the normal impulse is found.
 enum class SlidePath {
     followed,   ///< eq. (3) integrated
-    estimated,  ///< sites without a bounce: by the impulse that ends in sticking, else along the slide's mean direction
+    estimated,  ///< by the impulse that ends in sticking, else along the slide's mean direction
 };
 
 /// A site at work: its frame and what has happened to it.

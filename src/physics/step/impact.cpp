@@ -27,6 +27,7 @@ namespace {
 
 constexpr double patch_gap = 5e-4;   // m: corners this near to the first one collide together with it
 constexpr double near_share = 0.05;  // of a body's size
+constexpr double heap_slack = 0.02;  // of a step: in a heap, impacts this near in time may change places
 constexpr int most_bounces = 3;      // of one contact in a step; later impacts do not bounce (Zeno's ball)
 constexpr int most_impacts = 5;      // of one contact in a step; then the contact solver stops it
 
@@ -142,7 +143,7 @@ bool ImpactStage::is_near(const Contact& contact, double time) const {
 // The contact region at the moment of impact, found at the bodies' places then: the prediction used the normal of the
 // start of the step. Follows the closing surfaces (secant) for a few rounds. False: they pass each other.
 bool ImpactStage::refine(const Contact& contact, double& time, Manifold& manifold) {
-    const bool is_rough = paths_.hits_heap(contact);
+    const bool is_rough = paths_.hits_heap(contact) && !paths_.bounces(contact);
     const int most_rounds = is_rough ? 2 : 8;
     const double start = paths_.earliest_time(contact);
     const double tolerance = is_rough ? patch_gap : ImpactPaths::touch_gap;
@@ -337,14 +338,15 @@ void ImpactStage::take(const ImpactEvent& event) {
     Contact& contact = world_.contacts[event.contact];
     double time = event.time;
     Manifold manifold;
-    const bool is_rough = paths_.hits_heap(contact), as_found = is_rough && is_near(contact, time);
+    const bool in_heap = paths_.hits_heap(contact), is_rough = in_heap && !paths_.bounces(contact);
+    const bool as_found = is_rough && is_near(contact, time);
     if (!as_found) {
         if (!refine(contact, time, manifold)) {
             // They pass each other: the region found at the start must not hold them up.
             if (is_open_at_end(contact)) paths_.leave_open(contact);
             return;
         }
-        if (!memory_.events.empty() && time > memory_.events.front().time + 1e-12) {
+        if (!memory_.events.empty() && time > memory_.events.front().time + (in_heap ? heap_slack * step_ : 1e-12)) {
             memory_.events.push_back({time, event.contact, ++memory_.version[event.contact]});
             std::push_heap(memory_.events.begin(), memory_.events.end(), std::greater<>());
             return;
@@ -352,13 +354,14 @@ void ImpactStage::take(const ImpactEvent& event) {
     }
     list_contacts();
     memory_.sites.clear();
-    const bool may_bounce = memory_.impacts[event.contact]++ < most_bounces;
+    const bool may_bounce = memory_.impacts[event.contact]++ < most_bounces && paths_.bounces(contact);
+    if (may_bounce) paths_.note_bounce(contact);
     if (as_found) {
         add_point_sites(contact, time);
     } else {
         add_manifold_sites(contact, manifold, time, may_bounce);
     }
-    solve(event.contact, time, is_rough ? SlidePath::estimated : SlidePath::followed);
+    solve(event.contact, time, in_heap ? SlidePath::estimated : SlidePath::followed);
 
     // What the moved bodies touch next is to be predicted anew.
     for (const ImpactMemory::Moved& moved : memory_.bodies) {

@@ -24,6 +24,7 @@ struct ImpactMemory {
     // By body.
     std::vector<std::uint8_t> is_supported;  ///< a contact carried it in the last step
     std::vector<double> last_time;           ///< its last impact in this step, s
+    std::vector<double> liveliness;          ///< product of the restitutions of its bounces in this step
     std::vector<float> speed_gain;           ///< most that its free motion can add to an approach in the step, m/s
 
     // By contact; the lists of each body's contacts once there is an impact at all.

@@ -16,6 +16,7 @@ ImpactPaths::ImpactPaths(WorldState& world)
       substep_(step_ / world.settings.substeps) {
     const std::size_t count = world.motion.size();
     memory_.last_time.assign(count, 0);
+    memory_.liveliness.assign(count, 1);
     memory_.is_supported.assign(count, 0);
     for (const ContactGlance& contact : world.contact_glances) {
         if (contact.was_loaded) memory_.is_supported[contact.a] = memory_.is_supported[contact.b] = 1;
@@ -50,21 +51,32 @@ double ImpactPaths::earliest_time(const Contact& contact) const {
     return std::max(memory_.last_time[contact.a], memory_.last_time[contact.b]);
 }
 
+bool ImpactPaths::bounces(const Contact& contact) const {
+    return contact.material.restitution > 0 && memory_.liveliness[contact.a] > least_liveliness &&
+           memory_.liveliness[contact.b] > least_liveliness;
+}
+
+void ImpactPaths::note_bounce(const Contact& contact) {
+    for (const std::uint32_t body : {contact.a, contact.b}) {
+        if (world_.motion[body].inverse_mass > 0) memory_.liveliness[body] *= contact.material.restitution;
+    }
+}
+
 bool ImpactPaths::hits_heap(const Contact& contact) const {
     const auto is_carried = [&](std::uint32_t body) {
         return memory_.is_supported[body] && world_.motion[body].inverse_mass > 0;
     };
-    return contact.material.restitution <= 0 && (is_carried(contact.a) || is_carried(contact.b));
+    return is_carried(contact.a) || is_carried(contact.b);
 }
 
 // Classification (paper, eq. 4): slower contacts rest. Loaded ones and ones that do not bounce must be far faster to
 // count as a collision: the contact solver stops them as well. If they also touch already there is none to come.
 double ImpactPaths::slowest_speed(const Contact& contact) const {
-    const bool bounces = contact.material.restitution > 0;
-    if (contact.was_touching && !bounces) return never;
+    const bool can_bounce = bounces(contact);
+    if (contact.was_touching && !can_bounce) return never;
     const double acceleration = dot(contact.normal, world_.settings.gravity);
     const double slowest = std::max(slowest_impact, 2 * std::fabs(acceleration) * substep_);
-    return contact.was_loaded || !bounces ? 5 * slowest : slowest;
+    return contact.was_loaded || !can_bounce ? 5 * slowest : slowest;
 }
 
 bool ImpactPaths::is_surely_slow(const ContactGlance& glance) const {
@@ -115,11 +127,11 @@ ImpactPaths::Gap ImpactPaths::gap_at(const Contact& contact, const ContactPoint&
     return gap_between(contact, point, motion_at(contact.a, time), motion_at(contact.b, time));
 }
 
-// The first time at which the point touches, `never` if it does not within the step.
-double ImpactPaths::touch_time(const Contact& contact, const ContactPoint& point, double start) const {
-    const Gap first = gap_at(contact, point, start);
+// The first time from `start` on at which a point touches whose gap is `first` then and `last` at the end of the step;
+// `never` if it does not.
+double ImpactPaths::touch_time(const Contact& contact, const ContactPoint& point, double start, Gap first,
+                               Gap last) const {
     if (first.size <= touch_gap) return start;
-    const Gap last = gap_at(contact, point, step_);
     if (last.size > 0) {
         // Open at both ends; a parabola that opens upwards may dip through in between.
         const double acceleration = step_ > start ? (last.rate - first.rate) / (step_ - start) : 0;
@@ -161,7 +173,7 @@ double ImpactPaths::predict(Contact& contact) {
 
     // Along straight paths: certain for what keeps away or is slow, and enough for what hits a heap.
     const double start = earliest_time(contact);
-    const bool straight = hits_heap(contact);
+    const bool straight = hits_heap(contact) && !bounces(contact);
     double first = never;
     bool is_certain = true;
     for (std::size_t i = 0; i < count; ++i) {
@@ -177,15 +189,28 @@ double ImpactPaths::predict(Contact& contact) {
 }
 
 double ImpactPaths::predict_exactly(Contact& contact, double slowest) {
+    struct Motions {
+        Motion a, b;
+    };
+    const auto at = [&](double time) { return Motions{motion_at(contact.a, time), motion_at(contact.b, time)}; };
     const double start = earliest_time(contact);
+    const Motions now = at(0), end = at(step_), begin = start > 0 ? at(start) : now;
+    Motions at_first;
     double first = never;
     for (int i = 0; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        const Gap now = gap_at(contact, point, 0);
-        const bool stays_open = now.size > 0 && gap_at(contact, point, step_).size > 0;
-        mark_open(point, now.rate < -slowest && stays_open, step_);
-        const double time = touch_time(contact, point, start);
-        if (time < first && gap_at(contact, point, time).rate < -slowest) first = time;
+        const auto gap = [&](const Motions& m) { return gap_between(contact, point, m.a, m.b); };
+        const Gap gap_now = gap(now), gap_end = gap(end);
+        mark_open(point, gap_now.rate < -slowest && gap_now.size > 0 && gap_end.size > 0, step_);
+
+        // Whatever is still apart when an earlier point touches comes later.
+        if (first < never && gap(at_first).size > touch_gap) continue;
+        const double time = touch_time(contact, point, start, start > 0 ? gap(begin) : gap_now, gap_end);
+        if (time >= first) continue;
+        const Motions then = at(time);
+        if (gap(then).rate >= -slowest) continue;
+        first = time;
+        at_first = then;
     }
     return first;
 }

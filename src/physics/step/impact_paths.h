@@ -14,6 +14,7 @@ public:
     static constexpr double never = 1e300;
     static constexpr double touch_gap = 1e-6;       ///< m: bodies this near touch
     static constexpr double slowest_impact = 0.02;  ///< m/s: slower contacts rest
+    static constexpr double least_liveliness = 0.05;
 
     /// Classifies the bodies by what the touch stage noted of their contacts.
     explicit ImpactPaths(WorldState& world);
@@ -31,7 +32,11 @@ public:
     };
     [[nodiscard]] Gap gap_at(const Contact& contact, const ContactPoint& point, double time) const;
 
-    /// Whether a contact without a bounce hits what others carry: one of many contacts that stop it together.
+    /// Whether the contact has a bounce, and neither body has bounced so often in this step that hardly any speed is
+    /// left of the first one (Zeno's ball).
+    [[nodiscard]] bool bounces(const Contact& contact) const;
+    void note_bounce(const Contact& contact);
+    /// Whether it hits what others carry: one of many contacts that stop it together.
     [[nodiscard]] bool hits_heap(const Contact& contact) const;
     /// Whether no point can close as fast as an impact does: most contacts of a heap at rest, told by what the touch
     /// stage noted of them. Holds for bodies that had no impact in this step.
@@ -52,7 +57,8 @@ private:
     };
     [[nodiscard]] Motion motion_at(std::uint32_t body, double time) const;
     [[nodiscard]] double slowest_speed(const Contact& contact) const;
-    [[nodiscard]] double touch_time(const Contact& contact, const ContactPoint& point, double start) const;
+    [[nodiscard]] double touch_time(const Contact& contact, const ContactPoint& point, double start, Gap first,
+                                    Gap last) const;
     double predict_exactly(Contact& contact, double slowest);
 
     WorldState& world_;
