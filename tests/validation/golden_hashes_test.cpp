@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The bits that ten scenes come to: the same for gcc and clang, Debug and Release, any number of lanes and workers.
-// Whoever changes a formula or an order of summation changes them, and says so by putting in the new table, which
-//     EMBODY_GOLDEN_HASHES=print test_validation --gtest_filter=GoldenHashes.AreTheSameInEveryBuild
-// prints. What builds the scenes uses no library functions but square roots, so that it gives the same bits, too.
+// Whoever changes a formula or an order of summation changes them, and says so by committing golden_hashes.txt, which
+//     EMBODY_GOLDEN_HASHES=write test_validation --gtest_filter=GoldenHashes.AreTheSameInEveryBuild
+// writes anew. What builds the scenes uses no library functions but square roots, so that it gives the same bits, too.
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -200,26 +201,47 @@ GoldenScene meddled_heap() {
 
 constexpr std::array checkpoints{10, 60, 240};  // steps
 
+using Hashes = std::array<std::uint64_t, checkpoints.size()>;
+
 struct Golden {
     const char* name;
     GoldenScene (*build)();
-    std::array<std::uint64_t, checkpoints.size()> hashes;
 };
 
-constexpr Golden table[] = {
-    {"balls_and_boxes", balls_and_boxes, {0x7ca40a70539fde45, 0xca6c15f4c2307967, 0xf5c97662cc21f238}},
-    {"round_shapes", round_shapes, {0x1a5c296486dbf5c2, 0x258b9aacf6a51e3e, 0x4e26d1d5738201d3}},
-    {"hulls", hulls, {0xdb1eb06a770cf420, 0x5dbe83f6e50e6a77, 0xdd8ef2f1ecb99985}},
-    {"compounds", compounds, {0x7b140b5f1a155c92, 0xca2b4cd0efaa57d8, 0x36fed5b5b7f21269}},
-    {"terrain", terrain, {0x65e5bb1319a5e7e3, 0x4825584009130585, 0x05da5bb43a2ae1a9}},
-    {"column", column, {0x6e6ff6bcd4d53391, 0xd89c4b0844976aa7, 0xd89c4b0844976aa7}},
-    {"pyramid", pyramid, {0x61ae68fd4128da34, 0xceba7861c8e71a4e, 0x30bf272247762409}},
-    {"bouncing_tumblers", bouncing_tumblers, {0xc47992d60551c24b, 0xdfa00527dc7fdd8e, 0xbfa6eedda12460bc}},
-    {"mechanisms", mechanisms, {0x558d8285924ab69b, 0x6527f06b8fa97d11, 0xf29dc82a05438dbf}},
-    {"meddled_heap", meddled_heap, {0x08c48118e8882047, 0xf49a7e7b363ff4dd, 0x3ce586e285bc8aa9}},
+constexpr Golden scenes[] = {
+    {"balls_and_boxes", balls_and_boxes},
+    {"round_shapes", round_shapes},
+    {"hulls", hulls},
+    {"compounds", compounds},
+    {"terrain", terrain},
+    {"column", column},
+    {"pyramid", pyramid},
+    {"bouncing_tumblers", bouncing_tumblers},
+    {"mechanisms", mechanisms},
+    {"meddled_heap", meddled_heap},
 };
 
-using Hashes = std::array<std::uint64_t, checkpoints.size()>;
+constexpr const char* table_file = EMBODY_SOURCE_DIR "/tests/validation/golden_hashes.txt";
+
+// Lines of a scene's name and its hashes in hexadecimal digits.
+std::map<std::string, Hashes> read_table() {
+    std::map<std::string, Hashes> table;
+    std::ifstream file(table_file);
+    std::string name;
+    while (file >> name) {
+        for (std::uint64_t& hash : table[name]) file >> std::hex >> hash;
+    }
+    return table;
+}
+
+void write_table(const std::map<std::string, Hashes>& table) {
+    std::ofstream file(table_file);
+    for (const auto& [name, hashes] : table) {
+        file << name;
+        for (const std::uint64_t hash : hashes) file << ' ' << std::hex << hash;
+        file << '\n';
+    }
+}
 
 // Null hashes where the processor has not as many lanes.
 Hashes run_golden(const Golden& golden, int workers, int lanes) {
@@ -240,39 +262,31 @@ Hashes run_golden(const Golden& golden, int workers, int lanes) {
     return hashes;
 }
 
-void expect_same(const Golden& golden, const Hashes& hashes) {
+void expect_same(const Golden& golden, const Hashes& hashes, const Hashes& expected) {
     for (std::size_t k = 0; k < checkpoints.size(); ++k) {
-        ASSERT_EQ(hashes[k], golden.hashes[k]) << golden.name << " differs within " << checkpoints[k] << " steps";
+        ASSERT_EQ(hashes[k], expected[k]) << golden.name << " differs within " << checkpoints[k] << " steps";
     }
-}
-
-void print_row(const Golden& golden, const Hashes& hashes) {
-    std::printf("    {\"%s\", %s, {", golden.name, golden.name);
-    for (std::size_t k = 0; k < hashes.size(); ++k) {
-        std::printf("%s0x%016llx", k > 0 ? ", " : "", static_cast<unsigned long long>(hashes[k]));
-    }
-    std::printf("}},\n");
 }
 
 TEST(GoldenHashes, AreTheSameInEveryBuild) {
     const char* wish = std::getenv("EMBODY_GOLDEN_HASHES");
-    const bool prints = wish != nullptr && std::string_view(wish) == "print";
-    for (const Golden& golden : table) {
+    const bool writes = wish != nullptr && std::string_view(wish) == "write";
+    auto table = read_table();
+    for (const Golden& golden : scenes) {
         const Hashes hashes = run_golden(golden, 1, 0);
-        if (prints) {
-            print_row(golden, hashes);
-        } else {
-            expect_same(golden, hashes);
-        }
+        if (!writes) expect_same(golden, hashes, table[golden.name]);
+        table[golden.name] = hashes;
     }
+    if (writes) write_table(table);
 }
 
 TEST(GoldenHashes, AreTheSameForOtherWorkersAndLanes) {
+    auto table = read_table();
     for (const auto& [workers, lanes] : {std::pair(3, 4), std::pair(8, 8)}) {
         SCOPED_TRACE(std::to_string(workers) + " workers, " + std::to_string(lanes) + " lanes");
-        for (const Golden& golden : table) {
+        for (const Golden& golden : scenes) {
             const Hashes hashes = run_golden(golden, workers, lanes);
-            if (hashes != Hashes{}) expect_same(golden, hashes);
+            if (hashes != Hashes{}) expect_same(golden, hashes, table[golden.name]);
         }
     }
 }

@@ -106,7 +106,7 @@ void WideContactSolver::begin(std::span<const std::uint32_t> movable, std::span<
         BodyState& state = bodies[body];
         const BodyConstants& c = constants[body];
         state.hidden_momentum = {};
-        if (has_gyroscopic_torque(state, c, step)) split_gyroscopic(state, c, step);
+        if (has_gyroscopic_torque(state, c, step)) split_gyroscopic_of_turns(state, c, step, substeps);
         append_row(body, state);
 
         // As kick() of equations_of_motion.h, for changes: v₀ + Δ ← (v₀ + Δ + a h) d.
@@ -290,15 +290,7 @@ void WideContactSolver::write_body(std::size_t row, BodyState& state, const Body
     state.linear_velocity += Vec3{v[0], v[1], v[2]};
     state.angular_velocity += Vec3{v[3], v[4], v[5]};
     const Quat turn{x[3], x[4], x[5], x[6]};
-    if (turn == state.turn) return;
-
-    // The momentum that turned with the mean velocity belongs to another velocity of the turned body.
-    const bool has_hidden = state.hidden_momentum != Vec3{};
-    const Vec3 momentum = has_hidden ? momentum_of(state, constants) : Vec3{};
-    state.turn = turn;
-    state.rotation = normalized(turn * state.start_rotation);
-    refresh_inertia(state, constants);
-    if (has_hidden) state.angular_velocity = state.inverse_inertia * momentum;
+    if (turn != state.turn) finish_turn(state, constants, turn);
 }
 
 void WideContactSolver::write_contact(const Batch& batch, std::uint32_t lane, Contact& contact) const {

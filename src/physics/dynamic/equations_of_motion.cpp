@@ -50,6 +50,28 @@ Vec3 solve_midpoint(const Mat3& inertia, Vec3 start_momentum, Vec3 guess, double
     return omega;
 }
 
+// The time of one Cayley turn that equals `parts` of them by time / parts each; 0 beyond five twelfths of a circle.
+// tan(n a) is told by the powers of 1 + i tan(a), without a library function.
+double time_of_one_turn(double speed, double time, int parts) {
+    const double tangent = speed * time / (2 * parts);
+    if (tangent == 0) return time;
+    double real = 1, imaginary = 0;
+    for (int i = 0; i < parts; ++i) {
+        const double last = real;
+        real -= tangent * imaginary;
+        imaginary += tangent * last;
+        if (!(imaginary < 3.7 * real)) return 0;
+    }
+    return 2 * imaginary / (real * speed);
+}
+
+// Gives the body the mean velocity (body axes) and keeps the rest of its momentum aside.
+void hide_momentum(BodyState& state, const BodyConstants& constants, Vec3 mean) {
+    const Vec3 omega = rotate_inverse(state.rotation, state.angular_velocity);
+    state.angular_velocity = rotate(state.rotation, mean);
+    state.hidden_momentum = rotate(state.rotation, constants.inertia * (omega - mean));
+}
+
 }  // namespace
 
 void split_gyroscopic(BodyState& state, const BodyConstants& constants, double time) {
@@ -57,9 +79,45 @@ void split_gyroscopic(BodyState& state, const BodyConstants& constants, double t
     if (constants.is_isotropic || state.angular_velocity == Vec3{}) return;
     const Vec3 omega = rotate_inverse(state.rotation, state.angular_velocity);
     const Vec3 momentum = constants.inertia * omega;
-    const Vec3 mean = solve_midpoint(constants.inertia, momentum, omega, time);
-    state.angular_velocity = rotate(state.rotation, mean);
-    state.hidden_momentum = rotate(state.rotation, momentum - constants.inertia * mean);
+    hide_momentum(state, constants, solve_midpoint(constants.inertia, momentum, omega, time));
+}
+
+void split_gyroscopic_of_turns(BodyState& state, const BodyConstants& constants, double time, int parts) {
+    state.hidden_momentum = {};
+    if (constants.is_isotropic || state.angular_velocity == Vec3{}) return;
+    const Vec3 omega = rotate_inverse(state.rotation, state.angular_velocity);
+    const Vec3 momentum = constants.inertia * omega;
+
+    // The time of the one turn depends on the mean velocity that it is solved for, but weakly.
+    constexpr int rounds = 3;
+    Vec3 mean = omega;
+    for (int i = 0; i < rounds; ++i) {
+        const double whole = time_of_one_turn(length(mean), time, parts);
+        if (whole == 0) return;
+        mean = solve_midpoint(constants.inertia, momentum, mean, whole);
+    }
+    hide_momentum(state, constants, mean);
+}
+
+void finish_turn(BodyState& state, const BodyConstants& constants, Quat turn) {
+    const Quat before = state.rotation;
+    state.turn = turn;
+    state.rotation = normalized(turn * state.start_rotation);
+    refresh_inertia(state, constants);
+    const bool has_hidden = state.hidden_momentum != Vec3{};
+    if (constants.is_isotropic) return;
+
+    // In the body's axes: the momentum before, and after the turn what the world holds fast: that momentum, or without
+    // the split the velocity.
+    const Vec3 momentum = constants.inertia * rotate_inverse(before, state.angular_velocity) +
+                          rotate_inverse(before, state.hidden_momentum);
+    const Vec3 velocity = has_hidden
+                              ? constants.inverse_inertia * rotate_inverse(state.rotation, rotate(before, momentum))
+                              : rotate_inverse(state.rotation, state.angular_velocity);
+    const double allowed = dot(momentum, constants.inverse_inertia * momentum);
+    const double energy = dot(velocity, constants.inertia * velocity);
+    const double scale = energy > allowed ? std::sqrt(allowed / energy) : 1;
+    if (has_hidden || scale < 1) state.angular_velocity = rotate(state.rotation, velocity * scale);
 }
 
 Vec3 momentum_of(const BodyState& state, const BodyConstants& constants) {

@@ -14,6 +14,15 @@ void kick(BodyState& state, const BodyConstants& constants, double time);
 /// Turns the angular velocity into the mean over the coming drift of `time` (implicit midpoint of Euler's equations).
 void split_gyroscopic(BodyState& state, const BodyConstants& constants, double time);
 
+/// The same for a drift in which the body turns `parts` times by the mean velocity over time / parts. Does nothing
+/// where it would turn by more than five twelfths of a circle: then the midpoint tells nothing.
+void split_gyroscopic_of_turns(BodyState& state, const BodyConstants& constants, double time, int parts);
+
+/// Sets the rotation to `turn` · start_rotation, and the angular velocity to the one that the turned body has: by what
+/// split_gyroscopic_of_turns() hid, and never with more energy. A turn by other velocities than the split's (contacts
+/// change them) is not the one that Euler's equations ask for, and a thin rod would gain from each such mismatch.
+void finish_turn(BodyState& state, const BodyConstants& constants, Quat turn);
+
 /// Moves the body by its mean velocities over `time` and turns the angular velocity into the one at the end.
 void drift(BodyState& state, const BodyConstants& constants, double time);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
+#include "physics/dynamic/equations_of_motion.h"
 #include "physics/step/step.h"
 
 namespace embody::physics {
@@ -54,8 +55,10 @@ void stop_tunnelling(WorldState& world) {
         const double share = first_touch(world, body);
         if (share >= 1) continue;
 
-        // Put back to the touch; the velocity stays, so that the next step's impact stage sees the collision.
+        // Put back to the touch; the velocity stays, so that the next step's impact stage sees the collision. It stays
+        // as the body's axes see it: in the world's, the inertia that turns back would take or give energy.
         BodyState& state = world.motion[body];
+        const Vec3 spin = rotate_inverse(state.rotation, state.angular_velocity);
         state.center = state.start_center + (state.center - state.start_center) * share;
         const Quat end = dot(state.rotation, state.start_rotation) < 0
                              ? Quat{-state.rotation.x, -state.rotation.y, -state.rotation.z, -state.rotation.w}
@@ -63,6 +66,8 @@ void stop_tunnelling(WorldState& world) {
         const Quat& begin = state.start_rotation;
         state.rotation = normalized(Quat{begin.x + share * (end.x - begin.x), begin.y + share * (end.y - begin.y),
                                          begin.z + share * (end.z - begin.z), begin.w + share * (end.w - begin.w)});
+        state.angular_velocity = rotate(state.rotation, spin);
+        refresh_inertia(state, world.constants[body]);
     }
 }
 
