@@ -12,10 +12,10 @@
 namespace embody::scaling {
 
 /// columns_awake: cubes at rest in columns of four, sleep off. heap_falling: balls and boxes that fall ten deep, and
-/// tumble. columns_asleep: the first, asleep.
-enum class Scene : std::uint8_t { columns_awake, heap_falling, columns_asleep };
+/// tumble. columns_asleep: the first, asleep. one_awake: the same, and one ball more that rolls far from them.
+enum class Scene : std::uint8_t { columns_awake, heap_falling, columns_asleep, one_awake };
 
-inline constexpr Scene scenes[] = {Scene::columns_awake, Scene::heap_falling, Scene::columns_asleep};
+inline constexpr Scene scenes[] = {Scene::columns_awake, Scene::heap_falling, Scene::columns_asleep, Scene::one_awake};
 inline constexpr int sizes[] = {1'000, 10'000, 100'000, 1'000'000};
 
 std::string_view name_of(Scene scene);

@@ -20,6 +20,7 @@ double nanoseconds_a_body(const Cost& cost) { return cost.step_milliseconds * 1e
 
 nlohmann::json to_json(scaling::Scene scene, const Cost& cost, std::optional<double> growth) {
     return {{"scene", scaling::name_of(scene)},
+            {"what", scaling::what_of(scene)},
             {"bodies", cost.bodies},
             {"contacts", cost.contacts},
             {"step_ms", cost.step_milliseconds},

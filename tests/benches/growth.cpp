@@ -20,6 +20,7 @@ TEST(scaling, only_what_is_awake_has_contacts) {
     // Ten columns: each cube on the one below or on the ground.
     EXPECT_EQ(measure(Scene::columns_awake, 40)->contacts, 40u);
     EXPECT_EQ(measure(Scene::columns_asleep, 40)->contacts, 0u);
+    EXPECT_EQ(measure(Scene::one_awake, 40)->contacts, 1u);
     EXPECT_GT(measure(Scene::heap_falling, 40)->contacts, 0u);
 }
 

@@ -367,8 +367,10 @@ const std::vector<BroadPhase::Pair>& BroadPhase::update_pairs(TaskPool& workers)
     s.sort_found();
     s.sorted.resize(s.kept.size() + s.found.size());
     std::merge(s.kept.begin(), s.kept.end(), s.found.begin(), s.found.end(), s.sorted.begin());
-    s.pairs.swap(s.sorted);
-    ++s.version;
+    if (s.sorted != s.pairs) {
+        s.pairs.swap(s.sorted);
+        ++s.version;
+    }
 
     for (const std::uint32_t body : s.changed) s.has_changed[body] = 0;
     s.changed.clear();

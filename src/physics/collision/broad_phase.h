@@ -37,7 +37,7 @@ public:
     [[nodiscard]] bool has_too_many_pairs() const;
     static constexpr std::size_t most_partners = 32, most_immovable_partners = 256;
 
-    /// Another number after each change of the pairs or of who has an index.
+    /// Another number after each change of the pairs.
     [[nodiscard]] std::uint64_t pairs_version() const;
 
     /// Calls `visit` for each body whose enlarged bounds overlap `box`, in ascending order of index.

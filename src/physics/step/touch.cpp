@@ -64,23 +64,50 @@ bool meets_in_step(const WorldState& world, const Contact& contact) {
     return false;
 }
 
+// Lists the pairs that can have contacts or wake a sleeper; what sleeps, or stands for ever, costs nothing.
+void list_live_pairs(WorldState& world) {
+    TouchMemory& memory = world.touch_memory;
+    const std::uint64_t pairs_version = world.broad_phase.pairs_version();
+    if (memory.pairs_version == pairs_version && memory.awake_version == world.awake_version) return;
+    memory.pairs_version = pairs_version;
+    memory.awake_version = world.awake_version;
+    memory.live.clear();
+    const auto is_awake = [&](std::uint32_t body) {
+        return !world.is_asleep(body) && world.record(body).definition.kind != BodyKind::static_body;
+    };
+    const std::vector<BroadPhase::Pair>& pairs = *world.pairs;
+    for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+        if (is_awake(pairs[i].a) || is_awake(pairs[i].b)) memory.live.push_back(i);
+    }
+}
+
+// Wakes the sleeping one of two bodies, with its group, if the other one is about to touch it.
+bool wake_if_touched(WorldState& world, const BroadPhase::Pair& pair, std::vector<Manifold>& manifolds) {
+    const bool a_sleeps = world.is_asleep(pair.a), b_sleeps = world.is_asleep(pair.b);
+    if (a_sleeps == b_sleeps || !is_moving(world, a_sleeps ? pair.b : pair.a)) return false;
+    if (!may_collide(world, pair.a, pair.b)) return false;
+    collide_pair(world, pair.a, pair.b, manifolds);
+    for (const Manifold& manifold : manifolds) {
+        if (!meets_in_step(world, make_contact(pair.a, pair.b, manifold, world.motion))) continue;
+        wake_group_of(world, a_sleeps ? pair.a : pair.b);
+        return true;
+    }
+    return false;
+}
+
 // Wakes every sleeping group that an awake body is about to touch.
 void wake_touched(WorldState& world, std::vector<Manifold>& manifolds) {
     if (world.sleepers.empty()) return;
-    bool woke = false;
-    for (const BroadPhase::Pair& pair : *world.pairs) {
-        const bool a_sleeps = world.is_asleep(pair.a), b_sleeps = world.is_asleep(pair.b);
-        if (a_sleeps == b_sleeps || !is_moving(world, a_sleeps ? pair.b : pair.a)) continue;
-        if (!may_collide(world, pair.a, pair.b)) continue;
-        collide_pair(world, pair.a, pair.b, manifolds);
-        for (const Manifold& manifold : manifolds) {
-            if (!meets_in_step(world, make_contact(pair.a, pair.b, manifold, world.motion))) continue;
-            wake_group_of(world, a_sleeps ? pair.a : pair.b);
-            woke = true;
-            break;
-        }
+    const std::vector<BroadPhase::Pair>& pairs = *world.pairs;
+    for (const std::uint32_t live : world.touch_memory.live) {
+        if (!wake_if_touched(world, pairs[live], manifolds)) continue;
+
+        // What woke may wake more: any later pair counts now.
+        for (std::size_t i = live + 1; i < pairs.size(); ++i) wake_if_touched(world, pairs[i], manifolds);
+        gather_awake(world);
+        list_live_pairs(world);
+        return;
     }
-    if (woke) gather_awake(world);
 }
 
 // Contacts follow their bodies for as long as the pair has moved less than this since it was compared, m. Every corner
@@ -217,11 +244,11 @@ void touch_pair(const WorldState& world, PairRecord& record, PairTouch& touch, s
 void list_old_contacts(WorldState& world) {
     const std::vector<Contact>& last = world.last_contacts;
     std::vector<PairTouch>& touches = world.touch_memory.pairs;
-    touches.resize(world.pair_records.size());
+    touches.resize(world.touch_memory.live.size());
     std::uint32_t next = 0;
     const auto count = static_cast<std::uint32_t>(last.size());
     for (std::size_t i = 0; i < touches.size(); ++i) {
-        const BroadPhase::Pair pair = world.pair_records[i].pair;
+        const BroadPhase::Pair pair = world.pair_records[world.touch_memory.live[i]].pair;
         while (next < count && BroadPhase::Pair{last[next].a, last[next].b} < pair) ++next;
         touches[i].old_first = next;
         while (next < count && BroadPhase::Pair{last[next].a, last[next].b} == pair) ++next;
@@ -243,11 +270,11 @@ void place_contacts(WorldState& world, const PairTouch& touch) {
     }
 }
 
-// Calls work(worker, first, last) for shares of the pairs, on all workers where there are enough pairs.
+// Calls work(worker, first, last) for shares of the live pairs, on all workers where there are enough of them.
 template <class Work>
 void share_pairs(WorldState& world, Work work) {
     constexpr std::size_t fewest_shared = 200;
-    const std::size_t count = world.pair_records.size();
+    const std::size_t count = world.touch_memory.live.size();
     if (count < fewest_shared) return work(0, Share{0, count});
     const int workers = world.workers->workers();
     world.workers->run([&](int worker) { work(worker, share_of(count, worker, workers)); });
@@ -259,6 +286,7 @@ void find_contacts(WorldState& world) {
     // From here on the bodies' motion tells how contacts change.
     TouchMemory& memory = world.touch_memory;
     memory.workers.resize(static_cast<std::size_t>(world.workers->workers()));
+    list_live_pairs(world);
     wake_touched(world, memory.workers[0].manifolds);
     for (const std::uint32_t body : world.awake) {
         BodyState& state = world.motion[body];
@@ -267,7 +295,7 @@ void find_contacts(WorldState& world) {
         state.turn = {};
     }
 
-    // What each pair has.
+    // What each live pair has.
     update_records(world);
     world.last_contacts.swap(world.contacts);
     list_old_contacts(world);
@@ -275,7 +303,8 @@ void find_contacts(WorldState& world) {
         TouchMemory::Worker& own = memory.workers[static_cast<std::size_t>(worker)];
         own.found.clear();
         for (std::size_t i = share.first; i < share.last; ++i) {
-            touch_pair(world, world.pair_records[i], memory.pairs[i], static_cast<std::uint8_t>(worker), own);
+            PairRecord& record = world.pair_records[memory.live[i]];
+            touch_pair(world, record, memory.pairs[i], static_cast<std::uint8_t>(worker), own);
         }
     });
 

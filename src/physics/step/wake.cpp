@@ -21,6 +21,7 @@ void add_touching(std::vector<TouchingPair>& touching, const WorldState& world, 
 // Walks through all bodies: only where the set has changed, so that sleepers cost nothing.
 void list_awake(WorldState& world) {
     world.awake_changed = false;
+    ++world.awake_version;
     world.awake.clear();
     world.asleep_when_gathered = 0;
     for (std::uint32_t body = 0; body < world.bodies.slot_count(); ++body) {

@@ -81,7 +81,9 @@ struct TouchMemory {
         std::vector<Contact> found;
         std::vector<Manifold> manifolds;
     };
-    std::vector<PairTouch> pairs;  ///< one for each of pair_records
+    std::vector<std::uint32_t> live;  ///< ascending indices of the pairs in which at least one body is awake
+    std::uint64_t pairs_version = 0, awake_version = 0;  ///< that live was listed of
+    std::vector<PairTouch> pairs;                        ///< one for each of live
     std::vector<Worker> workers;
 };
 
@@ -114,6 +116,7 @@ struct WorldState {
     std::vector<std::uint32_t> awake;                      // wake: slots of moving bodies, ascending
     std::uint32_t asleep_when_gathered = 0;                // wake: dynamic bodies that slept when awake was listed
     bool awake_changed = true;                             // face, wake, substeps, sleep: awake must be listed anew
+    std::uint64_t awake_version = 0;                       // wake: counts the lists of awake
     std::vector<Contact> contacts;                         // touch; impulses: impact, substeps
     std::vector<ContactGlance> contact_glances;            // touch
     ImpactMemory impact_memory;                            // impact
