@@ -55,9 +55,26 @@ struct ShapeRayHit {
 std::optional<ShapeRayHit> cast_ray(const CollisionShape& shape, const Transform& pose, Vec3 origin, Vec3 direction,
                                     double max_distance);
 
-/// Time of impact in [0, 1] of shape a moving linearly by `motion_a` and turning to `pose_a_end`'s rotation while b
-/// stands still, by conservative advancement; std::nullopt if they stay farther apart than `target_separation`. 0 where
-/// they overlap at the start: ask only for pairs that do not touch yet. a is not static-only.
+/// The path of a shape: `center` (in its frame) on a straight line, turning about it along the shortest arc.
+struct Sweep {
+    Transform start, end;
+    Vec3 center;
+};
+/// What counts as an impact.
+struct ImpactSearch {
+    double target_separation = 0;  ///< m: so near is a touch
+    /// Parts as near as this at the start are passed over for the whole way, m; by default none.
+    double touching_at_start = -1e300;
+    /// So is a touch after which the two end no deeper in each other along the direction of the touch, m: sliding and
+    /// rolling. By default none.
+    double harmless_depth = -1e300;
+};
+/// First time in [0, 1] at which the two are as near as the target, by conservative advancement; std::nullopt if they
+/// stay farther apart. Parts that move away from each other do not count. a is not static-only.
+std::optional<double> time_of_impact(const CollisionShape& a, const Sweep& path_a, const CollisionShape& b,
+                                     const Sweep& path_b, const ImpactSearch& search);
+/// The same of a turning about its origin while b stands still. 0 where they overlap at the start: ask only for pairs
+/// that do not touch yet.
 std::optional<double> time_of_impact(const CollisionShape& a, const Transform& pose_a_start,
                                      const Transform& pose_a_end, const CollisionShape& b, const Transform& pose_b,
                                      double target_separation);

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: MIT
+// Bodies that move or turn by more than their thickness in a step are swept over their whole way, and put back to where
+// they first touch what they would pass. Their velocities stay: the next step finds the touch and solves it as an
+// impact, so momentum is kept whatever is hit. Nothing else of the world is looked at, so slow worlds pay one
+// comparison a body.
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/step/step.h"
@@ -8,41 +14,148 @@ namespace embody::physics {
 
 namespace {
 
-// A body that moves less than its thickness cannot have passed through another one unseen.
+// So near to each other the contact solver has them already, m.
+constexpr double touch_gap = 1e-3;
+
+/// A body on its way through the step, and how much of the way it may go.
+struct FastBody {
+    std::uint32_t body = 0;
+    double share = 1;
+};
+
+/// Two fast bodies that meet on their ways.
+struct Meeting {
+    double time = 1;
+    std::size_t first = 0, second = 0;  ///< among the fast bodies
+};
+
+// How far it may move without passing through another body unseen, m.
+double thickness_of(const BodyRecord& record) {
+    return (record.definition.continuous ? 0.25 : 1.0) * record.inner_radius;
+}
+
+// Whether a body turns so far that points outside of its inner ball sweep its thickness; by less than a quarter of a
+// radian the contacts themselves follow it.
+bool turns_fast(const BodyRecord& record, const BodyState& state) {
+    constexpr double least_half_sine = 0.125;
+    const double half_sine = length(Vec3{state.turn.x, state.turn.y, state.turn.z});
+    return half_sine > least_half_sine && 2 * half_sine * (record.reach - record.inner_radius) > thickness_of(record);
+}
+
 bool may_tunnel(const WorldState& world, std::uint32_t body) {
     const BodyRecord& record = world.record(body);
     if (!record.shape || !record.definition.enabled || !world.is_dynamic(body)) return false;
-    const double moved = distance(world.motion[body].center, world.motion[body].start_center);
-    return moved > (record.definition.continuous ? 0.25 : 1.0) * record.inner_radius;
-}
-
-bool collides(const BodyDefinition& a, const BodyDefinition& b) {
-    return b.enabled && (a.collision_group & b.collision_mask) && (b.collision_group & a.collision_mask);
-}
-
-// The share of the step's motion after which the body first touches something, 1 if it is free.
-double first_touch(const WorldState& world, std::uint32_t body) {
-    const BodyRecord& record = world.record(body);
     const BodyState& state = world.motion[body];
-    BodyState start = state;
-    start.center = state.start_center;
-    start.rotation = state.start_rotation;
-    const Transform from = body_pose(start, world.constants[body].local_center), to = world.pose(body);
-    Bounds swept = record.shape->bounds(from);
-    swept.add(record.shape->bounds(to));
+    const double thickness = thickness_of(record);
+    return length_squared(state.center - state.start_center) > thickness * thickness || turns_fast(record, state);
+}
 
-    // What the body touched at the start is the contact solver's; only what it meets on the way counts.
-    constexpr double gap = 1e-3;
+// Things that fly side by side do not pass through each other.
+bool may_pass(const WorldState& world, std::uint32_t a, std::uint32_t b) {
+    const BodyRecord &ra = world.record(a), &rb = world.record(b);
+    const BodyState &sa = world.motion[a], &sb = world.motion[b];
+    const Vec3 way = (sa.center - sa.start_center) - (sb.center - sb.start_center);
+    const double thickness = std::min(thickness_of(ra), thickness_of(rb));
+    return length_squared(way) > thickness * thickness || turns_fast(ra, sa) || turns_fast(rb, sb);
+}
+
+bool may_meet(const WorldState& world, std::uint32_t a, std::uint32_t b) {
+    const BodyDefinition &da = world.record(a).definition, &db = world.record(b).definition;
+    if (!db.enabled || !(da.collision_group & db.collision_mask) || !(db.collision_group & da.collision_mask))
+        return false;
+    return !world.jointed_pairs.contains({std::min(a, b), std::max(a, b)});
+}
+
+Sweep sweep_of(const WorldState& world, std::uint32_t body) {
+    BodyState start = world.motion[body];
+    start.center = start.start_center;
+    start.rotation = start.start_rotation;
+    const Vec3 center = world.constants[body].local_center;
+    return {body_pose(start, center), world.pose(body), center};
+}
+
+// All places of the body on its way: balls around its centre where it turns much.
+Bounds swept_bounds(const WorldState& world, std::uint32_t body, const Sweep& sweep) {
+    const BodyRecord& record = world.record(body);
+    Bounds swept = record.shape->bounds(sweep.start);
+    swept.add(record.shape->bounds(sweep.end));
+    const BodyState& state = world.motion[body];
+    if (length(Vec3{state.turn.x, state.turn.y, state.turn.z}) < 0.05) return swept;
+    const Vec3 reach{record.reach, record.reach, record.reach};
+    swept.add(Bounds{state.start_center - reach, state.start_center + reach});
+    swept.add(Bounds{state.center - reach, state.center + reach});
+    return swept;
+}
+
+std::optional<double> meeting_time(const WorldState& world, std::uint32_t a, std::uint32_t b, const Sweep& path_a,
+                                   const Sweep& path_b) {
+    // Sliding and rolling along a thing ends no deeper in it than this.
+    const BodyRecord& record = world.record(a);
+    const double harmless = record.definition.continuous ? 0 : 0.25 * record.inner_radius;
+    return time_of_impact(*record.shape, path_a, *world.record(b).shape, path_b, {touch_gap / 2, touch_gap, harmless});
+}
+
+// Puts a body back to a share of its way. The spin stays as the body's axes see it: in the world's, the inertia that
+// turns back would take or give energy.
+void put_back(WorldState& world, std::uint32_t body, double share) {
+    if (share >= 1) return;
+    BodyState& state = world.motion[body];
+    const Vec3 spin = rotate_inverse(state.rotation, state.angular_velocity);
+    state.center = state.start_center + (state.center - state.start_center) * share;
+    const Quat end = dot(state.rotation, state.start_rotation) < 0
+                         ? Quat{-state.rotation.x, -state.rotation.y, -state.rotation.z, -state.rotation.w}
+                         : state.rotation;
+    const Quat& begin = state.start_rotation;
+    state.rotation = normalized(Quat{begin.x + share * (end.x - begin.x), begin.y + share * (end.y - begin.y),
+                                     begin.z + share * (end.z - begin.z), begin.w + share * (end.w - begin.w)});
+    state.angular_velocity = rotate(state.rotation, spin);
+    refresh_inertia(state, world.constants[body]);
+}
+
+// Calls visit(other, its place among the fast ones or their number) for what a body may meet on its way.
+template <class Visit>
+void for_each_met(const WorldState& world, std::uint32_t body, const Sweep& sweep, const std::vector<FastBody>& fast,
+                  Visit&& visit) {
+    world.broad_phase.query(swept_bounds(world, body, sweep), [&](std::uint32_t other) {
+        if (other == body || !may_meet(world, body, other)) return;
+        const auto found =
+            std::lower_bound(fast.begin(), fast.end(), other,
+                             [](const FastBody& each, std::uint32_t index) { return each.body < index; });
+        const bool is_fast = found != fast.end() && found->body == other;
+        visit(other, is_fast ? static_cast<std::size_t>(found - fast.begin()) : fast.size());
+    });
+}
+
+// Fast bodies that meet each other stop where they do, the earliest first; whoever stopped is met no more.
+void stop_at_meetings(WorldState& world, std::vector<FastBody>& fast) {
+    std::vector<Meeting> meetings;
+    for (std::size_t i = 0; i < fast.size(); ++i) {
+        const std::uint32_t body = fast[i].body;
+        const Sweep sweep = sweep_of(world, body);
+        for_each_met(world, body, sweep, fast, [&](std::uint32_t other, std::size_t place) {
+            if (place <= i || place == fast.size() || !may_pass(world, body, other)) return;
+            const auto time = meeting_time(world, body, other, sweep, sweep_of(world, other));
+            if (time) meetings.push_back({*time, i, place});
+        });
+    }
+    std::stable_sort(meetings.begin(), meetings.end(),
+                     [](const Meeting& m, const Meeting& n) { return m.time < n.time; });
+    for (const Meeting& meeting : meetings) {
+        FastBody &first = fast[meeting.first], &second = fast[meeting.second];
+        if (first.share < 1 || second.share < 1) continue;
+        first.share = second.share = meeting.time;
+    }
+    for (const FastBody& each : fast) put_back(world, each.body, each.share);
+}
+
+// The share of what is left of its way after which a body first touches something that is not fast itself.
+double first_touch(const WorldState& world, std::uint32_t body, const std::vector<FastBody>& fast) {
+    const Sweep sweep = sweep_of(world, body);
     double first = 1;
-    world.broad_phase.query(swept, [&](std::uint32_t other) {
-        if (other == body || !collides(record.definition, world.record(other).definition)) return;
-        const bool jointed = world.jointed_pairs.contains({std::min(body, other), std::max(body, other)});
-        const bool other_is_fast = world.is_dynamic(other) && !record.definition.continuous;
-        if (jointed || other_is_fast) return;
-        const CollisionShape& shape = *world.record(other).shape;
-        if (separation(*record.shape, from, shape, world.pose(other), 2 * gap) <= gap) return;
-        const auto time = time_of_impact(*record.shape, from, to, shape, world.pose(other), gap / 2);
-        if (time) first = std::min(first, *time);
+    for_each_met(world, body, sweep, fast, [&](std::uint32_t other, std::size_t place) {
+        if (place < fast.size()) return;
+        const Transform pose = world.pose(other);
+        if (const auto time = meeting_time(world, body, other, sweep, {pose, pose, {}})) first = std::min(first, *time);
     });
     return first;
 }
@@ -50,25 +163,13 @@ double first_touch(const WorldState& world, std::uint32_t body) {
 }  // namespace
 
 void stop_tunnelling(WorldState& world) {
+    std::vector<FastBody> fast;
     for (const std::uint32_t body : world.awake) {
-        if (!may_tunnel(world, body)) continue;
-        const double share = first_touch(world, body);
-        if (share >= 1) continue;
-
-        // Put back to the touch; the velocity stays, so that the next step's impact stage sees the collision. It stays
-        // as the body's axes see it: in the world's, the inertia that turns back would take or give energy.
-        BodyState& state = world.motion[body];
-        const Vec3 spin = rotate_inverse(state.rotation, state.angular_velocity);
-        state.center = state.start_center + (state.center - state.start_center) * share;
-        const Quat end = dot(state.rotation, state.start_rotation) < 0
-                             ? Quat{-state.rotation.x, -state.rotation.y, -state.rotation.z, -state.rotation.w}
-                             : state.rotation;
-        const Quat& begin = state.start_rotation;
-        state.rotation = normalized(Quat{begin.x + share * (end.x - begin.x), begin.y + share * (end.y - begin.y),
-                                         begin.z + share * (end.z - begin.z), begin.w + share * (end.w - begin.w)});
-        state.angular_velocity = rotate(state.rotation, spin);
-        refresh_inertia(state, world.constants[body]);
+        if (may_tunnel(world, body)) fast.push_back({body});
     }
+    if (fast.empty()) return;
+    stop_at_meetings(world, fast);
+    for (const FastBody& each : fast) put_back(world, each.body, first_touch(world, each.body, fast));
 }
 
 }  // namespace embody::physics
