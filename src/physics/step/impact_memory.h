@@ -33,6 +33,8 @@ struct ImpactMemory {
     std::vector<std::uint32_t> first_of_body, of_body;
     bool has_lists = false;
 
+    std::size_t heap_bounces = 0;  ///< of bodies that others carry
+
     // Of the present impact.
     std::vector<ImpactEvent> events;  ///< a heap, the earliest on top
     std::vector<ImpactSite> sites;

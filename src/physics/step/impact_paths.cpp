@@ -13,7 +13,9 @@ ImpactPaths::ImpactPaths(WorldState& world)
     : world_(world),
       memory_(world.impact_memory),
       step_(world.settings.time_step),
-      substep_(step_ / world.settings.substeps) {
+      substep_(step_ / world.settings.substeps),
+      most_heap_bounces_(500 + world.awake.size() / 8) {
+    memory_.heap_bounces = 0;
     const std::size_t count = world.motion.size();
     memory_.last_time.assign(count, 0);
     memory_.liveliness.assign(count, 1);
@@ -52,11 +54,15 @@ double ImpactPaths::earliest_time(const Contact& contact) const {
 }
 
 bool ImpactPaths::bounces(const Contact& contact) const {
+    if (memory_.heap_bounces >= most_heap_bounces_ && hits_heap(contact)) return false;
     return contact.material.restitution > 0 && memory_.liveliness[contact.a] > least_liveliness &&
            memory_.liveliness[contact.b] > least_liveliness;
 }
 
 void ImpactPaths::note_bounce(const Contact& contact) {
+    if (hits_heap(contact) && ++memory_.heap_bounces == most_heap_bounces_) {
+        world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
+    }
     for (const std::uint32_t body : {contact.a, contact.b}) {
         if (world_.motion[body].inverse_mass > 0) memory_.liveliness[body] *= contact.material.restitution;
     }

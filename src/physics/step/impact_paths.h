@@ -64,6 +64,7 @@ private:
     WorldState& world_;
     ImpactMemory& memory_;
     const double step_, substep_;
+    const std::size_t most_heap_bounces_;  ///< in a step; the collapse of a large heap of bouncing bodies has no end
 };
 
 }  // namespace embody::physics

@@ -70,7 +70,10 @@ void wake_around(WorldState& world, std::uint32_t body) {
     world.to_wake.push_back(body);
     if (world.record(body).shape) {
         const Bounds bounds = enlarged(world.record(body).shape->bounds(world.pose(body)), 0.01);
-        world.broad_phase.query(bounds, [&](std::uint32_t other) { world.to_wake.push_back(other); });
+        world.broad_phase.query(bounds, [&](std::uint32_t other) {
+            world.sleep[other].quiet_time = 0;
+            if (world.is_asleep(other)) world.to_wake.push_back(other);
+        });
     }
     for (std::uint32_t i = 0; i < world.joints.slot_count(); ++i) {
         if (!world.joints.used(i)) continue;

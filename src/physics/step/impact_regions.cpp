@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+#include "physics/step/impact_regions.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace embody::physics {
+
+namespace {
+
+constexpr double patch_gap = 5e-4;   // m: corners this near to the first one collide together with it
+constexpr double near_share = 0.05;  // of a body's size
+
+double least_separation(const Manifold& manifold) {
+    double least = ImpactPaths::never;
+    for (int i = 0; i < manifold.count; ++i) {
+        least = std::min(least, manifold.points[static_cast<std::size_t>(i)].separation);
+    }
+    return least;
+}
+
+ImpactCoefficients coefficients_of(const Material& material, double restitution) {
+    return {material.friction_dynamic, material.friction_static, restitution};
+}
+
+}  // namespace
+
+void ImpactRegions::collide_at(const Contact& contact, double time) {
+    memory_.manifolds.clear();
+    const BodyRecord &a = world_.record(contact.a), &b = world_.record(contact.b);
+
+    // The touch stage's memory of the pair is of other poses, and stays so.
+    const BroadPhase::Pair pair{contact.a, contact.b};
+    const auto record = std::lower_bound(world_.pair_records.begin(), world_.pair_records.end(), pair,
+                                         [](const PairRecord& r, const BroadPhase::Pair& p) { return r.pair < p; });
+    PairMemory pair_memory = record->memory;
+    collide(*a.shape, paths_.pose_at(contact.a, time), *b.shape, paths_.pose_at(contact.b, time), 0.02, pair_memory,
+            memory_.manifolds);
+}
+
+// How fast the nearest points of the region close, m/s.
+double ImpactRegions::closing_speed(const Contact& contact, const Manifold& manifold, double time, double gap) const {
+    double speed = 0;
+    for (int i = 0; i < manifold.count; ++i) {
+        const ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
+        if (point.separation > gap + patch_gap) continue;
+        const auto velocity = [&](std::uint32_t body) {
+            return velocity_at(world_.motion[body], point.position - paths_.center_at(body, time)) +
+                   paths_.free_acceleration(body) * time;
+        };
+        speed = std::max(speed, -dot(velocity(contact.b) - velocity(contact.a), manifold.normal));
+    }
+    return speed;
+}
+
+bool ImpactRegions::is_near(const Contact& contact, double time) const {
+    const BodyState &a = world_.motion[contact.a], &b = world_.motion[contact.b];
+    const double reach_a = world_.record(contact.a).reach, reach_b = world_.record(contact.b).reach;
+    const double way = time * (length(b.linear_velocity - a.linear_velocity) + length(a.angular_velocity) * reach_a +
+                               length(b.angular_velocity) * reach_b);
+    double size = ImpactPaths::never;
+    for (const double reach : {reach_a, reach_b}) {
+        if (reach > 0) size = std::min(size, reach);
+    }
+    return way < near_share * size;
+}
+
+// Follows the closing surfaces (secant) for a few rounds.
+bool ImpactRegions::refine(const Contact& contact, double& time, Manifold& manifold) {
+    const bool is_rough = paths_.hits_heap(contact) && !paths_.bounces(contact);
+    const int most_rounds = is_rough ? 4 : 8;
+    const double start = paths_.earliest_time(contact);
+    const double tolerance = is_rough ? patch_gap : ImpactPaths::touch_gap;
+    for (int round = 0; round < most_rounds; ++round) {
+        collide_at(contact, time);
+        const auto found = std::find_if(memory_.manifolds.begin(), memory_.manifolds.end(), [&](const Manifold& m) {
+            return m.piece_a == contact.piece_a && m.piece_b == contact.piece_b;
+        });
+        if (found == memory_.manifolds.end() || found->count == 0) return false;
+        manifold = *found;
+
+        const double gap = least_separation(manifold), speed = closing_speed(contact, manifold, time, gap);
+        if (speed < ImpactPaths::slowest_impact) return false;
+        const bool is_touching = std::fabs(gap) <= tolerance || (gap < 0 && time <= start);
+        if (is_touching || (round + 1 == most_rounds && gap < (is_rough ? 2 : 10) * patch_gap)) return true;
+        time = std::max(start, time + gap / speed);
+        if (time > step_) return false;
+    }
+    return false;
+}
+
+bool ImpactRegions::is_open_at_end(const Contact& contact) {
+    collide_at(contact, step_);
+    return std::all_of(memory_.manifolds.begin(), memory_.manifolds.end(),
+                       [](const Manifold& manifold) { return least_separation(manifold) > 0; });
+}
+
+void ImpactRegions::add_site(const Contact& contact, Vec3 arm_a, Vec3 arm_b, Vec3 normal, bool may_bounce) {
+    const Vec3 velocity = velocity_at(world_.motion[contact.b], arm_b) - velocity_at(world_.motion[contact.a], arm_a);
+    const bool bounces = may_bounce && -dot(velocity, normal) >= contact.material.restitution_threshold;
+    memory_.sites.push_back({contact.a, contact.b, arm_a, arm_b, normal,
+                             coefficients_of(contact.material, bounces ? contact.material.restitution : 0), Vec3{}});
+}
+
+// A flat region collides as one patch at its middle and, where it tilts, at its corners.
+void ImpactRegions::add_manifold_sites(const Contact& contact, const Manifold& manifold, double time, bool may_bounce) {
+    const double nearest = least_separation(manifold);
+    const Vec3 center_a = paths_.center_at(contact.a, time), center_b = paths_.center_at(contact.b, time);
+    const auto add = [&](Vec3 position) {
+        add_site(contact, position - center_a, position - center_b, manifold.normal, may_bounce);
+    };
+    Vec3 sum;
+    int count = 0;
+    for (int i = 0; i < manifold.count; ++i) {
+        const ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
+        if (point.separation > nearest + patch_gap) continue;
+        sum += point.position;
+        ++count;
+    }
+    if (count > 1) add(sum / count);
+    for (int i = 0; i < manifold.count; ++i) {
+        const ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
+        if (point.separation <= nearest + patch_gap) add(point.position);
+    }
+}
+
+// The same by the region found at the start of the step.
+void ImpactRegions::add_point_sites(const Contact& contact, double time) {
+    std::array<double, Manifold::max_points> gap{};
+    double nearest = ImpactPaths::never;
+    const auto count = static_cast<std::size_t>(contact.count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const ImpactPaths::Gap now = paths_.gap_at(contact, contact.points[i], 0);
+        gap[i] = now.size + now.rate * time;
+        nearest = std::min(nearest, gap[i]);
+    }
+    Vec3 arm_a, arm_b;
+    int touching = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (gap[i] > nearest + patch_gap) continue;
+        arm_a += contact.points[i].arm_a;
+        arm_b += contact.points[i].arm_b;
+        ++touching;
+    }
+    if (touching > 1) add_site(contact, arm_a / touching, arm_b / touching, contact.normal, false);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (gap[i] > nearest + patch_gap) continue;
+        add_site(contact, contact.points[i].arm_a, contact.points[i].arm_b, contact.normal, false);
+    }
+}
+
+// Loaded contacts of the colliding bodies take part, without a bounce. Others that collide at the same time have their
+// own events: one after the other, as the balls of Newton's cradle do it, keeps the energy of elastic bodies.
+void ImpactRegions::add_loaded_neighbours(std::uint32_t contact, double time) {
+    const Contact& first = world_.contacts[contact];
+    for (const std::uint32_t body : {first.a, first.b}) {
+        if (world_.motion[body].inverse_mass == 0) continue;
+        for (std::uint32_t k = memory_.first_of_body[body]; k < memory_.first_of_body[body + 1]; ++k) {
+            const std::uint32_t other = memory_.of_body[k];
+            if (!world_.contact_glances[other].was_loaded) continue;
+            const auto& known = memory_.site_contact;
+            if (std::find(known.begin(), known.end(), other) != known.end()) continue;
+            const Contact& c = world_.contacts[other];
+            for (int i = 0; i < c.count; ++i) {
+                const ContactPoint& point = c.points[static_cast<std::size_t>(i)];
+                const ImpactPaths::Gap now = paths_.gap_at(c, point, 0);
+                if (now.size + now.rate * time > patch_gap) continue;
+                add_site(c, point.arm_a, point.arm_b, c.normal, false);
+                memory_.site_contact.push_back(other);
+            }
+        }
+    }
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/step/impact_paths.h"
+
+namespace embody::physics {
+
+/// Where two bodies meet at the moment of an impact, and the sites of the group that collides there. Like ImpactPaths a
+/// view of the world for one step.
+class ImpactRegions {
+public:
+    ImpactRegions(WorldState& world, const ImpactPaths& paths)
+        : world_(world), memory_(world.impact_memory), paths_(paths), step_(world.settings.time_step) {}
+
+    /// Whether the region found at the start of the step is still right at `time`: the bodies have hardly moved on.
+    [[nodiscard]] bool is_near(const Contact& contact, double time) const;
+    /// The contact region at the moment of impact, found at the bodies' places then, and that moment: the prediction
+    /// used the normal of the start of the step. False: they pass each other.
+    bool refine(const Contact& contact, double& time, Manifold& manifold);
+    /// Whether the bodies are apart at the end of the step, if nothing else happens to them.
+    bool is_open_at_end(const Contact& contact);
+
+    // Each appends to the sites of the present impact.
+    void add_manifold_sites(const Contact& contact, const Manifold& manifold, double time, bool may_bounce);
+    void add_point_sites(const Contact& contact, double time);
+    /// Needs the lists of each body's contacts.
+    void add_loaded_neighbours(std::uint32_t contact, double time);
+
+private:
+    double closing_speed(const Contact& contact, const Manifold& manifold, double time, double gap) const;
+    void collide_at(const Contact& contact, double time);
+    void add_site(const Contact& contact, Vec3 arm_a, Vec3 arm_b, Vec3 normal, bool may_bounce);
+
+    WorldState& world_;
+    ImpactMemory& memory_;
+    const ImpactPaths& paths_;
+    const double step_;
+};
+
+}  // namespace embody::physics
