@@ -74,7 +74,10 @@ void collide_two(const PlacedConvex& first, const PlacedConvex& second, double m
     region.points.clear();
     find_region(pair, margin, memory, region);
     if (region.points.empty()) return;
+    const auto corners = static_cast<int>(region.points.size());
     append_manifold(region, pair.turn_a, origin + a.position, manifolds);
+    const bool is_face = memory.kind == PairMemory::Kind::face_of_a || memory.kind == PairMemory::Kind::face_of_b;
+    manifolds.back().is_whole = is_face && manifolds.back().count == corners;
     if (is_swapped) manifolds.back().normal = -manifolds.back().normal;
 }
 

@@ -33,6 +33,7 @@ void fill_lanes(Polytope& polytope) {
     }
     polytope.normal_lanes.assign(normals);
     polytope.vertex_lanes.assign(polytope.vertices);
+    polytope.rough_vertex_lanes.assign(polytope.vertices);
     polytope.reach.resize(polytope.normal_lanes.size(), polytope.reach[0]);
 }
 
@@ -59,6 +60,16 @@ void Lanes::assign(const std::vector<Vec3>& vectors) {
     const std::size_t filled = (vectors.size() + 3) / 4 * 4;
     for (std::size_t i = 0; i < filled; ++i) {
         const Vec3 v = vectors[i < vectors.size() ? i : 0];
+        x.push_back(v.x);
+        y.push_back(v.y);
+        z.push_back(v.z);
+    }
+}
+
+void RoughLanes::assign(const std::vector<Vec3>& vectors) {
+    const std::size_t filled = (vectors.size() + 7) / 8 * 8;
+    for (std::size_t i = 0; i < filled; ++i) {
+        const Vec3f v = to_vec3f(vectors[i < vectors.size() ? i : 0]);
         x.push_back(v.x);
         y.push_back(v.y);
         z.push_back(v.z);

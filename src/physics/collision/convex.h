@@ -19,6 +19,13 @@ struct Lanes {
     [[nodiscard]] std::size_t size() const { return x.size(); }
 };
 
+/// The same in single precision, to a multiple of eight.
+struct RoughLanes {
+    std::vector<float> x, y, z;
+
+    void assign(const std::vector<Vec3>& vectors);
+};
+
 /// Convex polyhedron with merged planar faces. Loops run counter-clockwise seen from outside.
 struct Polytope {
     static constexpr std::uint32_t no_face = 0xFFFFFFFFu;
@@ -41,6 +48,7 @@ struct Polytope {
     // For the separating axes, filled with the edges. `reach`: largest dot(normal, vertex) of each face, its plane's
     // offset but for what merging left; `unevenness`: how far corners lie below their faces, at most.
     Lanes vertex_lanes, normal_lanes;
+    RoughLanes rough_vertex_lanes;
     std::vector<double> reach;
     double unevenness = 0;
     // The vertices joined to each one by an edge: those of vertex v from spoke_first[v] to spoke_first[v + 1].

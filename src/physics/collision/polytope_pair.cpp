@@ -192,6 +192,7 @@ void add_face_region(const PlacedConvex& owner, const PlacedConvex& other, const
 // Where the faces' sides cut everything off though the shapes are within the margin, the nearest points alone.
 void add_nearest_points(const PlacedConvex& a, const PlacedConvex& b, double margin, PairMemory& memory,
                         ContactRegion& region) {
+    memory.kind = PairMemory::Kind::nothing;
     const CoreDistance gap = core_distance(Core(a), Core(b), margin);
     if (gap.overlap) {
         const double separation = separation_along(a, b, region.normal);

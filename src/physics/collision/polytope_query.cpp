@@ -58,7 +58,54 @@ struct Products {
     [[nodiscard]] Two at(std::size_t i) const { return load(x + i) * dx + load(y + i) * dy + load(z + i) * dz; }
 };
 
+using Four = float __attribute__((vector_size(16)));
+using FourIndices = int __attribute__((vector_size(16)));
+
+/// The highest values of four lanes and where they were met first.
+struct RoughStrand {
+    Four high{-1e30F, -1e30F, -1e30F, -1e30F};
+    FourIndices at, now;
+
+    explicit RoughStrand(int first) : at{first, first + 1, first + 2, first + 3}, now(at) {}
+    void add(Four value) {
+        const auto is_higher = value > high;
+        high = is_higher ? value : high;
+        at = is_higher ? now : at;
+        now += 8;
+    }
+};
+
 }  // namespace
+
+std::uint32_t farthest_roughly(const RoughLanes& lanes, Vec3 direction) {
+    const Vec3f d = to_vec3f(direction);
+    const Four dx{d.x, d.x, d.x, d.x}, dy{d.y, d.y, d.y, d.y}, dz{d.z, d.z, d.z, d.z};
+    const auto product = [&](std::size_t i) {
+        Four x, y, z;
+        std::memcpy(&x, lanes.x.data() + i, sizeof x);
+        std::memcpy(&y, lanes.y.data() + i, sizeof y);
+        std::memcpy(&z, lanes.z.data() + i, sizeof z);
+        return x * dx + y * dy + z * dz;
+    };
+    RoughStrand even(0), odd(4);
+    for (std::size_t i = 0; i < lanes.x.size(); i += 8) {
+        even.add(product(i));
+        odd.add(product(i + 4));
+    }
+
+    // Of equal ones the first.
+    float along = even.high[0];
+    int index = even.at[0];
+    for (const RoughStrand& strand : {even, odd}) {
+        for (int lane = 0; lane < 4; ++lane) {
+            const bool is_tie = strand.high[lane] == along && strand.at[lane] < index;
+            if (!(strand.high[lane] > along) && !is_tie) continue;
+            along = strand.high[lane];
+            index = strand.at[lane];
+        }
+    }
+    return static_cast<std::uint32_t>(index);
+}
 
 Extreme farthest(const Lanes& lanes, Vec3 direction) {
     const Products products(lanes, direction);

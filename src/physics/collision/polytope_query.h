@@ -18,6 +18,10 @@ struct Extreme {
 /// The largest of the dot products of `lanes` with `direction`; of equal ones the first.
 Extreme farthest(const Lanes& lanes, Vec3 direction);
 
+/// Index of the vector farthest along `direction`, as far as floats tell: another one may be farther by a few ten
+/// millionths of the size.
+std::uint32_t farthest_roughly(const RoughLanes& lanes, Vec3 direction);
+
 /// heights[i] = dot(normal i, point) - reach i: how high the point is over each face. Returns the highest.
 double heights_over_faces(const Polytope& polytope, Vec3 point, double* heights);
 

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "physics/collision/polytope_query.h"
 #include "physics/collision/triangle_pairs.h"
 
 namespace embody::physics {
@@ -17,6 +18,7 @@ namespace {
 struct NormalGroup {
     ContactRegion region;
     std::uint32_t lowest_triangle = 0;
+    bool has_all_corners = true;  ///< of the convex over these triangles, within the margin
 };
 
 // The triangle's point nearest to `p` (C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5).
@@ -65,6 +67,12 @@ struct Probe {
         const Vec3 extent = abs(r.x) * half.x + abs(r.y) * half.y + abs(r.z) * half.z;
         return {center - extent, center + extent};
     }
+    // Farthest point of the core in its own frame; of a hull as far as floats tell.
+    [[nodiscard]] Vec3 own_support(Vec3 direction) const {
+        const Convex& convex = *placed.shape;
+        if (convex.kind != ConvexKind::polytope || convex.is_box) return own.support(direction);
+        return convex.polytope.vertices[farthest_roughly(convex.polytope.rough_vertex_lanes, direction)];
+    }
     // Whether the convex may be within the margin of the triangle's front: by its ball, then by its extent along the
     // shortest way from the triangle to its inside, which parts most of those that are only near.
     [[nodiscard]] bool may_meet(const std::array<Vec3, 3>& corners, Vec3 across) const {
@@ -73,7 +81,7 @@ struct Probe {
         const double squared = length_squared(away);
         if (squared > reach * reach) return false;
         const Vec3 own_away = placed.direction_to_local(away);
-        const double gap = squared + dot(own_away, own.support(-own_away) - own_inside);
+        const double gap = squared + dot(own_away, own_support(-own_away) - own_inside);
         return !(gap > 0 && gap * gap > (margin + own.depth) * (margin + own.depth) * squared);
     }
 };
@@ -82,7 +90,7 @@ struct Probe {
 bool place_near(const Probe& probe, const std::array<Vec3, 3>& corners, Vec3 normal, PlacedTriangle& t) {
     t.normal = probe.placed.direction_to_local(normal);
     t.corners[0] = probe.placed.to_local(corners[0]);
-    t.lowest = probe.own.support(-t.normal) - t.normal * probe.own.depth;
+    t.lowest = probe.own_support(-t.normal) - t.normal * probe.own.depth;
     t.height = dot(t.normal, t.lowest - t.corners[0]);
     if (t.height > probe.margin) return false;
     t.corners[1] = probe.placed.to_local(corners[1]);
@@ -90,13 +98,20 @@ bool place_near(const Probe& probe, const std::array<Vec3, 3>& corners, Vec3 nor
     for (std::size_t i = 0; i < 3; ++i) {
         t.outward[i] = normalized(cross(t.along(i), t.normal));
         if (t.beyond(i, probe.own_inside) <= probe.margin) continue;
-        if (t.beyond(i, probe.own.support(-t.outward[i])) - probe.own.depth > probe.margin) return false;
+        if (t.beyond(i, probe.own_support(-t.outward[i])) - probe.own.depth > probe.margin) return false;
     }
     return true;
 }
 
-void add_to_groups(const ContactRegion& region, std::uint32_t triangle, std::vector<NormalGroup>& groups,
-                   std::size_t& count) {
+/// What one triangle adds.
+struct TriangleRegion {
+    const ContactRegion& region;
+    std::uint32_t triangle = 0;
+    bool has_all_corners = false;
+};
+
+void add_to_groups(const TriangleRegion& added, std::vector<NormalGroup>& groups, std::size_t& count) {
+    const ContactRegion& region = added.region;
     constexpr double same_normal = 0.9998;  // within 1.1 degrees
     std::size_t g = 0;
     while (g < count && dot(groups[g].region.normal, region.normal) < same_normal) ++g;
@@ -104,11 +119,13 @@ void add_to_groups(const ContactRegion& region, std::uint32_t triangle, std::vec
         if (count == groups.size()) groups.emplace_back();
         groups[g].region.points.clear();
         groups[g].region.normal = region.normal;
-        groups[g].lowest_triangle = triangle;
+        groups[g].lowest_triangle = added.triangle;
+        groups[g].has_all_corners = true;
         ++count;
     }
+    groups[g].has_all_corners = groups[g].has_all_corners && added.has_all_corners;
     for (ManifoldPoint point : region.points) {
-        point.feature = feature_name({triangle, point.feature});
+        point.feature = feature_name({added.triangle, point.feature});
         groups[g].region.points.push_back(point);
     }
 }
@@ -135,18 +152,21 @@ void collide_surface(const ConvexPiece& piece, std::uint32_t piece_index, const 
         if (!place_near(probe, corners, across / length(across), triangle)) continue;
         triangle.half_bends = placed.surface.half_bends(index);
         region.points.clear();
+        bool has_all_corners = false;
         if (is_polytope) {
-            collide_polytope_triangle(piece.convex, triangle, margin, region);
+            has_all_corners = collide_polytope_triangle(piece.convex, triangle, margin, region);
         } else {
             collide_round_triangle(piece.convex, triangle, margin, region);
         }
-        if (!region.points.empty()) add_to_groups(region, index, groups, count);
+        if (!region.points.empty()) add_to_groups({region, index, has_all_corners}, groups, count);
     }
 
     // Into the world.
     const PlacedConvex own = place(piece, pose, {});
     for (std::size_t g = 0; g < count; ++g) {
+        const auto corners = static_cast<int>(groups[g].region.points.size());
         append_manifold(groups[g].region, own.rotation, own.position, manifolds);
+        manifolds.back().is_whole = groups[g].has_all_corners && manifolds.back().count == corners;
         manifolds.back().piece_a = piece_index;
         manifolds.back().piece_b = groups[g].lowest_triangle;
     }

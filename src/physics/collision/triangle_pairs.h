@@ -10,8 +10,8 @@ namespace embody::physics {
 // A convex against one triangle of a surface, in the convex's own frame. Each fills an empty region with what of the
 // two is within the margin and is this triangle's business; its normal is set where there are points.
 
-/// A polytope.
-void collide_polytope_triangle(const Convex& convex, const PlacedTriangle& triangle, double margin,
+/// A polytope. True where the region holds all of its corners that are low over the triangle.
+bool collide_polytope_triangle(const Convex& convex, const PlacedTriangle& triangle, double margin,
                                ContactRegion& region);
 /// A sphere, capsule, cylinder or cone.
 void collide_round_triangle(const Convex& convex, const PlacedTriangle& triangle, double margin, ContactRegion& region);

@@ -170,15 +170,18 @@ void clip_by_prism_side(const PrismSide& side, std::uint32_t name, TriangleScrat
 }
 
 // Of a rich polytope all low corners over the triangle count, so that a rounded side does not stand on one small face
-// of many, another one each step.
+// of many, another one each step. Those far above the lowest one are left to later steps, however wide the margin of a
+// fast body is.
 void add_low_corners(const TriangleSearch& s, const PrismSide (&sides)[3], double level, ContactRegion& region) {
     constexpr std::size_t corners_of_a_box = 8;
     const std::vector<Vec3>& vertices = s.polytope.vertices;
     if (vertices.size() <= corners_of_a_box) return;
+    constexpr double low_share = 0.1;
     const Vec3 normal = s.triangle.normal;
+    const double highest = std::min(s.margin, s.triangle.height + low_share * s.convex.reach);
     for (std::uint32_t i = 0; i < vertices.size(); ++i) {
         const double separation = dot(normal, vertices[i]) - level;
-        if (separation > s.margin) continue;
+        if (separation > highest) continue;
         const Vec3 corner = vertices[i];
         if (sides[0].beyond(corner) > 0 || sides[1].beyond(corner) > 0 || sides[2].beyond(corner) > 0) continue;
         region.add(corner, separation, feature_name({4u, i}));
@@ -259,17 +262,19 @@ void add_nearest(const TriangleSearch& s, ContactRegion& region) {
 
 }  // namespace
 
-void collide_polytope_triangle(const Convex& convex, const PlacedTriangle& triangle, double margin,
+bool collide_polytope_triangle(const Convex& convex, const PlacedTriangle& triangle, double margin,
                                ContactRegion& region) {
     thread_local TriangleScratch scratch;
     const Vec3 size = convex.bounds.size();
     TriangleSearch s{convex, convex.polytope, triangle, margin, 1e-4 * std::min({size.x, size.y, size.z}), 0, {}};
-    if (!find_triangle_axis(s, scratch.heights)) return;
+    if (!find_triangle_axis(s, scratch.heights)) return false;
     if (s.best.kind == TriangleAxis::Kind::edges) add_crossing(s, region);
     if (s.best.kind == TriangleAxis::Kind::face) add_before_face(s, region);
-    if (!region.points.empty()) return;
+    if (!region.points.empty()) return false;
     add_over_triangle(s, scratch, region);
-    if (region.points.empty()) add_nearest(s, region);
+    if (!region.points.empty()) return true;
+    add_nearest(s, region);
+    return false;
 }
 
 }  // namespace embody::physics
