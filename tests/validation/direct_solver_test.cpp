@@ -69,6 +69,44 @@ TEST(DirectSolver, ThousandKilogramsOnOneSinkLessThanFiveMillimetres) {
     EXPECT_LT(worst_height_error(*world, boxes), 1e-4);
 }
 
+TEST(DirectSolver, PyramidOfTenRowsDoesNotSag) {
+    const auto world = make_world({.sleeping = false});
+    add_plane(*world, {});
+    const auto box = world->create_shape(BoxShape{}).value();
+    std::vector<std::pair<BodyHandle, Vec3>> boxes;
+    for (int row = 0; row < 10; ++row) {
+        for (int i = 0; i < 10 - row; ++i) {
+            const Vec3 place{i - (9 - row) * 0.5, 0.5 + row, 0};
+            boxes.emplace_back(world->create_body({.shape = box, .position = place}).value(), place);
+        }
+    }
+    run(*world, 10);
+    for (const auto& [body, place] : boxes) EXPECT_LT(length(world->pose(body).position - place), 1e-4);
+    EXPECT_LT(world->conserved().kinetic_energy, least_noise);
+}
+
+TEST(DirectSolver, WhatRestsIsMovedByAForceThatBreaksItsFriction) {
+    // At rest nothing is solved as long as the last loads hold: a force must end that, a weaker one must not.
+    for (const double share : {0.9, 1.1}) {
+        const auto world = make_world({.sleeping = false});
+        add_plane(*world, {});
+        const auto boxes = add_column(*world, {1000, 1000, 1000, 1000, 1000});
+        run(*world, 2);
+        const double x = world->pose(boxes[4]).position.x;
+        const double force = share * 0.5 * 1000 * gravity;
+        for (int i = 0; i < 60; ++i) {
+            ASSERT_TRUE(world->apply_force(boxes[4], {force, 0, 0}));
+            world->step();
+        }
+        const double moved = world->pose(boxes[4]).position.x - x;
+        if (share < 1) {
+            EXPECT_LT(std::fabs(moved), 1e-5);
+        } else {
+            EXPECT_NEAR(moved, 0.1 * 0.5 * gravity / 2, 0.02);
+        }
+    }
+}
+
 TEST(DirectSolver, PilesOfPlatesSlideDownAnInclineTogether) {
     // a = g (sin α − μ cos α), whatever lies on top.
     const double angle = std::atan(0.7), mu = 0.4;

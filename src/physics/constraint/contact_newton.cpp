@@ -11,8 +11,15 @@ namespace embody::physics {
 
 namespace {
 
-constexpr double stiffness_share = 1e5;   // k over the heaviest mass
-constexpr int most_rounds = 12;           // of Newton's method, over all lags
+constexpr double stiffness_share = 1e5;                  // k over the heaviest mass
+constexpr int whole_rounds = 4;                          // of Newton's method with whole steps; then
+constexpr int damped_rounds = 8;                         // with steps as far as f falls, or, with patience,
+constexpr int patient_rounds = 12;                       // of such for each stiffness from
+constexpr double softest_share = 1e-3, stiffening = 10;  // of the full one
+constexpr double slope_tolerance = 0.1;                  // of the slope along a step, where its length is searched
+constexpr int most_searches = 12;
+constexpr std::uint64_t least_idle = 15, most_idle = 960;  // steps to the next attempt after a vain one
+constexpr std::uint64_t steps_kept = 60;                   // what was found about a graph is kept for, unused
 constexpr double force_tolerance = 1e-7;  // of the largest load: a step that misses the impulses by less is the last
 constexpr std::uint32_t no_edge = 0xFFFFFFFFu;
 
@@ -30,8 +37,14 @@ Vec6 difference(const Vec6& a, const Vec6& b) {
     return result;
 }
 
-void add(Vec6& to, const Vec6& other) {
-    for (int i = 0; i < 6; ++i) to.value[i] += other.value[i];
+void add(Vec6& to, const Vec6& other, double factor) {
+    for (int i = 0; i < 6; ++i) to.value[i] += other.value[i] * factor;
+}
+
+double dot(const Vec6& a, const Vec6& b) {
+    double sum = 0;
+    for (int i = 0; i < 6; ++i) sum += a.value[i] * b.value[i];
+    return sum;
 }
 
 /// The patch's stiffness at its anchor in world axes, for the relative velocity u and spin w.
@@ -57,20 +70,45 @@ Mat3 cross_right(const Mat3& m, Vec3 v) {
 
 }  // namespace
 
-void ContactNewton::begin(std::span<const NewtonBody> bodies, std::span<const DirectPatch> patches) {
+void ContactNewton::begin(std::uint32_t key, std::span<const NewtonBody> bodies, std::span<const DirectPatch> patches) {
     bodies_ = bodies;
     double heaviest = 0;
     for (const NewtonBody& body : bodies) heaviest = std::max(heaviest, body.mass);
-    stiffness_ = stiffness_share * heaviest;
+    full_stiffness_ = stiffness_share * heaviest;
     has_factors_ = false;
     direction_.resize(bodies.size());
-    find_structure(patches);
+    right_side_.resize(bodies.size());
+    find_structure(key, patches);
 }
 
-void ContactNewton::find_structure(std::span<const DirectPatch> patches) {
-    // Lists come in the same order in each step, as long as nothing changes.
-    if (next_structure_ == structures_.size()) structures_.emplace_back();
-    structure_ = &structures_[next_structure_++];
+bool ContactNewton::has_given_up(std::uint32_t key) const {
+    if (key >= structure_of_key_.size()) return false;
+    const std::uint32_t index = structure_of_key_[key];
+    return index < structures_.size() && structures_[index].key == key && step_ < structures_[index].idle_until;
+}
+
+void ContactNewton::give_up() {
+    structure_->idle = std::clamp(2 * structure_->idle, least_idle, most_idle);
+    structure_->idle_until = step_ + structure_->idle;
+}
+
+// The one of that key, or one that was not needed for a while, or a new one.
+ContactNewton::Structure& ContactNewton::structure_of(std::uint32_t key) {
+    if (key >= structure_of_key_.size()) structure_of_key_.resize(key + 1, 0);
+    std::uint32_t& index = structure_of_key_[key];
+    if (index < structures_.size() && structures_[index].key == key) return structures_[index];
+    const auto is_old = [&](const Structure& structure) { return structure.last_step + steps_kept < step_; };
+    const auto place = std::find_if(structures_.begin(), structures_.end(), is_old);
+    index = static_cast<std::uint32_t>(place - structures_.begin());
+    if (place == structures_.end()) structures_.emplace_back();
+    structures_[index].key = key;
+    structures_[index].idle_until = structures_[index].idle = 0;
+    return structures_[index];
+}
+
+void ContactNewton::find_structure(std::uint32_t key, std::span<const DirectPatch> patches) {
+    structure_ = &structure_of(key);
+    structure_->last_step = step_;
     const auto is_same = [](const std::array<std::int32_t, 2>& ends, const DirectPatch& patch) {
         return ends[0] == patch.a && ends[1] == patch.b;
     };
@@ -138,20 +176,44 @@ void ContactNewton::set_patch_velocities(std::span<const Vec6> velocity, std::sp
     for (DirectPatch& patch : patches) patch.velocity = relative_twist(patch, velocity);
 }
 
-bool ContactNewton::find_velocities(std::span<const Vec6> free, std::span<Vec6> velocity,
+bool ContactNewton::find_velocities(std::span<const Vec6> free, bool is_patient, std::span<Vec6> velocity,
                                     std::span<DirectPatch> patches) {
-    // The first step goes where all that was loaded and stuck stays so.
+    stiffness_ = full_stiffness_;
+    begin_from(free, velocity, patches);
+    is_damped_ = false;
+    if (iterate(free, whole_rounds, velocity, patches)) return true;
+    is_damped_ = true;
+    if (!is_patient) return iterate(free, damped_rounds, velocity, patches);
+
+    // From soft to stiff: which points are loaded and what sticks changes little by little while nothing is stiff.
+    stiffness_ = full_stiffness_ * softest_share;
+    begin_from(free, velocity, patches);
+    for (;;) {
+        const bool has_converged = iterate(free, patient_rounds, velocity, patches);
+        if (stiffness_ >= full_stiffness_) return has_converged;
+        stiffness_ = std::min(stiffness_ * stiffening, full_stiffness_);
+        for (DirectPatch& patch : patches) evaluate(patch, stiffness_, is_damped_);
+    }
+}
+
+// The first step goes where all that was loaded and stuck stays so.
+void ContactNewton::begin_from(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches) {
     std::copy(free.begin(), free.end(), velocity.begin());
     set_patch_velocities(velocity, patches);
     for (DirectPatch& patch : patches) evaluate_as_before(patch, stiffness_);
-    for (int round = 0; round < most_rounds; ++round) {
+}
+
+// Rounds until the impulses are right for this stiffness.
+bool ContactNewton::iterate(std::span<const Vec6> free, int rounds, std::span<Vec6> velocity,
+                            std::span<DirectPatch> patches) {
+    for (int round = 0; round < rounds; ++round) {
         if (!step(free, velocity, patches)) continue;
 
         // Friction under the loads that were found.
         bool is_wrong = false;
         for (DirectPatch& patch : patches) is_wrong = breaks_away(patch) || is_wrong;
         if (!is_wrong) return true;
-        for (DirectPatch& patch : patches) evaluate(patch, stiffness_);
+        for (DirectPatch& patch : patches) evaluate(patch, stiffness_, is_damped_);
     }
     return false;
 }
@@ -161,30 +223,80 @@ bool ContactNewton::step(std::span<const Vec6> free, std::span<Vec6> velocity, s
     // Downhill: Jᵀ λ − M (v − v*).
     std::vector<Vec6>& direction = direction_;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-        direction[i] = momentum_of(bodies_[i], difference(free[i], velocity[i]));
+        right_side_[i] = momentum_of(bodies_[i], difference(free[i], velocity[i]));
     }
+    std::copy(right_side_.begin(), right_side_.end(), direction.begin());
     for (const DirectPatch& patch : patches) add_impulse(patch, patch.impulse, direction);
     factor(patches);
     structure_->matrix.solve(direction);
     if (!std::all_of(direction.begin(), direction.end(), is_finite)) return false;
     for (DirectPatch& patch : patches) patch.change = relative_twist(patch, direction);
-    for (std::size_t i = 0; i < bodies_.size(); ++i) add(velocity[i], direction[i]);
-    return evaluate_after(patches);
+
+    // How far.
+    double share = 1;
+    if (is_damped_) {
+        slope_by_mass_ = curvature_by_mass_ = 0;
+        for (std::size_t i = 0; i < bodies_.size(); ++i) {
+            slope_by_mass_ -= dot(right_side_[i], direction[i]);
+            curvature_by_mass_ += dot(momentum_of(bodies_[i], direction[i]), direction[i]);
+        }
+        share = find_share(patches);
+    }
+    for (std::size_t i = 0; i < bodies_.size(); ++i) add(velocity[i], direction[i], share);
+    return evaluate_after(share, patches) && share == 1;
+}
+
+// df/dα at v + α d.
+double ContactNewton::slope_at(double share, std::span<const DirectPatch> patches) const {
+    double slope = slope_by_mass_ + share * curvature_by_mass_;
+    for (const DirectPatch& patch : patches) {
+        slope -= dot(impulse_at(patch, patch.velocity + patch.change * share, stiffness_), patch.change);
+    }
+    return slope;
+}
+
+// Where f stops falling along the step, by the regula falsi (Illinois); the whole step where it falls that far.
+double ContactNewton::find_share(std::span<const DirectPatch> patches) const {
+    double low = 0, high = 1, at_low = slope_at(0, patches), at_high = slope_at(1, patches);
+    const double enough = slope_tolerance * std::fabs(at_low);
+    if (!(at_low < 0) || !(at_high > enough)) return 1;
+    double share = 1;
+    for (int i = 0; i < most_searches; ++i) {
+        share = (low * at_high - high * at_low) / (at_high - at_low);
+        const double slope = slope_at(share, patches);
+        if (std::fabs(slope) <= enough) break;
+        (slope < 0 ? low : high) = share;
+        (slope < 0 ? at_low : at_high) = slope;
+        (slope < 0 ? at_high : at_low) /= 2;
+    }
+    return share;
 }
 
 // The impulses after a step; whether they are what the slopes foretold.
-bool ContactNewton::evaluate_after(std::span<DirectPatch> patches) const {
+bool ContactNewton::evaluate_after(double share, std::span<DirectPatch> patches) const {
     double largest = 0, error = 0;
     for (DirectPatch& patch : patches) {
+        patch.change = patch.change * share;
         const Vec3 foretold_normal = patch.impulse.normal_part - patch.normal_slope * patch.change.normal_part;
         const Vec3 foretold_friction = patch.impulse.friction_part - patch.friction_slope * patch.change.friction_part;
         foretell_loads(patch, stiffness_);
         patch.velocity = patch.velocity + patch.change;
-        evaluate(patch, stiffness_);
+        evaluate(patch, stiffness_, is_damped_);
         largest = std::max(largest, std::fabs(patch.impulse.normal_part.x));
         error = std::max(error, length_squared(patch.impulse.normal_part - foretold_normal));
         error = std::max(error, length_squared(patch.impulse.friction_part - foretold_friction));
     }
+    if (getenv("DBG")) {
+        printf("    error %.3g largest %.3g |", std::sqrt(error), largest);
+        for (const auto& p : patches) {
+            printf(" [");
+            for (int i = 0; i < p.count; i++) printf("%d", p.points[static_cast<std::size_t>(i)].is_loaded);
+            printf("%s %.3g %.3g/%.3g lag %.3g]", p.is_sliding ? "s" : "-", p.slide_direction.x,
+                   std::sqrt(p.friction.x * p.friction.x + p.friction.y * p.friction.y), p.impulse.normal_part.x,
+                   p.lagged_load);
+        }
+        puts("");
+    }  // DBG
     return error <= force_tolerance * force_tolerance * largest * largest;
 }
 

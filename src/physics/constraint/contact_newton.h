@@ -20,14 +20,21 @@ struct NewtonBody {
 /// (docs/physics/direct-solver.md). Keeps its memory, and what it found about the graphs it met, from step to step.
 class ContactNewton {
 public:
-    /// Starts a step: the first list is the first again.
-    void begin_step() { next_structure_ = 0; }
-    /// Starts the next list of the step. Patches number the bodies by their place.
-    void begin(std::span<const NewtonBody> bodies, std::span<const DirectPatch> patches);
+    /// Starts a step.
+    void begin_step() { ++step_; }
+    /// Starts a list. Patches number the bodies by their place; `key` names lists that are likely the same ones as in
+    /// the last step.
+    void begin(std::uint32_t key, std::span<const NewtonBody> bodies, std::span<const DirectPatch> patches);
+    /// A list that needed patience in vain is not tried again for a while.
+    void give_up();
+    [[nodiscard]] bool has_given_up(std::uint32_t key) const;
+    /// Products of two 6×6 blocks that one round takes.
+    [[nodiscard]] std::size_t block_products() const { return structure_->matrix.block_products(); }
 
     /// From the velocities that the forces alone would give, finds the true ones and each patch's impulse. False where
-    /// the method does not converge.
-    bool find_velocities(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches);
+    /// the method does not converge; with patience it tries harder.
+    bool find_velocities(std::span<const Vec6> free, bool is_patient, std::span<Vec6> velocity,
+                         std::span<DirectPatch> patches);
 
     /// Small motions that close `share` of the gaps and overlaps of all loaded points, each by `most` m at most; after
     /// find_velocities(), with its factors.
@@ -36,24 +43,36 @@ public:
 private:
     /// What was found about the graph of one list.
     struct Structure {
+        std::uint32_t key = 0;
+        std::uint64_t idle_until = 0, idle = 0;         ///< step; steps between the last two attempts
+        std::uint64_t last_step = 0;                    ///< in which it was used
         std::vector<std::array<std::int32_t, 2>> ends;  ///< of the patches
         std::size_t bodies = 0;
         BlockCholesky matrix;
         std::vector<std::uint32_t> edge_of_patch;
     };
 
-    void find_structure(std::span<const DirectPatch> patches);
+    void find_structure(std::uint32_t key, std::span<const DirectPatch> patches);
+    Structure& structure_of(std::uint32_t key);
     void factor(std::span<DirectPatch> patches);
     void set_patch_velocities(std::span<const Vec6> velocity, std::span<DirectPatch> patches) const;
+    void begin_from(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches);
+    bool iterate(std::span<const Vec6> free, int rounds, std::span<Vec6> velocity, std::span<DirectPatch> patches);
     bool step(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches);
-    bool evaluate_after(std::span<DirectPatch> patches) const;
+    bool evaluate_after(double share, std::span<DirectPatch> patches) const;
+    double slope_at(double share, std::span<const DirectPatch> patches) const;
+    double find_share(std::span<const DirectPatch> patches) const;
 
     std::span<const NewtonBody> bodies_;
-    double stiffness_ = 0;      // k, kg
-    bool has_factors_ = false;  // of this list
-    std::vector<Vec6> direction_;
+    double full_stiffness_ = 0;
+    double stiffness_ = 0;                              // k, kg
+    bool has_factors_ = false;                          // of this list
+    bool is_damped_ = false;                            // steps go only as far as f falls
+    double slope_by_mass_ = 0, curvature_by_mass_ = 0;  // of f along the step, kg m²/s²
+    std::vector<Vec6> direction_, right_side_;
     std::vector<Structure> structures_;
-    std::size_t next_structure_ = 0;
+    std::vector<std::uint32_t> structure_of_key_;  // valid where structures_ agrees
+    std::uint64_t step_ = 0;
     Structure* structure_ = nullptr;
 };
 

@@ -18,6 +18,8 @@ constexpr double rest_gap = 2e-6;    // m: what resting points may be apart or o
 constexpr double mend_share = 0.2;   // of a gap or an overlap closed in one solve
 constexpr double mend_speed = 3;     // m/s, at most
 constexpr double mend_gap = 1e-7;    // m: smaller ones are let be
+// Products of 6×6 blocks a round: where the sweeps would do as well, a failed attempt must not cost much more.
+constexpr std::size_t most_products_slow = 4000;
 constexpr double least_turn = 1e-3;  // rad in a step: slower, the inertia hardly turns with the body
 
 bool has_gyroscopic_torque(const BodyState& state, const BodyConstants& constants, double time) {
@@ -39,22 +41,29 @@ void DirectContactSolver::begin(double substep, int substeps) {
     newton_.begin_step();
 }
 
-bool DirectContactSolver::solve(const List& list, std::span<BodyState> bodies, std::span<const BodyConstants> constants,
-                                std::span<Contact> contacts) {
+bool DirectContactSolver::solve(const List& list, Effort effort, std::span<BodyState> bodies,
+                                std::span<const BodyConstants> constants, std::span<Contact> contacts) {
     number_bodies(list.bodies, bodies.size());
     if (stays_at_rest(list, bodies, constants, contacts)) return true;
+    const bool only_slow = effort == Effort::while_slow;
+    const auto is_fast = [&](std::uint32_t body) { return length_squared(bodies[body].linear_velocity) > slow * slow; };
+    if (only_slow && std::any_of(list.bodies.begin(), list.bodies.end(), is_fast)) return false;
+
+    if (only_slow && newton_.has_given_up(list.bodies.front())) return false;
 
     // Slow bodies in one go; should they turn out to move, from the beginning again.
     gather(list, bodies, constants, contacts, 1);
+    if (only_slow && newton_.block_products() > most_products_slow) return false;
     if (is_slow()) {
-        const bool is_solved = run(1, contacts);
-        if (is_solved && is_slow()) {
+        if (run(1, only_slow, contacts) && is_slow()) {
             scatter(bodies, constants, contacts, 1);
             return true;
         }
+        if (only_slow) newton_.give_up();
     }
+    if (only_slow) return false;
     gather(list, bodies, constants, contacts, substeps_);
-    if (!run(substeps_, contacts)) return false;
+    if (!run(substeps_, false, contacts)) return false;
     scatter(bodies, constants, contacts, substeps_);
     return true;
 }
@@ -173,7 +182,7 @@ void DirectContactSolver::gather(const List& list, std::span<const BodyState> bo
         patches_.back().a = number_of(contacts[index].a);
         patches_.back().b = number_of(contacts[index].b);
     }
-    newton_.begin(masses_, patches_);
+    newton_.begin(list.bodies.front(), masses_, patches_);
 }
 
 void DirectContactSolver::scatter(std::span<BodyState> bodies, std::span<const BodyConstants> constants,
@@ -213,13 +222,13 @@ bool DirectContactSolver::is_slow() const {
     });
 }
 
-bool DirectContactSolver::run(int substeps, std::span<const Contact> contacts) {
+bool DirectContactSolver::run(int substeps, bool is_patient, std::span<const Contact> contacts) {
     measure_gaps(contacts);
     for (int substep = 1; substep <= substeps; ++substep) {
         // Forces and what answers them.
         for (DirectPatch& patch : patches_) begin_substep(patch, substep * h_, h_);
         kick();
-        if (!newton_.find_velocities(free_velocity_, velocity_, patches_)) return false;
+        if (!newton_.find_velocities(free_velocity_, is_patient, velocity_, patches_)) return false;
 
         // Motion.
         drift();

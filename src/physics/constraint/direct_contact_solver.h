@@ -22,12 +22,18 @@ public:
         std::span<const std::uint32_t> bodies, contacts;
     };
 
+    /// How much a list is worth.
+    enum class Effort {
+        while_slow,  ///< one cheap solve for the whole step, if nothing moves or begins to move
+        any,
+    };
+
     /// Starts a step of `substeps` substeps of `substep` s.
     void begin(double substep, int substeps);
-    /// Solves one list through the step: moves its bodies and hands the impulses to its contacts. Where the method does
-    /// not converge it returns false and changes nothing.
-    [[nodiscard]] bool solve(const List& list, std::span<BodyState> bodies, std::span<const BodyConstants> constants,
-                             std::span<Contact> contacts);
+    /// Solves one list through the step: moves its bodies and hands the impulses to its contacts. Where the effort does
+    /// not suffice it returns false and changes nothing.
+    [[nodiscard]] bool solve(const List& list, Effort effort, std::span<BodyState> bodies,
+                             std::span<const BodyConstants> constants, std::span<Contact> contacts);
 
 private:
     /// How a body moves in this step.
@@ -51,7 +57,7 @@ private:
     void scatter(std::span<BodyState> bodies, std::span<const BodyConstants> constants, std::span<Contact> contacts,
                  int substeps) const;
     [[nodiscard]] bool is_slow() const;
-    [[nodiscard]] bool run(int substeps, std::span<const Contact> contacts);
+    [[nodiscard]] bool run(int substeps, bool is_patient, std::span<const Contact> contacts);
     void kick();
     void drift();
     void measure_gaps(std::span<const Contact> contacts);

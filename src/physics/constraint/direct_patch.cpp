@@ -220,7 +220,7 @@ bool breaks_away(DirectPatch& patch) {
     return breaks;
 }
 
-void evaluate(DirectPatch& patch, double stiffness) {
+void evaluate(DirectPatch& patch, double stiffness, bool is_damped) {
     const PatchTwist& velocity = patch.velocity;
     // Normal loads.
     Vec3 normal_part;
@@ -242,7 +242,8 @@ void evaluate(DirectPatch& patch, double stiffness) {
     // slide to and fro for ever.
     const Vec3 wanted = wanted_friction(patch, velocity.friction_part, stiffness);
     const bool turned_round = patch.is_sliding && dot(wanted, patch.slide_direction) < 0;
-    const double bound = is_new || turned_round ? length(wanted) : friction_bound(patch);
+    const double bound = !is_damped && (is_new || turned_round) ? length(wanted) : friction_bound(patch);
+    patch.bound = bound;
     patch.is_sliding = length(wanted) > bound;
     if (patch.is_sliding) patch.slide_direction = normalized(wanted);
     const Mat3 r = metric(patch);
@@ -258,6 +259,22 @@ void evaluate(DirectPatch& patch, double stiffness) {
         add_rolling_slope(patch, slope_of(wanted_turn, patch.lagged_load, stiffness));
     }
     note_impulse(patch, normal_part, bounded(wanted, bound), rolling);
+}
+
+PatchTwist impulse_at(const DirectPatch& patch, const PatchTwist& velocity, double stiffness) {
+    Vec3 normal_part;
+    for (int i = 0; i < patch.count; ++i) {
+        const DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
+        const double wanted = wanted_load(point, velocity.normal_part, stiffness);
+        if (point.is_active && wanted > 0) normal_part += row_of(point) * wanted;
+    }
+    if (patch.rolling_arm > 0) {
+        const Vec3 y = bounded(wanted_rolling(patch, velocity.normal_part, stiffness), patch.lagged_load);
+        const Vec3 rolling = rolling_at_anchor(patch, y);
+        normal_part += Vec3{0, rolling.x, rolling.y};
+    }
+    const Vec3 y = bounded(wanted_friction(patch, velocity.friction_part, stiffness), patch.bound);
+    return {normal_part, friction_at_anchor(patch, y)};
 }
 
 void evaluate_as_before(DirectPatch& patch, double stiffness) {

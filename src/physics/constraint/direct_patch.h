@@ -64,6 +64,7 @@ struct DirectPatch {
 
     // Of the last evaluation.
     bool is_sliding = false, is_rolling = false;
+    double bound = 0;  ///< of the friction, N s
     Vec3 slide_direction;  ///< in the metric of friction
     PatchTwist velocity, impulse;
     Mat3 friction_slope = Mat3::zero();  ///< −∂friction_part of the impulse / ∂friction_part of the velocity
@@ -90,7 +91,9 @@ void foretell_loads(DirectPatch& patch, double stiffness);
 bool breaks_away(DirectPatch& patch);
 
 /// Writes down the impulse for the patch's velocity, and how it changes with it. `stiffness` is k, kg.
-void evaluate(DirectPatch& patch, double stiffness);
+void evaluate(DirectPatch& patch, double stiffness, bool is_damped);
+/// The impulse for another velocity under the same bounds; writes nothing down.
+PatchTwist impulse_at(const DirectPatch& patch, const PatchTwist& velocity, double stiffness);
 /// The same, were the loaded points and the sticking as they were in the last substep.
 void evaluate_as_before(DirectPatch& patch, double stiffness);
 /// Relative velocity (or small motion) of the bodies at the anchor.

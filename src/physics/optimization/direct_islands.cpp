@@ -10,10 +10,11 @@ namespace embody::physics {
 
 namespace {
 
-constexpr std::uint32_t least_levels = 4;        // lower ones converge in the sweeps
-constexpr double least_mass_ratio = 20;          // of what lies above to what is below
-constexpr std::size_t most_products = 300;       // of 6×6 blocks, for what the sweeps could do as well
-constexpr std::size_t most_products_bad = 4000;  // where they could not
+constexpr std::uint32_t least_levels = 4;          // lower ones converge in the sweeps
+constexpr double least_mass_ratio = 20;            // of what lies above to what is below
+constexpr std::size_t most_products = 300;         // of 6×6 blocks, for what the sweeps could do as well
+constexpr std::size_t most_products_slow = 20000;  // an upper bound, for what rests; the solver counts them truly
+constexpr std::size_t most_products_bad = 4000;    // where they could not
 
 /// Bodies of each level, and the extremes of their masses.
 struct Levels {
@@ -65,19 +66,19 @@ bool is_moving_kinematic(const BodyState& body) {
 
 }  // namespace
 
-bool suits_direct_solve(const Island& island, const Islands& islands, std::span<const Contact> contacts,
+DirectUse direct_use_of(const Island& island, const Islands& islands, std::span<const Contact> contacts,
                         std::span<const BodyState> bodies) {
-    if (island.joint_count > 0 || island.contact_count == 0 || island.body_count < 2) return false;
-    if (island.body_count > DirectContactSolver::most_bodies) return false;
-    const Levels levels = count_levels(island, islands, bodies);
-    const bool is_bad = mass_ratio(levels) > least_mass_ratio;
-    if (!is_bad && island.deepest_level < least_levels) return false;
-    if (block_products(levels) > (is_bad ? most_products_bad : most_products)) return false;
+    if (island.joint_count > 0 || island.contact_count == 0) return DirectUse::never;
+    if (island.body_count > DirectContactSolver::most_bodies) return DirectUse::never;
     for (std::uint32_t k = 0; k < island.contact_count; ++k) {
         const Contact& contact = contacts[islands.contacts[island.first_contact + k]];
-        if (is_moving_kinematic(bodies[contact.a]) || is_moving_kinematic(bodies[contact.b])) return false;
+        if (is_moving_kinematic(bodies[contact.a]) || is_moving_kinematic(bodies[contact.b])) return DirectUse::never;
     }
-    return true;
+    const Levels levels = count_levels(island, islands, bodies);
+    const std::size_t products = block_products(levels);
+    const bool is_bad = mass_ratio(levels) > least_mass_ratio, is_high = island.deepest_level >= least_levels;
+    if (products <= (is_bad ? most_products_bad : is_high ? most_products : 0)) return DirectUse::always;
+    return products <= most_products_slow ? DirectUse::while_slow : DirectUse::never;
 }
 
 }  // namespace embody::physics

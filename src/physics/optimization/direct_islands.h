@@ -8,9 +8,13 @@
 
 namespace embody::physics {
 
-/// Whether the island's contacts should be solved directly: it is cheap for what it is, or sweeps would fail
-/// (docs/physics/direct-solver.md). An island with joints or on a moving kinematic body never is.
-bool suits_direct_solve(const Island& island, const Islands& islands, std::span<const Contact> contacts,
+/// When an island's contacts should be solved directly (docs/physics/direct-solver.md).
+enum class DirectUse {
+    never,       ///< too large, has joints, or lies on a moving kinematic body
+    while_slow,  ///< at rest, where one solve serves for long
+    always,      ///< it is cheap for what it is, or sweeps would fail
+};
+DirectUse direct_use_of(const Island& island, const Islands& islands, std::span<const Contact> contacts,
                         std::span<const BodyState> bodies);
 
 }  // namespace embody::physics

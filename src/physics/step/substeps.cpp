@@ -16,21 +16,11 @@ namespace {
 struct SolveWays {
     std::vector<Island> one_by_one;  // free bodies, and all that joints hold
     std::vector<Island> few, many;   // contacts only
-    std::vector<Island> direct;      // contacts only, all at once
 };
 
-SolveWays sort_islands(const WorldState& world) {
-    SolveWays ways;
-    for (const Island& island : world.islands.list) {
-        const bool is_wide = island.joint_count == 0 && island.contact_count > 0;
-        const bool is_direct = suits_direct_solve(island, world.islands, world.contacts, world.motion);
-        std::vector<Island>& way = is_direct                                ? ways.direct
-                                   : !is_wide                               ? ways.one_by_one
-                                   : has_few_contacts(island.contact_count) ? ways.few
-                                                                            : ways.many;
-        way.push_back(island);
-    }
-    return ways;
+// An island for the sweeps.
+std::vector<Island>& wide_way(SolveWays& ways, const Island& island) {
+    return has_few_contacts(island.contact_count) ? ways.few : ways.many;
 }
 
 std::span<const std::uint32_t> contacts_of(const WorldState& world, const Island& island) {
@@ -67,14 +57,28 @@ void solve_wide(WorldState& world, const std::vector<Island>& islands, double h)
                  *world.workers);
 }
 
-// Small or ill-conditioned islands of contacts only; where that fails, the sweeps take over.
-void solve_directly(WorldState& world, SolveWays& ways, double h) {
+// Whether the island was solved directly; else the sweeps have to.
+bool solve_directly(WorldState& world, const Island& island) {
+    const DirectUse use = direct_use_of(island, world.islands, world.contacts, world.motion);
+    if (use == DirectUse::never) return false;
+    using Effort = DirectContactSolver::Effort;
+    const Effort effort = use == DirectUse::always ? Effort::any : Effort::while_slow;
+    const DirectContactSolver::List list{bodies_of(world, island), contacts_of(world, island)};
+    return world.direct_solver.solve(list, effort, world.motion, world.constants, world.contacts);
+}
+
+// Solves what is solved directly, and tells how the others have to be.
+SolveWays sort_islands(WorldState& world, double h) {
+    SolveWays ways;
     world.direct_solver.begin(h, world.settings.substeps);
-    for (const Island& island : ways.direct) {
-        const DirectContactSolver::List list{bodies_of(world, island), contacts_of(world, island)};
-        if (world.direct_solver.solve(list, world.motion, world.constants, world.contacts)) continue;
-        (has_few_contacts(island.contact_count) ? ways.few : ways.many).push_back(island);
+    for (const Island& island : world.islands.list) {
+        if (island.joint_count > 0 || island.contact_count == 0) {
+            ways.one_by_one.push_back(island);
+        } else if (!solve_directly(world, island)) {
+            wide_way(ways, island).push_back(island);
+        }
     }
+    return ways;
 }
 
 void solve_islands(WorldState& world, const std::vector<Island>& islands, SolvePhase phase, double h) {
@@ -205,10 +209,9 @@ void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, dou
 
 void run_substeps(WorldState& world) {
     const double h = world.settings.time_step / world.settings.substeps;
-    SolveWays ways = sort_islands(world);
+    const SolveWays ways = sort_islands(world, h);
 
     // The last one moves the kinematic bodies, which the others take from where the step found them.
-    solve_directly(world, ways, h);
     solve_wide(world, ways.few, h);
     solve_wide(world, ways.many, h);
     solve_one_by_one(world, ways.one_by_one, h);

@@ -127,7 +127,7 @@ struct WorldState {
 
     std::unique_ptr<TaskPool> workers = std::make_unique<TaskPool>(1);
     WideContactSolver wide_solver{widest_contact_kernels()};  // substeps: memory only
-    DirectContactSolver direct_solver;                        // substeps: memory only
+    DirectContactSolver direct_solver;                        // substeps: memory, and which islands it gave up
     SolveSchedule schedule;                                   // substeps: memory only
     std::vector<Vec3> kicked_velocity;                        // substeps: linear velocity before the constraints, m/s
 

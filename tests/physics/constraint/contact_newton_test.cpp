@@ -76,8 +76,8 @@ TEST(ContactNewton, KeepsMomentumAndTheLawsOfContact) {
     for (int round = 0; round < 300; ++round) {
         FloatingColumn column(2 + round % 5, random);
         newton.begin_step();
-        newton.begin(column.bodies, column.patches);
-        if (!newton.find_velocities(column.free, column.velocity, column.patches)) continue;
+        newton.begin(0, column.bodies, column.patches);
+        if (!newton.find_velocities(column.free, false, column.velocity, column.patches)) continue;
         ++solved;
         ASSERT_LT(length(column.momentum(column.velocity) - column.momentum(column.free)), 1e-9) << round;
         ASSERT_LT(length(column.angular_momentum(column.velocity) - column.angular_momentum(column.free)), 1e-9);
@@ -115,8 +115,8 @@ TEST(ContactNewton, GuessOfTheLastSubstepIsExactTheSecondTime) {
     for (double& worst : speed) {
         for (DirectPatch& patch : column.patches) begin_substep(patch, 1, 1);
         newton.begin_step();
-        newton.begin(column.bodies, column.patches);
-        ASSERT_TRUE(newton.find_velocities(column.free, column.velocity, column.patches));
+        newton.begin(0, column.bodies, column.patches);
+        ASSERT_TRUE(newton.find_velocities(column.free, false, column.velocity, column.patches));
         for (const Vec6& v : column.velocity) worst = std::max(worst, length(v.linear()));
         for (DirectPatch& patch : column.patches) end_substep(patch);
     }
