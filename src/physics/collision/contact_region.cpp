@@ -201,7 +201,8 @@ void reduce_to_four(ContactRegion& region) {
 
 void append_manifold(ContactRegion& region, const Mat3& turn, Vec3 origin, std::vector<Manifold>& manifolds) {
     if (region.points.empty()) return;
-    reduce_to_four(region);
+    if (!region.is_proper) reduce_to_four(region);
+    region.is_proper = false;
     Manifold& manifold = manifolds.emplace_back();
     manifold.normal = turn * region.normal;
     manifold.count = static_cast<int>(region.points.size());

@@ -41,6 +41,7 @@ struct ClipCorner {
 struct ContactRegion {
     Vec3 normal;  ///< unit, a to b
     std::vector<ManifoldPoint> points;
+    bool is_proper = false;  ///< known to be four points at most, of which each adds area
 
     ContactFeature reference, incident;
     std::vector<ClipCorner> sides, corners, clipped;

@@ -15,7 +15,8 @@ struct SurfaceDistance {
     Vec3 normal;  ///< unit, local
     double distance = 0;
 };
-SurfaceDistance distance_from_surface(const Convex& convex, Vec3 local_point);
+/// Of points farther off than `enough` only that they are.
+SurfaceDistance distance_from_surface(const Convex& convex, Vec3 local_point, double enough = 1e300);
 
 /// Half space below dot(normal, p) = offset, in the frame of the pair.
 struct PlacedPlane {

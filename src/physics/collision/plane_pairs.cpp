@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Any convex against a half space: the points of its surface that lie deepest, exact for every shape. A cylinder or a
 // cone offers four points of each rim, one of them the lowest, so that it rolls on a smooth circle.
+#include <cmath>
+
 #include "physics/collision/convex_pairs.h"
 #include "physics/collision/rim.h"
 
@@ -34,6 +36,28 @@ void probe_rim(const PlacedConvex& round, double height, std::uint32_t first_fea
     }
 }
 
+// The corners of a box are its centre and the half edges, added or taken away.
+void probe_box(const PlacedConvex& box, const PlaneProbe& probe) {
+    const Vec3 normal = probe.plane.normal, half = box.shape->bounds.upper;
+    const Vec3 along[3] = {box.rotation.x * half.x, box.rotation.y * half.y, box.rotation.z * half.z};
+    const double rise[3] = {dot(along[0], normal), dot(along[1], normal), dot(along[2], normal)};
+    const double middle = dot(box.position, normal) - probe.plane.offset;
+    if (middle - std::fabs(rise[0]) - std::fabs(rise[1]) - std::fabs(rise[2]) > probe.margin) return;
+    std::uint32_t all = 7, any = 0;
+    for (std::uint32_t corner = 0; corner < 8; ++corner) {
+        double height = middle;
+        for (std::uint32_t k = 0; k < 3; ++k) height += (corner >> k & 1u) != 0 ? rise[k] : -rise[k];
+        if (height > probe.margin) continue;
+        Vec3 point = box.position;
+        for (std::uint32_t k = 0; k < 3; ++k) point += (corner >> k & 1u) != 0 ? along[k] : -along[k];
+        probe.region.add(point, height, corner);
+        all &= corner;
+        any |= corner;
+    }
+    // Four corners with a common side are a face.
+    probe.region.is_proper = probe.region.points.size() == 4 && (all != 0 || any != 7);
+}
+
 }  // namespace
 
 void collide_plane(const PlacedConvex& a, const PlacedPlane& plane, double margin, ContactRegion& region) {
@@ -49,6 +73,10 @@ void collide_plane(const PlacedConvex& a, const PlacedPlane& plane, double margi
             probe.add(a.to_frame({0, shape.half_height, 0}) - plane.normal * shape.radius, 1);
             return;
         case ConvexKind::polytope:
+            if (shape.is_box) {
+                probe_box(a, probe);
+                return;
+            }
             for (std::uint32_t i = 0; i < shape.polytope.vertices.size(); ++i) {
                 probe.add(a.to_frame(shape.polytope.vertices[i]), i);
             }

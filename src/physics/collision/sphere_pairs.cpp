@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Sphere against any convex: closed forms but for a polytope's edges and vertices (GJK). Round shapes are looked at in
-// the half plane of distance from the axis and height: a rectangle (cylinder) or a triangle (cone) there.
+// Sphere against any convex by closed forms: of a polytope the face, or the nearest of the edges that the centre sees.
+// Round shapes are looked at in the half plane of distance from the axis and height: a rectangle (cylinder) or a
+// triangle (cone) there.
+#include <algorithm>
 #include <cmath>
 
 #include "physics/collision/convex_pairs.h"
-#include "physics/collision/gjk.h"
+#include "physics/collision/polytope_query.h"
 
 namespace embody::physics {
 
@@ -84,36 +86,52 @@ SurfaceDistance distance_from_box(const Convex& box, Vec3 p) {
     return {away / distance, distance};
 }
 
-SurfaceDistance distance_from_polytope(const Convex& convex, Vec3 p) {
-    const Polytope& polytope = convex.polytope;
-    std::uint32_t nearest = 0;
-    double most = -1e300;
-    for (std::uint32_t f = 0; f < polytope.faces.size(); ++f) {
-        const double height = dot(polytope.faces[f].normal, p) - polytope.faces[f].offset;
-        if (height > most) {
-            most = height;
-            nearest = f;
-        }
-    }
-    if (most <= 0) return {polytope.faces[nearest].normal, most};
-
-    // Outside: the face itself where the point stands over it (its normal is exact), else an edge or a vertex.
-    const Polytope::Face& face = polytope.faces[nearest];
-    bool over_face = true;
-    for (std::uint32_t i = 0; i < face.count && over_face; ++i) {
+// Whether the point stands over a face: on the inner side of each of its sides.
+bool is_over_face(const Polytope& polytope, const Polytope::Face& face, Vec3 p) {
+    for (std::uint32_t i = 0; i < face.count; ++i) {
         const Vec3 u = polytope.vertices[polytope.loops[face.first + i]];
-        const Vec3 v = polytope.vertices[polytope.loops[face.first + (i + 1) % face.count]];
-        over_face = dot(cross(v - u, face.normal), p - u) <= 0;
+        const Vec3 v = polytope.vertices[polytope.loops[face.first + (i + 1 == face.count ? 0 : i + 1)]];
+        if (dot(cross(v - u, face.normal), p - u) > 0) return false;
     }
-    if (over_face) return {face.normal, most};
-    Convex point;
-    const CoreDistance gap = core_distance(Core({&convex, {}, {}}), Core({&point, {}, p}));
-    return to_point(gap.on_a, p, face.normal);
+    return true;
+}
+
+// The nearest point of those edges that the point sees: beside a face that it is above.
+Vec3 nearest_on_seen_edges(const Polytope& polytope, const std::vector<double>& heights, Vec3 p) {
+    Vec3 nearest;
+    double least = 1e300;
+    for (const Polytope::Edge& edge : polytope.edges) {
+        if (heights[edge.left] <= 0 && heights[edge.right] <= 0) continue;
+        const Vec3 from = polytope.vertices[edge.from], way = polytope.vertices[edge.to] - from;
+        const double share = std::clamp(dot(p - from, way) / length_squared(way), 0.0, 1.0);
+        const Vec3 on_edge = from + way * share;
+        const double squared = length_squared(p - on_edge);
+        if (squared >= least) continue;
+        least = squared;
+        nearest = on_edge;
+    }
+    return nearest;
+}
+
+SurfaceDistance distance_from_polytope(const Convex& convex, Vec3 p, double enough) {
+    thread_local std::vector<double> heights;
+    const Polytope& polytope = convex.polytope;
+    heights.resize(polytope.normal_lanes.size());
+    const double most = heights_over_faces(polytope, p, heights.data());
+    std::uint32_t nearest = 0;
+    while (heights[nearest] < most) ++nearest;
+    const Polytope::Face& face = polytope.faces[nearest];
+    if (most <= 0 || most > enough) return {face.normal, most};
+
+    // Outside: the face that it is highest above where it stands over that one (its normal is exact), for no plane is
+    // farther. Else an edge or a vertex that it sees.
+    if (is_over_face(polytope, face, p)) return {face.normal, most};
+    return to_point(nearest_on_seen_edges(polytope, heights, p), p, face.normal);
 }
 
 }  // namespace
 
-SurfaceDistance distance_from_surface(const Convex& convex, Vec3 p) {
+SurfaceDistance distance_from_surface(const Convex& convex, Vec3 p, double enough) {
     switch (convex.kind) {
         case ConvexKind::sphere: {
             SurfaceDistance result = to_point({}, p, {0, 1, 0});
@@ -129,12 +147,12 @@ SurfaceDistance distance_from_surface(const Convex& convex, Vec3 p) {
         case ConvexKind::polytope:
             break;
     }
-    return convex.is_box ? distance_from_box(convex, p) : distance_from_polytope(convex, p);
+    return convex.is_box ? distance_from_box(convex, p) : distance_from_polytope(convex, p, enough);
 }
 
 void collide_sphere(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region) {
     const double radius = a.shape->radius;
-    const SurfaceDistance gap = distance_from_surface(*b.shape, b.to_local(a.position));
+    const SurfaceDistance gap = distance_from_surface(*b.shape, b.to_local(a.position), radius + margin);
     const double separation = gap.distance - radius;
     if (separation > margin) return;
     region.normal = -b.direction_to_frame(gap.normal);
