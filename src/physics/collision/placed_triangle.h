@@ -14,6 +14,7 @@ inline constexpr double flat_sine = 1e-3;
 
 /// A triangle of a surface in the frame of the convex that it meets.
 struct PlacedTriangle {
+    std::uint32_t index = 0;  ///< in the surface
     std::array<Vec3, 3> corners;
     Vec3 normal;                        ///< unit
     std::array<Vec3, 3> outward;        ///< unit, in the plane, across each edge

@@ -124,10 +124,7 @@ void add_to_groups(const TriangleRegion& added, std::vector<NormalGroup>& groups
         ++count;
     }
     groups[g].has_all_corners = groups[g].has_all_corners && added.has_all_corners;
-    for (ManifoldPoint point : region.points) {
-        point.feature = feature_name({added.triangle, point.feature});
-        groups[g].region.points.push_back(point);
-    }
+    groups[g].region.points.insert(groups[g].region.points.end(), region.points.begin(), region.points.end());
 }
 
 }  // namespace
@@ -150,6 +147,7 @@ void collide_surface(const ConvexPiece& piece, std::uint32_t piece_index, const 
         const Vec3 across = cross(corners[1] - corners[0], corners[2] - corners[0]);
         if (!probe.may_meet(corners, across)) continue;
         if (!place_near(probe, corners, across / length(across), triangle)) continue;
+        triangle.index = index;
         triangle.half_bends = placed.surface.half_bends(index);
         region.points.clear();
         bool has_all_corners = false;
@@ -157,6 +155,7 @@ void collide_surface(const ConvexPiece& piece, std::uint32_t piece_index, const 
             has_all_corners = collide_polytope_triangle(piece.convex, triangle, margin, region);
         } else {
             collide_round_triangle(piece.convex, triangle, margin, region);
+            for (ManifoldPoint& point : region.points) point.feature = feature_name({index, point.feature});
         }
         if (!region.points.empty()) add_to_groups({region, index, has_all_corners}, groups, count);
     }

@@ -214,7 +214,10 @@ void add_over_triangle(const TriangleSearch& s, TriangleScratch& scratch, Contac
         const PrismCorner& c = scratch.corners[i];
         const double separation = dot(t.normal, c.point) - level;
         if (separation > s.margin) continue;
-        region.add(c.point, separation, feature_name({1u, face, c.edge_in << 16 | c.edge_out}));
+        // A corner of the face keeps its name from triangle to triangle, so that sliding things are known again.
+        const bool is_corner = (c.edge_in & side_tag) == 0 && (c.edge_out & side_tag) == 0;
+        const std::uint32_t owner = is_corner ? 0 : t.index + 1;
+        region.add(c.point, separation, feature_name({1u, face, c.edge_in << 16 | c.edge_out, owner}));
     }
 }
 
@@ -224,6 +227,7 @@ void add_before_face(const TriangleSearch& s, ContactRegion& region) {
     get_polytope_face(placed, s.best.face, region.reference);
     region.normal = region.reference.normal;
     region.incident.clear();
+    region.incident.id = s.triangle.index;
     region.incident.points.assign(s.triangle.corners.begin(), s.triangle.corners.end());
     clip_to_region(region.reference, region.incident, true, 0, s.margin, region);
 }
@@ -243,7 +247,7 @@ void add_crossing(const TriangleSearch& s, ContactRegion& region) {
     region.normal = -s.best.outwards;
     region.add(p + u * on_u, s.best.separation,
                feature_name({3u, std::min(s.best.from, s.best.to), std::max(s.best.from, s.best.to),
-                             static_cast<std::uint32_t>(edge)}));
+                             static_cast<std::uint32_t>(edge), s.triangle.index}));
 }
 
 // In the wedge over a sharp edge the nearest points alone, if the normal there is this triangle's business.
@@ -257,7 +261,7 @@ void add_nearest(const TriangleSearch& s, ContactRegion& region) {
     const Vec3 outwards = (gap.on_a - gap.on_b) / gap.distance;
     if (s.triangle.leans_too_far(outwards, gap.on_b)) return;
     region.normal = -outwards;
-    region.add(gap.on_a, gap.distance, feature_name({6u}));
+    region.add(gap.on_a, gap.distance, feature_name({6u, s.triangle.index}));
 }
 
 }  // namespace

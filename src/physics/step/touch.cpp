@@ -175,6 +175,35 @@ bool may_follow(const WorldState& world, const PairRecord& record, OldContacts o
     return moved <= (record.is_whole ? follow_window : short_follow_window) && margin + moved <= record.margin;
 }
 
+// A contact with a mesh is named by a triangle, and another one comes under a sliding body all the time: what is new by
+// name goes on from an old contact of nearly the same normal that nobody else goes on from.
+void match_by_normal(OldContacts old, std::span<Contact> contacts, bool a_is_surface) {
+    constexpr double same_direction = 0.98;
+    const auto piece_of = [&](const Contact& c) { return a_is_surface ? c.piece_b : c.piece_a; };
+    const auto is_named = [](const Contact& c, std::span<const Contact> others) {
+        return std::any_of(others.begin(), others.end(),
+                           [&](const Contact& o) { return contact_key(o) == contact_key(c); });
+    };
+    std::uint64_t taken = 0;
+    const std::size_t count = std::min<std::size_t>(old.size(), 64);
+    for (std::size_t i = 0; i < count; ++i) taken |= std::uint64_t{is_named(old[i], contacts)} << i;
+    for (Contact& contact : contacts) {
+        if (is_named(contact, old)) continue;
+        double best = same_direction;
+        std::size_t chosen = count;
+        for (std::size_t i = 0; i < count; ++i) {
+            if ((taken >> i & 1u) != 0 || piece_of(old[i]) != piece_of(contact)) continue;
+            const double cosine = dot(old[i].normal, contact.normal);
+            if (cosine <= best) continue;
+            best = cosine;
+            chosen = i;
+        }
+        if (chosen == count) continue;
+        taken |= std::uint64_t{1} << chosen;
+        match_points(old[chosen], contact);
+    }
+}
+
 // Finds the contacts of a pair anew and hands them the impulses of the old ones.
 void compare_pair(const WorldState& world, PairRecord& record, OldContacts old, double margin, const RelativePose& now,
                   TouchMemory::Worker& worker) {
@@ -214,6 +243,10 @@ void compare_pair(const WorldState& world, PairRecord& record, OldContacts old, 
         if (old_contact != old.end() && contact_key(*old_contact) == contact_key(*contact)) {
             match_points(*old_contact, *contact);
         }
+    }
+    const bool a_is_surface = size_of(a) == 1e300;
+    if (!old.empty() && (a_is_surface || size_of(b) == 1e300)) {
+        match_by_normal(old, std::span(worker.found).subspan(static_cast<std::size_t>(first)), a_is_surface);
     }
 }
 
