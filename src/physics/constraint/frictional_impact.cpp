@@ -37,7 +37,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double stop_share = 1e-9;
 // A slide that would miss its straight path by less than this share of its start velocity is taken as straight.
 constexpr double straight_share = 1e-8;
-// Most collisions end within the first short steps. Where A is ill-conditioned u_t decays slowly, and steps may grow.
+// Most collisions end within the first short steps. Where A is ill-conditioned u_t decays slowly, and steps may grow;
+// they may from the start where less than the last digits is asked for.
+constexpr double exact_step_share = 0.1;
 constexpr int short_steps = 400;
 constexpr double longest_share = 1.5;
 constexpr int max_steps = 20000;
@@ -157,7 +159,8 @@ bool slide_curved(const Collision& k) {
         const double turning = std::fabs(sliding.x * rate.y - sliding.y * rate.x);
         if (turning <= straight_share * start_slip * change) return slide_straight(k, sliding / slip);
         const double wanted = change > 0 ? k.precision.step_share * slip / change : longest;
-        const double tau = i < short_steps ? shortest : std::clamp(wanted, shortest, longest);
+        const bool is_short = i < short_steps && k.precision.step_share <= exact_step_share;
+        const double tau = is_short ? shortest : std::clamp(wanted, shortest, longest);
         const ImpactState next = runge_kutta_step(k, k.s, tau);
         if (overshoot(k, next) >= 0) {
             k.s = step_to_end(k, tau);
