@@ -326,13 +326,19 @@ void BroadPhase::remove(std::uint32_t body) {
     s.proxies[body].used = false;
 }
 
+// Kept while it still holds the body and has not become far too large (after a fast move came to rest).
+bool BroadPhase::holds(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion) const {
+    const FloatBox& fat = state_->proxies[body].fat;
+    const Bounds largest = enlarged(enlarged_for(bounds, expected_motion), 4 * most_margin);
+    return fat.contains(bounds) && contains(largest, fat.bounds());
+}
+
 void BroadPhase::move(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion) {
     State& s = *state_;
     EMBODY_ASSERT(body < s.proxies.size() && s.proxies[body].used);
+    if (holds(body, bounds, expected_motion)) return;
     State::Proxy& proxy = s.proxies[body];
     const Bounds wanted = enlarged_for(bounds, expected_motion);
-    // Kept while it still holds the body and has not become far too large (after a fast move came to rest).
-    if (proxy.fat.contains(bounds) && contains(enlarged(wanted, 4 * most_margin), proxy.fat.bounds())) return;
     if (proxy.wide || is_wide(wanted)) {
         s.unplace(body);
         s.place(body, wanted);

@@ -24,6 +24,8 @@ public:
     /// Tells new bounds; cheap while they stay within the enlarged ones. `expected_motion` (m, of the next step) says
     /// where to enlarge them.
     void move(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion);
+    /// Whether move() would change nothing. May be asked by several threads.
+    [[nodiscard]] bool holds(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion) const;
 
     struct Pair {
         std::uint32_t a = 0, b = 0;  ///< a < b

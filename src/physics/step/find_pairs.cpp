@@ -3,10 +3,14 @@
 
 namespace embody::physics {
 
-void find_pairs(WorldState& world) {
-    // Bounds of what moves, and how far it will.
+namespace {
+
+// Lists which of a share of the awake bodies have left their bounds, and the bounds they want.
+void list_leaving(const WorldState& world, Share share, std::vector<LeavingBody>& leaving) {
     const double dt = world.settings.time_step;
-    for (const std::uint32_t body : world.awake) {
+    leaving.clear();
+    for (std::size_t i = share.first; i < share.last; ++i) {
+        const std::uint32_t body = world.awake[i];
         const BodyRecord& record = world.record(body);
         if (!record.shape) continue;
         const Vec3 motion =
@@ -15,7 +19,26 @@ void find_pairs(WorldState& world) {
         // The whole way counts as bounds: what lies on it must be a pair before the body gets there.
         Bounds swept = record.shape->bounds(world.pose(body));
         swept.add(Bounds{swept.lower + motion, swept.upper + motion});
-        world.broad_phase.move(body, swept, motion);
+        if (!world.broad_phase.holds(body, swept, motion)) leaving.push_back({body, swept, motion});
+    }
+}
+
+}  // namespace
+
+void find_pairs(WorldState& world) {
+    // Bounds of what moves, and how far it will; on all workers where there is enough to do.
+    constexpr std::size_t fewest_shared = 500;
+    const std::size_t count = world.awake.size();
+    const int workers = count < fewest_shared ? 1 : world.workers->workers();
+    world.leaving.resize(static_cast<std::size_t>(workers));
+    const auto list = [&](int worker) {
+        list_leaving(world, share_of(count, worker, workers), world.leaving[static_cast<std::size_t>(worker)]);
+    };
+    workers == 1 ? list(0) : world.workers->run(list);
+
+    // In the order of the bodies, whoever looked at them.
+    for (const std::vector<LeavingBody>& leaving : world.leaving) {
+        for (const LeavingBody& l : leaving) world.broad_phase.move(l.body, l.bounds, l.motion);
     }
     world.pairs = &world.broad_phase.update_pairs(*world.workers);
     if (world.broad_phase.has_too_many_pairs()) {

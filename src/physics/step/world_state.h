@@ -54,6 +54,13 @@ struct SleepingGroup {
     std::vector<Contact> contacts;
 };
 
+/// A body that has left the bounds that the broad phase knows of it.
+struct LeavingBody {
+    std::uint32_t body = 0;
+    Bounds bounds;  ///< of its way in this step
+    Vec3 motion;    ///< m, in this step
+};
+
 /// What the touch stage remembers of a pair of bodies that may touch.
 struct PairRecord {
     BroadPhase::Pair pair;
@@ -108,6 +115,7 @@ struct WorldState {
     std::vector<SleepRecord> sleep;        // sleep, wake
 
     BroadPhase broad_phase;                                // find pairs
+    std::vector<std::vector<LeavingBody>> leaving;         // find pairs: memory only, by worker
     const std::vector<BroadPhase::Pair>* pairs = nullptr;  // find pairs
     std::vector<PairRecord> pair_records;                  // touch: one for each of pairs
     std::uint64_t pairs_version = 0;                       // touch: of pair_records
