@@ -88,6 +88,15 @@ double coordinate_of(const Joint& joint, const Frames& frames) {
     return 2 * (q.w < 0 ? arc_tangent(-q.x, -q.w) : arc_tangent(q.x, q.w));
 }
 
+// Joints are mended no faster than this: bodies that a user joined far apart come together instead of bursting.
+constexpr double fastest_mending = 5;  // m/s or rad/s
+
+// What may be left of an error after a substep.
+double rest_of(double error, double substep) {
+    const double most = fastest_mending * substep;
+    return error - std::clamp(error, -most, most);
+}
+
 Vec3 angular_effect(const BodyState& body, Vec3 row) { return body.inverse_inertia * row; }
 
 double row_product(const JointRow& i, const JointRow& j, const BodyState& a, const BodyState& b) {
@@ -173,6 +182,27 @@ void solve_motor(Joint& joint, SolvePhase phase, double substep, std::span<BodyS
     change_free_impulse(joint, impulse, std::clamp(impulse + joint.free_mass * missing, -largest, largest), 1, bodies);
 }
 
+// Whether a body turns so far in a substep that its pose after the drift tells nothing: the passes would run away. The
+// speed of the rows then stands for the way.
+bool turns_too_far(const Joint& joint, double substep, std::span<const BodyState> bodies) {
+    const double fastest = std::max(length_squared(body_a(joint, bodies).angular_velocity),
+                                    length_squared(bodies[joint.b].angular_velocity));
+    return fastest * substep * substep > 1;
+}
+
+// How fast each row's error grows beyond what may be left of it.
+std::array<double, max_joint_rows> position_excess(const Joint& joint, double substep,
+                                                   std::span<const BodyState> bodies) {
+    std::array<double, max_joint_rows> excess{};
+    const bool is_linear = turns_too_far(joint, substep, bodies);
+    if (!is_linear) excess = constraint_errors(joint, frames_after_drift(joint, substep, bodies));
+    for (std::size_t i = 0; i < max_joint_rows; ++i) {
+        if (is_linear) excess[i] = joint.errors[i] + substep * row_speed(joint, joint.rows[i], bodies);
+        excess[i] = (excess[i] - rest_of(joint.errors[i], substep)) / substep;
+    }
+    return excess;
+}
+
 // One side of the limit; `sign` is +1 for the lower and −1 for the upper bound.
 void solve_bound(Joint& joint, SolvePhase phase, double substep, double bound, double sign,
                  std::span<BodyState> bodies) {
@@ -185,7 +215,11 @@ void solve_bound(Joint& joint, SolvePhase phase, double substep, double bound, d
     // is held already. What the warm start gave to a bound that holds no more is taken back.
     double leaving = 0;
     if (phase == SolvePhase::position) {
-        leaving = -sign * (coordinate_of(joint, frames_after_drift(joint, substep, bodies)) - bound) / substep;
+        const double now = -sign * (coordinate_of(joint, frames_now(joint, bodies)) - bound);
+        const double after = turns_too_far(joint, substep, bodies)
+                                 ? now - sign * substep * row_speed(joint, joint.free_row, bodies)
+                                 : -sign * (coordinate_of(joint, frames_after_drift(joint, substep, bodies)) - bound);
+        leaving = (after - rest_of(std::max(now, 0.0), substep)) / substep;
     } else if (earlier > 0) {
         leaving = -sign * row_speed(joint, joint.free_row, bodies);
     } else {
@@ -222,6 +256,7 @@ void prepare_joint(Joint& joint, std::span<const BodyState> bodies) {
     constexpr Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
     const Vec3 axis_x = axis_of(frames.a, 0), axis_y = axis_of(frames.a, 1), axis_z = axis_of(frames.a, 2);
     joint.arm_b = arm_b;
+    joint.errors = constraint_errors(joint, frames);
     joint.free_row = {};
     if (is<SliderJoint>(joint)) {
         joint.rows = {slide_row(axis_y), slide_row(axis_z), turn_row(x), turn_row(y), turn_row(z), JointRow{}};
@@ -254,8 +289,7 @@ double solve_joint(Joint& joint, SolvePhase phase, double substep, std::span<Bod
     // What each row's speed is too much.
     std::array<double, max_joint_rows> excess{};
     if (phase == SolvePhase::position) {
-        excess = constraint_errors(joint, frames_after_drift(joint, substep, bodies));
-        for (double& e : excess) e /= substep;
+        excess = position_excess(joint, substep, bodies);
     } else {
         for (std::size_t i = 0; i < max_joint_rows; ++i) excess[i] = row_speed(joint, joint.rows[i], bodies);
     }

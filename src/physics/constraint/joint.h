@@ -37,7 +37,8 @@ struct Joint {
     std::array<std::array<double, max_joint_rows>, max_joint_rows> cholesky{};  ///< lower factor of J M⁻¹ Jᵀ
     JointRow free_row;
     double free_mass = 0;
-    Vec3 arm_b;  ///< from b's centre of mass to the joint, world
+    std::array<double, max_joint_rows> errors{};  ///< of the rows when they were prepared, m or rad
+    Vec3 arm_b;                                   ///< from b's centre of mass to the joint, world
 
     JointImpulses position_phase, velocity_phase;  ///< warm start, as for contacts
     Vec3 total_linear, total_angular;              ///< impulse on b over the step, torque about b's joint frame

@@ -155,8 +155,22 @@ bool is_state_finite(const BodyState& state) {
            is_finite(state.angular_velocity);
 }
 
+// What was no number in a lost body leaves none in what it touched.
+void clear_traces_of_lost(WorldState& world) {
+    for (std::uint32_t body = 0; body < world.bodies.slot_count(); ++body) {
+        if (!world.is_used(body) || world.is_dynamic(body) || is_state_finite(world.motion[body])) continue;
+        world.motion[body].linear_velocity = world.motion[body].angular_velocity = {};
+    }
+    for (Contact& contact : world.contacts) {
+        if (world.record(contact.a).definition.enabled && world.record(contact.b).definition.enabled) continue;
+        for (ContactPoint& point : contact.points) point.impulse = point.total = {};
+        contact.turning = {};
+    }
+}
+
 // A body that left the finite numbers would take all it touches along: it is put back and switched off.
 void freeze_lost_bodies(WorldState& world) {
+    bool lost_any = false;
     for (const std::uint32_t body : world.awake) {
         BodyState& state = world.motion[body];
         BodyRecord& record = world.record(body);
@@ -165,6 +179,7 @@ void freeze_lost_bodies(WorldState& world) {
             record.last_rotation = state.rotation;
             continue;
         }
+        lost_any = true;
         state.center = record.last_center;
         state.rotation = record.last_rotation;
         state.linear_velocity = state.angular_velocity = {};
@@ -173,6 +188,7 @@ void freeze_lost_bodies(WorldState& world) {
         if (record.shape) world.broad_phase.remove(body);
         world.report.limits |= static_cast<std::uint32_t>(StepLimit::not_finite_body_frozen);
     }
+    if (lost_any) clear_traces_of_lost(world);
 }
 
 void clamp_speeds(WorldState& world) {
