@@ -59,6 +59,9 @@ void print(const Summary& summary, const scene::Simulation& simulation) {
     };
     using physics::StepLimit;
     if (reached(StepLimit::linear_speed_clamped)) print_line("note: a body was slowed to settings.max_linear_speed");
+    if (reached(StepLimit::angular_speed_clamped)) print_line("note: a body was slowed to settings.max_angular_speed");
+    if (reached(StepLimit::too_many_pairs))
+        print_line("note: so many bodies are in each other that some pairs are left out; place them apart");
     if (reached(StepLimit::not_finite_body_frozen))
         print_line("note: a body's state left the finite numbers; it was switched off where it last was");
     if (reached(StepLimit::impact_rounds_exhausted))

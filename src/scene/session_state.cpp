@@ -22,9 +22,12 @@ struct LimitText {
     physics::StepLimit limit;
     const char* text;
 };
-constexpr std::array<LimitText, 4> limit_texts = {{
+constexpr std::array<LimitText, 6> limit_texts = {{
     {physics::StepLimit::linear_speed_clamped,
      "Something was faster than the scene's greatest speed and was slowed down."},
+    {physics::StepLimit::angular_speed_clamped,
+     "Something turned faster than the scene's greatest angular speed and was slowed down."},
+    {physics::StepLimit::too_many_pairs, "So many things are in each other that some do not see each other."},
     {physics::StepLimit::not_finite_body_frozen,
      "Something's motion left the finite numbers; it was frozen where it was."},
     {physics::StepLimit::impact_rounds_exhausted,

@@ -141,6 +141,7 @@ Document everything() {
     document.settings.sleeping = false;
     document.settings.shock_propagation = false;
     document.settings.max_linear_speed = 500;
+    document.settings.max_angular_speed = 600;
     document.camera = {Vec3{1, 2, 3}, Vec3{0, 0.1, 0}};
     add_shapes(document);
     fill_entities(document);

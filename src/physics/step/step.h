@@ -19,4 +19,7 @@ void stop_tunnelling(WorldState& world);
 void put_to_sleep(WorldState& world);
 void write_report(WorldState& world);
 
+/// Slows awake bodies to the settings' greatest speeds; before a step, for what users did, and after its substeps.
+void limit_speeds(WorldState& world);
+
 }  // namespace embody::physics

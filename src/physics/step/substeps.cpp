@@ -191,16 +191,6 @@ void freeze_lost_bodies(WorldState& world) {
     if (lost_any) clear_traces_of_lost(world);
 }
 
-void clamp_speeds(WorldState& world) {
-    for (const std::uint32_t body : world.islands.bodies) {
-        Vec3& velocity = world.motion[body].linear_velocity;
-        const double speed = length(velocity);
-        if (!(speed > world.settings.max_linear_speed)) continue;
-        velocity *= world.settings.max_linear_speed / speed;
-        world.report.limits |= static_cast<std::uint32_t>(StepLimit::linear_speed_clamped);
-    }
-}
-
 // Free bodies and those that joints hold: one constraint after the other, in double.
 void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, double h) {
     for_each_contact(world, islands, [&](Contact& contact) { prepare_contact(contact, world.motion); });
@@ -240,7 +230,7 @@ void run_substeps(WorldState& world) {
             }
         }
     }
-    clamp_speeds(world);
+    limit_speeds(world);
     freeze_lost_bodies(world);
     for (std::size_t i = 0; i < world.active_joints.size(); ++i) {
         world.joints.at(world.active_joint_slots[i]).constraint = world.active_joints[i];

@@ -93,6 +93,7 @@ void wake_bodies(WorldState& world) {
     }
     world.to_wake.clear();
     gather_awake(world);
+    limit_speeds(world);
 }
 
 void gather_awake(WorldState& world) {

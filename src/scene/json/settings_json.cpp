@@ -20,6 +20,7 @@ Result<physics::WorldSettings> settings_from_json(const json& value, const std::
     reader.truth("sleeping", settings.sleeping);
     reader.truth("shock_propagation", settings.shock_propagation);
     reader.number("max_linear_speed", settings.max_linear_speed);
+    reader.number("max_angular_speed", settings.max_angular_speed);
     reader.finish();
     if (error) return *error;
     if (const Result<void> valid = physics::validate(settings); !valid.ok()) {
@@ -37,7 +38,8 @@ json settings_to_json(const physics::WorldSettings& settings) {
             {"time_to_sleep", settings.time_to_sleep},
             {"sleeping", settings.sleeping},
             {"shock_propagation", settings.shock_propagation},
-            {"max_linear_speed", settings.max_linear_speed}};
+            {"max_linear_speed", settings.max_linear_speed},
+            {"max_angular_speed", settings.max_angular_speed}};
 }
 
 }  // namespace embody::scene

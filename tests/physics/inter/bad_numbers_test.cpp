@@ -74,7 +74,7 @@ std::uint64_t all_bits(const World& world) {
     }
     const WorldSettings& s = world.settings();
     add(hash, s.gravity);
-    for (const double x : {s.time_step, s.time_to_sleep, s.max_linear_speed}) hash.add(x);
+    for (const double x : {s.time_step, s.time_to_sleep, s.max_linear_speed, s.max_angular_speed}) hash.add(x);
     return hash.value();
 }
 
@@ -184,6 +184,7 @@ std::vector<Field> world_and_joint_fields() {
     fields.push_back(settings_field("time_step", [](S& s) -> double& { return s.time_step; }));
     fields.push_back(settings_field("time_to_sleep", [](S& s) -> double& { return s.time_to_sleep; }));
     fields.push_back(settings_field("max_linear_speed", [](S& s) -> double& { return s.max_linear_speed; }));
+    fields.push_back(settings_field("max_angular_speed", [](S& s) -> double& { return s.max_angular_speed; }));
     const auto hinge = [](J& j) -> HingeJoint& { return std::get<HingeJoint>(j.joint); };
     fields.push_back(joint_field("limit.lower", [hinge](J& j) -> double& { return hinge(j).limit->lower; }));
     fields.push_back(joint_field("limit.upper", [hinge](J& j) -> double& { return hinge(j).limit->upper; }));

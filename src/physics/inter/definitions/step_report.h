@@ -20,6 +20,7 @@ enum class StepLimit : std::uint32_t {
         1u << 2,                 ///< impacts needed more rounds, or were more, than allowed; a smaller time_step helps
     deep_penetration = 1u << 3,  ///< bodies overlap deeply; place them apart or use a smaller time_step
     too_many_pairs = 1u << 4,    ///< so many bodies are in each other that some pairs are left out
+    angular_speed_clamped = 1u << 5,  ///< raise WorldSettings::max_angular_speed
 };
 
 struct StepReport {

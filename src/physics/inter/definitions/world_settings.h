@@ -12,8 +12,9 @@ struct WorldSettings {
     int substeps = 4;             ///< parts a step is solved in, 1 … 64
     double time_to_sleep = 0.5;   ///< an island this long quiet falls asleep, s, 0.05 … 60
     bool sleeping = true;
-    bool shock_propagation = true;  ///< paper, section IV
-    double max_linear_speed = 1e4;  ///< a faster body is slowed to this and the report says so, m/s
+    bool shock_propagation = true;   ///< paper, section IV
+    double max_linear_speed = 1e4;   ///< a faster body is slowed to this and the report says so, m/s
+    double max_angular_speed = 2e4;  ///< the same for turning, rad/s
     int workers = 1;  ///< threads that a step may use, 1 … 64; small worlds use one whatever is set. Same result.
     int lanes = 0;    ///< contacts solved by one instruction: 4, 8 or 16; 0: as many as the processor can. Same result.
 };
