@@ -57,9 +57,16 @@ void find_region(const ConvexPair& pair, double margin, PairMemory& memory, Cont
     collide_round(pair.placed_a(), pair.placed_b(), margin, memory, region);
 }
 
+// Whether the balls around two pieces' inner points are farther apart than the margin: most pairs whose boxes overlap.
+bool balls_are_apart(const PlacedConvex& a, const PlacedConvex& b, double margin) {
+    const double reach = a.shape->reach + b.shape->reach + margin;
+    return length_squared(interior_point(b) - interior_point(a)) > reach * reach;
+}
+
 // Two convex pieces in world axes with the origin at `origin`; at most one manifold.
 void collide_two(const PlacedConvex& first, const PlacedConvex& second, double margin, Vec3 origin, PairMemory& memory,
                  std::vector<Manifold>& manifolds) {
+    if (balls_are_apart(first, second, margin)) return;
     // Each pair of kinds in one order, so that swapped arguments give the mirrored answer.
     const bool is_swapped = first.shape->kind > second.shape->kind;
     const PlacedConvex &a = is_swapped ? second : first, &b = is_swapped ? first : second;
