@@ -51,14 +51,28 @@ Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold,
 
 namespace {
 
-// The tangents of the two steps differ by a turn about the normal; the friction impulse keeps its world direction.
-PointImpulse carried_over(const PointImpulse& impulse, Vec3 old_1, Vec3 old_2, const Contact& new_contact) {
-    const Vec3 friction = impulse.tangent_1 * old_1 + impulse.tangent_2 * old_2;
-    return {impulse.normal, static_cast<float>(dot(friction, new_contact.tangent_1)),
-            static_cast<float>(dot(friction, new_contact.tangent_2))};
+// The tangents of the two steps differ by a turn about the normal; the friction keeps its world direction. `shift`
+// leads from the new anchor to the old one.
+PatchFriction carried_over(const PatchFriction& friction, const Contact& new_contact, Vec3 old_1, Vec3 old_2,
+                           Vec3 shift) {
+    const Vec3 force = friction.along_1 * old_1 + friction.along_2 * old_2;
+    return {static_cast<float>(dot(force, new_contact.tangent_1)),
+            static_cast<float>(dot(force, new_contact.tangent_2)),
+            static_cast<float>(friction.twist + dot(cross(shift, force), new_contact.normal))};
 }
 
 }  // namespace
+
+Anchor anchor_of(const Contact& contact) {
+    Anchor sum;
+    for (int i = 0; i < contact.count; ++i) {
+        const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        sum.arm_a += point.arm_a;
+        sum.arm_b += point.arm_b;
+    }
+    const double share = contact.count > 0 ? 1.0 / contact.count : 0;
+    return {sum.arm_a * share, sum.arm_b * share};
+}
 
 void match_points(const Contact& old_contact, Contact& new_contact) {
     // Features tell the same point; where they changed, the nearest old point within reach stands in for it.
@@ -84,10 +98,15 @@ void match_points(const Contact& old_contact, Contact& new_contact) {
         if (best < 0) continue;
         const ContactPoint& old_point = old_contact.points[static_cast<std::size_t>(best)];
         taken[static_cast<std::size_t>(best)] = true;
-        point.impulse = carried_over(old_point.impulse, old_contact.tangent_1, old_contact.tangent_2, new_contact);
-        point.sticks = old_point.sticks;
+        point.impulse = old_point.impulse;
     }
-    new_contact.turning = old_contact.turning;
+
+    // The bodies' last way is short beside the region: the old anchor is taken where it was.
+    const Vec3 shift = anchor_of(old_contact).arm_a - anchor_of(new_contact).arm_a;
+    new_contact.friction =
+        carried_over(old_contact.friction, new_contact, old_contact.tangent_1, old_contact.tangent_2, shift);
+    new_contact.sticks = old_contact.sticks;
+    new_contact.rolling = old_contact.rolling;
     new_contact.was_touching = is_touching(old_contact);
     new_contact.was_loaded = is_pressed(old_contact);
 }
@@ -108,10 +127,11 @@ void follow_bodies(Contact& contact, std::span<const BodyState> bodies) {
         const Vec3 apart = b.center - a.center, gap = apart + arm_b - arm_a, middle = arm_a + 0.5 * gap;
         point.separation = static_cast<float>(dot(normal, gap));
         set_arms(contact, point, middle, middle - apart, bodies);
-        point.impulse = carried_over(point.impulse, old_1, old_2, contact);
-        point.total = {};
+        point.total = 0;
         point.inactive_until = 0;
     }
+    contact.friction = carried_over(contact.friction, contact, old_1, old_2, {});
+    contact.friction_total = {};
 }
 
 namespace {
@@ -133,17 +153,9 @@ double current_separation(const Contact& contact, const ContactPoint& point, std
     return point.separation + dot(contact.normal, move_b - move_a);
 }
 
-void activate_points(Contact& contact, double time) {
-    for (int i = 0; i < contact.count; ++i) {
-        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        point.is_active = static_cast<float>(time) > point.inactive_until;
-        if (!point.is_active) point.impulse = {};
-    }
-}
-
 bool is_pressed(const Contact& contact) {
     for (int i = 0; i < contact.count; ++i) {
-        if (contact.points[static_cast<std::size_t>(i)].impulse.normal > 0) return true;
+        if (contact.points[static_cast<std::size_t>(i)].impulse > 0) return true;
     }
     return false;
 }
@@ -151,7 +163,7 @@ bool is_pressed(const Contact& contact) {
 bool is_touching(const Contact& contact) {
     for (int i = 0; i < contact.count; ++i) {
         const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        if (point.total.normal > 0 || point.separation <= 0) return true;
+        if (point.total > 0 || point.separation <= 0) return true;
     }
     return false;
 }

@@ -11,10 +11,11 @@
 
 namespace embody::physics {
 
-/// Impulse at a contact point: along the normal and along the two tangents, N s.
-struct PointImpulse {
-    float normal = 0;
-    float tangent_1 = 0, tangent_2 = 0;
+/// What friction does over a contact region: a force along the two tangents at its anchor and a moment about the
+/// normal, both times the substep.
+struct PatchFriction {
+    float along_1 = 0, along_2 = 0;  ///< N s
+    float twist = 0;                 ///< N m s
 };
 
 // Contacts are what a step reads and writes most, so their numbers are floats: they are lengths from the bodies' own
@@ -26,15 +27,10 @@ struct ContactPoint {
     float separation = 0;    ///< when found, m
     std::uint32_t feature = 0;
 
-    PointImpulse impulse;  ///< of the last substep; warm start of the next
-    PointImpulse total;    ///< of the whole step, impacts included
-
-    float normal_mass = 0;                                 ///< 1/(nᵀAn), kg
-    float tangent_11 = 0, tangent_12 = 0, tangent_22 = 0;  ///< inverse of the 2×2 tangent block, kg
-    float slide_mass = 0;                                  ///< 1 over the block's larger eigenvalue, kg
+    float impulse = 0;         ///< along the normal, of the last substep; warm start of the next, N s
+    float total = 0;           ///< along the normal, of the whole step, impacts included, N s
+    float normal_mass = 0;     ///< what the point alone has to move along the normal, 1/(nᵀAn), kg
     float inactive_until = 0;  ///< s in the step: until then an impact lets the surfaces part, or they are not there
-    bool is_active = true;     ///< in this substep
-    bool sticks = true;        ///< holds by static friction until the cone is left
 };
 
 /// One contact region (paper, III.B) as a constraint between two bodies.
@@ -46,9 +42,12 @@ struct Contact {
 
     Vec3f normal, tangent_1, tangent_2;  ///< world; normal from a to b
     Vec3f local_normal;                  ///< in the axes of the body that it turns with
-    Vec3f turning;  ///< angular impulse by torsion (along n) and rolling resistance of the last substep, N m s
-    float approach_speed = 0;                     ///< fastest point when found, m/s, >= 0
-    bool turns_with_b = false;                    ///< the normal does; else with a
+    PatchFriction friction;              ///< on b, of the last substep; warm start of the next
+    PatchFriction friction_total;        ///< of the whole step, impacts included
+    Vec3f rolling;                       ///< moment of rolling resistance on b, of the last substep, N m s, world
+    bool sticks = true;                  ///< holds by static friction until its limit is left
+    float approach_speed = 0;            ///< fastest point when found, m/s, >= 0
+    bool turns_with_b = false;           ///< the normal does; else with a
     bool a_is_round = false, b_is_round = false;  ///< rolls: the point of contact does not turn with the body
     bool was_touching = false;                    ///< in the last step
     bool was_loaded = false;                      ///< pressed in the last step
@@ -68,6 +67,12 @@ static_assert(sizeof(ContactGlance) == 16);
 inline ContactGlance glance_at(const Contact& c) {
     return {c.a, c.b, c.approach_speed, c.was_touching, c.was_loaded, c.material.restitution > 0};
 }
+
+/// Arms to the middle of the region's points, where its friction acts.
+struct Anchor {
+    Vec3 arm_a, arm_b;
+};
+Anchor anchor_of(const Contact& contact);
 
 /// Where the point was found, world.
 inline Vec3 position_of(const Contact& contact, const ContactPoint& point, std::span<const BodyState> bodies) {
@@ -96,8 +101,10 @@ inline Vec3 relative_velocity(const Contact& contact, const ContactPoint& point,
 /// Gap at the point now, m, from the bodies' motion since it was found.
 double current_separation(const Contact& contact, const ContactPoint& point, std::span<const BodyState> bodies);
 
-/// Decides which points take part in the substep that ends `time` s after the step began.
-void activate_points(Contact& contact, double time);
+/// The friction of the whole step on b as a force at its anchor, world, N s.
+inline Vec3 friction_force(const Contact& contact, const PatchFriction& friction) {
+    return friction.along_1 * contact.tangent_1 + friction.along_2 * contact.tangent_2;
+}
 
 /// Whether it carried a load at the end of the last substep that solved it; impacts do not count.
 bool is_pressed(const Contact& contact);

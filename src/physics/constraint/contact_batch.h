@@ -9,13 +9,16 @@
 
 namespace embody::physics {
 
+/// Rounds over the points of a region within one pass, in which its bodies are not touched.
+inline constexpr int normal_rounds = 2;
+
 /// Quantities of a contact, in floats times lanes from the start of its batch.
 struct BatchHead {
     enum Quantity : int {
         body_a,  ///< row of the body, an integer
         body_b,
         writable,  ///< lane 0: bit mask of the lanes whose body a may move; 1: the same for b; 2: of those that resist
-                   ///< turning
+                   ///< rolling
         inverse_mass_a,
         inverse_mass_b,
         inverse_inertia_a,  ///< world, at the step's start: xx xy xz yy yz zz
@@ -23,13 +26,24 @@ struct BatchHead {
         normal = inverse_inertia_b + 6,  ///< from a to b: x y z; so are the next two
         tangent_1 = normal + 3,
         tangent_2 = tangent_1 + 3,
-        friction_static = tangent_2 + 3,
+        arm_a = tangent_2 + 3,  ///< from the centre of mass to the anchor, the middle of the points, world: x y z
+        arm_b = arm_a + 3,
+        friction_static = arm_b + 3,
         friction_dynamic,
         friction_torsional,
         friction_rolling,
-        start_spin,                ///< ω of b less that of a at the step's start, world: x y z
-        turning = start_spin + 3,  ///< angular impulse by torsion and rolling resistance, world: x y z
-        round_a = turning + 3,     ///< mask: the point of contact does not turn with the body
+        start_speed,                      ///< relative velocity at the anchor at the step's start along the three axes
+        start_spin = start_speed + 3,     ///< ω of b less that of a at the step's start, about the three axes
+        coupling = start_spin + 3,        ///< A_ij of points 01 02 03 12 13 23, 1/kg
+        stop_all = coupling + 6,          ///< inverse response of (u₁ u₂ ω_n): 11 12 13 22 23 33
+        stop_shift = stop_all + 6,        ///< inverse response of (u₁ u₂): 11 12 22
+        shift_response = stop_shift + 3,  ///< largest response of the anchor's tangential speed, 1/kg
+        twist_response,                   ///< response of ω_n, 1/(kg m²)
+        friction,                         ///< impulse on b along tangent 1, 2, about the normal
+        friction_total = friction + 3,    ///< of the step
+        rolling = friction_total + 3,     ///< angular impulse on b by rolling resistance, world: x y z
+        sticks = rolling + 3,             ///< mask
+        round_a,                          ///< mask: the point of contact does not turn with the body
         round_b,
         size
     };
@@ -38,24 +52,15 @@ struct BatchHead {
 /// Quantities of a point, in floats times lanes from its own start.
 struct BatchPoint {
     enum Quantity : int {
-        arm_a,  ///< from the centre of mass, world: x y z
-        arm_b = arm_a + 3,
-        separation_found = arm_b + 3,
-        separation,                     ///< now
-        start_speed,                    ///< relative velocity at the step's start along normal, tangent_1, tangent_2
-        normal_mass = start_speed + 3,  ///< kg; 0 where there is no point
-        tangent_11,
-        tangent_12,
-        tangent_22,
-        slide_mass,
-        impulse_normal,
-        impulse_1,
-        impulse_2,
-        total_normal,
-        total_1,
-        total_2,
-        sticks,          ///< mask
-        inactive_until,  ///< s in the step
+        along_1,  ///< place on the region from the anchor, m
+        along_2,
+        separation_found,
+        separation,       ///< now
+        normal_response,  ///< A_ii, 1/kg
+        normal_mass,      ///< 1/A_ii, kg; 0 where there is no point
+        impulse,          ///< along the normal
+        total,            ///< of the step
+        inactive_until,   ///< s in the step
         size
     };
 };

@@ -62,10 +62,11 @@ struct Inertia {
     }
 };
 
-// Paper, eq. (6): an impulse on b and its opposite on a.
+// Paper, eq. (6): an impulse and an angular impulse on b, their opposites on a.
 EMBODY_WIDE_INLINE void apply(Velocities& v, const Inertia& m, const Wide3& arm_a, const Wide3& arm_b,
-                              const Wide3& impulse) {
-    const Wide3 turn_a = m.inertia_a * cross(arm_a, impulse), turn_b = m.inertia_b * cross(arm_b, impulse);
+                              const Wide3& impulse, const Wide3& moment) {
+    const Wide3 turn_a = m.inertia_a * (cross(arm_a, impulse) + moment);
+    const Wide3 turn_b = m.inertia_b * (cross(arm_b, impulse) + moment);
     v.a[0] -= impulse.x * m.mass_a;
     v.a[1] -= impulse.y * m.mass_a;
     v.a[2] -= impulse.z * m.mass_a;
@@ -80,96 +81,157 @@ EMBODY_WIDE_INLINE void apply(Velocities& v, const Inertia& m, const Wide3& arm_
     v.b[5] += turn_b.z;
 }
 
-EMBODY_WIDE_INLINE void apply_turning(Velocities& v, const Inertia& m, const Wide3& impulse) {
-    const Wide3 turn_a = m.inertia_a * impulse, turn_b = m.inertia_b * impulse;
-    v.a[3] -= turn_a.x;
-    v.a[4] -= turn_a.y;
-    v.a[5] -= turn_a.z;
-    v.b[3] += turn_b.x;
-    v.b[4] += turn_b.y;
-    v.b[5] += turn_b.z;
-}
-
 EMBODY_WIDE_INLINE float* point_of(float* batch, int k) {
     return batch + (BatchHead::size + k * BatchPoint::size) * lanes;
 }
 EMBODY_WIDE_INLINE Wide quantity(const float* part, int which) { return load(part + which * lanes); }
 EMBODY_WIDE_INLINE Wide3 quantity_3(const float* part, int which) { return load_3(part + which * lanes); }
 
-/// What friction, normals and turning share.
+/// Where a region lies: its axes and the arms to its anchor.
 struct Frame {
-    Wide3 normal, tangent_1, tangent_2;
+    Wide3 normal, tangent_1, tangent_2, arm_a, arm_b;
     EMBODY_WIDE_INLINE Frame of(const float* batch) {
         return {quantity_3(batch, BatchHead::normal), quantity_3(batch, BatchHead::tangent_1),
-                quantity_3(batch, BatchHead::tangent_2)};
+                quantity_3(batch, BatchHead::tangent_2), quantity_3(batch, BatchHead::arm_a),
+                quantity_3(batch, BatchHead::arm_b)};
     }
 };
 
-EMBODY_WIDE_INLINE bool resists_turning(const float* batch) {
+EMBODY_WIDE_INLINE bool resists_rolling(const float* batch) {
     return Velocities::rows_of(batch, BatchHead::writable)[2] != 0;
 }
 
-// u along a direction after a unit impulse along another one at the same point: dᵀ A e.
-EMBODY_WIDE_INLINE Wide response(const Inertia& m, const Wide3& arm_a, const Wide3& arm_b, const Wide3& d,
-                                 const Wide3& e) {
-    return (m.mass_a + m.mass_b) * dot(d, e) + dot(cross(arm_a, d), m.inertia_a * cross(arm_a, e)) +
-           dot(cross(arm_b, d), m.inertia_b * cross(arm_b, e));
+// Inverse of what is large enough to have one, else 0.
+EMBODY_WIDE_INLINE Wide inverse(Wide number) {
+    return select(number > broadcast(1e-30F), broadcast(1) / number, Wide{});
+}
+// By the adjugate; 0 where it is singular.
+EMBODY_WIDE_INLINE WideSymmetric inverse(const WideSymmetric& s) {
+    const Wide c_xx = s.yy * s.zz - s.yz * s.yz, c_xy = s.xz * s.yz - s.xy * s.zz, c_xz = s.xy * s.yz - s.xz * s.yy;
+    const Wide c_yy = s.xx * s.zz - s.xz * s.xz, c_yz = s.xy * s.xz - s.xx * s.yz, c_zz = s.xx * s.yy - s.xy * s.xy;
+    const Wide scale = inverse(s.xx * c_xx + s.xy * c_xy + s.xz * c_xz);
+    return {c_xx * scale, c_xy * scale, c_xz * scale, c_yy * scale, c_yz * scale, c_zz * scale};
+}
+
+/// What impulses at the anchor do to the motion there.
+struct Response {
+    const Inertia& m;
+    const Frame& frame;
+
+    // dᵀ A e: velocity along d by a force along e.
+    [[gnu::always_inline]] inline Wide shift(const Wide3& d, const Wide3& e) const {
+        return (m.mass_a + m.mass_b) * dot(d, e) + dot(cross(frame.arm_a, d), m.inertia_a * cross(frame.arm_a, e)) +
+               dot(cross(frame.arm_b, d), m.inertia_b * cross(frame.arm_b, e));
+    }
+    // Velocity along d by a moment about the axis.
+    [[gnu::always_inline]] inline Wide mixed(const Wide3& d, const Wide3& axis) const {
+        return dot(cross(frame.arm_a, d), m.inertia_a * axis) + dot(cross(frame.arm_b, d), m.inertia_b * axis);
+    }
+    // Spin about d by a moment about e.
+    [[gnu::always_inline]] inline Wide spin(const Wide3& d, const Wide3& e) const {
+        return dot(d, m.inertia_a * e) + dot(d, m.inertia_b * e);
+    }
+};
+
+// A_ij and the mass of each point.
+EMBODY_WIDE_INLINE void prepare_normals(float* batch, int points, const Response& response, const Frame& f) {
+    const WideSymmetric k{response.shift(f.normal, f.normal),      response.mixed(f.normal, f.tangent_1),
+                          response.mixed(f.normal, f.tangent_2),   response.spin(f.tangent_1, f.tangent_1),
+                          response.spin(f.tangent_1, f.tangent_2), response.spin(f.tangent_2, f.tangent_2)};
+    float* coupling = batch + BatchHead::coupling * lanes;
+    for (int i = 0; i < points; ++i) {
+        float* point = point_of(batch, i);
+        const Wide3 row{broadcast(1), quantity(point, BatchPoint::along_2), -quantity(point, BatchPoint::along_1)};
+        const Wide3 by_row = k * row;
+
+        // Lanes without this point hold 0 there; the others 1.
+        const WideMask exists = quantity(point, BatchPoint::normal_mass) > Wide{};
+        const Wide own = dot(row, by_row);
+        store(point + BatchPoint::normal_response * lanes, own);
+        store(point + BatchPoint::normal_mass * lanes, select(exists, inverse(own), Wide{}));
+        for (int j = i + 1; j < points; ++j) {
+            const float* other = point_of(batch, j);
+            const Wide3 column{broadcast(1), quantity(other, BatchPoint::along_2),
+                               -quantity(other, BatchPoint::along_1)};
+            const int place = i == 0 ? j - 1 : i + j;
+            store(coupling + place * lanes, dot(column, by_row));
+        }
+    }
 }
 
 void prepare(float* batch, int points) {
-    const Frame frame = Frame::of(batch);
+    const Frame f = Frame::of(batch);
     const Inertia m = Inertia::of(batch);
-    const Wide zero{}, one = broadcast(1), two = broadcast(2), four = broadcast(4);
-    for (int k = 0; k < points; ++k) {
-        float* point = point_of(batch, k);
-        const Wide3 arm_a = quantity_3(point, BatchPoint::arm_a), arm_b = quantity_3(point, BatchPoint::arm_b);
-        // Lanes without this point hold 0 there; the others 1.
-        const WideMask exists = quantity(point, BatchPoint::normal_mass) > zero;
+    const Response response{m, f};
+    prepare_normals(batch, points, response, f);
 
-        const Wide nn = response(m, arm_a, arm_b, frame.normal, frame.normal);
-        store(point + BatchPoint::normal_mass * lanes, select(exists & (nn > zero), one / nn, zero));
+    // What stops the anchor's shift, with and without the spin.
+    const Wide k11 = response.shift(f.tangent_1, f.tangent_1), k12 = response.shift(f.tangent_1, f.tangent_2);
+    const Wide k22 = response.shift(f.tangent_2, f.tangent_2), k33 = response.spin(f.normal, f.normal);
+    const Wide scale = inverse(k11 * k22 - k12 * k12);
+    const Wide s11 = k22 * scale, s12 = -k12 * scale, s22 = k11 * scale;
+    store_3(batch + BatchHead::stop_shift * lanes, {s11, s12, s22});
+    const WideSymmetric all = inverse(WideSymmetric{k11, k12, response.mixed(f.tangent_1, f.normal), k22,
+                                                    response.mixed(f.tangent_2, f.normal), k33});
 
-        const Wide k11 = response(m, arm_a, arm_b, frame.tangent_1, frame.tangent_1);
-        const Wide k12 = response(m, arm_a, arm_b, frame.tangent_1, frame.tangent_2);
-        const Wide k22 = response(m, arm_a, arm_b, frame.tangent_2, frame.tangent_2);
-        const Wide determinant = k11 * k22 - k12 * k12;
-        const WideMask solvable = exists & (determinant > zero);
-        const Wide split = square_root((k11 - k22) * (k11 - k22) + four * k12 * k12);
-        store(point + BatchPoint::tangent_11 * lanes, select(solvable, k22 / determinant, zero));
-        store(point + BatchPoint::tangent_12 * lanes, select(solvable, -k12 / determinant, zero));
-        store(point + BatchPoint::tangent_22 * lanes, select(solvable, k11 / determinant, zero));
-        store(point + BatchPoint::slide_mass * lanes, select(solvable, two / (k11 + k22 + split), zero));
-    }
+    // Where neither body can spin the shift is all there is.
+    const WideMask spins = all.xx > Wide{};
+    store_3(batch + BatchHead::stop_all * lanes, {select(spins, all.xx, s11), select(spins, all.xy, s12), all.xz});
+    store_3(batch + (BatchHead::stop_all + 3) * lanes, {select(spins, all.yy, s22), all.yz, all.zz});
+    const Wide split = square_root((k11 - k22) * (k11 - k22) + broadcast(4) * k12 * k12);
+    store(batch + BatchHead::shift_response * lanes, (k11 + k22 + split) * broadcast(0.5F));
+    store(batch + BatchHead::twist_response * lanes, k33);
 }
 
+// Force and moments of the points' normal impulses at the anchor.
+struct NormalLoad {
+    Wide force{}, moment_1{}, moment_2{};
+    [[gnu::always_inline]] inline void add(const float* point, Wide impulse) {
+        force += impulse;
+        moment_1 += quantity(point, BatchPoint::along_2) * impulse;
+        moment_2 -= quantity(point, BatchPoint::along_1) * impulse;
+    }
+};
+
 void warm_start(float* batch, int points, const ContactSweep& sweep) {
-    const Frame frame = Frame::of(batch);
+    const Frame f = Frame::of(batch);
     const Inertia m = Inertia::of(batch);
     const Wide zero{}, time = broadcast(sweep.time);
     Velocities v = Velocities::take(batch, sweep);
+    NormalLoad load;
     for (int k = 0; k < points; ++k) {
         float* point = point_of(batch, k);
         const WideMask is_active = time > quantity(point, BatchPoint::inactive_until);
-        const Wide normal = select(is_active, quantity(point, BatchPoint::impulse_normal), zero);
-        const Wide along_1 = select(is_active, quantity(point, BatchPoint::impulse_1), zero);
-        const Wide along_2 = select(is_active, quantity(point, BatchPoint::impulse_2), zero);
-        store(point + BatchPoint::impulse_normal * lanes, normal);
-        store(point + BatchPoint::impulse_1 * lanes, along_1);
-        store(point + BatchPoint::impulse_2 * lanes, along_2);
-        apply(v, m, quantity_3(point, BatchPoint::arm_a), quantity_3(point, BatchPoint::arm_b),
-              frame.normal * normal + frame.tangent_1 * along_1 + frame.tangent_2 * along_2);
+        const Wide impulse = select(is_active, quantity(point, BatchPoint::impulse), zero);
+        store(point + BatchPoint::impulse * lanes, impulse);
+        load.add(point, impulse);
     }
-    if (resists_turning(batch)) apply_turning(v, m, quantity_3(batch, BatchHead::turning));
+
+    // Friction goes with its load.
+    const WideMask is_loaded = load.force > zero;
+    const auto keep = [&](int which) {
+        const Wide kept = select(is_loaded, quantity(batch, which), zero);
+        store(batch + which * lanes, kept);
+        return kept;
+    };
+    const Wide along_1 = keep(BatchHead::friction), along_2 = keep(BatchHead::friction + 1);
+    const Wide twist = keep(BatchHead::friction + 2);
+    Wide3 moment = f.tangent_1 * load.moment_1 + f.tangent_2 * load.moment_2 + f.normal * twist;
+    if (resists_rolling(batch)) {
+        moment = moment + Wide3{keep(BatchHead::rolling), keep(BatchHead::rolling + 1), keep(BatchHead::rolling + 2)};
+    }
+    apply(v, m, f.arm_a, f.arm_b, f.normal * load.force + f.tangent_1 * along_1 + f.tangent_2 * along_2, moment);
     v.put_back(batch, sweep);
 }
 
-// How the point moved since it was found (as contact.cpp: motion_of): on a round body only the tilt counts.
-EMBODY_WIDE_INLINE Wide3 motion_of(const Wide row[row_floats], const Wide3& arm, WideMask is_round) {
+// What a body's turn since the step began adds to an arm (as contact.cpp: motion_of): on a round body only the tilt
+// counts.
+EMBODY_WIDE_INLINE Wide3 turn_of(const Wide row[row_floats], const Wide3& arm, WideMask is_round) {
     const Wide3 turn{row[3], row[4], row[5]};
     const Wide w = row[6], two = broadcast(2);
     const Wide3 by_tilt = cross(turn, arm) * two;
     const Wide3 by_turn = by_tilt * w + cross(turn, by_tilt);
-    return Wide3{row[0], row[1], row[2]} + select(is_round, by_tilt, by_turn);
+    return select(is_round, by_tilt, by_turn);
 }
 
 void separate(float* batch, int points, const ContactSweep& sweep) {
@@ -178,158 +240,263 @@ void separate(float* batch, int points, const ContactSweep& sweep) {
     gather_rows(sweep.motion, Velocities::rows_of(batch, BatchHead::body_b), b);
     const WideMask round_a = load_mask(batch + BatchHead::round_a * lanes);
     const WideMask round_b = load_mask(batch + BatchHead::round_b * lanes);
-    const Wide3 normal = quantity_3(batch, BatchHead::normal);
+    const Frame f = Frame::of(batch);
+
+    // The gap changes linearly over the region: at the anchor, and a metre along each tangent.
+    const Wide3 shift =
+        Wide3{b[0] - a[0], b[1] - a[1], b[2] - a[2]} + turn_of(b, f.arm_b, round_b) - turn_of(a, f.arm_a, round_a);
+    const Wide middle = dot(f.normal, shift);
+    const auto tilt = [&](const Wide3& tangent) {
+        return dot(f.normal, turn_of(b, tangent, round_b) - turn_of(a, tangent, round_a));
+    };
+    const Wide tilt_1 = points > 1 ? tilt(f.tangent_1) : Wide{}, tilt_2 = points > 1 ? tilt(f.tangent_2) : Wide{};
     for (int k = 0; k < points; ++k) {
         float* point = point_of(batch, k);
-        const Wide3 move_a = motion_of(a, quantity_3(point, BatchPoint::arm_a), round_a);
-        const Wide3 move_b = motion_of(b, quantity_3(point, BatchPoint::arm_b), round_b);
-        store(point + BatchPoint::separation * lanes,
-              quantity(point, BatchPoint::separation_found) + dot(normal, move_b - move_a));
+        const Wide change =
+            middle + (tilt_1 * quantity(point, BatchPoint::along_1) + tilt_2 * quantity(point, BatchPoint::along_2));
+        store(point + BatchPoint::separation * lanes, quantity(point, BatchPoint::separation_found) + change);
     }
 }
 
-// Coulomb's cone of one point (paper, eq. 7).
-EMBODY_WIDE_INLINE void solve_friction(float* point, const Frame& frame, const Inertia& m, Wide mu_static,
-                                       Wide mu_dynamic, WideMask is_active, Velocities& v) {
-    const Wide zero{};
-    const Wide3 arm_a = quantity_3(point, BatchPoint::arm_a), arm_b = quantity_3(point, BatchPoint::arm_b);
-    const Wide normal = quantity(point, BatchPoint::impulse_normal);
-    const Wide old_1 = quantity(point, BatchPoint::impulse_1), old_2 = quantity(point, BatchPoint::impulse_2);
-    const Wide t11 = quantity(point, BatchPoint::tangent_11), t12 = quantity(point, BatchPoint::tangent_12);
-    const Wide t22 = quantity(point, BatchPoint::tangent_22);
+/// Change of the relative motion at the anchor since the step began.
+struct RelativeMotion {
+    Wide3 velocity, spin;
+    EMBODY_WIDE_INLINE RelativeMotion of(const Velocities& v, const Frame& f) {
+        const Wide3 spin_a = v.angular_a(), spin_b = v.angular_b();
+        return {v.linear_b() + cross(spin_b, f.arm_b) - (v.linear_a() + cross(spin_a, f.arm_a)), spin_b - spin_a};
+    }
+};
 
-    // What would stop the point.
-    const Wide3 velocity = v.relative(arm_a, arm_b);
-    const Wide u1 = quantity(point, BatchPoint::start_speed + 1) + dot(velocity, frame.tangent_1);
-    const Wide u2 = quantity(point, BatchPoint::start_speed + 2) + dot(velocity, frame.tangent_2);
-    const Wide stop_1 = old_1 - (t11 * u1 + t12 * u2), stop_2 = old_2 - (t12 * u1 + t22 * u2);
+/// Where the load of a region presses and how far from there on average.
+struct Pressure {
+    Wide along_1{}, along_2{}, lever{}, load{};
+};
+EMBODY_WIDE_INLINE Pressure pressure_of(float* batch, int points) {
+    Pressure p;
+    for (int k = 0; k < points; ++k) {
+        const float* point = point_of(batch, k);
+        const Wide impulse = quantity(point, BatchPoint::impulse);
+        p.load += impulse;
+        p.along_1 += quantity(point, BatchPoint::along_1) * impulse;
+        p.along_2 += quantity(point, BatchPoint::along_2) * impulse;
+    }
+    if (points == 1) return {Wide{}, Wide{}, Wide{}, p.load};
+    const Wide scale = inverse(p.load);
+    p.along_1 *= scale;
+    p.along_2 *= scale;
+    for (int k = 0; k < points; ++k) {
+        const float* point = point_of(batch, k);
+        const Wide x = quantity(point, BatchPoint::along_1) - p.along_1;
+        const Wide y = quantity(point, BatchPoint::along_2) - p.along_2;
+        p.lever += quantity(point, BatchPoint::impulse) * square_root(x * x + y * y);
+    }
+    p.lever *= scale;
+    return p;
+}
 
-    // A sticking point holds up to the static limit; once it slides, it must fall below the dynamic one.
-    const WideMask stuck = load_mask(point + BatchPoint::sticks * lanes);
-    const Wide limit = select(stuck, mu_static, mu_dynamic) * normal;
-    const WideMask holds = stop_1 * stop_1 + stop_2 * stop_2 <= limit * limit;
+/// The bounds of friction and their inverses: an ellipsoid of force and moment.
+struct FrictionLimit {
+    Wide force, moment;
+    EMBODY_WIDE_INLINE FrictionLimit of(Wide mu, Wide torsional, const Pressure& p) {
+        return {mu * p.load, (mu * p.lever + torsional) * p.load};
+    }
+    // Above 1 outside. Where there is no bound there must be nothing.
+    [[gnu::always_inline]] inline Wide excess(const Wide3& f) const {
+        const Wide by_force = inverse(force);
+        const Wide x = f.x * by_force, y = f.y * by_force, z = f.z * inverse(moment);
+        return x * x + y * y + z * z;
+    }
+};
 
-    // Sliding friction opposes the velocity, not the impulse that would stop it.
-    const Wide slide_mass = quantity(point, BatchPoint::slide_mass);
-    const Wide slide_1 = old_1 - slide_mass * u1, slide_2 = old_2 - slide_mass * u2;
-    const Wide size = square_root(slide_1 * slide_1 + slide_2 * slide_2);
-    const Wide share = select(size > zero, mu_dynamic * normal / size, zero);
-    Wide new_1 = select(holds, stop_1, slide_1 * share), new_2 = select(holds, stop_2, slide_2 * share);
+// Coulomb's law of the whole region (paper, eq. 7; contact_solver.cpp). Friction is (tangent 1, tangent 2, moment), the
+// moment about the centre of pressure.
+EMBODY_WIDE_INLINE void solve_friction(float* batch, int points, const Frame& f, const Inertia& m, Velocities& v) {
+    const Wide zero{}, one = broadcast(1);
+    const Pressure p = pressure_of(batch, points);
+    const Wide3 old = quantity_3(batch, BatchHead::friction);
+    const auto about_center = [&](const Wide3& w) {
+        return points == 1 ? w : Wide3{w.x, w.y, w.z - (p.along_1 * w.y - p.along_2 * w.x)};
+    };
+    const RelativeMotion motion = RelativeMotion::of(v, f);
+    const float* start = batch + BatchHead::start_speed * lanes;
+    const Wide u1 = quantity(start, 1) + dot(motion.velocity, f.tangent_1);
+    const Wide u2 = quantity(start, 2) + dot(motion.velocity, f.tangent_2);
+    const Wide spin = quantity(batch, BatchHead::start_spin + 2) + dot(motion.spin, f.normal);
 
-    // An unloaded point neither sticks nor slides.
-    const WideMask idle = ~is_active | ((normal == zero) & (old_1 == zero) & (old_2 == zero));
-    new_1 = select(idle, old_1, new_1);
-    new_2 = select(idle, old_2, new_2);
-    store_mask(point + BatchPoint::sticks * lanes, (idle & stuck) | (~idle & holds));
-    store(point + BatchPoint::impulse_1 * lanes, new_1);
-    store(point + BatchPoint::impulse_2 * lanes, new_2);
-    apply(v, m, arm_a, arm_b, frame.tangent_1 * (new_1 - old_1) + frame.tangent_2 * (new_2 - old_2));
+    // What would stop the region; a sticking one holds up to the static limit. Without a lever the spin is free.
+    const Wide mu_static = quantity(batch, BatchHead::friction_static);
+    const Wide mu_dynamic = quantity(batch, BatchHead::friction_dynamic);
+    const Wide torsional = quantity(batch, BatchHead::friction_torsional);
+    const WideMask stuck = load_mask(batch + BatchHead::sticks * lanes);
+    const FrictionLimit hold = FrictionLimit::of(select(stuck, mu_static, mu_dynamic), torsional, p);
+    const WideSymmetric all = Inertia::load_symmetric(batch + BatchHead::stop_all * lanes);
+    const Wide3 shift = quantity_3(batch, BatchHead::stop_shift);
+    const WideMask has_lever = hold.moment > zero;
+    const Wide3 stop_all = all * Wide3{u1, u2, spin};
+    const Wide3 stop_shift{shift.x * u1 + shift.y * u2, shift.y * u1 + shift.z * u2, zero};
+    Wide3 stop = about_center(old - select(has_lever, stop_all, stop_shift));
+    stop.z = select(has_lever, stop.z, zero);
+    const WideMask holds = (hold.force > zero) & (hold.excess(stop) <= one);
+
+    // Sliding: opposite to the motion of the centre of pressure, in the metric of the ellipsoid.
+    const FrictionLimit slide = FrictionLimit::of(mu_dynamic, torsional, p);
+    const Wide lever = slide.moment * inverse(slide.force);
+    const Wide twist_response = quantity(batch, BatchHead::twist_response);
+    const Wide mass = inverse(quantity(batch, BatchHead::shift_response) + lever * lever * twist_response);
+    const Wide twist_mass = select(lever > zero, mass * lever * lever, inverse(twist_response));
+    const Wide3 before = about_center(old);
+    Wide3 slid{before.x - mass * (u1 - spin * p.along_2), before.y - mass * (u2 + spin * p.along_1),
+               before.z - twist_mass * spin};
+    const WideMask has_force = slide.force > zero, has_moment = slide.moment > zero;
+    slid = {select(has_force, slid.x, zero), select(has_force, slid.y, zero), select(has_moment, slid.z, zero)};
+    const Wide beyond = slide.excess(slid);
+    slid = slid * select(beyond > one, one / square_root(maximum(beyond, one)), one);
+
+    // An unloaded region neither sticks nor slides.
+    const WideMask idle = (p.load == zero) & (old.x == zero) & (old.y == zero) & (old.z == zero);
+    Wide3 now = select(holds, stop, slid);
+    if (points > 1) now.z += p.along_1 * now.y - p.along_2 * now.x;
+    now = select(idle, old, now);
+    store_mask(batch + BatchHead::sticks * lanes, (idle & stuck) | (~idle & holds));
+    store_3(batch + BatchHead::friction * lanes, now);
+    const Wide3 change = now - old;
+    apply(v, m, f.arm_a, f.arm_b, f.tangent_1 * change.x + f.tangent_2 * change.y, f.normal * change.z);
 }
 
 /// The two kinds of sweep.
 enum class Sweep { positions, velocities };
 
-// Non-penetration of one point (paper, eq. 4).
-template <Sweep kind>
-EMBODY_WIDE_INLINE void solve_normal(float* point, const Frame& frame, const Inertia& m, const ContactSweep& sweep,
-                                     WideMask is_active, Velocities& v) {
-    const Wide zero{}, one = broadcast(1);
-    const Wide3 arm_a = quantity_3(point, BatchPoint::arm_a), arm_b = quantity_3(point, BatchPoint::arm_b);
-    const Wide separation = quantity(point, BatchPoint::separation);
-    const Wide mass = quantity(point, BatchPoint::normal_mass), old = quantity(point, BatchPoint::impulse_normal);
+// Non-penetration of all points of a region (paper, eq. 4).
+template <Sweep kind, int points>
+EMBODY_WIDE_INLINE void solve_normals(float* batch, const Frame& f, const Inertia& m, const ContactSweep& sweep,
+                                      Velocities& v) {
+    const Wide zero{}, one = broadcast(1), time = broadcast(sweep.time);
+    const RelativeMotion motion = RelativeMotion::of(v, f);
+    const float* start = batch + BatchHead::start_speed * lanes;
+    const float* spin = batch + BatchHead::start_spin * lanes;
+    const Wide middle = quantity(start, 0) + dot(motion.velocity, f.normal);
+    const Wide tilt_1 = quantity(spin, 0) + dot(motion.spin, f.tangent_1);
+    const Wide tilt_2 = quantity(spin, 1) + dot(motion.spin, f.tangent_2);
 
-    // Apart: the gap may close in this substep. Overlapping: pushed apart, softly, before the drift only.
-    const WideMask is_apart = separation > zero;
-    Wide bias = select(is_apart, separation / broadcast(sweep.substep), zero), mass_scale = one, leak = zero;
-    if constexpr (kind == Sweep::positions) {
-        const Wide push = maximum(broadcast(sweep.bias_rate) * separation, broadcast(-sweep.push_speed));
-        bias = select(is_apart, bias, push);
-        mass_scale = select(is_apart, one, broadcast(sweep.mass_scale));
-        leak = select(is_apart, zero, broadcast(sweep.impulse_scale));
+    // Speed and target of each point. Apart: the gap may close in this substep. Overlapping: pushed apart, softly,
+    // before the drift only.
+    Wide speed[points], mass[points], leak[points], impulse[points];
+    WideMask is_active[points];
+    for (int k = 0; k < points; ++k) {
+        const float* point = point_of(batch, k);
+        const Wide separation = quantity(point, BatchPoint::separation);
+        const WideMask is_apart = separation > zero;
+        Wide bias = select(is_apart, separation / broadcast(sweep.substep), zero);
+        mass[k] = quantity(point, BatchPoint::normal_mass);
+        leak[k] = zero;
+        if constexpr (kind == Sweep::positions) {
+            const Wide push = maximum(broadcast(sweep.bias_rate) * separation, broadcast(-sweep.push_speed));
+            bias = select(is_apart, bias, push);
+            mass[k] *= select(is_apart, one, broadcast(sweep.mass_scale));
+            leak[k] = select(is_apart, zero, broadcast(sweep.impulse_scale));
+        }
+        speed[k] = middle +
+                   (quantity(point, BatchPoint::along_2) * tilt_1 - quantity(point, BatchPoint::along_1) * tilt_2) +
+                   bias;
+        impulse[k] = quantity(point, BatchPoint::impulse);
+        is_active[k] = time > quantity(point, BatchPoint::inactive_until);
     }
-    const Wide speed = quantity(point, BatchPoint::start_speed) + dot(v.relative(arm_a, arm_b), frame.normal);
-    const Wide wanted = old - mass * mass_scale * (speed + bias) - leak * old;
-    const Wide allowed = select(is_active, maximum(wanted, zero), old);
-    store(point + BatchPoint::impulse_normal * lanes, allowed);
-    apply(v, m, arm_a, arm_b, frame.normal * (allowed - old));
+
+    // Forwards and backwards: else the last point would win and a flat body lean.
+    Wide coupling[6];
+    if constexpr (points > 1) {
+        for (int i = 0; i < 6; ++i) coupling[i] = quantity(batch, BatchHead::coupling + i);
+    }
+    const auto solve_point = [&](int k, WideMask is_wanted) __attribute__((always_inline)) {
+        const Wide wanted = impulse[k] - mass[k] * speed[k] - leak[k] * impulse[k];
+        const Wide allowed = select(is_wanted, maximum(wanted, zero), impulse[k]);
+        const Wide change = allowed - impulse[k];
+        impulse[k] = allowed;
+        for (int j = 0; j < points; ++j) {
+            const int low = j < k ? j : k, high = j < k ? k : j;
+            if (j != k) speed[j] += coupling[low == 0 ? high - 1 : low + high] * change;
+        }
+        speed[k] += quantity(point_of(batch, k), BatchPoint::normal_response) * change;
+    };
+    for (int round = 0; round < physics::normal_rounds; ++round) {
+        for (int k = 0; k < points; ++k) solve_point(k, is_active[k]);
+        // The way back begins at each contact's last point but one, whatever the batch's other contacts have.
+        for (int k = points - 2; k >= 0; --k) solve_point(k, is_active[k] & (mass[k + 1] > zero));
+    }
+
+    NormalLoad change;
+    for (int k = 0; k < points; ++k) {
+        float* point = point_of(batch, k);
+        change.add(point, impulse[k] - quantity(point, BatchPoint::impulse));
+        store(point + BatchPoint::impulse * lanes, impulse[k]);
+    }
+    apply(v, m, f.arm_a, f.arm_b, f.normal * change.force,
+          f.tangent_1 * change.moment_1 + f.tangent_2 * change.moment_2);
 }
 
-// Solves the symmetric system for one vector by its adjugate; 0 where it is singular.
-EMBODY_WIDE_INLINE Wide3 solve_symmetric(const WideSymmetric& s, const Wide3& v) {
-    const Wide c_xx = s.yy * s.zz - s.yz * s.yz, c_xy = s.xz * s.yz - s.xy * s.zz, c_xz = s.xy * s.yz - s.xz * s.yy;
-    const Wide c_yy = s.xx * s.zz - s.xz * s.xz, c_yz = s.xy * s.xz - s.xx * s.yz, c_zz = s.xx * s.yy - s.xy * s.xy;
-    const Wide determinant = s.xx * c_xx + s.xy * c_xy + s.xz * c_xz;
-    const Wide zero{};
-    const Wide inverse = select(determinant > zero, broadcast(1) / determinant, zero);
-    const WideSymmetric adjugate{c_xx, c_xy, c_xz, c_yy, c_yz, c_zz};
-    return (adjugate * v) * inverse;
+// Rolling resistance: a moment across the normal, bounded by lever arm times normal impulse.
+EMBODY_WIDE_INLINE void solve_rolling(float* batch, int points, const Frame& f, const Inertia& m, Velocities& v) {
+    const Wide zero{}, one = broadcast(1);
+    Wide load{};
+    for (int k = 0; k < points; ++k) load += quantity(point_of(batch, k), BatchPoint::impulse);
+    const Wide limit = quantity(batch, BatchHead::friction_rolling) * load;
+    const Wide3 old = quantity_3(batch, BatchHead::rolling);
+
+    // What would stop the rolling, bounded.
+    const WideSymmetric stop = inverse(WideSymmetric{m.inertia_a.xx + m.inertia_b.xx, m.inertia_a.xy + m.inertia_b.xy,
+                                                     m.inertia_a.xz + m.inertia_b.xz, m.inertia_a.yy + m.inertia_b.yy,
+                                                     m.inertia_a.yz + m.inertia_b.yz, m.inertia_a.zz + m.inertia_b.zz});
+    const RelativeMotion motion = RelativeMotion::of(v, f);
+    const Wide3 start = quantity_3(batch, BatchHead::start_spin);
+    const Wide3 spin = f.tangent_1 * (start.x + dot(motion.spin, f.tangent_1)) +
+                       f.tangent_2 * (start.y + dot(motion.spin, f.tangent_2));
+    Wide3 now = old - stop * spin;
+    now = now - f.normal * dot(now, f.normal);
+    const Wide size = square_root(dot(now, now));
+    now = now * select(size > limit, limit / select(size > zero, size, one), one);
+    store_3(batch + BatchHead::rolling * lanes, now);
+    const Wide3 none{zero, zero, zero};
+    apply(v, m, f.arm_a, f.arm_b, none, now - old);
 }
 
-// Torsion of the patch and rolling resistance: angular impulses bounded by lever arm times normal impulse.
-EMBODY_WIDE_INLINE void solve_turning(float* batch, int points, const Frame& frame, const Inertia& m, Velocities& v) {
-    const Wide zero{};
-    Wide load_sum{};
-    for (int k = 0; k < points; ++k) load_sum += quantity(point_of(batch, k), BatchPoint::impulse_normal);
-    const Wide torsion_limit = quantity(batch, BatchHead::friction_torsional) * load_sum;
-    const Wide rolling_limit = quantity(batch, BatchHead::friction_rolling) * load_sum;
-    const Wide3 old = quantity_3(batch, BatchHead::turning);
-
-    // What would stop all relative turning, split along and across the normal, each part bounded.
-    const WideSymmetric inverse{m.inertia_a.xx + m.inertia_b.xx, m.inertia_a.xy + m.inertia_b.xy,
-                                m.inertia_a.xz + m.inertia_b.xz, m.inertia_a.yy + m.inertia_b.yy,
-                                m.inertia_a.yz + m.inertia_b.yz, m.inertia_a.zz + m.inertia_b.zz};
-    const Wide3 spin = quantity_3(batch, BatchHead::start_spin) + (v.angular_b() - v.angular_a());
-    const Wide3 wanted = old - solve_symmetric(inverse, spin);
-    const Wide along = dot(wanted, frame.normal);
-    const Wide torsion = minimum(maximum(along, -torsion_limit), torsion_limit);
-    const Wide3 across = wanted - frame.normal * along;
-    const Wide size = square_root(dot(across, across));
-    const Wide share =
-        select(size > rolling_limit, rolling_limit / select(size > zero, size, broadcast(1)), broadcast(1));
-    const Wide3 now = frame.normal * torsion + across * share;
-    store_3(batch + BatchHead::turning * lanes, now);
-    apply_turning(v, m, now - old);
+template <Sweep kind, int points>
+EMBODY_WIDE_INLINE void solve_region(float* batch, const ContactSweep& sweep) {
+    const Frame f = Frame::of(batch);
+    const Inertia m = Inertia::of(batch);
+    Velocities v = Velocities::take(batch, sweep);
+    // Non-penetration has the last word but for what resists rolling.
+    solve_friction(batch, points, f, m, v);
+    solve_normals<kind, points>(batch, f, m, sweep, v);
+    if (resists_rolling(batch)) solve_rolling(batch, points, f, m, v);
+    v.put_back(batch, sweep);
 }
 
 template <Sweep kind>
 EMBODY_WIDE_INLINE void solve(float* batch, int points, const ContactSweep& sweep) {
-    const Frame frame = Frame::of(batch);
-    const Inertia m = Inertia::of(batch);
-    const Wide mu_static = quantity(batch, BatchHead::friction_static);
-    const Wide mu_dynamic = quantity(batch, BatchHead::friction_dynamic);
-    const Wide time = broadcast(sweep.time);
-    Velocities v = Velocities::take(batch, sweep);
-    const auto is_active = [&](const float* point) { return time > quantity(point, BatchPoint::inactive_until); };
-
-    for (int k = 0; k < points; ++k) {
-        float* point = point_of(batch, k);
-        solve_friction(point, frame, m, mu_static, mu_dynamic, is_active(point), v);
+    switch (points) {
+        case 1:
+            return solve_region<kind, 1>(batch, sweep);
+        case 2:
+            return solve_region<kind, 2>(batch, sweep);
+        case 3:
+            return solve_region<kind, 3>(batch, sweep);
+        default:
+            return solve_region<kind, 4>(batch, sweep);
     }
-    // Non-penetration has the last word. Forwards and backwards: else the last point would win and a flat body lean.
-    for (int k = 0; k < points; ++k) {
-        float* point = point_of(batch, k);
-        solve_normal<kind>(point, frame, m, sweep, is_active(point), v);
-    }
-    // The way back begins at each contact's last point but one, whatever the batch's other contacts have.
-    for (int k = points - 2; k >= 0; --k) {
-        float* point = point_of(batch, k);
-        const WideMask has_next = quantity(point_of(batch, k + 1), BatchPoint::normal_mass) > Wide{};
-        solve_normal<kind>(point, frame, m, sweep, is_active(point) & has_next, v);
-    }
-    if (resists_turning(batch)) solve_turning(batch, points, frame, m, v);
-    v.put_back(batch, sweep);
 }
 
 void solve_positions(float* batch, int points, const ContactSweep& sweep) {
     solve<Sweep::positions>(batch, points, sweep);
 }
+
+EMBODY_WIDE_INLINE void add_to_total(float* total, const float* impulse) { store(total, load(total) + load(impulse)); }
 EMBODY_WIDE_INLINE void add_to_totals(float* batch, int points) {
     for (int k = 0; k < points; ++k) {
         float* point = point_of(batch, k);
-        for (int i = 0; i < 3; ++i) {
-            float* total = point + (BatchPoint::total_normal + i) * lanes;
-            store(total, load(total) + quantity(point, BatchPoint::impulse_normal + i));
-        }
+        add_to_total(point + BatchPoint::total * lanes, point + BatchPoint::impulse * lanes);
+    }
+    for (int i = 0; i < 3; ++i) {
+        add_to_total(batch + (BatchHead::friction_total + i) * lanes, batch + (BatchHead::friction + i) * lanes);
     }
 }
 

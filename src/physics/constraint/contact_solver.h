@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 
@@ -20,10 +21,8 @@ struct ContactSoftness {
     double push_speed = 3;  ///< overlapping bodies part no faster than this, m/s
 };
 
-/// Whether the patch resists spinning or rolling.
-inline bool resists_turning(const Contact& contact) {
-    return contact.material.friction_rolling > 0 || contact.material.friction_torsional > 0;
-}
+/// Whether the bodies resist rolling on each other.
+inline bool resists_rolling(const Contact& contact) { return contact.material.friction_rolling > 0; }
 
 /// The stiffest that converges: a short list gets more passes (contact_passes()) and so may be stiffer.
 ContactSoftness contact_softness(double substep, std::size_t contacts);
@@ -35,14 +34,29 @@ bool has_few_contacts(std::size_t contacts);
 /// work; for a short one more cost nothing.
 int contact_passes(std::size_t contacts);
 
-/// Effective masses; once a step, when arms and inertias are those of its start.
-void prepare_contact(Contact& contact, std::span<const BodyState> bodies);
+/// What the sweeps need of a contact: arms and inertias are those of the step's start.
+struct PreparedContact {
+    Anchor anchor;
+    /// By point: places on the region from the anchor along the tangents, m; and what an impulse at the first point
+    /// does to the normal speed of the second one, 1/kg.
+    std::array<double, Manifold::max_points> along_1{}, along_2{};
+    std::array<std::array<double, Manifold::max_points>, Manifold::max_points> coupling{};
+    /// Friction: what stops (u₁, u₂, ω_n) at the anchor together; what stops (u₁, u₂) alone; the largest response of
+    /// the anchor's speed to a force and of the spin to a moment.
+    Mat3 stop_all, stop_shift;
+    double shift_response = 0, twist_response = 0;
+};
 
-/// Applies the last substep's impulses as the first guess; before the position phase.
-void warm_start_contact(const Contact& contact, std::span<BodyState> bodies);
+/// Also notes each point's normal mass. Once a step.
+PreparedContact prepare_contact(Contact& contact, std::span<const BodyState> bodies);
 
-/// One pass over the region: friction within the cone, then each point's normal impulse, then torsion and rolling.
-void solve_contact(Contact& contact, SolvePhase phase, const ContactSoftness& softness, std::span<BodyState> bodies);
+/// Drops the impulses of points that are not there yet at `time` s after the step began; applies the last substep's
+/// impulses of the others as the first guess; before the position phase.
+void warm_start_contact(Contact& contact, const PreparedContact& prepared, double time, std::span<BodyState> bodies);
+
+/// One pass over the region: friction within its limit, then the points' normal impulses, then rolling resistance.
+void solve_contact(Contact& contact, const PreparedContact& prepared, SolvePhase phase, double time,
+                   const ContactSoftness& softness, std::span<BodyState> bodies);
 
 /// Adds the substep's impulses to the step's totals; after its velocity phase.
 void add_to_totals(Contact& contact);

@@ -29,12 +29,13 @@ void warm_start_joints(const ConstraintList& list, SolvePhase phase, std::span<B
 
 }  // namespace
 
-void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, std::span<BodyState> bodies) {
+void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, double time,
+                 std::span<BodyState> bodies) {
     const ContactSoftness softness = contact_softness(substep, list.contact_order.size());
     warm_start_joints(list, phase, bodies);
-    for (const std::uint32_t i : list.contact_order) {
-        const bool is_first = phase == SolvePhase::position;
-        if (is_first) warm_start_contact(list.contacts[i], bodies);
+    const std::size_t count = list.contact_order.size();
+    for (std::size_t k = 0; phase == SolvePhase::position && k < count; ++k) {
+        warm_start_contact(list.contacts[list.contact_order[k]], list.prepared[k], time, bodies);
     }
 
     const int least = contact_passes(list.contact_order.size());
@@ -46,10 +47,10 @@ void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, s
             error = std::max(error, solve_joint(list.joints[i], phase, substep, bodies));
         }
         // Bottom-up while positions are mended, top-down for the velocities: weights travel down, support travels up.
-        const std::size_t count = list.contact_order.size();
         for (std::size_t k = 0; k < count; ++k) {
             const std::size_t place = phase == SolvePhase::position ? k : count - 1 - k;
-            solve_contact(list.contacts[list.contact_order[place]], phase, softness, bodies);
+            solve_contact(list.contacts[list.contact_order[place]], list.prepared[place], phase, time, softness,
+                          bodies);
         }
         if (pass + 1 >= least && error <= joint_tolerance) break;
     }

@@ -12,11 +12,14 @@ namespace embody::physics {
 struct ConstraintList {
     std::span<Contact> contacts;
     std::span<const std::uint32_t> contact_order;
+    std::span<const PreparedContact> prepared;  ///< one for each of contact_order
     std::span<Joint> joints;
     std::span<const std::uint32_t> joint_order;
 };
 
-/// Passes over the list in one phase: few for long lists, more for short ones, until a joint's error is gone.
-void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, std::span<BodyState> bodies);
+/// Passes over the list in one phase: few for long lists, more for short ones, until a joint's error is gone. `time`:
+/// of the substep's end in the step, s.
+void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, double time,
+                 std::span<BodyState> bodies);
 
 }  // namespace embody::physics

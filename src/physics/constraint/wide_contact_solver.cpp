@@ -38,23 +38,32 @@ private:
     int lanes_;
 };
 
-void fill_point(Lane lane, const Contact& contact, const ContactPoint& point, std::span<const BodyState> bodies) {
-    // In double: what both bodies have in common takes no digits from what they differ in.
-    const Vec3 velocity = relative_velocity(contact, point, bodies);
-    lane.set(BatchPoint::start_speed,
-             Vec3{dot(velocity, contact.normal), dot(velocity, contact.tangent_1), dot(velocity, contact.tangent_2)});
-    lane.set(BatchPoint::arm_a, point.arm_a);
-    lane.set(BatchPoint::arm_b, point.arm_b);
+void fill_point(Lane lane, const Contact& contact, const ContactPoint& point, Vec3 anchor) {
+    const Vec3 offset = Vec3(point.arm_a) - anchor;
+    lane.set(BatchPoint::along_1, dot(offset, contact.tangent_1));
+    lane.set(BatchPoint::along_2, dot(offset, contact.tangent_2));
     lane.set(BatchPoint::separation_found, point.separation);
     lane.set(BatchPoint::normal_mass, 1);  // it exists; prepare() puts the mass here
-    lane.set(BatchPoint::impulse_normal, point.impulse.normal);
-    lane.set(BatchPoint::impulse_1, point.impulse.tangent_1);
-    lane.set(BatchPoint::impulse_2, point.impulse.tangent_2);
-    lane.set(BatchPoint::total_normal, point.total.normal);
-    lane.set(BatchPoint::total_1, point.total.tangent_1);
-    lane.set(BatchPoint::total_2, point.total.tangent_2);
-    lane.set_mask(BatchPoint::sticks, point.sticks);
+    lane.set(BatchPoint::impulse, point.impulse);
+    lane.set(BatchPoint::total, point.total);
     lane.set(BatchPoint::inactive_until, point.inactive_until);
+}
+
+Vec3 numbers(const PatchFriction& friction) { return {friction.along_1, friction.along_2, friction.twist}; }
+
+// The region's place and its motion at the step's start. In double: what both bodies have in common takes no digits
+// from what they differ in.
+void fill_anchor(Lane head, const Contact& contact, const Anchor& anchor, const BodyState& a, const BodyState& b) {
+    const Vec3 velocity = velocity_at(b, anchor.arm_b) - velocity_at(a, anchor.arm_a);
+    const Vec3 spin = b.angular_velocity - a.angular_velocity;
+    const Vec3 n = contact.normal, t1 = contact.tangent_1, t2 = contact.tangent_2;
+    head.set(BatchHead::normal, n);
+    head.set(BatchHead::tangent_1, t1);
+    head.set(BatchHead::tangent_2, t2);
+    head.set(BatchHead::arm_a, anchor.arm_a);
+    head.set(BatchHead::arm_b, anchor.arm_b);
+    head.set(BatchHead::start_speed, Vec3{dot(velocity, n), dot(velocity, t1), dot(velocity, t2)});
+    head.set(BatchHead::start_spin, Vec3{dot(spin, t1), dot(spin, t2), dot(spin, n)});
 }
 
 // Slower than this in a step the inertia hardly turns with the body: no gyroscopic torque, rad.
@@ -151,7 +160,7 @@ void WideContactSolver::fill_batch(const Batch& batch, std::span<const Contact> 
     float* data = lines_[batch.first_line].value;
     std::fill_n(data, batch_floats(lanes, batch.points), 0.0F);
 
-    std::int32_t writable_a = 0, writable_b = 0, turning = 0;
+    std::int32_t writable_a = 0, writable_b = 0, rolling = 0;
     for (std::size_t k = 0; k < batch.contact_count; ++k) {
         const Contact& contact = contacts[contacts_[batch.first_contact + k]];
         const auto [row_a, row_b] = rows_of_contact_[batch.first_contact + k];
@@ -163,28 +172,29 @@ void WideContactSolver::fill_batch(const Batch& batch, std::span<const Contact> 
         head.set(BatchHead::inverse_mass_b, b.inverse_mass);
         head.set_symmetric(BatchHead::inverse_inertia_a, a.inverse_inertia);
         head.set_symmetric(BatchHead::inverse_inertia_b, b.inverse_inertia);
-        head.set(BatchHead::normal, contact.normal);
-        head.set(BatchHead::tangent_1, contact.tangent_1);
-        head.set(BatchHead::tangent_2, contact.tangent_2);
+        const Anchor anchor = anchor_of(contact);
+        fill_anchor(head, contact, anchor, a, b);
         head.set(BatchHead::friction_static, contact.material.friction_static);
         head.set(BatchHead::friction_dynamic, contact.material.friction_dynamic);
         head.set(BatchHead::friction_torsional, contact.material.friction_torsional);
         head.set(BatchHead::friction_rolling, contact.material.friction_rolling);
-        head.set(BatchHead::start_spin, b.angular_velocity - a.angular_velocity);
-        head.set(BatchHead::turning, contact.turning);
+        head.set(BatchHead::friction, numbers(contact.friction));
+        head.set(BatchHead::friction_total, numbers(contact.friction_total));
+        head.set(BatchHead::rolling, contact.rolling);
+        head.set_mask(BatchHead::sticks, contact.sticks);
         head.set_mask(BatchHead::round_a, contact.a_is_round);
         head.set_mask(BatchHead::round_b, contact.b_is_round);
         writable_a |= (a.inverse_mass > 0 ? 1 : 0) << k;
         writable_b |= (b.inverse_mass > 0 ? 1 : 0) << k;
-        turning |= (resists_turning(contact) ? 1 : 0) << k;
+        rolling |= (resists_rolling(contact) ? 1 : 0) << k;
         for (int i = 0; i < contact.count; ++i) {
             float* point = data + (BatchHead::size + i * BatchPoint::size) * lanes;
-            fill_point(Lane(point, lanes, k), contact, contact.points[static_cast<std::size_t>(i)], bodies);
+            fill_point(Lane(point, lanes, k), contact, contact.points[static_cast<std::size_t>(i)], anchor.arm_a);
         }
     }
     Lane(data, lanes, 0).set_integer(BatchHead::writable, writable_a);
     Lane(data, lanes, 1).set_integer(BatchHead::writable, writable_b);
-    Lane(data, lanes, 2).set_integer(BatchHead::writable, turning);
+    Lane(data, lanes, 2).set_integer(BatchHead::writable, rolling);
     kernels_->prepare(data, batch.points);
 }
 
@@ -296,16 +306,18 @@ void WideContactSolver::write_body(std::size_t row, BodyState& state, const Body
 void WideContactSolver::write_contact(const Batch& batch, std::uint32_t lane, Contact& contact) const {
     const int lanes = kernels_->lanes;
     const float* head = lines_[batch.first_line].value + lane;
-    contact.turning = {head[BatchHead::turning * lanes], head[(BatchHead::turning + 1) * lanes],
-                       head[(BatchHead::turning + 2) * lanes]};
+    const auto read = [&](int quantity) { return head[quantity * lanes]; };
+    const auto read_friction = [&](int first) { return PatchFriction{read(first), read(first + 1), read(first + 2)}; };
+    contact.friction = read_friction(BatchHead::friction);
+    contact.friction_total = read_friction(BatchHead::friction_total);
+    contact.rolling = {read(BatchHead::rolling), read(BatchHead::rolling + 1), read(BatchHead::rolling + 2)};
+    contact.sticks = std::bit_cast<std::uint32_t>(read(BatchHead::sticks)) != 0;
     for (int i = 0; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const float* from = head + (BatchHead::size + i * BatchPoint::size) * lanes;
-        const auto read = [&](int quantity) { return from[quantity * lanes]; };
-        point.normal_mass = read(BatchPoint::normal_mass);
-        point.impulse = {read(BatchPoint::impulse_normal), read(BatchPoint::impulse_1), read(BatchPoint::impulse_2)};
-        point.total = {read(BatchPoint::total_normal), read(BatchPoint::total_1), read(BatchPoint::total_2)};
-        point.sticks = std::bit_cast<std::uint32_t>(from[BatchPoint::sticks * lanes]) != 0;
+        point.normal_mass = from[BatchPoint::normal_mass * lanes];
+        point.impulse = from[BatchPoint::impulse * lanes];
+        point.total = from[BatchPoint::total * lanes];
     }
 }
 

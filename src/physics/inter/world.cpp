@@ -125,14 +125,18 @@ std::span<const SleepEvent> World::sleep_events() const { return state_->sleep_e
 std::vector<ContactView> World::contacts() const {
     std::vector<ContactView> views;
     const auto add = [&](const Contact& contact) {
+        // The region's friction is shown at its points by their share of the load.
+        double load = 0;
+        for (int i = 0; i < contact.count; ++i) load += contact.points[static_cast<std::size_t>(i)].total;
+        const Vec3 friction = friction_force(contact, contact.friction_total);
         for (int i = 0; i < contact.count; ++i) {
             const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
             const double separation = current_separation(contact, point, state_->motion);
-            if (point.total.normal <= 0 && separation > 0) continue;
-            const Vec3 impulse = point.total.normal * contact.normal + point.total.tangent_1 * contact.tangent_1 +
-                                 point.total.tangent_2 * contact.tangent_2;
+            if (point.total <= 0 && separation > 0) continue;
+            const double share = load > 0 ? point.total / load : 0;
             views.push_back({state_->bodies.handle_at(contact.a), state_->bodies.handle_at(contact.b),
-                             position_of(contact, point, state_->motion), contact.normal, separation, impulse});
+                             position_of(contact, point, state_->motion), contact.normal, separation,
+                             point.total * contact.normal + share * friction});
         }
     };
     for (const Contact& contact : state_->contacts) add(contact);

@@ -21,7 +21,7 @@ constexpr double share = 0.2;      // of the rest taken out in one step
 // How deep the soft contact sinks under the load that it carries: without that sag it would not press back.
 double sag(const ContactPoint& point, const ContactSoftness& softness) {
     const double stiffness = point.normal_mass * softness.mass_scale * softness.bias_rate;
-    return stiffness > 0 ? softness.impulse_scale * point.impulse.normal / stiffness : 0;
+    return stiffness > 0 ? softness.impulse_scale * point.impulse / stiffness : 0;
 }
 
 }  // namespace

@@ -98,9 +98,9 @@ void ImpactStage::note_impulse(Contact& contact, Vec3 position, Vec3 impulse, do
         };
         if (far(point) < far(*nearest)) nearest = &point;
     }
-    nearest->total.normal += static_cast<float>(dot(impulse, contact.normal));
-    nearest->total.tangent_1 += static_cast<float>(dot(impulse, contact.tangent_1));
-    nearest->total.tangent_2 += static_cast<float>(dot(impulse, contact.tangent_2));
+    nearest->total += static_cast<float>(dot(impulse, contact.normal));
+    contact.friction_total.along_1 += static_cast<float>(dot(impulse, contact.tangent_1));
+    contact.friction_total.along_2 += static_cast<float>(dot(impulse, contact.tangent_2));
     if (!contact.had_impact) ++world_.report.impacts;
     contact.had_impact = true;
 

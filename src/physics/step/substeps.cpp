@@ -81,14 +81,17 @@ SolveWays sort_islands(WorldState& world, double h) {
     return ways;
 }
 
-void solve_islands(WorldState& world, const std::vector<Island>& islands, SolvePhase phase, double h) {
+void solve_islands(WorldState& world, const std::vector<Island>& islands, SolvePhase phase, double h, double time) {
+    std::size_t first = 0;
     for (const Island& island : islands) {
         const ConstraintList list{
             .contacts = world.contacts,
             .contact_order = std::span(world.islands.contacts).subspan(island.first_contact, island.contact_count),
+            .prepared = std::span(world.prepared_contacts).subspan(first, island.contact_count),
             .joints = world.active_joints,
             .joint_order = std::span(world.islands.joints).subspan(island.first_joint, island.joint_count)};
-        solve_phase(list, phase, h, world.motion);
+        solve_phase(list, phase, h, time, world.motion);
+        first += island.contact_count;
     }
 }
 
@@ -193,20 +196,22 @@ void freeze_lost_bodies(WorldState& world) {
 
 // Free bodies and those that joints hold: one constraint after the other, in double.
 void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, double h) {
-    for_each_contact(world, islands, [&](Contact& contact) { prepare_contact(contact, world.motion); });
+    world.prepared_contacts.clear();
+    for_each_contact(world, islands, [&](Contact& contact) {
+        world.prepared_contacts.push_back(prepare_contact(contact, world.motion));
+    });
     prepare_joints(world);
     world.kicked_velocity.resize(world.motion.size());
     for (int k = 1; k <= world.settings.substeps; ++k) {
         // Forces, constraints that also mend positions, motion.
-        for_each_contact(world, islands, [&](Contact& contact) { activate_points(contact, k * h); });
         kick_before_drift(world, islands, h);
-        solve_islands(world, islands, SolvePhase::position, h);
+        solve_islands(world, islands, SolvePhase::position, h, k * h);
         drift_all(world, islands, h);
 
         // Constraints on the velocity alone.
         prepare_joints(world);
         kick_after_drift(world, islands, h);
-        solve_islands(world, islands, SolvePhase::velocity, h);
+        solve_islands(world, islands, SolvePhase::velocity, h, k * h);
         for_each_contact(world, islands, [](Contact& contact) { add_to_totals(contact); });
     }
 }

@@ -137,6 +137,7 @@ struct WorldState {
     WideContactSolver wide_solver{widest_contact_kernels()};  // substeps: memory only
     DirectContactSolver direct_solver;                        // substeps: memory, and which islands it gave up
     SolveSchedule schedule;                                   // substeps: memory only
+    std::vector<PreparedContact> prepared_contacts;           // substeps: memory only
     std::vector<Vec3> kicked_velocity;                        // substeps: linear velocity before the constraints, m/s
 
     std::map<std::uint32_t, SleepingGroup> sleepers;  // sleep, wake
