@@ -107,4 +107,36 @@ ChosenPoints choose_four(const FlatPoint* points, int count) {
     return choice.chosen;
 }
 
+namespace {
+
+// Separation at (x, y) by the plane through three points; `otherwise` where they lie on a line.
+double by_plane(const FlatPoint& a, const FlatPoint& b, const FlatPoint& c, double x, double y, double otherwise) {
+    const double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
+    const double area = bx * cy - by * cx;
+    if (std::fabs(area) < 1e-9 * (bx * bx + by * by + cx * cx + cy * cy)) return otherwise;
+    const double px = x - a.x, py = y - a.y;
+    const double u = (px * cy - py * cx) / area, v = (bx * py - by * px) / area;
+    return a.separation + u * (b.separation - a.separation) + v * (c.separation - a.separation);
+}
+
+}  // namespace
+
+bool leaves_unseen(const FlatPoint* points, int count, const ChosenPoints& chosen, double tolerance) {
+    if (chosen.count < 3 || chosen.count == count) return false;
+    const auto kept = [&](int k) -> const FlatPoint& { return points[chosen.index[static_cast<std::size_t>(k)]]; };
+    for (int i = 0; i < count; ++i) {
+        const FlatPoint& p = points[i];
+        if (chosen.holds(i)) continue;
+
+        // The highest of the planes that leave out one of four: on any three of them the body may come to stand.
+        double expected = std::numeric_limits<double>::lowest();
+        for (int out = chosen.count == 4 ? 0 : 3; out < 4; ++out) {
+            const int a = out == 0 ? 1 : 0, b = out <= 1 ? 2 : 1, c = out <= 2 ? 3 : 2;
+            expected = std::max(expected, by_plane(kept(a), kept(b), kept(c), p.x, p.y, expected));
+        }
+        if (p.separation < expected - tolerance) return true;
+    }
+    return false;
+}
+
 }  // namespace embody::physics

@@ -27,4 +27,8 @@ struct ChosenPoints {
 /// area (twins, or inner ones of a line) go. Ties by a hair go to the earlier point, so that rounding does not choose.
 ChosenPoints choose_four(const FlatPoint* points, int count);
 
+/// Whether a point that was not chosen is nearer than the planes through the chosen ones tell, by more than `tolerance`
+/// m: it would sink unseen before they do.
+bool leaves_unseen(const FlatPoint* points, int count, const ChosenPoints& chosen, double tolerance);
+
 }  // namespace embody::physics

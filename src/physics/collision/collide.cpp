@@ -26,10 +26,9 @@ void collide_with_plane(const CollisionShape::Data& a, const Transform& pose_a, 
         region.points.clear();
         collide_plane(place(a.pieces[i], pose_a, pose_a.position), placed, margin, region);
         if (region.points.empty()) continue;
-        const auto corners = static_cast<int>(region.points.size());
-        append_manifold(region, {}, pose_a.position, manifolds);
-        manifolds.back().piece_a = i;
-        manifolds.back().is_whole = manifolds.back().count == corners;
+        const std::size_t before = manifolds.size();
+        append_manifolds(region, {}, pose_a.position, manifolds);
+        for (std::size_t k = before; k < manifolds.size(); ++k) manifolds[k].piece_a = i;
     }
 }
 
@@ -63,7 +62,7 @@ bool balls_are_apart(const PlacedConvex& a, const PlacedConvex& b, double margin
     return length_squared(interior_point(b) - interior_point(a)) > reach * reach;
 }
 
-// Two convex pieces in world axes with the origin at `origin`; at most one manifold.
+// Two convex pieces in world axes with the origin at `origin`; at most two manifolds.
 void collide_two(const PlacedConvex& first, const PlacedConvex& second, double margin, Vec3 origin, PairMemory& memory,
                  std::vector<Manifold>& manifolds) {
     if (balls_are_apart(first, second, margin)) return;
@@ -81,11 +80,13 @@ void collide_two(const PlacedConvex& first, const PlacedConvex& second, double m
     region.points.clear();
     find_region(pair, margin, memory, region);
     if (region.points.empty()) return;
-    const auto corners = static_cast<int>(region.points.size());
-    append_manifold(region, pair.turn_a, origin + a.position, manifolds);
+    const std::size_t before = manifolds.size();
+    append_manifolds(region, pair.turn_a, origin + a.position, manifolds);
     const bool is_face = memory.kind == PairMemory::Kind::face_of_a || memory.kind == PairMemory::Kind::face_of_b;
-    manifolds.back().is_whole = is_face && manifolds.back().count == corners;
-    if (is_swapped) manifolds.back().normal = -manifolds.back().normal;
+    for (std::size_t k = before; k < manifolds.size(); ++k) {
+        manifolds[k].is_whole = is_face && manifolds[k].is_whole;
+        if (is_swapped) manifolds[k].normal = -manifolds[k].normal;
+    }
 }
 
 void collide_compounds(const CollisionShape::Data& a, const Transform& pose_a, const CollisionShape::Data& b,
@@ -106,9 +107,10 @@ void collide_compounds(const CollisionShape::Data& a, const Transform& pose_a, c
             PairMemory forgotten;
             const std::size_t before = manifolds.size();
             collide_two(placed_a, placed_b[j], margin, pose_a.position, i + j == 0 ? memory : forgotten, manifolds);
-            if (manifolds.size() == before) continue;
-            manifolds.back().piece_a = i;
-            manifolds.back().piece_b = j;
+            for (std::size_t k = before; k < manifolds.size(); ++k) {
+                manifolds[k].piece_a = i;
+                manifolds[k].piece_b = j;
+            }
         }
     }
 }

@@ -184,31 +184,66 @@ void cross_segments(const ContactFeature& a, const ContactFeature& b, double rad
     if (high - low > 1e-6) add(p + u * high, on_b(high), 2);
 }
 
-void reduce_to_four(ContactRegion& region) {
-    auto& points = region.points;
-    if (points.size() < 2) return;
-    const Vec3 across = any_perpendicular(region.normal), up = cross(region.normal, across);
-    region.flat.clear();
-    for (const ManifoldPoint& p : points) {
-        region.flat.push_back({dot(p.position, across), dot(p.position, up), p.separation});
-    }
-    const ChosenPoints chosen = choose_four(region.flat.data(), static_cast<int>(region.flat.size()));
-    std::array<ManifoldPoint, Manifold::max_points> kept;
-    const auto count = static_cast<std::size_t>(chosen.count);
-    for (std::size_t k = 0; k < count; ++k) kept[k] = points[static_cast<std::size_t>(chosen.index[k])];
-    points.assign(kept.begin(), kept.begin() + chosen.count);
-}
+namespace {
 
-void append_manifold(ContactRegion& region, const Mat3& turn, Vec3 origin, std::vector<Manifold>& manifolds) {
-    if (region.points.empty()) return;
-    if (!region.is_proper) reduce_to_four(region);
-    region.is_proper = false;
+// What may lie lower than the chosen points tell, m: less than this a body does not feel.
+constexpr double unseen = 2e-5;
+
+// Moves the four chosen points to a manifold.
+void append_chosen(ContactRegion& region, const Mat3& turn, Vec3 origin, std::uint32_t part, const ChosenPoints& chosen,
+                   std::vector<Manifold>& manifolds) {
     Manifold& manifold = manifolds.emplace_back();
     manifold.normal = turn * region.normal;
-    manifold.count = static_cast<int>(region.points.size());
-    for (std::size_t i = 0; i < region.points.size(); ++i) {
-        manifold.points[i] = region.points[i];
-        manifold.points[i].position = origin + turn * region.points[i].position;
+    manifold.part = part;
+    manifold.count = chosen.count;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(chosen.count); ++k) {
+        manifold.points[k] = region.points[static_cast<std::size_t>(chosen.index[k])];
+        manifold.points[k].position = origin + turn * manifold.points[k].position;
+    }
+}
+
+void flatten(ContactRegion& region) {
+    const Vec3 across = any_perpendicular(region.normal), up = cross(region.normal, across);
+    region.flat.clear();
+    for (const ManifoldPoint& p : region.points) {
+        region.flat.push_back({dot(p.position, across), dot(p.position, up), p.separation});
+    }
+}
+
+// The points that were not chosen, in their order.
+void drop_chosen(ContactRegion& region, const ChosenPoints& chosen) {
+    int next = 0;
+    for (int i = 0; i < static_cast<int>(region.points.size()); ++i) {
+        if (!chosen.holds(i))
+            region.points[static_cast<std::size_t>(next++)] = region.points[static_cast<std::size_t>(i)];
+    }
+    region.points.resize(static_cast<std::size_t>(next));
+}
+
+}  // namespace
+
+void append_manifolds(ContactRegion& region, const Mat3& turn, Vec3 origin, std::vector<Manifold>& manifolds) {
+    constexpr std::uint32_t most_parts = 2;
+    const std::size_t first = manifolds.size();
+    if (region.is_proper) {
+        const auto count = static_cast<int>(region.points.size());
+        append_chosen(region, turn, origin, 0, {count, {0, 1, 2, 3}}, manifolds);
+        manifolds.back().is_whole = true;
+        region.is_proper = false;
+        return;
+    }
+    for (std::uint32_t part = 0; part < most_parts && !region.points.empty(); ++part) {
+        flatten(region);
+        const auto count = static_cast<int>(region.flat.size());
+        const ChosenPoints chosen = choose_four(region.flat.data(), count);
+        append_chosen(region, turn, origin, part, chosen, manifolds);
+        if (!leaves_unseen(region.flat.data(), count, chosen, unseen)) {
+            // All there is, or all that matters.
+            const bool is_whole = chosen.count == count;
+            for (std::size_t i = first; i < manifolds.size(); ++i) manifolds[i].is_whole = is_whole;
+            return;
+        }
+        drop_chosen(region, chosen);
     }
 }
 

@@ -15,11 +15,13 @@ struct ManifoldPoint {
     std::uint32_t feature = 0;  ///< which features met; equal from step to step while they stay the same
 };
 
-/// The contact region of two convex pieces: up to four points kept of the polygon, chosen for area.
+/// The contact region of two convex pieces: up to four points kept of the polygon, chosen for area. What stands on more
+/// corners than these tell, since they lie in no plane (a chair with uneven feet), has a second one with others.
 struct Manifold {
     static constexpr int max_points = 4;
     Vec3 normal;                             ///< world, unit, from shape a to shape b
     std::uint32_t piece_a = 0, piece_b = 0;  ///< child of a compound, triangle of a mesh; 0 otherwise
+    std::uint32_t part = 0;                  ///< 0 holds the deepest point; 1: the second four
     int count = 0;
     bool is_whole = false;  ///< no other corner of the two pieces is within the margin
     std::array<ManifoldPoint, max_points> points;

@@ -163,11 +163,13 @@ void collide_surface(const ConvexPiece& piece, std::uint32_t piece_index, const 
     // Into the world.
     const PlacedConvex own = place(piece, pose, {});
     for (std::size_t g = 0; g < count; ++g) {
-        const auto corners = static_cast<int>(groups[g].region.points.size());
-        append_manifold(groups[g].region, own.rotation, own.position, manifolds);
-        manifolds.back().is_whole = groups[g].has_all_corners && manifolds.back().count == corners;
-        manifolds.back().piece_a = piece_index;
-        manifolds.back().piece_b = groups[g].lowest_triangle;
+        const std::size_t before = manifolds.size();
+        append_manifolds(groups[g].region, own.rotation, own.position, manifolds);
+        for (std::size_t k = before; k < manifolds.size(); ++k) {
+            manifolds[k].is_whole = groups[g].has_all_corners && manifolds[k].is_whole;
+            manifolds[k].piece_a = piece_index;
+            manifolds[k].piece_b = groups[g].lowest_triangle;
+        }
     }
 }
 

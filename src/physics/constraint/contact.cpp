@@ -31,6 +31,7 @@ Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold,
     contact.b = b;
     contact.piece_a = manifold.piece_a;
     contact.piece_b = manifold.piece_b;
+    contact.part = manifold.part;
     contact.turns_with_b = turns_with_b;
     set_normal(contact, manifold.normal);
     contact.local_normal = to_vec3f(rotate_inverse(bodies[turns_with_b ? b : a].rotation, manifold.normal));

@@ -36,7 +36,8 @@ struct ContactPoint {
 /// One contact region (paper, III.B) as a constraint between two bodies.
 struct Contact {
     std::uint32_t a = 0, b = 0;              ///< body slots, a < b
-    std::uint32_t piece_a = 0, piece_b = 0;  ///< convex pieces; key of the region within the pair
+    std::uint32_t piece_a = 0, piece_b = 0;  ///< convex pieces; with `part` the key of the region within the pair
+    std::uint32_t part = 0;
     int count = 0;
     std::array<ContactPoint, Manifold::max_points> points;
 
@@ -80,7 +81,7 @@ inline Vec3 position_of(const Contact& contact, const ContactPoint& point, std::
 }
 
 /// Same bodies and pieces, in the order contacts are kept.
-inline std::array<std::uint32_t, 4> contact_key(const Contact& c) { return {c.a, c.b, c.piece_a, c.piece_b}; }
+inline std::array<std::uint32_t, 5> contact_key(const Contact& c) { return {c.a, c.b, c.piece_a, c.piece_b, c.part}; }
 
 /// Frame and arms from what the narrow phase found.
 Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold, std::span<const BodyState> bodies,

@@ -87,7 +87,7 @@ struct BodyRows {
     const float* start = nullptr;    ///< v, ω when the step began
     const float* kick = nullptr;     ///< change of v and ω by the forces of a substep
     const float* damping = nullptr;  ///< factors
-    float* kicked = nullptr;         ///< velocity after the kick
+    float* kicked = nullptr;         ///< velocity after the forces and before the contacts of this substep
 };
 
 /// One width's code. Each function works on one batch of up to `points` points, or on rows of bodies.
@@ -95,7 +95,7 @@ struct ContactKernels {
     int lanes = 0;
     /// Effective masses, from arms, masses and inertias.
     void (*prepare)(float* batch, int points) = nullptr;
-    /// Takes points whose time has not come out, applies the last substep's impulses of the others.
+    /// Takes points whose time has not come out, applies the last step's impulses of the others; in the first substep.
     void (*warm_start)(float* batch, int points, const ContactSweep& sweep) = nullptr;
     /// Before the drift: takes position errors out as well.
     void (*solve_positions)(float* batch, int points, const ContactSweep& sweep) = nullptr;
@@ -103,7 +103,8 @@ struct ContactKernels {
     void (*separate)(float* batch, int points, const ContactSweep& sweep) = nullptr;
     /// After the drift: velocities alone.
     void (*solve_velocities)(float* batch, int points, const ContactSweep& sweep) = nullptr;
-    /// Forces of a substep on the rows [first, last).
+    /// Forces of a substep on the rows [first, last), and what the contacts did in the last substep once more (warm
+    /// start): the impulses are the same, and the arms stay through the step.
     void (*kick)(const BodyRows& rows, std::int32_t first, std::int32_t last) = nullptr;
     /// Moves the rows [first, last) by their velocities.
     void (*drift)(const BodyRows& rows, float substep, std::int32_t first, std::int32_t last) = nullptr;

@@ -516,9 +516,11 @@ EMBODY_WIDE_INLINE Half load_half(const float* from) {
 
 void kick(const BodyRows& rows, std::int32_t first, std::int32_t last) {
     for (std::int32_t i = first * row_floats; i < last * row_floats; i += 4) {
-        const Half v = load_half(rows.velocity + i) * load_half(rows.damping + i) + load_half(rows.kick + i);
+        // What the contacts added in the last substep is the first guess for this one.
+        const Half before = load_half(rows.velocity + i), by_contacts = before - load_half(rows.kicked + i);
+        const Half kicked = before * load_half(rows.damping + i) + load_half(rows.kick + i), v = kicked + by_contacts;
+        std::memcpy(rows.kicked + i, &kicked, sizeof kicked);
         std::memcpy(rows.velocity + i, &v, sizeof v);
-        std::memcpy(rows.kicked + i, &v, sizeof v);
     }
 }
 

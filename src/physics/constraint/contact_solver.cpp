@@ -29,9 +29,8 @@ namespace embody::physics {
 
 namespace {
 
-constexpr double damping_ratio = 10;  // overdamped: penetration fades without a bounce
-// Contact frequency over substep frequency: the stiffest that stays quiet with one pass and with many.
-constexpr double stiffness_one_pass = 0.15, stiffness_many_passes = 0.5;
+// Share of a penetration that is taken out a second, 1/s. Faster, a foot that was found too deep kicks its chair up.
+constexpr double recovery_rate = 10;
 constexpr double pi = 3.14159265358979323846;
 
 using Points = std::span<ContactPoint>;
@@ -198,16 +197,23 @@ void solve_rolling(Contact& contact, std::span<BodyState> bodies) {
 
 }  // namespace
 
-bool has_few_contacts(std::size_t contacts) { return contacts <= 64; }
-
-int contact_passes(std::size_t contacts) { return has_few_contacts(contacts) ? 8 : 1; }
-
-ContactSoftness contact_softness(double substep, std::size_t contacts) {
-    const double share = has_few_contacts(contacts) ? stiffness_many_passes : stiffness_one_pass;
-    const double omega = 2 * pi * share / substep;
-    const double a1 = 2 * damping_ratio + substep * omega;
+ContactSoftness ContactPlan::softness(double time_step) const {
+    // ω for the load it carries, and damped so far that the penetration fades at the recovery rate.
+    const double substep = time_step / substeps;
+    const double omega = 2 * pi * stiffness / substep;
+    const double a1 = std::max(omega / recovery_rate, 2.0);
     const double a2 = substep * omega * a1;
     return {substep, omega / a1, a2 / (1 + a2), 1 / (1 + a2)};
+}
+
+ContactPlan contact_plan(std::size_t contacts, int substeps) {
+    if (contacts <= 64) return {5 * substeps, 2, 0.3};
+    if (contacts <= 1000) return {3 * substeps, 1, 0.15};
+    return {2 * substeps, 1, 0.15};
+}
+
+ContactPlan jointed_contact_plan(std::size_t contacts, int substeps) {
+    return contacts <= 64 ? ContactPlan{substeps, 8, 0.5} : ContactPlan{substeps, 1, 0.15};
 }
 
 PreparedContact prepare_contact(Contact& contact, std::span<const BodyState> bodies) {

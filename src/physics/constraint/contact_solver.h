@@ -24,15 +24,19 @@ struct ContactSoftness {
 /// Whether the bodies resist rolling on each other.
 inline bool resists_rolling(const Contact& contact) { return contact.material.friction_rolling > 0; }
 
-/// The stiffest that converges: a short list gets more passes (contact_passes()) and so may be stiffer.
-ContactSoftness contact_softness(double substep, std::size_t contacts);
+/// How finely a list of contacts is solved: small steps and one pass, rather than long steps and many (M. Macklin et
+/// al. 2019). The shorter the list the smaller its steps, since they cost it little (docs/physics/contact-solver.md).
+struct ContactPlan {
+    int substeps = 4;
+    int passes = 1;          ///< sweeps of each phase
+    double stiffness = 0.2;  ///< contact frequency over substep frequency: as much as converges
 
-/// Whether a list is short enough for several passes, and so for stiff contacts.
-bool has_few_contacts(std::size_t contacts);
-
-/// Passes a phase over a list of that many contacts: a long list gets one, since the substeps and the warm start do the
-/// work; for a short one more cost nothing.
-int contact_passes(std::size_t contacts);
+    [[nodiscard]] ContactSoftness softness(double time_step) const;
+};
+/// Of an island without joints; `substeps`: those of the world.
+ContactPlan contact_plan(std::size_t contacts, int substeps);
+/// Of an island with joints, which keeps the world's substeps.
+ContactPlan jointed_contact_plan(std::size_t contacts, int substeps);
 
 /// What the sweeps need of a contact: arms and inertias are those of the step's start.
 struct PreparedContact {

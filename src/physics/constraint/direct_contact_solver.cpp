@@ -109,36 +109,37 @@ bool DirectContactSolver::stays_at_rest(const List& list, std::span<const BodySt
     }
     for (const std::uint32_t index : list.contacts) {
         Contact& contact = contacts[index];
+        const auto times = static_cast<float>(substeps_);
         for (int i = 0; i < contact.count; ++i) {
             ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-            const auto times = static_cast<float>(substeps_);
-            point.total.normal += point.impulse.normal * times;
-            point.total.tangent_1 += point.impulse.tangent_1 * times;
-            point.total.tangent_2 += point.impulse.tangent_2 * times;
+            point.total += point.impulse * times;
         }
+        contact.friction_total.along_1 += contact.friction.along_1 * times;
+        contact.friction_total.along_2 += contact.friction.along_2 * times;
+        contact.friction_total.twist += contact.friction.twist * times;
     }
     return true;
 }
 
 // Adds a contact's last impulses to the bodies' momentum; false where they cannot be the next ones.
 bool DirectContactSolver::holds_at_rest(const Contact& contact) {
-    Vec3 force, torque_a, torque_b = contact.turning, friction;
+    const Anchor anchor = anchor_of(contact);
+    const Vec3 friction = friction_force(contact, contact.friction);
+    const Vec3 moment = contact.normal * static_cast<double>(contact.friction.twist) + contact.rolling;
+    Vec3 force = friction;
+    Vec3 torque_a = cross(anchor.arm_a, friction) + moment, torque_b = cross(anchor.arm_b, friction) + moment;
     double normal = 0;
     for (int i = 0; i < contact.count; ++i) {
         const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const double gap = point.separation;
-        const bool is_loaded = point.impulse.normal > 0;
+        const bool is_loaded = point.impulse > 0;
         if (gap < -rest_gap || (is_loaded && gap > rest_gap) || point.inactive_until > 0) return false;
-        const Vec3 tangential = contact.tangent_1 * static_cast<double>(point.impulse.tangent_1) +
-                                contact.tangent_2 * static_cast<double>(point.impulse.tangent_2);
-        const Vec3 impulse = contact.normal * static_cast<double>(point.impulse.normal) + tangential;
+        const Vec3 impulse = contact.normal * static_cast<double>(point.impulse);
         force += impulse;
         torque_a += cross(point.arm_a, impulse);
         torque_b += cross(point.arm_b, impulse);
-        normal += point.impulse.normal;
-        friction += tangential;
+        normal += point.impulse;
     }
-    torque_a += contact.turning;
     const double bound = contact.material.friction_dynamic * normal;
     if (length_squared(friction) > bound * bound * (1 + 1e-6)) return false;
 

@@ -84,16 +84,9 @@ DirectPatch make_patch(std::uint32_t index, const Contact& contact, double subst
     patch.torsion_arm = contact.material.friction_torsional;
     patch.count = contact.count;
 
-    // The anchor.
-    for (int i = 0; i < contact.count; ++i) {
-        const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        patch.arm_a += point.arm_a;
-        patch.arm_b += point.arm_b;
-    }
-    patch.arm_a = patch.arm_a / contact.count;
-    patch.arm_b = patch.arm_b / contact.count;
-
-    patch.sticks = true;
+    const Anchor anchor = anchor_of(contact);
+    patch.arm_a = anchor.arm_a;
+    patch.arm_b = anchor.arm_b;
     for (int i = 0; i < contact.count; ++i) {
         const ContactPoint& from = contact.points[static_cast<std::size_t>(i)];
         DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
@@ -101,34 +94,34 @@ DirectPatch make_patch(std::uint32_t index, const Contact& contact, double subst
         point.s = dot(offset, patch.tangent_1);
         point.t = dot(offset, patch.tangent_2);
         point.gap = from.separation;
-        point.guess = from.impulse.normal * substep_share;
-        point.total = from.total.normal;
+        point.guess = from.impulse * substep_share;
+        point.total = from.total;
         point.inactive_until = from.inactive_until;
-        const double f1 = from.impulse.tangent_1 * substep_share, f2 = from.impulse.tangent_2 * substep_share;
-        patch.friction_guess += Vec3{f1, f2, point.s * f2 - point.t * f1};
-        patch.sticks = patch.sticks && from.sticks;
     }
-    const Vec3 turning = contact.turning * substep_share;
-    patch.friction_guess.z += dot(turning, patch.normal);
-    patch.rolling_guess = {dot(turning, patch.tangent_1), dot(turning, patch.tangent_2), 0};
+    patch.sticks = contact.sticks;
+    const PatchFriction& friction = contact.friction;
+    patch.friction_guess = Vec3{friction.along_1, friction.along_2, friction.twist} * substep_share;
+    const Vec3 rolling = contact.rolling * substep_share;
+    patch.rolling_guess = {dot(rolling, patch.tangent_1), dot(rolling, patch.tangent_2), 0};
     return patch;
 }
 
 void write_patch(const DirectPatch& patch, double substep_share, Contact& contact) {
     const auto to_float = [](double number) { return static_cast<float>(number); };
-    const Vec3 f = patch.friction_guess * substep_share;
     for (int i = 0; i < contact.count; ++i) {
         const DirectPatch::Point& from = patch.points[static_cast<std::size_t>(i)];
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        point.impulse = {to_float(from.guess * substep_share), to_float(f.x / contact.count),
-                         to_float(f.y / contact.count)};
-        point.total.normal = to_float(from.total);
-        point.total.tangent_1 += to_float(patch.friction_total.x / contact.count);
-        point.total.tangent_2 += to_float(patch.friction_total.y / contact.count);
-        point.sticks = patch.sticks;
+        point.impulse = to_float(from.guess * substep_share);
+        point.total = to_float(from.total);
     }
+    const Vec3 f = patch.friction_guess * substep_share, total = patch.friction_total;
+    contact.friction = {to_float(f.x), to_float(f.y), to_float(f.z)};
+    contact.friction_total.along_1 += to_float(total.x);
+    contact.friction_total.along_2 += to_float(total.y);
+    contact.friction_total.twist += to_float(total.z);
     const Vec3 rolling = patch.rolling_guess * substep_share;
-    contact.turning = to_vec3f(f.z * patch.normal + rolling.x * patch.tangent_1 + rolling.y * patch.tangent_2);
+    contact.rolling = to_vec3f(rolling.x * patch.tangent_1 + rolling.y * patch.tangent_2);
+    contact.sticks = patch.sticks;
 }
 
 namespace {

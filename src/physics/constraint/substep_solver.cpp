@@ -31,14 +31,15 @@ void warm_start_joints(const ConstraintList& list, SolvePhase phase, std::span<B
 
 void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, double time,
                  std::span<BodyState> bodies) {
-    const ContactSoftness softness = contact_softness(substep, list.contact_order.size());
+    const ContactPlan plan = jointed_contact_plan(list.contact_order.size(), 1);
+    const ContactSoftness softness = plan.softness(substep);
     warm_start_joints(list, phase, bodies);
     const std::size_t count = list.contact_order.size();
     for (std::size_t k = 0; phase == SolvePhase::position && k < count; ++k) {
         warm_start_contact(list.contacts[list.contact_order[k]], list.prepared[k], time, bodies);
     }
 
-    const int least = contact_passes(list.contact_order.size());
+    const int least = plan.passes;
     const int most = list.joint_order.empty() ? least : std::max(least, joint_passes(list.joint_order.size()));
     double error = 0;
     for (int pass = 0; pass < most; ++pass) {

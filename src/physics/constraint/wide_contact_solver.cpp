@@ -244,7 +244,9 @@ void WideContactSolver::solve_share(const Work& work, int worker) {
         sweep.time = to_float(substep * substep_);
         k.kick(rows, first_row, last_row);
         work.barrier.wait();
-        sweep_down(work, worker, [&](float* batch, int points) { k.warm_start(batch, points, sweep); });
+        if (substep == 1) {
+            sweep_down(work, worker, [&](float* batch, int points) { k.warm_start(batch, points, sweep); });
+        }
         for (int pass = 0; pass < work.passes; ++pass) {
             sweep_down(work, worker, [&](float* batch, int points) { k.solve_positions(batch, points, sweep); });
         }
@@ -275,7 +277,7 @@ void WideContactSolver::solve_share(const Work& work, int worker) {
 void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::span<BodyState> bodies,
                               std::span<const BodyConstants> constants, std::span<Contact> contacts, TaskPool& pool) {
     if (lines_.size() < used_lines_) lines_.resize(used_lines_ + used_lines_ / 2);
-    kicked_.resize(velocity_.size());
+    kicked_.assign(velocity_.size(), {});
     const ContactSweep sweep{.velocity = velocity_[0].value,
                              .motion = motion_[0].value,
                              .substep = to_float(substep_),

@@ -75,7 +75,7 @@ bool ImpactRegions::refine(const Contact& contact, double& time, Manifold& manif
     for (int round = 0; round < most_rounds; ++round) {
         collide_at(contact, time);
         const auto found = std::find_if(memory_.manifolds.begin(), memory_.manifolds.end(), [&](const Manifold& m) {
-            return m.piece_a == contact.piece_a && m.piece_b == contact.piece_b;
+            return m.piece_a == contact.piece_a && m.piece_b == contact.piece_b && m.part == contact.part;
         });
         if (found == memory_.manifolds.end() || found->count == 0) return false;
         manifold = *found;

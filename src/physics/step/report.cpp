@@ -16,7 +16,7 @@ std::uint64_t user_data_of(const WorldState& world, BodyHandle body) {
 
 // Where, along what normal and how fast a pair began to touch: by its first touching region and its fastest one.
 ContactEvent begin_event(const WorldState& world, const TouchingPair& pair) {
-    const std::array<std::uint32_t, 4> key{pair.a.index, pair.b.index, 0, 0};
+    const std::array<std::uint32_t, 5> key{pair.a.index, pair.b.index, 0, 0, 0};
     auto contact = std::lower_bound(world.contacts.begin(), world.contacts.end(), key,
                                     [](const Contact& c, const auto& k) { return contact_key(c) < k; });
     const Contact* first = nullptr;

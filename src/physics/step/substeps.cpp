@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 
 #include "physics/constraint/substep_solver.h"
@@ -14,13 +15,21 @@ namespace {
 
 /// Islands by the way they are solved (docs/physics/wide-solver.md).
 struct SolveWays {
+    /// Islands of contacts only that share a plan.
+    struct Wide {
+        ContactPlan plan;
+        std::vector<Island> islands;
+    };
     std::vector<Island> one_by_one;  // free bodies, and all that joints hold
-    std::vector<Island> few, many;   // contacts only
+    std::vector<Wide> wide;          // contacts only; the finest plan first
+
+    void add(const Island& island, const ContactPlan& plan);
 };
 
-// An island for the sweeps.
-std::vector<Island>& wide_way(SolveWays& ways, const Island& island) {
-    return has_few_contacts(island.contact_count) ? ways.few : ways.many;
+void SolveWays::add(const Island& island, const ContactPlan& plan) {
+    auto way = std::find_if(wide.begin(), wide.end(), [&](const Wide& w) { return w.plan.substeps <= plan.substeps; });
+    if (way == wide.end() || way->plan.substeps != plan.substeps) way = wide.insert(way, {plan, {}});
+    way->islands.push_back(island);
 }
 
 std::span<const std::uint32_t> contacts_of(const WorldState& world, const Island& island) {
@@ -32,10 +41,9 @@ std::span<const std::uint32_t> bodies_of(const WorldState& world, const Island& 
 }
 
 // Solves all given islands, of contacts only, through the step.
-void solve_wide(WorldState& world, const std::vector<Island>& islands, double h) {
-    if (islands.empty()) return;
+void solve_wide(WorldState& world, const SolveWays::Wide& way) {
     std::vector<std::uint32_t> order, bodies;
-    for (const Island& island : islands) {
+    for (const Island& island : way.islands) {
         const auto contacts = contacts_of(world, island);
         order.insert(order.end(), contacts.begin(), contacts.end());
         const auto members = bodies_of(world, island);
@@ -43,7 +51,8 @@ void solve_wide(WorldState& world, const std::vector<Island>& islands, double h)
     }
     WideContactSolver& solver = world.wide_solver;
     build_schedule(order, world.contacts, world.motion, solver.lanes(), world.schedule);
-    solver.begin(bodies, world.motion, world.constants, h, world.settings.substeps);
+    const ContactSoftness softness = way.plan.softness(world.settings.time_step);
+    solver.begin(bodies, world.motion, world.constants, softness.substep, way.plan.substeps);
     for (const SolveSchedule::Stage& stage : world.schedule.stages) {
         solver.begin_stage();
         for (std::uint32_t i = 0; i < stage.batch_count; ++i) {
@@ -52,9 +61,7 @@ void solve_wide(WorldState& world, const std::vector<Island>& islands, double h)
             solver.add_batch(contacts, batch.points, world.contacts, world.motion);
         }
     }
-    const std::size_t contacts = islands.front().contact_count;
-    solver.solve(contact_passes(contacts), contact_softness(h, contacts), world.motion, world.constants, world.contacts,
-                 *world.workers);
+    solver.solve(way.plan.passes, softness, world.motion, world.constants, world.contacts, *world.workers);
 }
 
 // Whether the island was solved directly; else the sweeps have to.
@@ -75,7 +82,7 @@ SolveWays sort_islands(WorldState& world, double h) {
         if (island.joint_count > 0 || island.contact_count == 0) {
             ways.one_by_one.push_back(island);
         } else if (!solve_directly(world, island)) {
-            wide_way(ways, island).push_back(island);
+            ways.add(island, contact_plan(island.contact_count, world.settings.substeps));
         }
     }
     return ways;
@@ -166,8 +173,9 @@ void clear_traces_of_lost(WorldState& world) {
     }
     for (Contact& contact : world.contacts) {
         if (world.record(contact.a).definition.enabled && world.record(contact.b).definition.enabled) continue;
-        for (ContactPoint& point : contact.points) point.impulse = point.total = {};
-        contact.turning = {};
+        for (ContactPoint& point : contact.points) point.impulse = point.total = 0;
+        contact.friction = contact.friction_total = {};
+        contact.rolling = {};
     }
 }
 
@@ -216,6 +224,18 @@ void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, dou
     }
 }
 
+void propagate_shocks(WorldState& world, const SolveWays& ways) {
+    const auto propagate = [&](const Island& island, const ContactPlan& plan) {
+        propagate_shock(island, world.islands, world.contacts, plan.softness(world.settings.time_step), world.motion);
+    };
+    for (const SolveWays::Wide& way : ways.wide) {
+        for (const Island& island : way.islands) propagate(island, way.plan);
+    }
+    for (const Island& island : ways.one_by_one) {
+        propagate(island, jointed_contact_plan(island.contact_count, world.settings.substeps));
+    }
+}
+
 }  // namespace
 
 void run_substeps(WorldState& world) {
@@ -223,18 +243,9 @@ void run_substeps(WorldState& world) {
     const SolveWays ways = sort_islands(world, h);
 
     // The last one moves the kinematic bodies, which the others take from where the step found them.
-    solve_wide(world, ways.few, h);
-    solve_wide(world, ways.many, h);
+    for (const SolveWays::Wide& way : ways.wide) solve_wide(world, way);
     solve_one_by_one(world, ways.one_by_one, h);
-
-    if (world.settings.shock_propagation) {
-        for (const std::vector<Island>* way : {&ways.few, &ways.many, &ways.one_by_one}) {
-            for (const Island& island : *way) {
-                propagate_shock(island, world.islands, world.contacts, contact_softness(h, island.contact_count),
-                                world.motion);
-            }
-        }
-    }
+    if (world.settings.shock_propagation) propagate_shocks(world, ways);
     limit_speeds(world);
     freeze_lost_bodies(world);
     for (std::size_t i = 0; i < world.active_joints.size(); ++i) {
