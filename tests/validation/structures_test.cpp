@@ -25,18 +25,21 @@ TEST_P(Structures, StandTightAndQuietAndSleep) {
 }
 
 constexpr Held held[] = {
-    {"mass_ratio_1000", {.sag = 0.04, .drift = 0.003, .energy = 1e-6, .asleep_after = 2}},
+    {"mass_ratio_1000", {.sag = 0.001, .drift = 0.001, .energy = 1e-6, .asleep_after = 1}},
+    {"tower_10000", {.sag = 0.001, .drift = 0.001, .energy = 1e-6, .asleep_after = 1}},
     {"card_pair", {.sag = 1e-4, .drift = 1e-4, .energy = 1e-9, .asleep_after = 1}},
-    {"arch", {.sag = 0.003, .drift = 0.001, .energy = 1e-9, .asleep_after = 1}},
-    {"thick_arch", {.sag = 0.002, .drift = 5e-4, .energy = 1e-9, .asleep_after = 1}},
-    {"column_10", {.sag = 0.002, .drift = 1e-3, .energy = 1e-6, .asleep_after = 1}},
-    {"column_30", {.sag = 0.017, .drift = 0.003, .energy = 0.01, .asleep_after = 2}},
+    {"arch", {.sag = 0.001, .drift = 0.001, .energy = 1e-9, .asleep_after = 1}},
+    {"thick_arch", {.sag = 0.001, .drift = 5e-4, .energy = 1e-9, .asleep_after = 1}},
+    {"column_10", {.sag = 0.001, .drift = 1e-3, .energy = 1e-6, .asleep_after = 1}},
+    {"column_30", {.sag = 0.001, .drift = 0.001, .energy = 1e-4, .asleep_after = 1}},
     {"restitution_stack", {.sag = 0.002, .drift = 0.2, .energy = 1e-3, .asleep_after = 20}},
     {"card_house", {.sag = 0.015, .drift = 0.005, .energy = 1e-9, .asleep_after = 2}},
-    {"large_jenga", {.sag = 0.03, .drift = 0.015, .energy = 1e-6, .asleep_after = 4}},
+    {"jenga", {.sag = 1e-4, .drift = 1e-4, .energy = 1e-9, .asleep_after = 1}},
+    {"large_jenga", {.sag = 0.001, .drift = 0.001, .energy = 1e-6, .asleep_after = 1}},
     {"dominoes", {.sag = 1e-4, .drift = 1e-4, .energy = 1e-9, .asleep_after = 1}},
-    {"pyramid_10", {.sag = 0.007, .drift = 0.001, .energy = 1e-3, .asleep_after = 1}},
+    {"pyramid_10", {.sag = 0.001, .drift = 0.001, .energy = 1e-6, .asleep_after = 1}},
     {"wall", {.sag = 0.012, .drift = 0.005, .energy = 1e-3, .asleep_after = 2}},
+    {"figure_10", {.sag = 0.01, .drift = 0.005, .energy = 1e-3, .asleep_after = 2}},
 };
 INSTANTIATE_TEST_SUITE_P(All, Structures, ::testing::ValuesIn(held),
                          [](const auto& structure) { return std::string(structure.param.name); });
