@@ -14,6 +14,8 @@ namespace {
 constexpr double stiffness_share = 1e5;                  // k over the heaviest mass
 constexpr int whole_rounds = 4;                          // of Newton's method with whole steps; then
 constexpr int damped_rounds = 8;                         // with steps as far as f falls, or, with patience,
+constexpr std::size_t patient_work = 12000;              // products of 6×6 blocks in all
+constexpr double small_miss = 0.1;                       // of the largest load: patience is not needed
 constexpr int patient_rounds = 12;                       // of such for each stiffness from
 constexpr double softest_share = 1e-3, stiffening = 10;  // of the full one
 constexpr double slope_tolerance = 0.1;                  // of the slope along a step, where its length is searched
@@ -181,9 +183,11 @@ bool ContactNewton::find_velocities(std::span<const Vec6> free, bool is_patient,
     stiffness_ = full_stiffness_;
     begin_from(free, velocity, patches);
     is_damped_ = false;
+    is_patient_ = is_patient;
+    work_ = 0;
     if (iterate(free, whole_rounds, velocity, patches)) return true;
     is_damped_ = true;
-    if (!is_patient) return iterate(free, damped_rounds, velocity, patches);
+    if (!is_patient || miss_ < small_miss) return iterate(free, damped_rounds, velocity, patches);
 
     // From soft to stiff: which points are loaded and what sticks changes little by little while nothing is stiff.
     stiffness_ = full_stiffness_ * softest_share;
@@ -206,7 +210,8 @@ void ContactNewton::begin_from(std::span<const Vec6> free, std::span<Vec6> veloc
 // Rounds until the impulses are right for this stiffness.
 bool ContactNewton::iterate(std::span<const Vec6> free, int rounds, std::span<Vec6> velocity,
                             std::span<DirectPatch> patches) {
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < rounds && (!is_patient_ || work_ < patient_work); ++round) {
+        work_ += block_products();
         if (!step(free, velocity, patches)) continue;
 
         // Friction under the loads that were found.
@@ -273,7 +278,7 @@ double ContactNewton::find_share(std::span<const DirectPatch> patches) const {
 }
 
 // The impulses after a step; whether they are what the slopes foretold.
-bool ContactNewton::evaluate_after(double share, std::span<DirectPatch> patches) const {
+bool ContactNewton::evaluate_after(double share, std::span<DirectPatch> patches) {
     double largest = 0, error = 0;
     for (DirectPatch& patch : patches) {
         patch.change = patch.change * share;
@@ -286,18 +291,8 @@ bool ContactNewton::evaluate_after(double share, std::span<DirectPatch> patches)
         error = std::max(error, length_squared(patch.impulse.normal_part - foretold_normal));
         error = std::max(error, length_squared(patch.impulse.friction_part - foretold_friction));
     }
-    if (getenv("DBG")) {
-        printf("    error %.3g largest %.3g |", std::sqrt(error), largest);
-        for (const auto& p : patches) {
-            printf(" [");
-            for (int i = 0; i < p.count; i++) printf("%d", p.points[static_cast<std::size_t>(i)].is_loaded);
-            printf("%s %.3g %.3g/%.3g lag %.3g]", p.is_sliding ? "s" : "-", p.slide_direction.x,
-                   std::sqrt(p.friction.x * p.friction.x + p.friction.y * p.friction.y), p.impulse.normal_part.x,
-                   p.lagged_load);
-        }
-        puts("");
-    }  // DBG
-    return error <= force_tolerance * force_tolerance * largest * largest;
+    miss_ = error > 0 ? std::sqrt(error) / std::max(largest, std::sqrt(error)) : 0;
+    return miss_ <= force_tolerance;
 }
 
 void ContactNewton::find_shifts(std::span<const DirectPatch> patches, double share, double most,

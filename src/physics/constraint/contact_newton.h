@@ -59,14 +59,17 @@ private:
     void begin_from(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches);
     bool iterate(std::span<const Vec6> free, int rounds, std::span<Vec6> velocity, std::span<DirectPatch> patches);
     bool step(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches);
-    bool evaluate_after(double share, std::span<DirectPatch> patches) const;
+    bool evaluate_after(double share, std::span<DirectPatch> patches);
     double slope_at(double share, std::span<const DirectPatch> patches) const;
     double find_share(std::span<const DirectPatch> patches) const;
 
     std::span<const NewtonBody> bodies_;
     double full_stiffness_ = 0;
-    double stiffness_ = 0;                              // k, kg
-    bool has_factors_ = false;                          // of this list
+    double stiffness_ = 0;      // k, kg
+    bool has_factors_ = false;  // of this list
+    double miss_ = 0;           // largest difference between an impulse and what was foretold, of the largest load
+    bool is_patient_ = false;
+    std::size_t work_ = 0;                              // products of 6×6 blocks so far
     bool is_damped_ = false;                            // steps go only as far as f falls
     double slope_by_mass_ = 0, curvature_by_mass_ = 0;  // of f along the step, kg m²/s²
     std::vector<Vec6> direction_, right_side_;

@@ -12,7 +12,8 @@ namespace embody::physics {
 
 namespace {
 
-constexpr double slow = 1e-3;        // m/s: an island of slower points is solved once a step
+constexpr double slow = 5e-3;        // m/s: an island of slower points is solved once a step,
+constexpr double end_slow = 1e-3;    // if then they are slower than this
 constexpr double rest_speed = 1e-6;  // m/s, rad/s: changes that rounding may leave
 constexpr double rest_gap = 2e-6;    // m: what resting points may be apart or overlap
 constexpr double mend_share = 0.2;   // of a gap or an overlap closed in one solve
@@ -54,8 +55,8 @@ bool DirectContactSolver::solve(const List& list, Effort effort, std::span<BodyS
     // Slow bodies in one go; should they turn out to move, from the beginning again.
     gather(list, bodies, constants, contacts, 1);
     if (only_slow && newton_.block_products() > most_products_slow) return false;
-    if (is_slow()) {
-        if (run(1, only_slow, contacts) && is_slow()) {
+    if (is_slow(slow)) {
+        if (run(1, only_slow, contacts) && is_slow(end_slow)) {
             scatter(bodies, constants, contacts, 1);
             return true;
         }
@@ -210,11 +211,11 @@ void DirectContactSolver::scatter(std::span<BodyState> bodies, std::span<const B
     }
 }
 
-bool DirectContactSolver::is_slow() const {
+bool DirectContactSolver::is_slow(double most) const {
     const auto is_slow_at = [&](std::int32_t body, Vec3 arm) {
         if (body < 0) return true;
         const Vec6& v = velocity_[static_cast<std::size_t>(body)];
-        return length(v.linear()) + length(v.angular()) * length(arm) < slow;
+        return length(v.linear()) + length(v.angular()) * length(arm) < most;
     };
     return std::all_of(patches_.begin(), patches_.end(), [&](const DirectPatch& patch) {
         const bool is_whole = std::all_of(patch.points.begin(), patch.points.end(),

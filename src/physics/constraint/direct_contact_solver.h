@@ -56,7 +56,7 @@ private:
                 std::span<const Contact> contacts, int substeps);
     void scatter(std::span<BodyState> bodies, std::span<const BodyConstants> constants, std::span<Contact> contacts,
                  int substeps) const;
-    [[nodiscard]] bool is_slow() const;
+    [[nodiscard]] bool is_slow(double most) const;
     [[nodiscard]] bool run(int substeps, bool is_patient, std::span<const Contact> contacts);
     void kick();
     void drift();

@@ -12,7 +12,7 @@ namespace embody::physics {
 enum class DirectUse {
     never,       ///< too large, has joints, or lies on a moving kinematic body
     while_slow,  ///< at rest, where one solve serves for long
-    always,      ///< it is cheap for what it is, or sweeps would fail
+    always,      ///< tall and thin, or heavy on light: sweeps would tremble or fail
 };
 DirectUse direct_use_of(const Island& island, const Islands& islands, std::span<const Contact> contacts,
                         std::span<const BodyState> bodies);
