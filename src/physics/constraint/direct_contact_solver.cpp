@@ -36,14 +36,16 @@ Vec3 motion_at(Vec3 way, const Quat& turn, Vec3 arm, bool is_round) {
 
 }  // namespace
 
-void DirectContactSolver::begin(double substep, int substeps) {
-    substep_ = substep;
-    substeps_ = substeps;
+void DirectContactSolver::begin(double time_step, int substeps) {
+    time_step_ = time_step;
+    moving_substeps_ = substeps;
     newton_.begin_step();
 }
 
 bool DirectContactSolver::solve(const List& list, Effort effort, std::span<BodyState> bodies,
                                 std::span<const BodyConstants> constants, std::span<Contact> contacts) {
+    substeps_ = list.impulse_parts;
+    substep_ = time_step_ / substeps_;
     number_bodies(list.bodies, bodies.size());
     if (stays_at_rest(list, bodies, constants, contacts)) return true;
     const bool only_slow = effort == Effort::while_slow;
@@ -63,9 +65,9 @@ bool DirectContactSolver::solve(const List& list, Effort effort, std::span<BodyS
         if (only_slow) newton_.give_up();
     }
     if (only_slow) return false;
-    gather(list, bodies, constants, contacts, substeps_);
-    if (!run(substeps_, false, contacts)) return false;
-    scatter(bodies, constants, contacts, substeps_);
+    gather(list, bodies, constants, contacts, moving_substeps_);
+    if (!run(moving_substeps_, false, contacts)) return false;
+    scatter(bodies, constants, contacts, moving_substeps_);
     return true;
 }
 

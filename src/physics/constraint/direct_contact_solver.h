@@ -20,6 +20,7 @@ public:
     /// stand still.
     struct List {
         std::span<const std::uint32_t> bodies, contacts;
+        int impulse_parts = 1;  ///< the contacts' impulses are those of the step's last part of so many equal ones
     };
 
     /// How much a list is worth.
@@ -28,8 +29,8 @@ public:
         any,
     };
 
-    /// Starts a step of `substeps` substeps of `substep` s.
-    void begin(double substep, int substeps);
+    /// Starts a step of `time_step` s, in `substeps` parts for what moves.
+    void begin(double time_step, int substeps);
     /// Solves one list through the step: moves its bodies and hands the impulses to its contacts. Where the effort does
     /// not suffice it returns false and changes nothing.
     [[nodiscard]] bool solve(const List& list, Effort effort, std::span<BodyState> bodies,
@@ -63,7 +64,9 @@ private:
     void measure_gaps(std::span<const Contact> contacts);
     void mend_positions(std::span<const Contact> contacts);
 
-    double substep_ = 0;  // s, of the step's settings
+    double time_step_ = 0;  // s
+    int moving_substeps_ = 0;
+    double substep_ = 0;  // s, of the parts that the list's impulses belong to
     int substeps_ = 0;
     double h_ = 0;  // s, of the running solve
     std::vector<Motion> motion_;

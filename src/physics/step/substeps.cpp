@@ -70,14 +70,16 @@ bool solve_directly(WorldState& world, const Island& island) {
     if (use == DirectUse::never) return false;
     using Effort = DirectContactSolver::Effort;
     const Effort effort = use == DirectUse::always ? Effort::any : Effort::while_slow;
-    const DirectContactSolver::List list{bodies_of(world, island), contacts_of(world, island)};
+    // Impulses in the sweeps' measure, so that either way can go on where the other one left off.
+    const int parts = contact_plan(island.contact_count, world.settings.substeps).substeps;
+    const DirectContactSolver::List list{bodies_of(world, island), contacts_of(world, island), parts};
     return world.direct_solver.solve(list, effort, world.motion, world.constants, world.contacts);
 }
 
 // Solves what is solved directly, and tells how the others have to be.
-SolveWays sort_islands(WorldState& world, double h) {
+SolveWays sort_islands(WorldState& world) {
     SolveWays ways;
-    world.direct_solver.begin(h, world.settings.substeps);
+    world.direct_solver.begin(world.settings.time_step, world.settings.substeps);
     for (const Island& island : world.islands.list) {
         if (island.joint_count > 0 || island.contact_count == 0) {
             ways.one_by_one.push_back(island);
@@ -240,7 +242,7 @@ void propagate_shocks(WorldState& world, const SolveWays& ways) {
 
 void run_substeps(WorldState& world) {
     const double h = world.settings.time_step / world.settings.substeps;
-    const SolveWays ways = sort_islands(world, h);
+    const SolveWays ways = sort_islands(world);
 
     // The last one moves the kinematic bodies, which the others take from where the step found them.
     for (const SolveWays::Wide& way : ways.wide) solve_wide(world, way);
