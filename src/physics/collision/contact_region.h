@@ -74,8 +74,8 @@ void keep_deepest(Vec3 on_a, double separation, double tolerance, ContactRegion&
 void cross_segments(const ContactFeature& a, const ContactFeature& b, double radius_a, double radius_b, double margin,
                     ContactRegion& region);
 
-/// Appends the region as manifold, turned and moved into the world; as two where four points leave others unseen; nothing
-/// for an empty region.
+/// Appends the region as manifold, turned and moved into the world; as two where four points leave others unseen;
+/// nothing for an empty region.
 void append_manifolds(ContactRegion& region, const Mat3& turn, Vec3 origin, std::vector<Manifold>& manifolds);
 
 }  // namespace embody::physics

@@ -207,9 +207,7 @@ ContactSoftness ContactPlan::softness(double time_step) const {
 }
 
 ContactPlan contact_plan(std::size_t contacts, int substeps) {
-    if (contacts <= 64) return {5 * substeps, 2, 0.3};
-    if (contacts <= 1000) return {3 * substeps, 1, 0.15};
-    return {2 * substeps, 1, 0.15};
+    return contacts <= 64 ? ContactPlan{3 * substeps, 2, 0.3} : ContactPlan{2 * substeps, 1, 0.15};
 }
 
 ContactPlan jointed_contact_plan(std::size_t contacts, int substeps) {

@@ -64,7 +64,7 @@ struct DirectPatch {
 
     // Of the last evaluation.
     bool is_sliding = false, is_rolling = false;
-    double bound = 0;  ///< of the friction, N s
+    double bound = 0;      ///< of the friction, N s
     Vec3 slide_direction;  ///< in the metric of friction
     PatchTwist velocity, impulse;
     Mat3 friction_slope = Mat3::zero();  ///< −∂friction_part of the impulse / ∂friction_part of the velocity

@@ -105,7 +105,8 @@ TEST_P(ConvexFuzz, depth_is_that_of_the_best_direction) {
             expect_sane(manifolds, margin);
             const double truth = true_separation(*a, pose.a, *b, pose.b, random);
 
-            // Far apart: nothing. Near or overlapping: one region, in one part or two, and its depth is the smallest way out.
+            // Far apart: nothing. Near or overlapping: one region, in one part or two, and its depth is the smallest
+            // way out.
             if (truth > margin + 1e-3) {
                 EXPECT_TRUE(manifolds.empty());
             } else if (truth < margin - 1e-3) {
