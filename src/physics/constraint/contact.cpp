@@ -117,20 +117,28 @@ void follow_bodies(Contact& contact, std::span<const BodyState> bodies) {
     contact.was_touching = is_touching(contact);
     contact.was_loaded = is_pressed(contact);
     contact.had_impact = false;
-    contact.approach_speed = 0;
 
-    const Vec3 normal = rotate((contact.turns_with_b ? b : a).rotation, contact.local_normal);
+    // The normal, and how fast a point at an arm approaches: −n·(Δv + ω_b × arm_b − ω_a × arm_a).
+    const Mat3 turn_a = to_matrix(a.rotation), turn_b = to_matrix(b.rotation);
+    const Vec3 normal = (contact.turns_with_b ? turn_b : turn_a) * Vec3(contact.local_normal);
     const Vec3 old_1 = contact.tangent_1, old_2 = contact.tangent_2;
     set_normal(contact, normal);
+    const double middle_speed = -dot(normal, b.linear_velocity - a.linear_velocity);
+    const Vec3 by_arm_a = cross(normal, a.angular_velocity), by_arm_b = cross(normal, b.angular_velocity);
+    const Vec3 apart = b.center - a.center;
+    double fastest = 0;
     for (int i = 0; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        const Vec3 arm_a = rotate(a.rotation, point.local_a), arm_b = rotate(b.rotation, point.local_b);
-        const Vec3 apart = b.center - a.center, gap = apart + arm_b - arm_a, middle = arm_a + 0.5 * gap;
+        const Vec3 surface_a = turn_a * Vec3(point.local_a), surface_b = turn_b * Vec3(point.local_b);
+        const Vec3 gap = apart + surface_b - surface_a, arm_a = surface_a + 0.5 * gap, arm_b = arm_a - apart;
         point.separation = static_cast<float>(dot(normal, gap));
-        set_arms(contact, point, middle, middle - apart, bodies);
+        point.arm_a = to_vec3f(arm_a);
+        point.arm_b = to_vec3f(arm_b);
+        fastest = std::max(fastest, middle_speed + dot(by_arm_a, arm_a) - dot(by_arm_b, arm_b));
         point.total = 0;
         point.inactive_until = 0;
     }
+    contact.approach_speed = static_cast<float>(fastest);
     contact.friction = carried_over(contact.friction, contact, old_1, old_2, {});
     contact.friction_total = {};
 }
