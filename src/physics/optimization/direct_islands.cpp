@@ -15,12 +15,13 @@ constexpr std::size_t most_products_high = 300;    // of 6×6 blocks: chains, fe
 constexpr double least_mass_ratio = 20;            // of what lies above to what is below
 constexpr std::size_t most_products_slow = 20000;  // an upper bound, for what rests; the solver counts them truly
 constexpr std::size_t most_products_bad = 4000;    // where they could not
+constexpr double least_load_ratio = 2;             // of all that lies above to a body of a tree below
 
 /// Bodies of each level, and the extremes of their masses.
 struct Levels {
     struct Level {
         std::size_t bodies = 0;
-        double least_inverse_mass = 1e300, largest_inverse_mass = 0;
+        double least_inverse_mass = 1e300, largest_inverse_mass = 0, mass = 0;
     };
     std::array<Level, DirectContactSolver::most_bodies + 1> level;
 };
@@ -34,6 +35,7 @@ Levels count_levels(const Island& island, const Islands& islands, std::span<cons
         ++level.bodies;
         level.least_inverse_mass = std::min(level.least_inverse_mass, bodies[body].inverse_mass);
         level.largest_inverse_mass = std::max(level.largest_inverse_mass, bodies[body].inverse_mass);
+        level.mass += 1 / bodies[body].inverse_mass;
     }
     return levels;
 }
@@ -60,6 +62,30 @@ double mass_ratio(const Levels& levels) {
     return ratio;
 }
 
+// All that lies above a body, over that one.
+double load_ratio(const Levels& levels) {
+    double ratio = 0, above = 0;
+    for (std::size_t i = levels.level.size(); i-- > 0;) {
+        const Levels::Level& level = levels.level[i];
+        if (level.bodies == 0) continue;
+        ratio = std::max(ratio, above * level.largest_inverse_mass);
+        above += level.mass;
+    }
+    return ratio;
+}
+
+// Whether movable bodies touch each other as the branches of a tree do: from its leaves inwards nothing fills in. A box
+// with balls on it is one, whatever its number of balls.
+bool is_tree(const Island& island, const Islands& islands, std::span<const Contact> contacts,
+             std::span<const BodyState> bodies) {
+    std::uint32_t links = 0;
+    for (std::uint32_t k = 0; k < island.contact_count; ++k) {
+        const Contact& contact = contacts[islands.contacts[island.first_contact + k]];
+        if (bodies[contact.a].inverse_mass > 0 && bodies[contact.b].inverse_mass > 0) ++links;
+    }
+    return links < island.body_count;
+}
+
 bool is_moving_kinematic(const BodyState& body) {
     return body.inverse_mass == 0 && (body.linear_velocity != Vec3{} || body.angular_velocity != Vec3{});
 }
@@ -77,6 +103,7 @@ DirectUse direct_use_of(const Island& island, const Islands& islands, std::span<
     const Levels levels = count_levels(island, islands, bodies);
     const std::size_t products = block_products(levels);
     const bool is_bad = mass_ratio(levels) > least_mass_ratio, is_high = island.deepest_level >= least_levels;
+    if (load_ratio(levels) > least_load_ratio && is_tree(island, islands, contacts, bodies)) return DirectUse::always;
     if (products <= (is_bad ? most_products_bad : is_high ? most_products_high : 0)) return DirectUse::always;
     return products <= most_products_slow ? DirectUse::while_slow : DirectUse::never;
 }
