@@ -95,6 +95,10 @@ struct PlacedConvex {
     }
 };
 
+/// False for a single triangle.
+inline bool has_volume(const Convex& convex) {
+    return convex.kind != ConvexKind::polytope || convex.polytope.faces.size() > 1;
+}
 /// A point well inside.
 Vec3 interior_point(const PlacedConvex& convex);
 /// Radius around the core.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "physics/collision/curve_crossing.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "physics/collision/convex_pairs.h"
 #include "physics/collision/rim.h"
 
 namespace embody::physics {
@@ -19,7 +21,14 @@ struct Curve {
     double radius = 0;           ///< of a circle
     double reach = 0;            ///< of the solid's core around the curve
     Vec3 point, tangent;
+    Vec3 from, to;  ///< ends of a line, along the tangent
 
+    [[nodiscard]] bool is_line() const { return !is_circle && tangent != Vec3{}; }
+    // How far a line goes on to both sides of the point; negative beyond its ends.
+    [[nodiscard]] double room() const { return std::min(dot(point - from, tangent), dot(to - point, tangent)); }
+    void stay_within() {
+        if (is_line() && room() < 0) point = dot(point - from, tangent) < 0 ? from : to;
+    }
     // Goes along the tangent and back to the curve.
     void go(double way) {
         point += tangent * way;
@@ -32,6 +41,12 @@ struct Curve {
     // How much faster than the tangent's the distance to the other curve grows, by the circle's own bend.
     [[nodiscard]] double bend(Vec3 way_to_other) const { return is_circle ? dot(way_to_other, outward) / radius : 0; }
 };
+
+void set_axis(const PlacedConvex& round, Curve& curve) {
+    curve.tangent = round.rotation.y;
+    curve.from = round.to_frame({0, -round.shape->half_height, 0});
+    curve.to = round.to_frame({0, round.shape->half_height, 0});
+}
 
 bool get_round_curve(const PlacedConvex& round, Vec3 direction, Curve& curve) {
     const Convex& shape = *round.shape;
@@ -48,7 +63,7 @@ bool get_round_curve(const PlacedConvex& round, Vec3 direction, Curve& curve) {
         }
     } else if (std::fabs(d.y) < beside) {
         curve.point = round.position;
-        curve.tangent = round.rotation.y;
+        set_axis(round, curve);
         curve.reach = shape.radius;
         return true;
     }
@@ -77,6 +92,8 @@ void get_corner_curve(const PlacedConvex& placed, Vec3 direction, Curve& curve) 
         if (slope >= least) continue;
         least = slope;
         curve.tangent = placed.direction_to_frame(e);
+        curve.from = placed.to_frame(polytope.vertices[edge.from]);
+        curve.to = placed.to_frame(polytope.vertices[edge.to]);
     }
 }
 
@@ -89,7 +106,7 @@ bool get_curve(const PlacedConvex& convex, Vec3 direction, Curve& curve) {
             const double up = dot(convex.rotation.y, direction), h = convex.shape->half_height;
             curve.point = convex.position;
             if (std::fabs(up) < beside) {
-                curve.tangent = convex.rotation.y;
+                set_axis(convex, curve);
             } else {
                 curve.point += convex.rotation.y * (up < 0 ? -h : h);
             }
@@ -115,7 +132,7 @@ bool approach(Curve& p, Curve& q) {
         const double slope_p = dot(gap, p.tangent), slope_q = dot(gap, q.tangent);
         const double bent_p = 1 + p.bend(gap), bent_q = 1 - q.bend(gap);
         const double determinant = bent_p * bent_q - cosine * cosine;
-        if (!(std::fabs(determinant) > 1e-3)) return false;
+        if (!(std::fabs(determinant) > 1e-7)) return false;
         const double way_p = (bent_q * slope_p - cosine * slope_q) / determinant;
         const double way_q = (cosine * slope_p - bent_p * slope_q) / determinant;
         if (!(std::fabs(way_p) + std::fabs(way_q) < 16 * size)) return false;
@@ -126,12 +143,79 @@ bool approach(Curve& p, Curve& q) {
     return false;
 }
 
+// To the nearest points of two segments whose lines are nearest beyond an end, or of one and a curve near by.
+void stay_within(Curve& p, Curve& q) {
+    p.stay_within();
+    if (q.is_line()) q.point += q.tangent * dot(p.point - q.point, q.tangent);
+    q.stay_within();
+    if (p.is_line()) p.point += p.tangent * dot(q.point - p.point, p.tangent);
+    p.stay_within();
+}
+
+// To the middle of the common part of two parallel lines, or to the ends that are nearest.
+void meet_halfway(Curve& p, Curve& q) {
+    const double whole = dot(p.to - p.from, p.tangent);
+    const double s = std::clamp(dot(q.from - p.from, p.tangent), 0.0, whole);
+    const double t = std::clamp(dot(q.to - p.from, p.tangent), 0.0, whole);
+    p.point = p.from + p.tangent * (0.5 * (s + t));
+    q.point += q.tangent * dot(p.point - q.point, q.tangent);
+    q.stay_within();
+}
+
+/// How much of the difference of two solids a curve holds around its point: see is_best_crossing.
+struct Hold {
+    double depth, width;
+};
+Hold hold_of(const Curve& curve, double square) {
+    if (curve.is_circle) return {0.2 * curve.radius * square, 0.4 * curve.radius * square};
+    const double width = curve.room() * std::sqrt(square);
+    return {width, width};
+}
+
+// Radius of a ball around the inner point.
+double inner_radius(const PlacedConvex& convex) {
+    if (!has_volume(*convex.shape)) return 0;
+    return -distance_from_surface(*convex.shape, convex.to_local(interior_point(convex))).distance;
+}
+
+// Whether the normal n of two curves that cross at a depth d is the best one. It is if the difference b - a holds the
+// ball of radius d around the origin, for it touches that ball at -d n: if it reaches as far as d along each unit k.
+// Let k lean from -n by an angle x, towards a unit vector w across n. Some pair of points of the curves reaches d cos x
+// plus what one of them adds, with t the cosine between its tangent and w:
+//     a line that goes on by l to both sides                          l t sin x
+//     a circle of radius r, points up to t r / sqrt(2) aside at least 0.2 t^2 r sin x, or 0.36 t^2 r (1 - cos x)
+// (a point s aside lies at most 0.536 s^2 / r inside of the tangent while s <= r / 2). Of two tangents at an angle y
+// one has t >= sin(y / 2). So up to a right angle the depth must be at most l t and 0.2 t^2 r, for 1 - cos x <= sin x.
+// Beyond it, at x = 90 degrees + z, the curves reach width cos z - d sin z, with the width l t or 0.4 t^2 r: far enough
+// until tan(45 degrees - z / 2) = d / width. From there on the balls inside the two solids must reach that far.
+bool is_best_crossing(const PlacedConvex& a, const PlacedConvex& b, const Curve& p, const Curve& q, Vec3 n) {
+    if (p.tangent == Vec3{} || q.tangent == Vec3{}) return false;
+    const double d = dot(n, p.point - q.point), square = 0.5 * (1 - std::fabs(dot(p.tangent, q.tangent)));
+    const Hold of_p = hold_of(p, square), of_q = hold_of(q, square);
+    if (!(d > 0 && d <= std::min(of_p.depth, of_q.depth))) return false;
+
+    const double ratio = d / std::min(of_p.width, of_q.width), squared = ratio * ratio;
+    const Vec3 way = interior_point(b) - interior_point(a);
+    const double along = dot(way, n), aside = length(way - n * along);
+    const double radii = inner_radius(a) + inner_radius(b);
+    return along >= 0 && along * (1 - squared) - 2 * ratio * aside + (radii - d) * (1 + squared) >= 0;
+}
+
 }  // namespace
 
 bool cross_curves(const PlacedConvex& a, const PlacedConvex& b, Vec3 direction, CurveCrossing& crossing) {
     constexpr double least_sine = 0.03;
     Curve p, q;
-    if (!get_curve(a, direction, p) || !get_curve(b, -direction, q) || !approach(p, q)) return false;
+    if (!get_curve(a, direction, p) || !get_curve(b, -direction, q)) return false;
+    const auto offer_points = [&](Vec3 n) {
+        crossing = {p.point + n * p.reach, q.point - n * q.reach, n};
+        return true;
+    };
+    if (p.is_line() && q.is_line() && length_squared(cross(p.tangent, q.tangent)) < least_sine * least_sine) {
+        meet_halfway(p, q);
+        return offer_points(normalized(direction - p.tangent * dot(direction, p.tangent), direction));
+    }
+    if (!approach(p, q)) return false;
 
     // Across both tangents; where one has none, or they are nearly parallel, along the gap.
     const Vec3 across = cross(p.tangent, q.tangent), gap = q.point - p.point;
@@ -141,7 +225,14 @@ bool cross_curves(const PlacedConvex& a, const PlacedConvex& b, Vec3 direction, 
     if (!is_crossing && !(apart > 1e-6 * scale)) return false;
     Vec3 n = is_crossing ? across / sine : gap / apart;
     if (dot(n, direction) < 0) n = -n;
-    crossing = {p.point + n * p.reach, q.point - n * q.reach, n};
+    if ((p.is_line() && p.room() < 0) || (q.is_line() && q.room() < 0)) {
+        stay_within(p, q);
+        return offer_points(n);
+    }
+    offer_points(n);
+    crossing.is_within = true;
+    const bool is_bare = p.reach + q.reach + rounding(*a.shape) + rounding(*b.shape) == 0;
+    crossing.is_best = is_crossing && is_bare && is_best_crossing(a, b, p, q, n);
     return true;
 }
 

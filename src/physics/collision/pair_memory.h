@@ -17,14 +17,19 @@ struct PairMemory {
         face_of_a,  ///< the pair met on face `feature_a` of a
         face_of_b,  ///< … on face `feature_b` of b
         edges,      ///< … where edge `feature_a` of a crosses edge `feature_b` of b
+        along,      ///< … along `axis`, at no face or edges in particular
     };
-    Vec3 axis;  ///< unit, in the frame of the piece compared first, towards the other
+    Vec3 axis;  ///< of `apart` and `along`: unit, in the frame of the piece compared first, towards the other
     std::uint16_t feature_a = 0, feature_b = 0;
     Kind kind = Kind::nothing;
 
     void part_along(Vec3 direction) {
         axis = direction;
         kind = Kind::apart;
+    }
+    void meet_along(Vec3 direction) {
+        axis = direction;
+        kind = Kind::along;
     }
 };
 static_assert(sizeof(PairMemory) <= 32);

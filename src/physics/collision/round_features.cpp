@@ -176,6 +176,30 @@ void get_facing(const PlacedConvex& convex, Vec3 direction, ContactFeature& feat
     }
 }
 
+Vec3 facing_point(const PlacedConvex& convex, Vec3 direction, Vec3 point) {
+    constexpr double across = 0.05;
+    const Convex& shape = *convex.shape;
+    const Vec3 d = convex.direction_to_local(direction), p = convex.to_local(point);
+    // To one end, or, where both are as far along the direction, as near to the point as can be.
+    const auto settle = [](double along, double half, double at) {
+        if (std::fabs(along) > across) return along < 0 ? -half : half;
+        return std::fmax(-half, std::fmin(half, at));
+    };
+    if (shape.is_box) {
+        const Vec3 h = shape.bounds.upper;
+        return convex.to_frame({settle(d.x, h.x, p.x), settle(d.y, h.y, p.y), settle(d.z, h.z, p.z)});
+    }
+    if (shape.kind == ConvexKind::capsule) return convex.to_frame({0, settle(d.y, shape.half_height, p.y), 0});
+    if (shape.kind == ConvexKind::cylinder || (shape.kind == ConvexKind::cone && d.y < across - 1)) {
+        const double radial = std::sqrt(d.x * d.x + d.z * d.z), aside = std::sqrt(p.x * p.x + p.z * p.z);
+        const double y = settle(d.y, shape.half_height, p.y);
+        if (radial > across) return convex.to_frame({d.x / radial * shape.radius, y, d.z / radial * shape.radius});
+        const double share = aside > shape.radius ? shape.radius / aside : 1;
+        return convex.to_frame({p.x * share, y, p.z * share});
+    }
+    return core_support(convex, direction);
+}
+
 void add_own_normals(const PlacedConvex& convex, Vec3 direction, bool all_faces, std::vector<Vec3>& normals) {
     const Vec3 d = convex.direction_to_local(direction);
     const Convex& shape = *convex.shape;

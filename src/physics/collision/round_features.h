@@ -14,6 +14,9 @@ inline constexpr int rim_corners = 24;
 bool get_aligned_face(const PlacedConvex& convex, Vec3 direction, ContactFeature& feature);
 /// The straight line of the surface (edge, side of a round shape, axis of a capsule) that lies across `direction`.
 bool get_aligned_line(const PlacedConvex& convex, Vec3 direction, ContactFeature& feature);
+/// Of the face, edge or side of a box, capsule, cylinder or cone that lies across `direction` (within a few hundredths)
+/// the core's point nearest to `point`; else its farthest one. Always a point of the core.
+Vec3 facing_point(const PlacedConvex& convex, Vec3 direction, Vec3 point);
 /// A polytope's face by its index.
 void get_polytope_face(const PlacedConvex& convex, std::uint32_t face, ContactFeature& feature);
 /// The face or line that faces most along `direction`, at whatever angle: what is clipped by another's face.
