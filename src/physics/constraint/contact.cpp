@@ -7,12 +7,7 @@ namespace embody::physics {
 
 namespace {
 
-void set_normal(Contact& contact, Vec3 normal) {
-    const Vec3 tangent = any_perpendicular(normal);
-    contact.normal = to_vec3f(normal);
-    contact.tangent_1 = to_vec3f(tangent);
-    contact.tangent_2 = to_vec3f(cross(normal, tangent));
-}
+constexpr float deep_penetration = 0.05F;  // m
 
 // Arms to the middle between the surface points, and how fast they approach.
 void set_arms(Contact& contact, ContactPoint& point, Vec3 arm_a, Vec3 arm_b, std::span<const BodyState> bodies) {
@@ -25,17 +20,19 @@ void set_arms(Contact& contact, ContactPoint& point, Vec3 arm_a, Vec3 arm_b, std
 }  // namespace
 
 Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold, std::span<const BodyState> bodies,
-                     bool turns_with_b) {
+                     bool b_is_larger) {
     Contact contact;
     contact.a = a;
     contact.b = b;
     contact.piece_a = manifold.piece_a;
     contact.piece_b = manifold.piece_b;
-    contact.part = manifold.part;
-    contact.turns_with_b = turns_with_b;
-    set_normal(contact, manifold.normal);
-    contact.local_normal = to_vec3f(rotate_inverse(bodies[turns_with_b ? b : a].rotation, manifold.normal));
-    contact.count = manifold.count;
+    contact.part = static_cast<std::uint8_t>(manifold.part);
+    contact.b_is_larger = b_is_larger;
+    contact.normal = to_vec3f(manifold.normal);
+    contact.tangent_1 = to_vec3f(any_perpendicular(manifold.normal));
+    const Quat larger = bodies[b_is_larger ? b : a].rotation;
+    contact.local_normal = to_vec3f(rotate_inverse(larger, manifold.normal));
+    contact.count = static_cast<std::uint8_t>(manifold.count);
     for (int i = 0; i < manifold.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const ManifoldPoint& found = manifold.points[static_cast<std::size_t>(i)];
@@ -44,25 +41,33 @@ Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold,
         const Vec3 arm_a = found.position - bodies[a].center, arm_b = found.position - bodies[b].center;
         set_arms(contact, point, arm_a, arm_b, bodies);
         const Vec3 half_gap = manifold.normal * (0.5 * found.separation);
-        point.local_a = to_vec3f(rotate_inverse(bodies[a].rotation, arm_a - half_gap));
-        point.local_b = to_vec3f(rotate_inverse(bodies[b].rotation, arm_b + half_gap));
+        point.place = to_vec3f(rotate_inverse(larger, b_is_larger ? arm_a - half_gap : arm_b + half_gap));
+        point.place_separation = point.separation;
     }
     return contact;
 }
 
-namespace {
-
-// The tangents of the two steps differ by a turn about the normal; the friction keeps its world direction. `shift`
-// leads from the new anchor to the old one.
-PatchFriction carried_over(const PatchFriction& friction, const Contact& new_contact, Vec3 old_1, Vec3 old_2,
-                           Vec3 shift) {
-    const Vec3 force = friction.along_1 * old_1 + friction.along_2 * old_2;
-    return {static_cast<float>(dot(force, new_contact.tangent_1)),
-            static_cast<float>(dot(force, new_contact.tangent_2)),
-            static_cast<float>(friction.twist + dot(cross(shift, force), new_contact.normal))};
+void set_material(Contact& contact, const Material& material) {
+    contact.friction_static = static_cast<float>(material.friction_static);
+    contact.friction_dynamic = static_cast<float>(material.friction_dynamic);
+    contact.friction_torsional = static_cast<float>(material.friction_torsional);
+    contact.friction_rolling = static_cast<float>(material.friction_rolling);
+    contact.bounces = material.restitution > 0;
 }
 
-}  // namespace
+ContactGlance glance_at(const Contact& contact) {
+    ContactGlance glance{.a = contact.a,
+                         .b = contact.b,
+                         .approach_speed = contact.approach_speed,
+                         .count = contact.count,
+                         .was_touching = contact.was_touching,
+                         .was_loaded = contact.was_loaded,
+                         .bounces = contact.bounces};
+    for (int i = 0; i < contact.count; ++i) {
+        if (contact.points[static_cast<std::size_t>(i)].separation <= -deep_penetration) glance.is_deep = true;
+    }
+    return glance;
+}
 
 Anchor anchor_of(const Contact& contact) {
     Anchor sum;
@@ -86,7 +91,7 @@ void match_points(const Contact& old_contact, Contact& new_contact) {
         for (int j = 0; j < old_contact.count; ++j) {
             const ContactPoint& old_point = old_contact.points[static_cast<std::size_t>(j)];
             if (taken[static_cast<std::size_t>(j)]) continue;
-            const double squared = length_squared(Vec3(old_point.local_a) - point.local_a);
+            const double squared = length_squared(Vec3(old_point.place) - point.place);
             if (old_point.feature == point.feature && squared < 25 * reach * reach) {
                 best = j;
                 break;
@@ -102,45 +107,104 @@ void match_points(const Contact& old_contact, Contact& new_contact) {
         point.impulse = old_point.impulse;
     }
 
-    // The bodies' last way is short beside the region: the old anchor is taken where it was.
+    // The tangents of the two steps differ by a turn about the normal; the friction keeps its world direction. The
+    // bodies' last way is short beside the region: the old anchor is taken where it was.
     const Vec3 shift = anchor_of(old_contact).arm_a - anchor_of(new_contact).arm_a;
-    new_contact.friction =
-        carried_over(old_contact.friction, new_contact, old_contact.tangent_1, old_contact.tangent_2, shift);
+    const Vec3 force = friction_force(old_contact, old_contact.friction);
+    new_contact.friction = {
+        static_cast<float>(dot(force, new_contact.tangent_1)), static_cast<float>(dot(force, tangent_2(new_contact))),
+        static_cast<float>(old_contact.friction.twist + dot(cross(shift, force), new_contact.normal))};
     new_contact.sticks = old_contact.sticks;
     new_contact.rolling = old_contact.rolling;
     new_contact.was_touching = is_touching(old_contact);
     new_contact.was_loaded = is_pressed(old_contact);
 }
 
-void follow_bodies(Contact& contact, std::span<const BodyState> bodies) {
-    const BodyState &a = bodies[contact.a], &b = bodies[contact.b];
+namespace {
+
+// Four points of a region side by side.
+using Four = float __attribute__((vector_size(16)));
+struct Four3 {
+    Four x, y, z;
+};
+Four all(float number) { return Four{} + number; }
+Four3 all(Vec3f v) { return {all(v.x), all(v.y), all(v.z)}; }
+Four3 operator+(const Four3& a, const Four3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Four3 operator-(const Four3& a, const Four3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Four3 operator*(const Four3& a, Four s) { return {a.x * s, a.y * s, a.z * s}; }
+Four dot(const Four3& a, const Four3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Four3 cross(const Four3& a, const Four3& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+Vec3f in_axes(const std::array<Vec3f, 3>& axes, Vec3f v) {
+    return {axes[0].x * v.x + axes[1].x * v.y + axes[2].x * v.z, axes[0].y * v.x + axes[1].y * v.y + axes[2].y * v.z,
+            axes[0].z * v.x + axes[1].z * v.y + axes[2].z * v.z};
+}
+Four3 in_axes(const std::array<Vec3f, 3>& axes, const Four3& v) {
+    return all(axes[0]) * v.x + all(axes[1]) * v.y + all(axes[2]) * v.z;
+}
+
+// The tangent turns as little as it can, so that friction keeps its world direction.
+void turn_frame(Contact& contact, Vec3f normal) {
+    const Vec3 n = normal, tangent = contact.tangent_1, across = tangent - dot(tangent, n) * n;
+    const double squared = length_squared(across);
+    contact.normal = normal;
+    if (squared > 0.999) {
+        contact.tangent_1 = to_vec3f(across * (1.5 - 0.5 * squared));  // a step of Newton's for 1/√
+    } else {
+        contact.tangent_1 = to_vec3f(squared > 0.01 ? normalized(across) : any_perpendicular(n));
+    }
+}
+
+}  // namespace
+
+// With the smaller body's surface point s, its turn R and shift d since then, all in the larger body's axes: the point
+// is now at R s from the smaller centre, and the gap vector has changed by d + R s − s, up to the sign of who is b.
+void follow_bodies(Contact& contact, const FollowedPair& pair) {
     contact.was_touching = is_touching(contact);
     contact.was_loaded = is_pressed(contact);
     contact.had_impact = false;
+    contact.friction_total = {};
+    turn_frame(contact, in_axes(pair.axes, contact.local_normal));
 
-    // The normal, and how fast a point at an arm approaches: −n·(Δv + ω_b × arm_b − ω_a × arm_a).
-    const Mat3 turn_a = to_matrix(a.rotation), turn_b = to_matrix(b.rotation);
-    const Vec3 normal = (contact.turns_with_b ? turn_b : turn_a) * Vec3(contact.local_normal);
-    const Vec3 old_1 = contact.tangent_1, old_2 = contact.tangent_2;
-    set_normal(contact, normal);
-    const double middle_speed = -dot(normal, b.linear_velocity - a.linear_velocity);
-    const Vec3 by_arm_a = cross(normal, a.angular_velocity), by_arm_b = cross(normal, b.angular_velocity);
-    const Vec3 apart = b.center - a.center;
-    double fastest = 0;
-    for (int i = 0; i < contact.count; ++i) {
-        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        const Vec3 surface_a = turn_a * Vec3(point.local_a), surface_b = turn_b * Vec3(point.local_b);
-        const Vec3 gap = apart + surface_b - surface_a, arm_a = surface_a + 0.5 * gap, arm_b = arm_a - apart;
-        point.separation = static_cast<float>(dot(normal, gap));
-        point.arm_a = to_vec3f(arm_a);
-        point.arm_b = to_vec3f(arm_b);
-        fastest = std::max(fastest, middle_speed + dot(by_arm_a, arm_a) - dot(by_arm_b, arm_b));
+    // Points to lanes; those that the region does not have repeat the last one.
+    const auto last = static_cast<std::size_t>(contact.count - 1);
+    Four3 place;
+    Four separation;
+    for (std::size_t i = 0; i < Manifold::max_points; ++i) {
+        const ContactPoint& point = contact.points[std::min(i, last)];
+        place.x[i] = point.place.x;
+        place.y[i] = point.place.y;
+        place.z[i] = point.place.z;
+        separation[i] = point.place_separation;
+    }
+
+    const Four sign = all(contact.b_is_larger ? -1.0F : 1.0F);
+    const Four3 by_tilt = cross(all(pair.turn), place) * all(2);
+    const Four3 turned = by_tilt * all(pair.turn_w) + cross(all(pair.turn), by_tilt), change = all(pair.shift) + turned;
+    const Four3 normal = all(contact.local_normal);
+    const Four3 half_gap = (normal * (separation * sign) + change) * all(0.5F);
+    const Four3 arm_smaller = in_axes(pair.axes, place + turned - half_gap);
+    const Four3 arm_larger = arm_smaller + all(pair.apart) * sign;
+    const Four3 &arm_a = contact.b_is_larger ? arm_smaller : arm_larger,
+                &arm_b = contact.b_is_larger ? arm_larger : arm_smaller;
+    separation += sign * dot(normal, change);
+
+    // How fast a point approaches: −n·(Δv + ω_b × arm_b − ω_a × arm_a).
+    const Four3 velocity = all(pair.velocity) + cross(all(pair.spin_b), arm_b) - cross(all(pair.spin_a), arm_a);
+    const Four approach = -dot(all(contact.normal), velocity);
+    float fastest = 0;
+    for (std::size_t i = 0; i <= last; ++i) {
+        ContactPoint& point = contact.points[i];
+        point.arm_a = {arm_a.x[i], arm_a.y[i], arm_a.z[i]};
+        point.arm_b = {arm_b.x[i], arm_b.y[i], arm_b.z[i]};
+        point.separation = separation[i];
         point.total = 0;
         point.inactive_until = 0;
+        fastest = std::max(fastest, approach[i]);
     }
-    contact.approach_speed = static_cast<float>(fastest);
-    contact.friction = carried_over(contact.friction, contact, old_1, old_2, {});
-    contact.friction_total = {};
+    contact.approach_speed = fastest;
 }
 
 namespace {

@@ -10,15 +10,16 @@
 namespace embody::physics {
 
 /// Rounds over the points of a region within one pass, in which its bodies are not touched.
-inline constexpr int normal_rounds = 2;
+inline constexpr int normal_rounds = 1;
 
 /// Quantities of a contact, in floats times lanes from the start of its batch.
 struct BatchHead {
+    static constexpr int most_points = 4;
     enum Quantity : int {
         body_a,  ///< row of the body, an integer
         body_b,
         writable,  ///< lane 0: bit mask of the lanes whose body a may move; 1: the same for b; 2: of those that resist
-                   ///< rolling
+                   ///< rolling; 3: of those with points whose time may not have come
         inverse_mass_a,
         inverse_mass_b,
         inverse_inertia_a,  ///< world, at the step's start: xx xy xz yy yz zz
@@ -30,20 +31,21 @@ struct BatchHead {
         arm_b = arm_a + 3,
         friction_static = arm_b + 3,
         friction_dynamic,
-        friction_torsional,
+        torsion_static,  ///< lever of the torsional friction beside the static one, and beside the dynamic one, m
+        torsion_dynamic,
         friction_rolling,
-        start_speed,                      ///< relative velocity at the anchor at the step's start along the three axes
-        start_spin = start_speed + 3,     ///< ω of b less that of a at the step's start, about the three axes
-        coupling = start_spin + 3,        ///< A_ij of points 01 02 03 12 13 23, 1/kg
-        stop_all = coupling + 6,          ///< inverse response of (u₁ u₂ ω_n): 11 12 13 22 23 33
-        stop_shift = stop_all + 6,        ///< inverse response of (u₁ u₂): 11 12 22
-        shift_response = stop_shift + 3,  ///< largest response of the anchor's tangential speed, 1/kg
-        twist_response,                   ///< response of ω_n, 1/(kg m²)
-        friction,                         ///< impulse on b along tangent 1, 2, about the normal
-        friction_total = friction + 3,    ///< of the step
-        rolling = friction_total + 3,     ///< angular impulse on b by rolling resistance, world: x y z
-        sticks = rolling + 3,             ///< mask
-        round_a,                          ///< mask: the point of contact does not turn with the body
+        start_speed,                       ///< relative velocity at the anchor at the step's start along the three axes
+        start_spin = start_speed + 3,      ///< ω of b less that of a at the step's start, about the three axes
+        coupling = start_spin + 3,         ///< A_ij of points 01 02 03 12 13 23, 1/kg
+        friction_coupling = coupling + 6,  ///< response of u_n, of ω₁, of ω₂ to friction: 3×3
+        stop = friction_coupling + 9,      ///< inverse response of (u₁ u₂ ω_n): 11 12 13 22 23 33
+        shift_response = stop + 6,         ///< largest response of the anchor's tangential speed, 1/kg
+        twist_response,                    ///< response of ω_n, 1/(kg m²)
+        friction,                          ///< impulse on b along tangent 1, 2, about the normal
+        friction_total = friction + 3,     ///< of the step
+        rolling = friction_total + 3,      ///< angular impulse on b by rolling resistance, world: x y z
+        sticks = rolling + 3,              ///< mask
+        round_a,                           ///< mask: the point of contact does not turn with the body
         round_b,
         size
     };
@@ -65,15 +67,44 @@ struct BatchPoint {
     };
 };
 
+/// How a Contact lies in memory, as rows of eight numbers (contact.h; wide_contact_solver.cpp checks it).
+struct ContactRow {
+    enum Row : int {
+        frame = 1,     ///< normal, tangent 1, static and dynamic friction
+        friction = 2,  ///< of the last substep, of the step, torsional and rolling friction
+        rolling = 3,   ///< moment
+        point = 4,     ///< arms, separation, impulse
+        point_rest,    ///< place and separation when compared, total, inactive until
+        rows_of_point = 2,
+        size = 12
+    };
+};
+
+/// What a lane's contact is, in bits.
+struct LaneBit {
+    enum Bit : int { sticks = 1, round_a = 2, round_b = 4, first_point = 8 /* then the other points' */ };
+};
+
+/// What a batch is filled from. Lanes without a contact have no bits and meet the rows of others.
+struct BatchSource {
+    const float* contacts = nullptr;            ///< first row of the first one
+    const std::int32_t* contact_row = nullptr;  ///< by lane: first row of its contact, counted from there
+    const std::int32_t* body_a = nullptr;       ///< by lane: row of the body
+    const std::int32_t* body_b = nullptr;
+    const std::int32_t* bits = nullptr;  ///< by lane: LaneBit
+    const float* start = nullptr;        ///< rows: v, ω when the step began
+    const float* inertia = nullptr;      ///< rows: inverse inertia xx xy xz yy yz zz, inverse mass
+};
+
 /// Floats of a batch of `lanes` contacts with up to `points` points.
 constexpr int batch_floats(int lanes, int points) { return lanes * (BatchHead::size + points * BatchPoint::size); }
 
 /// Numbers of one sweep.
 struct ContactSweep {
-    float* velocity = nullptr;      ///< rows of eight floats: change of v and of ω since the step began
-    const float* motion = nullptr;  ///< rows: way, turn (x y z w)
-    float substep = 0;              ///< s
-    float time = 0;                 ///< of the substep's end in the step, s
+    float* velocity = nullptr;               ///< rows of eight floats: change of v and of ω since the step began
+    const float* motion = nullptr;           ///< rows: way, turn (x y z w)
+    float substep = 0, inverse_substep = 0;  ///< s, 1/s
+    float time = 0;                          ///< of the substep's end in the step, s
     float bias_rate = 0, mass_scale = 1, impulse_scale = 0;
     float push_speed = 0;   ///< m/s
     bool is_first = false;  ///< of the passes after a drift: finds the gaps anew
@@ -93,8 +124,8 @@ struct BodyRows {
 /// One width's code. Each function works on one batch of up to `points` points, or on rows of bodies.
 struct ContactKernels {
     int lanes = 0;
-    /// Effective masses, from arms, masses and inertias.
-    void (*prepare)(float* batch, int points) = nullptr;
+    /// Takes up contacts and finds their effective masses; all but BatchHead::writable.
+    void (*fill)(float* batch, int points, const BatchSource& source) = nullptr;
     /// Takes points whose time has not come out, applies the last step's impulses of the others; in the first substep.
     void (*warm_start)(float* batch, int points, const ContactSweep& sweep) = nullptr;
     /// Before the drift: takes position errors out as well.

@@ -10,8 +10,11 @@ namespace {
 
 using physics::BatchHead;
 using physics::BatchPoint;
+using physics::BatchSource;
 using physics::BodyRows;
+using physics::ContactRow;
 using physics::ContactSweep;
+using physics::LaneBit;
 
 /// Two bodies' velocities, one pair a lane, taken from their rows and put back.
 struct Velocities {
@@ -165,22 +168,147 @@ void prepare(float* batch, int points) {
     const Response response{m, f};
     prepare_normals(batch, points, response, f);
 
+    // What friction does to the normal speed and to the tilt.
+    float* by_friction = batch + BatchHead::friction_coupling * lanes;
+    const auto couple = [&](int row, Wide by_1, Wide by_2, Wide by_twist) {
+        store_3(by_friction + 3 * row * lanes, {by_1, by_2, by_twist});
+    };
+    couple(0, response.shift(f.normal, f.tangent_1), response.shift(f.normal, f.tangent_2),
+           response.mixed(f.normal, f.normal));
+    couple(1, response.mixed(f.tangent_1, f.tangent_1), response.mixed(f.tangent_2, f.tangent_1),
+           response.spin(f.tangent_1, f.normal));
+    couple(2, response.mixed(f.tangent_1, f.tangent_2), response.mixed(f.tangent_2, f.tangent_2),
+           response.spin(f.tangent_2, f.normal));
+
     // What stops the anchor's shift, with and without the spin.
     const Wide k11 = response.shift(f.tangent_1, f.tangent_1), k12 = response.shift(f.tangent_1, f.tangent_2);
     const Wide k22 = response.shift(f.tangent_2, f.tangent_2), k33 = response.spin(f.normal, f.normal);
     const Wide scale = inverse(k11 * k22 - k12 * k12);
     const Wide s11 = k22 * scale, s12 = -k12 * scale, s22 = k11 * scale;
-    store_3(batch + BatchHead::stop_shift * lanes, {s11, s12, s22});
     const WideSymmetric all = inverse(WideSymmetric{k11, k12, response.mixed(f.tangent_1, f.normal), k22,
                                                     response.mixed(f.tangent_2, f.normal), k33});
 
-    // Where neither body can spin the shift is all there is.
-    const WideMask spins = all.xx > Wide{};
-    store_3(batch + BatchHead::stop_all * lanes, {select(spins, all.xx, s11), select(spins, all.xy, s12), all.xz});
-    store_3(batch + (BatchHead::stop_all + 3) * lanes, {select(spins, all.yy, s22), all.yz, all.zz});
+    // Where neither body can spin, or nothing resists the spin, the shift is all there is.
+    const Wide zero{}, second = points > 1 ? quantity(point_of(batch, 1), BatchPoint::normal_mass) : zero;
+    const WideMask has_lever = (second > zero) | (quantity(batch, BatchHead::torsion_static) > zero);
+    const WideMask spins = has_lever & (all.xx > zero);
+    store_3(batch + BatchHead::stop * lanes,
+            {select(spins, all.xx, s11), select(spins, all.xy, s12), select(spins, all.xz, zero)});
+    store_3(batch + (BatchHead::stop + 3) * lanes,
+            {select(spins, all.yy, s22), select(spins, all.yz, zero), select(spins, all.zz, zero)});
     const Wide split = square_root((k11 - k22) * (k11 - k22) + broadcast(4) * k12 * k12);
     store(batch + BatchHead::shift_response * lanes, (k11 + k22 + split) * broadcast(0.5F));
     store(batch + BatchHead::twist_response * lanes, k33);
+}
+
+/// Lanes that have a bit.
+EMBODY_WIDE_INLINE WideMask lanes_with(const std::int32_t* bits, int bit) {
+    WideMask all;
+    std::memcpy(&all, bits, sizeof all);
+    return (all & bit) != 0;
+}
+
+// The region's frame, and its motion at the step's start.
+EMBODY_WIDE_INLINE void fill_frame(float* batch, const BatchSource& source, const Wide3& arm_a, const Wide3& arm_b,
+                                   const Wide frame_row[row_floats]) {
+    const Wide3 n{frame_row[0], frame_row[1], frame_row[2]}, t1{frame_row[3], frame_row[4], frame_row[5]};
+    const Wide3 t2 = cross(n, t1);
+    store_3(batch + BatchHead::normal * lanes, n);
+    store_3(batch + BatchHead::tangent_1 * lanes, t1);
+    store_3(batch + BatchHead::tangent_2 * lanes, t2);
+    store_3(batch + BatchHead::arm_a * lanes, arm_a);
+    store_3(batch + BatchHead::arm_b * lanes, arm_b);
+    Velocities v;
+    gather_rows(source.start, source.body_a, v.a);
+    gather_rows(source.start, source.body_b, v.b);
+    const Wide3 velocity = v.relative(arm_a, arm_b), spin = v.angular_b() - v.angular_a();
+    store_3(batch + BatchHead::start_speed * lanes, {dot(velocity, n), dot(velocity, t1), dot(velocity, t2)});
+    store_3(batch + BatchHead::start_spin * lanes, {dot(spin, t1), dot(spin, t2), dot(spin, n)});
+}
+
+EMBODY_WIDE_INLINE void fill_inertia(float* batch, const float* inertia, const std::int32_t* rows, int mass,
+                                     int first) {
+    Wide row[row_floats];
+    gather_rows(inertia, rows, row);
+    for (int i = 0; i < 6; ++i) store(batch + (first + i) * lanes, row[i]);
+    store(batch + mass * lanes, row[6]);
+}
+
+// Torsion is known as a lever beside the force's bound: what has the one must have a trace of the other.
+EMBODY_WIDE_INLINE void fill_coefficients(float* batch, Wide friction_static, Wide friction_dynamic, Wide torsional,
+                                          Wide rolling) {
+    const Wide zero{}, least = select(torsional > zero, broadcast(1e-6F), zero);
+    const Wide bound_static = maximum(friction_static, least), bound_dynamic = maximum(friction_dynamic, least);
+    store(batch + BatchHead::friction_static * lanes, bound_static);
+    store(batch + BatchHead::friction_dynamic * lanes, bound_dynamic);
+    store(batch + BatchHead::torsion_static * lanes, torsional * inverse(bound_static));
+    store(batch + BatchHead::torsion_dynamic * lanes, torsional * inverse(bound_dynamic));
+    store(batch + BatchHead::friction_rolling * lanes, rolling);
+}
+
+// Rows of contacts to lanes. What a lane has no contact for is zero where it would do something.
+void fill(float* batch, int points, const BatchSource& source) {
+    const auto take = [&](int row, Wide column[row_floats]) {
+        gather_rows(source.contacts + row_floats * row, source.contact_row, column);
+    };
+    const Wide zero{}, one = broadcast(1);
+    const WideMask exists = lanes_with(source.bits, LaneBit::first_point);
+    std::memcpy(batch + BatchHead::body_a * lanes, source.body_a, sizeof(WideMask));
+    std::memcpy(batch + BatchHead::body_b * lanes, source.body_b, sizeof(WideMask));
+
+    // Points, and the anchor in their middle.
+    Wide near_row[physics::BatchHead::most_points][row_floats], rest_row[row_floats];
+    Wide3 arm_a{zero, zero, zero}, arm_b{zero, zero, zero};
+    Wide count = zero;
+    for (int k = 0; k < points; ++k) {
+        const int row = ContactRow::point + k * ContactRow::rows_of_point;
+        Wide* near = near_row[k];
+        take(row, near);
+        take(row + 1, rest_row);
+        const WideMask is_there = lanes_with(source.bits, LaneBit::first_point << k);
+        arm_a = arm_a + select(is_there, Wide3{near[0], near[1], near[2]}, Wide3{zero, zero, zero});
+        arm_b = arm_b + select(is_there, Wide3{near[3], near[4], near[5]}, Wide3{zero, zero, zero});
+        count += select(is_there, one, zero);
+        float* point = point_of(batch, k);
+        store(point + BatchPoint::separation_found * lanes, near[6]);
+        store(point + BatchPoint::impulse * lanes, select(is_there, near[7], zero));
+        store(point + BatchPoint::total * lanes, rest_row[4]);
+        store(point + BatchPoint::inactive_until * lanes, rest_row[5]);
+        store(point + BatchPoint::normal_mass * lanes, select(is_there, one, zero));  // prepare() puts the mass here
+    }
+    const Wide share = inverse(count);
+    arm_a = arm_a * share;
+    arm_b = arm_b * share;
+
+    // The region.
+    Wide row[row_floats];
+    take(ContactRow::frame, row);
+    fill_frame(batch, source, arm_a, arm_b, row);
+    const Wide friction_static = row[6], friction_dynamic = row[7];
+    const Frame f = Frame::of(batch);
+    for (int k = 0; k < points; ++k) {
+        const Wide3 offset = Wide3{near_row[k][0], near_row[k][1], near_row[k][2]} - arm_a;
+        const WideMask is_there = lanes_with(source.bits, LaneBit::first_point << k);
+        float* point = point_of(batch, k);
+        store(point + BatchPoint::along_1 * lanes, select(is_there, dot(offset, f.tangent_1), zero));
+        store(point + BatchPoint::along_2 * lanes, select(is_there, dot(offset, f.tangent_2), zero));
+    }
+    take(ContactRow::friction, row);
+    for (int i = 0; i < 3; ++i) {
+        store(batch + (BatchHead::friction + i) * lanes, select(exists, row[i], zero));
+        store(batch + (BatchHead::friction_total + i) * lanes, row[3 + i]);
+    }
+    fill_coefficients(batch, friction_static, friction_dynamic, row[6], row[7]);
+    take(ContactRow::rolling, row);
+    for (int i = 0; i < 3; ++i) store(batch + (BatchHead::rolling + i) * lanes, select(exists, row[i], zero));
+    store_mask(batch + BatchHead::sticks * lanes, lanes_with(source.bits, LaneBit::sticks));
+    store_mask(batch + BatchHead::round_a * lanes, lanes_with(source.bits, LaneBit::round_a));
+    store_mask(batch + BatchHead::round_b * lanes, lanes_with(source.bits, LaneBit::round_b));
+
+    // The bodies.
+    fill_inertia(batch, source.inertia, source.body_a, BatchHead::inverse_mass_a, BatchHead::inverse_inertia_a);
+    fill_inertia(batch, source.inertia, source.body_b, BatchHead::inverse_mass_b, BatchHead::inverse_inertia_b);
+    prepare(batch, points);
 }
 
 // Force and moments of the points' normal impulses at the anchor.
@@ -258,12 +386,18 @@ void separate(float* batch, int points, const ContactSweep& sweep) {
     }
 }
 
-/// Change of the relative motion at the anchor since the step began.
-struct RelativeMotion {
-    Wide3 velocity, spin;
-    EMBODY_WIDE_INLINE RelativeMotion of(const Velocities& v, const Frame& f) {
-        const Wide3 spin_a = v.angular_a(), spin_b = v.angular_b();
-        return {v.linear_b() + cross(spin_b, f.arm_b) - (v.linear_a() + cross(spin_a, f.arm_a)), spin_b - spin_a};
+/// Motion of b relative to a at the anchor, in the axes of the region.
+struct RegionMotion {
+    Wide3 velocity;  // along normal, tangent 1, tangent 2
+    Wide3 spin;      // about tangent 1, tangent 2, normal
+    EMBODY_WIDE_INLINE RegionMotion of(const float* batch, const Velocities& v, const Frame& f) {
+        const Wide3 start_speed = quantity_3(batch, BatchHead::start_speed);
+        const Wide3 start_spin = quantity_3(batch, BatchHead::start_spin);
+        const Wide3 velocity = v.relative(f.arm_a, f.arm_b), spin = v.angular_b() - v.angular_a();
+        return {{start_speed.x + dot(velocity, f.normal), start_speed.y + dot(velocity, f.tangent_1),
+                 start_speed.z + dot(velocity, f.tangent_2)},
+                {start_spin.x + dot(spin, f.tangent_1), start_spin.y + dot(spin, f.tangent_2),
+                 start_spin.z + dot(spin, f.normal)}};
     }
 };
 
@@ -294,63 +428,54 @@ EMBODY_WIDE_INLINE Pressure pressure_of(float* batch, int points) {
     return p;
 }
 
-/// The bounds of friction and their inverses: an ellipsoid of force and moment.
+/// The bounds of friction: forces f and moments τ with (|f| r)² + τ² <= (F r)². Without a lever r there is no moment to
+/// bound, and any r will do.
 struct FrictionLimit {
-    Wide force, moment;
-    EMBODY_WIDE_INLINE FrictionLimit of(Wide mu, Wide torsional, const Pressure& p) {
-        return {mu * p.load, (mu * p.lever + torsional) * p.load};
+    Wide force, lever;
+    EMBODY_WIDE_INLINE FrictionLimit of(Wide force, Wide lever) {
+        return {force, select(lever > Wide{}, lever, broadcast(1))};
     }
-    // Above 1 outside. Where there is no bound there must be nothing.
-    [[gnu::always_inline]] inline Wide excess(const Wide3& f) const {
-        const Wide by_force = inverse(force);
-        const Wide x = f.x * by_force, y = f.y * by_force, z = f.z * inverse(moment);
-        return x * x + y * y + z * z;
+    [[gnu::always_inline]] inline Wide bound() const { return force * lever; }
+    [[gnu::always_inline]] inline Wide squared(const Wide3& f) const {
+        return (f.x * f.x + f.y * f.y) * (lever * lever) + f.z * f.z;
     }
 };
 
 // Coulomb's law of the whole region (paper, eq. 7; contact_solver.cpp). Friction is (tangent 1, tangent 2, moment), the
-// moment about the centre of pressure.
-EMBODY_WIDE_INLINE void solve_friction(float* batch, int points, const Frame& f, const Inertia& m, Velocities& v) {
+// moment about the centre of pressure; returns what it changed, the moment about the anchor.
+EMBODY_WIDE_INLINE Wide3 solve_friction(float* batch, int points, const RegionMotion& motion) {
     const Wide zero{}, one = broadcast(1);
     const Pressure p = pressure_of(batch, points);
     const Wide3 old = quantity_3(batch, BatchHead::friction);
     const auto about_center = [&](const Wide3& w) {
         return points == 1 ? w : Wide3{w.x, w.y, w.z - (p.along_1 * w.y - p.along_2 * w.x)};
     };
-    const RelativeMotion motion = RelativeMotion::of(v, f);
-    const float* start = batch + BatchHead::start_speed * lanes;
-    const Wide u1 = quantity(start, 1) + dot(motion.velocity, f.tangent_1);
-    const Wide u2 = quantity(start, 2) + dot(motion.velocity, f.tangent_2);
-    const Wide spin = quantity(batch, BatchHead::start_spin + 2) + dot(motion.spin, f.normal);
+    const Wide u1 = motion.velocity.y, u2 = motion.velocity.z, spin = motion.spin.z;
 
     // What would stop the region; a sticking one holds up to the static limit. Without a lever the spin is free.
-    const Wide mu_static = quantity(batch, BatchHead::friction_static);
     const Wide mu_dynamic = quantity(batch, BatchHead::friction_dynamic);
-    const Wide torsional = quantity(batch, BatchHead::friction_torsional);
+    const Wide torsion_dynamic = quantity(batch, BatchHead::torsion_dynamic);
     const WideMask stuck = load_mask(batch + BatchHead::sticks * lanes);
-    const FrictionLimit hold = FrictionLimit::of(select(stuck, mu_static, mu_dynamic), torsional, p);
-    const WideSymmetric all = Inertia::load_symmetric(batch + BatchHead::stop_all * lanes);
-    const Wide3 shift = quantity_3(batch, BatchHead::stop_shift);
-    const WideMask has_lever = hold.moment > zero;
-    const Wide3 stop_all = all * Wide3{u1, u2, spin};
-    const Wide3 stop_shift{shift.x * u1 + shift.y * u2, shift.y * u1 + shift.z * u2, zero};
-    Wide3 stop = about_center(old - select(has_lever, stop_all, stop_shift));
+    const Wide hold_lever = p.lever + select(stuck, quantity(batch, BatchHead::torsion_static), torsion_dynamic);
+    const Wide hold_force = select(stuck, quantity(batch, BatchHead::friction_static), mu_dynamic) * p.load;
+    const FrictionLimit hold = FrictionLimit::of(hold_force, hold_lever);
+    const WideSymmetric stops = Inertia::load_symmetric(batch + BatchHead::stop * lanes);
+    const WideMask has_lever = hold_force * hold_lever > zero;
+    Wide3 stop = about_center(old - stops * Wide3{u1, u2, spin});
     stop.z = select(has_lever, stop.z, zero);
-    const WideMask holds = (hold.force > zero) & (hold.excess(stop) <= one);
+    const Wide most = hold.bound();
+    const WideMask holds = (hold_force > zero) & (hold.squared(stop) <= most * most);
 
     // Sliding: opposite to the motion of the centre of pressure, in the metric of the ellipsoid.
-    const FrictionLimit slide = FrictionLimit::of(mu_dynamic, torsional, p);
-    const Wide lever = slide.moment * inverse(slide.force);
-    const Wide twist_response = quantity(batch, BatchHead::twist_response);
-    const Wide mass = inverse(quantity(batch, BatchHead::shift_response) + lever * lever * twist_response);
-    const Wide twist_mass = select(lever > zero, mass * lever * lever, inverse(twist_response));
+    const Wide lever = p.lever + torsion_dynamic;
+    const FrictionLimit slide = FrictionLimit::of(mu_dynamic * p.load, lever);
+    const Wide twist_response = quantity(batch, BatchHead::twist_response), lever_squared = lever * lever;
+    const Wide mass = inverse(quantity(batch, BatchHead::shift_response) + lever_squared * twist_response);
     const Wide3 before = about_center(old);
     Wide3 slid{before.x - mass * (u1 - spin * p.along_2), before.y - mass * (u2 + spin * p.along_1),
-               before.z - twist_mass * spin};
-    const WideMask has_force = slide.force > zero, has_moment = slide.moment > zero;
-    slid = {select(has_force, slid.x, zero), select(has_force, slid.y, zero), select(has_moment, slid.z, zero)};
-    const Wide beyond = slide.excess(slid);
-    slid = slid * select(beyond > one, one / square_root(maximum(beyond, one)), one);
+               select(lever > zero, before.z - mass * lever_squared * spin, zero)};
+    const Wide bound = slide.bound(), size = slide.squared(slid);
+    slid = slid * select(size > bound * bound, bound / square_root(maximum(size, broadcast(1e-37F))), one);
 
     // An unloaded region neither sticks nor slides.
     const WideMask idle = (p.load == zero) & (old.x == zero) & (old.y == zero) & (old.z == zero);
@@ -359,69 +484,84 @@ EMBODY_WIDE_INLINE void solve_friction(float* batch, int points, const Frame& f,
     now = select(idle, old, now);
     store_mask(batch + BatchHead::sticks * lanes, (idle & stuck) | (~idle & holds));
     store_3(batch + BatchHead::friction * lanes, now);
-    const Wide3 change = now - old;
-    apply(v, m, f.arm_a, f.arm_b, f.tangent_1 * change.x + f.tangent_2 * change.y, f.normal * change.z);
+    return now - old;
+}
+
+// What the friction's change does to the motion that the normals meet.
+EMBODY_WIDE_INLINE void add_friction(RegionMotion& motion, const float* batch, const Wide3& friction) {
+    const auto change = [&](int row) {
+        return dot(quantity_3(batch, BatchHead::friction_coupling + 3 * row), friction);
+    };
+    motion.velocity.x += change(0);
+    motion.spin.x += change(1);
+    motion.spin.y += change(2);
 }
 
 /// The two kinds of sweep.
 enum class Sweep { positions, velocities };
 
-// Non-penetration of all points of a region (paper, eq. 4).
+// Non-penetration of all points of a region (paper, eq. 4). Speeds are counted in the impulses that would stop them.
 template <Sweep kind, int points>
-EMBODY_WIDE_INLINE void solve_normals(float* batch, const Frame& f, const Inertia& m, const ContactSweep& sweep,
-                                      Velocities& v) {
+EMBODY_WIDE_INLINE NormalLoad solve_normals(float* batch, const RegionMotion& motion, const ContactSweep& sweep) {
     const Wide zero{}, one = broadcast(1), time = broadcast(sweep.time);
-    const RelativeMotion motion = RelativeMotion::of(v, f);
-    const float* start = batch + BatchHead::start_speed * lanes;
-    const float* spin = batch + BatchHead::start_spin * lanes;
-    const Wide middle = quantity(start, 0) + dot(motion.velocity, f.normal);
-    const Wide tilt_1 = quantity(spin, 0) + dot(motion.spin, f.tangent_1);
-    const Wide tilt_2 = quantity(spin, 1) + dot(motion.spin, f.tangent_2);
+    const Wide middle = motion.velocity.x, tilt_1 = motion.spin.x, tilt_2 = motion.spin.y;
 
     // Speed and target of each point. Apart: the gap may close in this substep. Overlapping: pushed apart, softly,
-    // before the drift only.
-    Wide speed[points], mass[points], leak[points], impulse[points];
-    WideMask is_active[points];
+    // before the drift only. A point whose time has not come has no mass, and so keeps its impulse.
+    Wide speed[points], mass[points], kept[points], impulse[points], coupling[points][points];
+    const bool may_wait = Velocities::rows_of(batch, BatchHead::writable)[3] != 0;
     for (int k = 0; k < points; ++k) {
         const float* point = point_of(batch, k);
         const Wide separation = quantity(point, BatchPoint::separation);
         const WideMask is_apart = separation > zero;
-        Wide bias = select(is_apart, separation / broadcast(sweep.substep), zero);
+        Wide bias = select(is_apart, separation * broadcast(sweep.inverse_substep), zero);
         mass[k] = quantity(point, BatchPoint::normal_mass);
-        leak[k] = zero;
+        kept[k] = one;
+        Wide hardness = select(mass[k] > zero, one, zero);
         if constexpr (kind == Sweep::positions) {
             const Wide push = maximum(broadcast(sweep.bias_rate) * separation, broadcast(-sweep.push_speed));
             bias = select(is_apart, bias, push);
-            mass[k] *= select(is_apart, one, broadcast(sweep.mass_scale));
-            leak[k] = select(is_apart, zero, broadcast(sweep.impulse_scale));
+            hardness *= select(is_apart, one, broadcast(sweep.mass_scale));
+            kept[k] = select(is_apart, one, broadcast(1 - sweep.impulse_scale));
         }
-        speed[k] = middle +
-                   (quantity(point, BatchPoint::along_2) * tilt_1 - quantity(point, BatchPoint::along_1) * tilt_2) +
-                   bias;
+        if (may_wait) {
+            const WideMask is_active = time > quantity(point, BatchPoint::inactive_until);
+            hardness = select(is_active, hardness, zero);
+            kept[k] = select(is_active, kept[k], one);
+        }
+        mass[k] *= hardness;
+        coupling[k][k] = hardness;
+        speed[k] =
+            mass[k] *
+            (middle + (quantity(point, BatchPoint::along_2) * tilt_1 - quantity(point, BatchPoint::along_1) * tilt_2) +
+             bias);
         impulse[k] = quantity(point, BatchPoint::impulse);
-        is_active[k] = time > quantity(point, BatchPoint::inactive_until);
+    }
+    for (int i = 0; i < points; ++i) {
+        for (int j = i + 1; j < points; ++j) {
+            const Wide response = quantity(batch, BatchHead::coupling + (i == 0 ? j - 1 : i + j));
+            coupling[i][j] = mass[i] * response;
+            coupling[j][i] = mass[j] * response;
+        }
     }
 
     // Forwards and backwards: else the last point would win and a flat body lean.
-    Wide coupling[6];
-    if constexpr (points > 1) {
-        for (int i = 0; i < 6; ++i) coupling[i] = quantity(batch, BatchHead::coupling + i);
-    }
-    const auto solve_point = [&](int k, WideMask is_wanted) __attribute__((always_inline)) {
-        const Wide wanted = impulse[k] - mass[k] * speed[k] - leak[k] * impulse[k];
-        const Wide allowed = select(is_wanted, maximum(wanted, zero), impulse[k]);
-        const Wide change = allowed - impulse[k];
-        impulse[k] = allowed;
-        for (int j = 0; j < points; ++j) {
-            const int low = j < k ? j : k, high = j < k ? k : j;
-            if (j != k) speed[j] += coupling[low == 0 ? high - 1 : low + high] * change;
-        }
-        speed[k] += quantity(point_of(batch, k), BatchPoint::normal_response) * change;
+    const auto solve_point = [&](int k, Wide wanted) __attribute__((always_inline)) {
+        const Wide change = wanted - impulse[k];
+        impulse[k] = wanted;
+        for (int j = 0; j < points; ++j) speed[j] += coupling[j][k] * change;
+    };
+    const auto wanted = [&](int k) __attribute__((always_inline)) {
+        const Wide rest = kind == Sweep::positions ? impulse[k] * kept[k] : impulse[k];
+        return maximum(rest - speed[k], zero);
     };
     for (int round = 0; round < physics::normal_rounds; ++round) {
-        for (int k = 0; k < points; ++k) solve_point(k, is_active[k]);
+        for (int k = 0; k < points; ++k) solve_point(k, wanted(k));
         // The way back begins at each contact's last point but one, whatever the batch's other contacts have.
-        for (int k = points - 2; k >= 0; --k) solve_point(k, is_active[k] & (mass[k + 1] > zero));
+        for (int k = points - 2; k >= 0; --k) {
+            const WideMask is_last = quantity(point_of(batch, k + 1), BatchPoint::normal_mass) == zero;
+            solve_point(k, select(is_last, impulse[k], wanted(k)));
+        }
     }
 
     NormalLoad change;
@@ -430,8 +570,7 @@ EMBODY_WIDE_INLINE void solve_normals(float* batch, const Frame& f, const Inerti
         change.add(point, impulse[k] - quantity(point, BatchPoint::impulse));
         store(point + BatchPoint::impulse * lanes, impulse[k]);
     }
-    apply(v, m, f.arm_a, f.arm_b, f.normal * change.force,
-          f.tangent_1 * change.moment_1 + f.tangent_2 * change.moment_2);
+    return change;
 }
 
 // Rolling resistance: a moment across the normal, bounded by lever arm times normal impulse.
@@ -446,10 +585,8 @@ EMBODY_WIDE_INLINE void solve_rolling(float* batch, int points, const Frame& f, 
     const WideSymmetric stop = inverse(WideSymmetric{m.inertia_a.xx + m.inertia_b.xx, m.inertia_a.xy + m.inertia_b.xy,
                                                      m.inertia_a.xz + m.inertia_b.xz, m.inertia_a.yy + m.inertia_b.yy,
                                                      m.inertia_a.yz + m.inertia_b.yz, m.inertia_a.zz + m.inertia_b.zz});
-    const RelativeMotion motion = RelativeMotion::of(v, f);
-    const Wide3 start = quantity_3(batch, BatchHead::start_spin);
-    const Wide3 spin = f.tangent_1 * (start.x + dot(motion.spin, f.tangent_1)) +
-                       f.tangent_2 * (start.y + dot(motion.spin, f.tangent_2));
+    const RegionMotion motion = RegionMotion::of(batch, v, f);
+    const Wide3 spin = f.tangent_1 * motion.spin.x + f.tangent_2 * motion.spin.y;
     Wide3 now = old - stop * spin;
     now = now - f.normal * dot(now, f.normal);
     const Wide size = square_root(dot(now, now));
@@ -464,9 +601,14 @@ EMBODY_WIDE_INLINE void solve_region(float* batch, const ContactSweep& sweep) {
     const Frame f = Frame::of(batch);
     const Inertia m = Inertia::of(batch);
     Velocities v = Velocities::take(batch, sweep);
+    RegionMotion motion = RegionMotion::of(batch, v, f);
+
     // Non-penetration has the last word but for what resists rolling.
-    solve_friction(batch, points, f, m, v);
-    solve_normals<kind, points>(batch, f, m, sweep, v);
+    const Wide3 friction = solve_friction(batch, points, motion);
+    add_friction(motion, batch, friction);
+    const NormalLoad normal = solve_normals<kind, points>(batch, motion, sweep);
+    apply(v, m, f.arm_a, f.arm_b, f.normal * normal.force + f.tangent_1 * friction.x + f.tangent_2 * friction.y,
+          f.tangent_1 * normal.moment_1 + f.tangent_2 * normal.moment_2 + f.normal * friction.z);
     if (resists_rolling(batch)) solve_rolling(batch, points, f, m, v);
     v.put_back(batch, sweep);
 }
@@ -565,7 +707,7 @@ void drift(const BodyRows& rows, float substep, std::int32_t first, std::int32_t
 }  // namespace
 
 extern const physics::ContactKernels kernels;
-const physics::ContactKernels kernels{lanes,    prepare,          warm_start, solve_positions,
-                                      separate, solve_velocities, kick,       drift};
+const physics::ContactKernels kernels{lanes, fill, warm_start, solve_positions, separate, solve_velocities,
+                                      kick,  drift};
 
 }  // namespace embody::EMBODY_WIDE

@@ -61,8 +61,8 @@ void apply_normals(const Contact& contact, const PreparedContact& prepared,
         moment_1 += prepared.along_2[i] * impulses[i];
         moment_2 -= prepared.along_1[i] * impulses[i];
     }
-    apply(contact, prepared.anchor, contact.normal * force, contact.tangent_1 * moment_1 + contact.tangent_2 * moment_2,
-          bodies);
+    apply(contact, prepared.anchor, contact.normal * force,
+          contact.tangent_1 * moment_1 + tangent_2(contact) * moment_2, bodies);
 }
 
 void solve_normals(Contact& contact, const PreparedContact& prepared, SolvePhase phase, double time,
@@ -70,7 +70,7 @@ void solve_normals(Contact& contact, const PreparedContact& prepared, SolvePhase
     // Speed and target of each point.
     const RelativeMotion motion = motion_at(contact, prepared.anchor, bodies);
     const double middle = dot(motion.velocity, contact.normal);
-    const double tilt_1 = dot(motion.spin, contact.tangent_1), tilt_2 = dot(motion.spin, contact.tangent_2);
+    const double tilt_1 = dot(motion.spin, contact.tangent_1), tilt_2 = dot(motion.spin, tangent_2(contact));
     std::array<double, Manifold::max_points> speed{}, bias{}, change{};
     const Points points = points_of(contact);
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -88,7 +88,7 @@ void solve_normals(Contact& contact, const PreparedContact& prepared, SolvePhase
         const bool is_soft = phase == SolvePhase::position && bias[i] <= 0;
         const double mass_scale = is_soft ? softness.mass_scale : 1, leak = is_soft ? softness.impulse_scale : 0;
         const double wanted =
-            point.impulse - point.normal_mass * mass_scale * (speed[i] + bias[i]) - leak * point.impulse;
+            point.impulse - prepared.normal_mass[i] * mass_scale * (speed[i] + bias[i]) - leak * point.impulse;
         const double step = std::max(wanted, 0.0) - point.impulse;
         point.impulse = static_cast<float>(point.impulse + step);
         change[i] += step;
@@ -134,12 +134,11 @@ void solve_friction(Contact& contact, const PreparedContact& prepared, std::span
     };
 
     // What would stop the region; a sticking one holds up to the static limit.
-    const Material& material = contact.material;
     const RelativeMotion motion = motion_at(contact, prepared.anchor, bodies);
-    const Vec3 u{dot(motion.velocity, contact.tangent_1), dot(motion.velocity, contact.tangent_2),
+    const Vec3 u{dot(motion.velocity, contact.tangent_1), dot(motion.velocity, tangent_2(contact)),
                  dot(motion.spin, contact.normal)};
     const auto limits = [&](double mu) {
-        return std::array{mu * pressure.load, (mu * pressure.lever + material.friction_torsional) * pressure.load};
+        return std::array{mu * pressure.load, (mu * pressure.lever + contact.friction_torsional) * pressure.load};
     };
     const auto excess = [](Vec3 f, const std::array<double, 2>& limit) {
         const auto ratio = [](double squared, double bound) {
@@ -147,7 +146,7 @@ void solve_friction(Contact& contact, const PreparedContact& prepared, std::span
         };
         return ratio(f.x * f.x + f.y * f.y, limit[0]) + ratio(f.z * f.z, limit[1]);
     };
-    const auto limit = limits(contact.sticks ? material.friction_static : material.friction_dynamic);
+    const auto limit = limits(contact.sticks ? contact.friction_static : contact.friction_dynamic);
     Vec3 now = about_center(limit[1] > 0 ? old - prepared.stop_all * u
                                          : Vec3{old.x, old.y, 0} - prepared.stop_shift * Vec3{u.x, u.y, 0});
     if (limit[1] == 0) now.z = 0;
@@ -155,7 +154,7 @@ void solve_friction(Contact& contact, const PreparedContact& prepared, std::span
 
     // Sliding: opposite to the motion of the centre of pressure, in the metric of the ellipsoid.
     if (!contact.sticks) {
-        const auto slide_limit = limits(material.friction_dynamic);
+        const auto slide_limit = limits(contact.friction_dynamic);
         const double lever = slide_limit[0] > 0 ? slide_limit[1] / slide_limit[0] : 0;
         const double response = prepared.shift_response + lever * lever * prepared.twist_response;
         const double mass = response > 0 ? 1 / response : 0;
@@ -171,7 +170,7 @@ void solve_friction(Contact& contact, const PreparedContact& prepared, std::span
     now.z += pressure.along_1 * now.y - pressure.along_2 * now.x;
     contact.friction = {static_cast<float>(now.x), static_cast<float>(now.y), static_cast<float>(now.z)};
     const Vec3 change = now - old;
-    apply(contact, prepared.anchor, contact.tangent_1 * change.x + contact.tangent_2 * change.y,
+    apply(contact, prepared.anchor, contact.tangent_1 * change.x + tangent_2(contact) * change.y,
           contact.normal * change.z, bodies);
 }
 
@@ -186,7 +185,7 @@ void solve_rolling(Contact& contact, std::span<BodyState> bodies) {
     const Vec3 n = contact.normal;
     const auto across = [&](Vec3 v) { return v - dot(v, n) * n; };
     Vec3 now = across(contact.rolling - solve(inverse_inertia, across(b.angular_velocity - a.angular_velocity)));
-    const double limit = contact.material.friction_rolling * load, size = length(now);
+    const double limit = contact.friction_rolling * load, size = length(now);
     if (size > limit) now *= limit / size;
 
     const Vec3 change = now - contact.rolling;
@@ -214,13 +213,13 @@ ContactPlan jointed_contact_plan(std::size_t contacts, int substeps) {
     return contacts <= 64 ? ContactPlan{substeps, 8, 0.5} : ContactPlan{substeps, 1, 0.15};
 }
 
-PreparedContact prepare_contact(Contact& contact, std::span<const BodyState> bodies) {
+PreparedContact prepare_contact(const Contact& contact, std::span<const BodyState> bodies) {
     const BodyState &a = bodies[contact.a], &b = bodies[contact.b];
     PreparedContact p;
     p.anchor = anchor_of(contact);
 
     // Response of the motion at the anchor, row by row of (velocity along d₁, spin about d₂).
-    const Vec3 n = contact.normal, t1 = contact.tangent_1, t2 = contact.tangent_2;
+    const Vec3 n = contact.normal, t1 = contact.tangent_1, t2 = tangent_2(contact);
     const Mat3 linear = inverse_mass_at(a, p.anchor.arm_a, b, p.anchor.arm_b);
     const Mat3 angular = a.inverse_inertia + b.inverse_inertia;
     const auto mixed = [&](Vec3 direction, Vec3 axis) {
@@ -239,7 +238,7 @@ PreparedContact prepare_contact(Contact& contact, std::span<const BodyState> bod
         p.along_1[i] = dot(offset, t1);
         p.along_2[i] = dot(offset, t2);
         for (std::size_t j = 0; j <= i; ++j) p.coupling[i][j] = p.coupling[j][i] = dot(row(i), k * row(j));
-        contact.points[i].normal_mass = p.coupling[i][i] > 0 ? static_cast<float>(1 / p.coupling[i][i]) : 0;
+        p.normal_mass[i] = p.coupling[i][i] > 0 ? 1 / p.coupling[i][i] : 0;
     }
 
     // Friction.

@@ -143,7 +143,7 @@ bool DirectContactSolver::holds_at_rest(const Contact& contact) {
         torque_b += cross(point.arm_b, impulse);
         normal += point.impulse;
     }
-    const double bound = contact.material.friction_dynamic * normal;
+    const double bound = contact.friction_dynamic * normal;
     if (length_squared(friction) > bound * bound * (1 + 1e-6)) return false;
 
     std::vector<Vec6>& momentum = shift_;

@@ -77,11 +77,11 @@ DirectPatch make_patch(std::uint32_t index, const Contact& contact, double subst
     patch.contact = index;
     patch.normal = contact.normal;
     patch.tangent_1 = contact.tangent_1;
-    patch.tangent_2 = contact.tangent_2;
-    patch.friction_static = contact.material.friction_static;
-    patch.friction_dynamic = contact.material.friction_dynamic;
-    patch.rolling_arm = contact.material.friction_rolling;
-    patch.torsion_arm = contact.material.friction_torsional;
+    patch.tangent_2 = tangent_2(contact);
+    patch.friction_static = contact.friction_static;
+    patch.friction_dynamic = contact.friction_dynamic;
+    patch.rolling_arm = contact.friction_rolling;
+    patch.torsion_arm = contact.friction_torsional;
     patch.count = contact.count;
 
     const Anchor anchor = anchor_of(contact);
@@ -90,7 +90,7 @@ DirectPatch make_patch(std::uint32_t index, const Contact& contact, double subst
     for (int i = 0; i < contact.count; ++i) {
         const ContactPoint& from = contact.points[static_cast<std::size_t>(i)];
         DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
-        const Vec3 offset = from.arm_a - patch.arm_a;
+        const Vec3 offset = Vec3(from.arm_a) - patch.arm_a;
         point.s = dot(offset, patch.tangent_1);
         point.t = dot(offset, patch.tangent_2);
         point.gap = from.separation;

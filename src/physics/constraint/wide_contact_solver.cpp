@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstddef>
+#include <cstring>
 
 #include "physics/dynamic/equations_of_motion.h"
 
@@ -12,58 +14,27 @@ namespace {
 
 // Below this a step is done before a second worker has begun, or a stage before both have met at its end.
 constexpr std::size_t fewest_contacts_shared = 400, fewest_batches_shared = 2;
-constexpr float mask_set = std::bit_cast<float>(0xFFFFFFFFu);
 
 float to_float(double number) { return static_cast<float>(number); }
 
-/// One lane of a batch or of one of its points.
-class Lane {
-public:
-    Lane(float* part, int lanes, std::size_t lane) : part_(part + lane), lanes_(lanes) {}
-    void set(int quantity, double number) { part_[quantity * lanes_] = to_float(number); }
-    void set(int quantity, Vec3 v) {
-        set(quantity, v.x);
-        set(quantity + 1, v.y);
-        set(quantity + 2, v.z);
-    }
-    void set_symmetric(int quantity, const Mat3& m) {
-        const double numbers[6] = {m.x.x, m.x.y, m.x.z, m.y.y, m.y.z, m.z.z};
-        for (int i = 0; i < 6; ++i) set(quantity + i, numbers[i]);
-    }
-    void set_mask(int quantity, bool is_set) { part_[quantity * lanes_] = is_set ? mask_set : 0.0F; }
-    void set_integer(int quantity, std::int32_t number) { part_[quantity * lanes_] = std::bit_cast<float>(number); }
+// Contact lies in the rows that kernels read.
+constexpr std::size_t row_bytes = 8 * sizeof(float);
+static_assert(offsetof(Contact, normal) == ContactRow::frame * row_bytes);
+static_assert(offsetof(Contact, friction_static) == offsetof(Contact, normal) + 6 * sizeof(float));
+static_assert(offsetof(Contact, friction) == ContactRow::friction * row_bytes);
+static_assert(offsetof(Contact, friction_torsional) == offsetof(Contact, friction) + 6 * sizeof(float));
+static_assert(offsetof(Contact, rolling) == ContactRow::rolling * row_bytes);
+static_assert(offsetof(Contact, points) == ContactRow::point * row_bytes);
+static_assert(sizeof(ContactPoint) == ContactRow::rows_of_point * row_bytes);
+static_assert(offsetof(ContactPoint, separation) == 6 * sizeof(float));
+static_assert(offsetof(ContactPoint, place) == (ContactRow::point_rest - ContactRow::point) * row_bytes);
+static_assert(offsetof(ContactPoint, total) == offsetof(ContactPoint, place) + 4 * sizeof(float));
+static_assert(sizeof(Contact) == ContactRow::size * row_bytes);
 
-private:
-    float* part_;
-    int lanes_;
-};
-
-void fill_point(Lane lane, const Contact& contact, const ContactPoint& point, Vec3 anchor) {
-    const Vec3 offset = Vec3(point.arm_a) - anchor;
-    lane.set(BatchPoint::along_1, dot(offset, contact.tangent_1));
-    lane.set(BatchPoint::along_2, dot(offset, contact.tangent_2));
-    lane.set(BatchPoint::separation_found, point.separation);
-    lane.set(BatchPoint::normal_mass, 1);  // it exists; prepare() puts the mass here
-    lane.set(BatchPoint::impulse, point.impulse);
-    lane.set(BatchPoint::total, point.total);
-    lane.set(BatchPoint::inactive_until, point.inactive_until);
-}
-
-Vec3 numbers(const PatchFriction& friction) { return {friction.along_1, friction.along_2, friction.twist}; }
-
-// The region's place and its motion at the step's start. In double: what both bodies have in common takes no digits
-// from what they differ in.
-void fill_anchor(Lane head, const Contact& contact, const Anchor& anchor, const BodyState& a, const BodyState& b) {
-    const Vec3 velocity = velocity_at(b, anchor.arm_b) - velocity_at(a, anchor.arm_a);
-    const Vec3 spin = b.angular_velocity - a.angular_velocity;
-    const Vec3 n = contact.normal, t1 = contact.tangent_1, t2 = contact.tangent_2;
-    head.set(BatchHead::normal, n);
-    head.set(BatchHead::tangent_1, t1);
-    head.set(BatchHead::tangent_2, t2);
-    head.set(BatchHead::arm_a, anchor.arm_a);
-    head.set(BatchHead::arm_b, anchor.arm_b);
-    head.set(BatchHead::start_speed, Vec3{dot(velocity, n), dot(velocity, t1), dot(velocity, t2)});
-    head.set(BatchHead::start_spin, Vec3{dot(spin, t1), dot(spin, t2), dot(spin, n)});
+std::int32_t lane_bits(const Contact& contact) {
+    const std::int32_t points = (1 << contact.count) - 1;
+    return (contact.sticks ? LaneBit::sticks : 0) | (contact.a_is_round ? LaneBit::round_a : 0) |
+           (contact.b_is_round ? LaneBit::round_b : 0) | points * LaneBit::first_point;
 }
 
 // Slower than this in a step the inertia hardly turns with the body: no gyroscopic torque, rad.
@@ -71,6 +42,11 @@ constexpr double least_turn = 1e-3;
 
 bool has_gyroscopic_torque(const BodyState& state, const BodyConstants& constants, double time) {
     return !constants.is_isotropic && length_squared(state.angular_velocity) * time * time > least_turn * least_turn;
+}
+
+bool may_wait(const Contact& contact) {
+    return std::any_of(contact.points.begin(), contact.points.begin() + contact.count,
+                       [](const ContactPoint& point) { return point.inactive_until > 0; });
 }
 
 }  // namespace
@@ -85,6 +61,9 @@ void WideContactSolver::append_row(std::uint32_t body, const BodyState& state) {
                         to_float(q.w)}});
     kick_.push_back({});
     damping_.push_back({{1, 1, 1, 1, 1, 1, 1, 1}});
+    const Mat3& i = state.inverse_inertia;
+    inertia_.push_back({{to_float(i.x.x), to_float(i.x.y), to_float(i.x.z), to_float(i.y.y), to_float(i.y.z),
+                         to_float(i.z.z), to_float(state.inverse_mass)}});
     slot_of_row_.push_back(body);
     if (body >= row_of_slot_.size()) row_of_slot_.resize(body + 1);
     row_of_slot_[body] = static_cast<std::int32_t>(slot_of_row_.size() - 1);
@@ -94,12 +73,11 @@ void WideContactSolver::begin(std::span<const std::uint32_t> movable, std::span<
                               std::span<const BodyConstants> constants, double substep, int substeps) {
     substep_ = substep;
     substeps_ = substeps;
-    for (std::vector<Row>* rows : {&velocity_, &motion_, &start_, &kick_, &damping_}) rows->clear();
+    for (std::vector<Row>* rows : {&velocity_, &motion_, &start_, &kick_, &damping_, &inertia_}) rows->clear();
     slot_of_row_.clear();
     batches_.clear();
     stages_.clear();
-    contacts_.clear();
-    rows_of_contact_.clear();
+    for (std::vector<std::int32_t>* lanes : {&contact_row_, &body_a_, &body_b_, &bits_}) lanes->clear();
     used_lines_ = 0;
 
     // The immovable world.
@@ -108,6 +86,7 @@ void WideContactSolver::begin(std::span<const std::uint32_t> movable, std::span<
     start_.push_back({});
     kick_.push_back({});
     damping_.push_back({});
+    inertia_.push_back({});
     slot_of_row_.push_back(0xFFFFFFFFu);
 
     const double step = substep * substeps;
@@ -144,58 +123,45 @@ void WideContactSolver::begin_stage() { stages_.push_back(static_cast<std::uint3
 
 void WideContactSolver::add_batch(std::span<const std::uint32_t> batch, int points, std::span<const Contact> contacts,
                                   std::span<const BodyState> bodies) {
-    batches_.push_back({static_cast<std::uint32_t>(used_lines_), static_cast<std::uint32_t>(contacts_.size()),
+    batches_.push_back({static_cast<std::uint32_t>(used_lines_), static_cast<std::uint32_t>(bits_.size()),
                         static_cast<std::uint32_t>(batch.size()), points});
     for (const std::uint32_t i : batch) {
-        contacts_.push_back(i);
-        rows_of_contact_.push_back({row_of(contacts[i].a, bodies), row_of(contacts[i].b, bodies)});
+        contact_row_.push_back(static_cast<std::int32_t>(i) * ContactRow::size);
+        body_a_.push_back(row_of(contacts[i].a, bodies));
+        body_b_.push_back(row_of(contacts[i].b, bodies));
+        bits_.push_back(lane_bits(contacts[i]));
     }
+
+    // The other lanes.
+    contact_row_.resize(bits_.size() + static_cast<std::size_t>(lanes()) - batch.size(), contact_row_.back());
+    for (std::vector<std::int32_t>* lanes : {&body_a_, &body_b_, &bits_}) lanes->resize(contact_row_.size(), 0);
     const auto floats = static_cast<std::size_t>(batch_floats(kernels_->lanes, points));
     used_lines_ += (floats + 15) / 16;
 }
 
-void WideContactSolver::fill_batch(const Batch& batch, std::span<const Contact> contacts,
-                                   std::span<const BodyState> bodies) {
-    const int lanes = kernels_->lanes;
+void WideContactSolver::fill_batch(const Batch& batch, std::span<const Contact> contacts) {
     float* data = lines_[batch.first_line].value;
-    std::fill_n(data, batch_floats(lanes, batch.points), 0.0F);
+    const std::size_t first = batch.first_lane;
+    kernels_->fill(data, batch.points,
+                   {.contacts = reinterpret_cast<const float*>(contacts.data()),
+                    .contact_row = &contact_row_[first],
+                    .body_a = &body_a_[first],
+                    .body_b = &body_b_[first],
+                    .bits = &bits_[first],
+                    .start = start_[0].value,
+                    .inertia = inertia_[0].value});
 
-    std::int32_t writable_a = 0, writable_b = 0, rolling = 0;
-    for (std::size_t k = 0; k < batch.contact_count; ++k) {
-        const Contact& contact = contacts[contacts_[batch.first_contact + k]];
-        const auto [row_a, row_b] = rows_of_contact_[batch.first_contact + k];
-        const BodyState &a = bodies[contact.a], &b = bodies[contact.b];
-        Lane head(data, lanes, k);
-        head.set_integer(BatchHead::body_a, row_a);
-        head.set_integer(BatchHead::body_b, row_b);
-        head.set(BatchHead::inverse_mass_a, a.inverse_mass);
-        head.set(BatchHead::inverse_mass_b, b.inverse_mass);
-        head.set_symmetric(BatchHead::inverse_inertia_a, a.inverse_inertia);
-        head.set_symmetric(BatchHead::inverse_inertia_b, b.inverse_inertia);
-        const Anchor anchor = anchor_of(contact);
-        fill_anchor(head, contact, anchor, a, b);
-        head.set(BatchHead::friction_static, contact.material.friction_static);
-        head.set(BatchHead::friction_dynamic, contact.material.friction_dynamic);
-        head.set(BatchHead::friction_torsional, contact.material.friction_torsional);
-        head.set(BatchHead::friction_rolling, contact.material.friction_rolling);
-        head.set(BatchHead::friction, numbers(contact.friction));
-        head.set(BatchHead::friction_total, numbers(contact.friction_total));
-        head.set(BatchHead::rolling, contact.rolling);
-        head.set_mask(BatchHead::sticks, contact.sticks);
-        head.set_mask(BatchHead::round_a, contact.a_is_round);
-        head.set_mask(BatchHead::round_b, contact.b_is_round);
-        writable_a |= (a.inverse_mass > 0 ? 1 : 0) << k;
-        writable_b |= (b.inverse_mass > 0 ? 1 : 0) << k;
-        rolling |= (resists_rolling(contact) ? 1 : 0) << k;
-        for (int i = 0; i < contact.count; ++i) {
-            float* point = data + (BatchHead::size + i * BatchPoint::size) * lanes;
-            fill_point(Lane(point, lanes, k), contact, contact.points[static_cast<std::size_t>(i)], anchor.arm_a);
-        }
+    // What may be written.
+    std::int32_t writable[4] = {};
+    for (std::uint32_t lane = 0; lane < batch.contact_count; ++lane) {
+        const auto is_movable = [&](std::int32_t row) { return inertia_[static_cast<std::size_t>(row)].value[6] > 0; };
+        writable[0] |= (is_movable(body_a_[first + lane]) ? 1 : 0) << lane;
+        writable[1] |= (is_movable(body_b_[first + lane]) ? 1 : 0) << lane;
+        const Contact& contact = contacts[contact_of(first + lane)];
+        writable[2] |= (resists_rolling(contact) ? 1 : 0) << lane;
+        writable[3] |= (may_wait(contact) ? 1 : 0) << lane;
     }
-    Lane(data, lanes, 0).set_integer(BatchHead::writable, writable_a);
-    Lane(data, lanes, 1).set_integer(BatchHead::writable, writable_b);
-    Lane(data, lanes, 2).set_integer(BatchHead::writable, rolling);
-    kernels_->prepare(data, batch.points);
+    std::memcpy(data + BatchHead::writable * lanes(), writable, sizeof writable);
 }
 
 template <class Kernel>
@@ -236,7 +202,7 @@ void WideContactSolver::solve_share(const Work& work, int worker) {
     const auto first_row = static_cast<std::int32_t>(share.first + 1),
                last_row = static_cast<std::int32_t>(share.last + 1);
     for_each_batch(work, worker, [&](const Batch& batch) {
-        fill_batch(batch, work.contacts, work.bodies);
+        fill_batch(batch, work.contacts);
         k.separate(lines_[batch.first_line].value, batch.points, sweep);
     });
     for (int substep = 1; substep <= substeps_; ++substep) {
@@ -269,18 +235,21 @@ void WideContactSolver::solve_share(const Work& work, int worker) {
     }
     for_each_batch(work, worker, [&](const Batch& batch) {
         for (std::uint32_t lane = 0; lane < batch.contact_count; ++lane) {
-            write_contact(batch, lane, work.contacts[contacts_[batch.first_contact + lane]]);
+            const std::size_t i = contact_of(batch.first_lane + lane);
+            write_contact(batch, lane, work.softness, work.contacts[i], work.glances[i]);
         }
     });
 }
 
 void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::span<BodyState> bodies,
-                              std::span<const BodyConstants> constants, std::span<Contact> contacts, TaskPool& pool) {
+                              std::span<const BodyConstants> constants, std::span<Contact> contacts,
+                              std::span<ContactGlance> glances, TaskPool& pool) {
     if (lines_.size() < used_lines_) lines_.resize(used_lines_ + used_lines_ / 2);
     kicked_.assign(velocity_.size(), {});
     const ContactSweep sweep{.velocity = velocity_[0].value,
                              .motion = motion_[0].value,
                              .substep = to_float(substep_),
+                             .inverse_substep = to_float(1 / substep_),
                              .bias_rate = to_float(softness.bias_rate),
                              .mass_scale = to_float(softness.mass_scale),
                              .impulse_scale = to_float(softness.impulse_scale),
@@ -288,7 +257,7 @@ void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::
     const int workers =
         batches_.size() * static_cast<std::size_t>(lanes()) < fewest_contacts_shared ? 1 : pool.workers();
     Barrier barrier(workers);
-    const Work work{bodies, constants, contacts, sweep, passes, workers, barrier};
+    const Work work{bodies, constants, contacts, glances, softness, sweep, passes, workers, barrier};
     if (workers == 1) {
         solve_share(work, 0);
     } else {
@@ -305,7 +274,8 @@ void WideContactSolver::write_body(std::size_t row, BodyState& state, const Body
     if (turn != state.turn) finish_turn(state, constants, turn);
 }
 
-void WideContactSolver::write_contact(const Batch& batch, std::uint32_t lane, Contact& contact) const {
+void WideContactSolver::write_contact(const Batch& batch, std::uint32_t lane, const ContactSoftness& softness,
+                                      Contact& contact, ContactGlance& glance) const {
     const int lanes = kernels_->lanes;
     const float* head = lines_[batch.first_line].value + lane;
     const auto read = [&](int quantity) { return head[quantity * lanes]; };
@@ -314,13 +284,18 @@ void WideContactSolver::write_contact(const Batch& batch, std::uint32_t lane, Co
     contact.friction_total = read_friction(BatchHead::friction_total);
     contact.rolling = {read(BatchHead::rolling), read(BatchHead::rolling + 1), read(BatchHead::rolling + 2)};
     contact.sticks = std::bit_cast<std::uint32_t>(read(BatchHead::sticks)) != 0;
+    bool is_pressed = false, is_deep = false;
     for (int i = 0; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const float* from = head + (BatchHead::size + i * BatchPoint::size) * lanes;
-        point.normal_mass = from[BatchPoint::normal_mass * lanes];
         point.impulse = from[BatchPoint::impulse * lanes];
         point.total = from[BatchPoint::total * lanes];
+        glance.touches = glance.touches || point.total > 0 || point.separation <= 0;
+        is_pressed = is_pressed || point.impulse > 0;
+        const double sag = softness.sag(from[BatchPoint::normal_response * lanes], point.impulse);
+        is_deep = is_deep || -from[BatchPoint::separation * lanes] > sag + penetration_slop;
     }
+    glance.is_sunk = is_pressed && is_deep;
 }
 
 }  // namespace embody::physics

@@ -31,9 +31,10 @@ public:
     void add_batch(std::span<const std::uint32_t> batch, int points, std::span<const Contact> contacts,
                    std::span<const BodyState> bodies);
     /// Solves the step, with `passes` sweeps before and after the drift of each substep, and hands the motion to the
-    /// bodies and the impulses to the contacts. The same for any number of workers.
+    /// bodies, the impulses to the contacts and what came of them to their glances. The same for any number of workers.
     void solve(int passes, const ContactSoftness& softness, std::span<BodyState> bodies,
-               std::span<const BodyConstants> constants, std::span<Contact> contacts, TaskPool& pool);
+               std::span<const BodyConstants> constants, std::span<Contact> contacts, std::span<ContactGlance> glances,
+               TaskPool& pool);
 
 private:
     struct alignas(32) Row {
@@ -44,7 +45,7 @@ private:
     };
     struct Batch {
         std::uint32_t first_line = 0;  ///< into lines_
-        std::uint32_t first_contact = 0, contact_count = 0;
+        std::uint32_t first_lane = 0, contact_count = 0;
         int points = 0;
     };
     /// What the workers of a step share.
@@ -52,6 +53,8 @@ private:
         std::span<BodyState> bodies;
         std::span<const BodyConstants> constants;
         std::span<Contact> contacts;
+        std::span<ContactGlance> glances;
+        const ContactSoftness& softness;
         ContactSweep sweep;
         int passes;
         int workers;
@@ -60,7 +63,10 @@ private:
 
     std::int32_t row_of(std::uint32_t body, std::span<const BodyState> bodies);
     void append_row(std::uint32_t body, const BodyState& state);
-    void fill_batch(const Batch& batch, std::span<const Contact> contacts, std::span<const BodyState> bodies);
+    [[nodiscard]] std::size_t contact_of(std::size_t lane) const {
+        return static_cast<std::size_t>(contact_row_[lane] / ContactRow::size);
+    }
+    void fill_batch(const Batch& batch, std::span<const Contact> contacts);
     void solve_share(const Work& work, int worker);
     /// Calls kernel(batch's floats, points) for this worker's batches, stage after stage from the top down.
     template <class Kernel>
@@ -69,23 +75,23 @@ private:
     template <class Kernel>
     void for_each_batch(const Work& work, int worker, Kernel kernel);
     void write_body(std::size_t row, BodyState& state, const BodyConstants& constants) const;
-    void write_contact(const Batch& batch, std::uint32_t lane, Contact& contact) const;
+    void write_contact(const Batch& batch, std::uint32_t lane, const ContactSoftness& softness, Contact& contact,
+                       ContactGlance& glance) const;
 
     const ContactKernels* kernels_;
     double substep_ = 0;  // s
     int substeps_ = 0;
 
     // Row 0 is the immovable world; then the movable bodies, then the kinematic ones that contacts meet.
-    std::vector<Row> velocity_, motion_, start_, kick_, damping_, kicked_;
+    std::vector<Row> velocity_, motion_, start_, kick_, damping_, kicked_, inertia_;
     std::vector<std::uint32_t> slot_of_row_;
     std::vector<std::int32_t> row_of_slot_;  // valid where slot_of_row_ agrees
     std::size_t movable_rows_ = 0;
 
     std::vector<Batch> batches_;
-    std::vector<std::uint32_t> stages_;    // first batch of each
-    std::vector<std::uint32_t> contacts_;  // batch by batch
-    std::vector<std::array<std::int32_t, 2>> rows_of_contact_;
-    std::vector<CacheLine> lines_;  // never shrinks
+    std::vector<std::uint32_t> stages_;                               // first batch of each
+    std::vector<std::int32_t> contact_row_, body_a_, body_b_, bits_;  // lane by lane: BatchSource
+    std::vector<CacheLine> lines_;                                    // never shrinks
     std::size_t used_lines_ = 0;
 };
 

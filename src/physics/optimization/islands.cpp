@@ -35,25 +35,25 @@ private:
 bool is_movable(const BodyState& body) { return body.inverse_mass > 0; }
 
 // Breadth first through the contacts, all immovable bodies first.
-void find_levels(std::span<const BodyState> bodies, std::span<const Contact> contacts,
+void find_levels(std::span<const BodyState> bodies, std::span<const ContactGlance> contacts,
                  std::vector<std::uint32_t>& level) {
     level.assign(bodies.size(), no_level);
 
     // Neighbours of each body by counting sort.
     std::vector<std::uint32_t> first(bodies.size() + 1, 0), neighbour(2 * contacts.size());
-    for (const Contact& c : contacts) {
+    for (const ContactGlance& c : contacts) {
         ++first[c.a + 1];
         ++first[c.b + 1];
     }
     for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
     std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    for (const Contact& c : contacts) {
+    for (const ContactGlance& c : contacts) {
         neighbour[next[c.a]++] = c.b;
         neighbour[next[c.b]++] = c.a;
     }
 
     std::vector<std::uint32_t> front;
-    for (const Contact& c : contacts) {
+    for (const ContactGlance& c : contacts) {
         for (const std::uint32_t body : {c.a, c.b}) {
             if (is_movable(bodies[body]) || level[body] == 0) continue;
             level[body] = 0;
@@ -91,10 +91,10 @@ void distribute(std::size_t count, std::vector<Island>& list, std::vector<std::u
 }  // namespace
 
 void build_islands(std::span<const std::uint32_t> awake, std::span<const BodyState> bodies,
-                   std::span<const Contact> contacts, std::span<const Joint> joints, Islands& islands) {
+                   std::span<const ContactGlance> contacts, std::span<const Joint> joints, Islands& islands) {
     // Immovable bodies do not connect: two boxes on one floor are two islands.
     DisjointSets sets(bodies.size());
-    for (const Contact& c : contacts) {
+    for (const ContactGlance& c : contacts) {
         if (is_movable(bodies[c.a]) && is_movable(bodies[c.b])) sets.unite(c.a, c.b);
     }
     for (const Joint& j : joints) {

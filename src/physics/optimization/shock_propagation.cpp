@@ -15,13 +15,12 @@ namespace embody::physics {
 namespace {
 
 constexpr std::uint32_t deep = 4;  // levels from which the solver's own correction is too slow
-constexpr double slop = 1e-4;      // m of penetration beyond the sag that is let be
 constexpr double share = 0.2;      // of the rest taken out in one step
 
-// How deep the soft contact sinks under the load that it carries: without that sag it would not press back.
-double sag(const ContactPoint& point, const ContactSoftness& softness) {
-    const double stiffness = point.normal_mass * softness.mass_scale * softness.bias_rate;
-    return stiffness > 0 ? softness.impulse_scale * point.impulse / stiffness : 0;
+// What a unit impulse at the point does to its normal speed, 1/kg.
+double response_of(const Contact& contact, const ContactPoint& point, std::span<const BodyState> bodies) {
+    const Vec3 n = contact.normal;
+    return dot(n, inverse_mass_at(bodies[contact.a], point.arm_a, bodies[contact.b], point.arm_b) * n);
 }
 
 }  // namespace
@@ -38,7 +37,9 @@ void propagate_shock(const Island& island, const Islands& islands, std::span<con
         double depth = 0;
         for (int i = 0; i < contact.count; ++i) {
             const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-            depth = std::max(depth, -current_separation(contact, point, bodies) - sag(point, softness) - slop);
+            const double beyond = -current_separation(contact, point, bodies) - penetration_slop;
+            if (beyond <= depth) continue;
+            depth = std::max(depth, beyond - softness.sag(response_of(contact, point, bodies), point.impulse));
         }
         if (depth <= 0) continue;
         const Vec3 shift = contact.normal * (share * depth);

@@ -16,7 +16,7 @@ constexpr std::uint32_t most_points = Manifold::max_points;
 bool is_movable(const BodyState& body) { return body.inverse_mass > 0; }
 
 // The lowest colour that neither body has; what finds none is left for another round of 64 colours.
-std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<const Contact> contacts,
+std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<const ContactGlance> contacts,
                             std::span<const BodyState> bodies, SolveSchedule& s) {
     constexpr std::uint32_t colours = 64, none = 0xFFFFFFFFu;
     s.colours.resize(std::max(s.colours.size(), bodies.size()));
@@ -27,7 +27,7 @@ std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<cons
         for (const std::uint32_t i : order) s.colours[contacts[i].a] = s.colours[contacts[i].b] = 0;
         for (std::size_t k = 0; k < order.size(); ++k) {
             if (s.stage_of[k] != none) continue;
-            const Contact& c = contacts[order[k]];
+            const ContactGlance& c = contacts[order[k]];
             const bool a_moves = is_movable(bodies[c.a]), b_moves = is_movable(bodies[c.b]);
             const std::uint64_t used = (a_moves ? s.colours[c.a] : 0) | (b_moves ? s.colours[c.b] : 0);
             if (~used == 0) continue;
@@ -44,14 +44,14 @@ std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<cons
 
 }  // namespace
 
-void build_schedule(std::span<const std::uint32_t> order, std::span<const Contact> contacts,
+void build_schedule(std::span<const std::uint32_t> order, std::span<const ContactGlance> contacts,
                     std::span<const BodyState> bodies, int lanes, SolveSchedule& s) {
     s.stage_of.resize(order.size());
     const std::uint32_t stages = colour_stages(order, contacts, bodies, s);
 
     // By stage, and in it by falling number of points: one counting sort.
     const auto key_of = [&](std::size_t k) {
-        return s.stage_of[k] * most_points + (most_points - static_cast<std::uint32_t>(contacts[order[k]].count));
+        return s.stage_of[k] * most_points + (most_points - contacts[order[k]].count);
     };
     s.first_of_key.assign(stages * most_points + 1, 0);
     for (std::size_t k = 0; k < order.size(); ++k) ++s.first_of_key[key_of(k) + 1];
@@ -68,8 +68,7 @@ void build_schedule(std::span<const std::uint32_t> order, std::span<const Contac
         const auto first_batch = static_cast<std::uint32_t>(s.batches.size());
         for (; first < end; first += static_cast<std::uint32_t>(lanes)) {
             const std::uint32_t count = std::min<std::uint32_t>(static_cast<std::uint32_t>(lanes), end - first);
-            s.batches.push_back({first, static_cast<std::uint8_t>(count),
-                                 static_cast<std::uint8_t>(contacts[s.contacts[first]].count)});
+            s.batches.push_back({first, static_cast<std::uint8_t>(count), contacts[s.contacts[first]].count});
         }
         first = end;
         s.stages.push_back({first_batch, static_cast<std::uint32_t>(s.batches.size()) - first_batch});

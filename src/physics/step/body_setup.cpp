@@ -113,6 +113,8 @@ void lift_body(WorldState& world, std::uint32_t body) {
         if (world.is_used(other)) wake_group_of(world, other);
     }
     remove_contacts_of(world.contacts, body);
+    world.contact_glances.clear();
+    world.touch_memory.is_laid_out = false;
     if (world.record(body).shape && world.record(body).definition.enabled) world.broad_phase.remove(body);
 }
 

@@ -100,7 +100,7 @@ void ImpactStage::note_impulse(Contact& contact, Vec3 position, Vec3 impulse, do
     }
     nearest->total += static_cast<float>(dot(impulse, contact.normal));
     contact.friction_total.along_1 += static_cast<float>(dot(impulse, contact.tangent_1));
-    contact.friction_total.along_2 += static_cast<float>(dot(impulse, contact.tangent_2));
+    contact.friction_total.along_2 += static_cast<float>(dot(impulse, tangent_2(contact)));
     if (!contact.had_impact) ++world_.report.impacts;
     contact.had_impact = true;
 

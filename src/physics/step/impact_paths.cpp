@@ -53,9 +53,13 @@ double ImpactPaths::earliest_time(const Contact& contact) const {
     return std::max(memory_.last_time[contact.a], memory_.last_time[contact.b]);
 }
 
+Material ImpactPaths::material_of(const Contact& contact) const {
+    return combine(world_.record(contact.a).definition.material, world_.record(contact.b).definition.material);
+}
+
 bool ImpactPaths::bounces(const Contact& contact) const {
     if (memory_.heap_bounces >= most_heap_bounces_ && hits_heap(contact)) return false;
-    return contact.material.restitution > 0 && memory_.liveliness[contact.a] > least_liveliness &&
+    return contact.bounces && memory_.liveliness[contact.a] > least_liveliness &&
            memory_.liveliness[contact.b] > least_liveliness;
 }
 
@@ -63,8 +67,9 @@ void ImpactPaths::note_bounce(const Contact& contact) {
     if (hits_heap(contact) && ++memory_.heap_bounces == most_heap_bounces_) {
         world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
     }
+    const double restitution = material_of(contact).restitution;
     for (const std::uint32_t body : {contact.a, contact.b}) {
-        if (world_.motion[body].inverse_mass > 0) memory_.liveliness[body] *= contact.material.restitution;
+        if (world_.motion[body].inverse_mass > 0) memory_.liveliness[body] *= restitution;
     }
 }
 

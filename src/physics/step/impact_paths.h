@@ -32,6 +32,7 @@ public:
     };
     [[nodiscard]] Gap gap_at(const Contact& contact, const ContactPoint& point, double time) const;
 
+    [[nodiscard]] Material material_of(const Contact& contact) const;
     /// Whether the contact has a bounce, and neither body has bounced so often in this step that hardly any speed is
     /// left of the first one (Zeno's ball).
     [[nodiscard]] bool bounces(const Contact& contact) const;

@@ -98,9 +98,10 @@ bool ImpactRegions::is_open_at_end(const Contact& contact) {
 
 void ImpactRegions::add_site(const Contact& contact, Vec3 arm_a, Vec3 arm_b, Vec3 normal, bool may_bounce) {
     const Vec3 velocity = velocity_at(world_.motion[contact.b], arm_b) - velocity_at(world_.motion[contact.a], arm_a);
-    const bool bounces = may_bounce && -dot(velocity, normal) >= contact.material.restitution_threshold;
+    const Material material = paths_.material_of(contact);
+    const bool bounces = may_bounce && -dot(velocity, normal) >= material.restitution_threshold;
     memory_.sites.push_back({contact.a, contact.b, arm_a, arm_b, normal,
-                             coefficients_of(contact.material, bounces ? contact.material.restitution : 0), Vec3{}});
+                             coefficients_of(material, bounces ? material.restitution : 0), Vec3{}});
 }
 
 // A flat region collides as one patch at its middle and, where it tilts, at its corners.

@@ -38,7 +38,7 @@ void find_islands(WorldState& world) {
     for (const std::uint32_t body : world.awake) {
         if (world.motion[body].inverse_mass > 0) movable.push_back(body);
     }
-    build_islands(movable, world.motion, world.contacts, world.active_joints, world.islands);
+    build_islands(movable, world.motion, world.contact_glances, world.active_joints, world.islands);
     world.report.islands = static_cast<std::uint32_t>(world.islands.list.size());
 }
 

@@ -7,8 +7,6 @@ namespace embody::physics {
 
 namespace {
 
-constexpr double deep_penetration = 0.05;  // m
-
 std::uint64_t user_data_of(const WorldState& world, BodyHandle body) {
     const BodyRecord* record = world.bodies.find(body);
     return record ? record->definition.user_data : 0;
@@ -39,8 +37,8 @@ ContactEvent begin_event(const WorldState& world, const TouchingPair& pair) {
 // The pairs that touch now, sorted; contacts are sorted by body slot and so nearly always give them in order.
 void list_touching(const WorldState& world, std::vector<TouchingPair>& pairs) {
     pairs.clear();
-    for (const Contact& contact : world.contacts) {
-        if (!is_touching(contact)) continue;
+    for (const ContactGlance& contact : world.contact_glances) {
+        if (!contact.touches) continue;
         const TouchingPair pair{world.bodies.handle_at(contact.a), world.bodies.handle_at(contact.b)};
         if (pairs.empty() || pairs.back() != pair) pairs.push_back(pair);
     }
@@ -98,12 +96,9 @@ void write_report(WorldState& world) {
     world.contact_events.clear();
     write_contact_events(world);
     count_bodies(world);
-    for (const Contact& contact : world.contacts) {
-        if (is_touching(contact)) ++world.report.contacts;
-        for (int i = 0; i < contact.count; ++i) {
-            if (contact.points[static_cast<std::size_t>(i)].separation > -deep_penetration) continue;
-            world.report.limits |= static_cast<std::uint32_t>(StepLimit::deep_penetration);
-        }
+    for (const ContactGlance& contact : world.contact_glances) {
+        if (contact.touches) ++world.report.contacts;
+        if (contact.is_deep) world.report.limits |= static_cast<std::uint32_t>(StepLimit::deep_penetration);
     }
     for (const std::uint32_t body : world.awake) {
         world.record(body).next_force = world.record(body).next_torque = {};

@@ -65,9 +65,13 @@ void put_to_sleep(WorldState& world) {
     if (leaves.empty()) return;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < world.contacts.size(); ++i) {
-        if (!leaves[i]) world.contacts[kept++] = world.contacts[i];
+        if (leaves[i]) continue;
+        world.contacts[kept] = world.contacts[i];
+        world.contact_glances[kept++] = world.contact_glances[i];
     }
     world.contacts.resize(kept);
+    world.contact_glances.resize(kept);
+    world.touch_memory.is_laid_out = false;
 }
 
 }  // namespace embody::physics

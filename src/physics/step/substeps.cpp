@@ -50,7 +50,7 @@ void solve_wide(WorldState& world, const SolveWays::Wide& way) {
         bodies.insert(bodies.end(), members.begin(), members.end());
     }
     WideContactSolver& solver = world.wide_solver;
-    build_schedule(order, world.contacts, world.motion, solver.lanes(), world.schedule);
+    build_schedule(order, world.contact_glances, world.motion, solver.lanes(), world.schedule);
     const ContactSoftness softness = way.plan.softness(world.settings.time_step);
     solver.begin(bodies, world.motion, world.constants, softness.substep, way.plan.substeps);
     for (const SolveSchedule::Stage& stage : world.schedule.stages) {
@@ -61,7 +61,15 @@ void solve_wide(WorldState& world, const SolveWays::Wide& way) {
             solver.add_batch(contacts, batch.points, world.contacts, world.motion);
         }
     }
-    solver.solve(way.plan.passes, softness, world.motion, world.constants, world.contacts, *world.workers);
+    solver.solve(way.plan.passes, softness, world.motion, world.constants, world.contacts, world.contact_glances,
+                 *world.workers);
+}
+
+// What the report asks of each contact; the wide solver notes its own.
+void note_outcomes(WorldState& world, const Island& island) {
+    for (const std::uint32_t contact : contacts_of(world, island)) {
+        world.contact_glances[contact].touches = is_touching(world.contacts[contact]);
+    }
 }
 
 // Whether the island was solved directly; else the sweeps have to.
@@ -73,7 +81,9 @@ bool solve_directly(WorldState& world, const Island& island) {
     // Impulses in the sweeps' measure, so that either way can go on where the other one left off.
     const int parts = contact_plan(island.contact_count, world.settings.substeps).substeps;
     const DirectContactSolver::List list{bodies_of(world, island), contacts_of(world, island), parts};
-    return world.direct_solver.solve(list, effort, world.motion, world.constants, world.contacts);
+    if (!world.direct_solver.solve(list, effort, world.motion, world.constants, world.contacts)) return false;
+    note_outcomes(world, island);
+    return true;
 }
 
 // Solves what is solved directly, and tells how the others have to be.
@@ -173,8 +183,10 @@ void clear_traces_of_lost(WorldState& world) {
         if (!world.is_used(body) || world.is_dynamic(body) || is_state_finite(world.motion[body])) continue;
         world.motion[body].linear_velocity = world.motion[body].angular_velocity = {};
     }
-    for (Contact& contact : world.contacts) {
+    for (std::size_t i = 0; i < world.contacts.size(); ++i) {
+        Contact& contact = world.contacts[i];
         if (world.record(contact.a).definition.enabled && world.record(contact.b).definition.enabled) continue;
+        world.contact_glances[i].touches = false;
         for (ContactPoint& point : contact.points) point.impulse = point.total = 0;
         contact.friction = contact.friction_total = {};
         contact.rolling = {};
@@ -224,14 +236,19 @@ void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, dou
         solve_islands(world, islands, SolvePhase::velocity, h, k * h);
         for_each_contact(world, islands, [](Contact& contact) { add_to_totals(contact); });
     }
+    for (const Island& island : islands) note_outcomes(world, island);
 }
 
 void propagate_shocks(WorldState& world, const SolveWays& ways) {
     const auto propagate = [&](const Island& island, const ContactPlan& plan) {
         propagate_shock(island, world.islands, world.contacts, plan.softness(world.settings.time_step), world.motion);
     };
+    const auto is_sunk = [&](std::uint32_t contact) { return world.contact_glances[contact].is_sunk; };
     for (const SolveWays::Wide& way : ways.wide) {
-        for (const Island& island : way.islands) propagate(island, way.plan);
+        for (const Island& island : way.islands) {
+            const auto contacts = contacts_of(world, island);
+            if (std::any_of(contacts.begin(), contacts.end(), is_sunk)) propagate(island, way.plan);
+        }
     }
     for (const Island& island : ways.one_by_one) {
         propagate(island, jointed_contact_plan(island.contact_count, world.settings.substeps));

@@ -71,6 +71,7 @@ void list_live_pairs(WorldState& world) {
     if (memory.pairs_version == pairs_version && memory.awake_version == world.awake_version) return;
     memory.pairs_version = pairs_version;
     memory.awake_version = world.awake_version;
+    memory.is_laid_out = false;
     memory.live.clear();
     const auto is_awake = [&](std::uint32_t body) {
         return !world.is_asleep(body) && world.record(body).definition.kind != BodyKind::static_body;
@@ -228,11 +229,10 @@ void compare_pair(const WorldState& world, PairRecord& record, OldContacts old, 
 
     const auto first = static_cast<std::ptrdiff_t>(worker.found.size());
     const Material material = combine(a.definition.material, b.definition.material);
-    const bool turns_with_b = b_is_larger(world, pair);
     for (const Manifold& manifold : worker.manifolds) {
-        worker.found.push_back(make_contact(pair.a, pair.b, manifold, world.motion, turns_with_b));
+        worker.found.push_back(make_contact(pair.a, pair.b, manifold, world.motion, b_is_larger(world, pair)));
         Contact& contact = worker.found.back();
-        contact.material = material;
+        set_material(contact, material);
         contact.a_is_round = a.is_round;
         contact.b_is_round = b.is_round;
     }
@@ -253,57 +253,98 @@ void compare_pair(const WorldState& world, PairRecord& record, OldContacts old, 
     }
 }
 
-// Decides what a pair has in this step; finds it where it does not follow the last one.
-void touch_pair(const WorldState& world, PairRecord& record, PairTouch& touch, std::uint8_t finder,
+FollowedPair followed_pair(const WorldState& world, const PairRecord& record, const RelativePose& now) {
+    const BodyState &a = world.motion[record.pair.a], &b = world.motion[record.pair.b];
+    const Quat turn = now.rotation * conjugate(record.relative_rotation);
+    const double sign = turn.w < 0 ? -1 : 1;
+    const Mat3 axes = to_matrix((b_is_larger(world, record.pair) ? b : a).rotation);
+    return {.shift = to_vec3f(now.center - record.relative_center),
+            .turn = to_vec3f(sign * Vec3{turn.x, turn.y, turn.z}),
+            .turn_w = static_cast<float>(sign * turn.w),
+            .axes = {to_vec3f(axes.x), to_vec3f(axes.y), to_vec3f(axes.z)},
+            .apart = to_vec3f(b.center - a.center),
+            .velocity = to_vec3f(b.linear_velocity - a.linear_velocity),
+            .spin_a = to_vec3f(a.angular_velocity),
+            .spin_b = to_vec3f(b.angular_velocity)};
+}
+
+// Decides what a pair has in this step: what it had follows its bodies, or is found anew.
+void touch_pair(WorldState& world, PairRecord& record, PairTouch& touch, std::uint8_t finder,
                 TouchMemory::Worker& worker) {
     // One of the two must be able to answer an impulse, and neither may sleep.
-    touch.count = 0;
+    touch.next_count = 0;
     touch.finder = PairTouch::follows;
     const auto [a, b] = record.pair;
     if (world.motion[a].inverse_mass == 0 && world.motion[b].inverse_mass == 0) return;
     if (world.is_asleep(a) || world.is_asleep(b)) return;
     if (!may_collide(world, a, b)) return;
-    const OldContacts old = OldContacts(world.last_contacts).subspan(touch.old_first, touch.old_count);
+    const OldContacts old = OldContacts(world.contacts).subspan(touch.first, touch.count);
     const double margin = margin_of(world, a, b);
     const RelativePose now = relative_pose(world, record.pair);
     if (may_follow(world, record, old, margin, now)) {
-        touch.count = touch.old_count;
+        touch.next_count = touch.count;
+        if (touch.count == 0) return;
+        const FollowedPair followed = followed_pair(world, record, now);
+        for (std::uint32_t i = touch.first; i < touch.first + touch.count; ++i) {
+            follow_bodies(world.contacts[i], followed);
+            world.contact_glances[i] = glance_at(world.contacts[i]);
+        }
         return;
     }
     touch.finder = finder;
     touch.found_first = static_cast<std::uint32_t>(worker.found.size());
     compare_pair(world, record, old, margin, now, worker);
-    touch.count = static_cast<std::uint32_t>(worker.found.size()) - touch.found_first;
+    touch.next_count = static_cast<std::uint32_t>(worker.found.size()) - touch.found_first;
 }
 
 // Pairs and the last contacts are sorted alike: one pass over the two meets every old partner.
 void list_old_contacts(WorldState& world) {
-    const std::vector<Contact>& last = world.last_contacts;
-    std::vector<PairTouch>& touches = world.touch_memory.pairs;
-    touches.resize(world.touch_memory.live.size());
+    TouchMemory& memory = world.touch_memory;
+    if (memory.is_laid_out) return;
+    const std::vector<Contact>& last = world.contacts;
+    memory.pairs.resize(memory.live.size());
     std::uint32_t next = 0;
     const auto count = static_cast<std::uint32_t>(last.size());
-    for (std::size_t i = 0; i < touches.size(); ++i) {
-        const BroadPhase::Pair pair = world.pair_records[world.touch_memory.live[i]].pair;
+    for (std::size_t i = 0; i < memory.pairs.size(); ++i) {
+        const BroadPhase::Pair pair = world.pair_records[memory.live[i]].pair;
         while (next < count && BroadPhase::Pair{last[next].a, last[next].b} < pair) ++next;
-        touches[i].old_first = next;
+        memory.pairs[i].first = next;
         while (next < count && BroadPhase::Pair{last[next].a, last[next].b} == pair) ++next;
-        touches[i].old_count = next - touches[i].old_first;
+        memory.pairs[i].count = next - memory.pairs[i].first;
     }
 }
 
-// Puts a pair's contacts to their place among this step's.
-void place_contacts(WorldState& world, const PairTouch& touch) {
-    for (std::uint32_t k = 0; k < touch.count; ++k) {
-        Contact& contact = world.contacts[touch.first + k];
-        if (touch.finder == PairTouch::follows) {
-            contact = world.last_contacts[touch.old_first + k];
-            follow_bodies(contact, world.motion);
-        } else {
-            contact = world.touch_memory.workers[touch.finder].found[touch.found_first + k];
-        }
-        world.contact_glances[touch.first + k] = glance_at(contact);
+// Gives each pair's contacts their place in the order of the pairs, which does not depend on who found them. Where all
+// keep theirs the contacts stay where they lie; else they move over from the last ones.
+bool lay_out(WorldState& world) {
+    std::uint32_t total = 0;
+    bool is_same = true;
+    for (PairTouch& touch : world.touch_memory.pairs) {
+        touch.next_first = total;
+        total += touch.next_count;
+        is_same = is_same && touch.next_first == touch.first && touch.next_count == touch.count;
     }
+    is_same = is_same && total == world.contacts.size();
+    if (!is_same) {
+        world.last_contacts.swap(world.contacts);
+        world.contacts.resize(total);
+    }
+    world.contact_glances.resize(total);
+    world.touch_memory.is_laid_out = true;
+    return is_same;
+}
+
+// Puts a pair's contacts to their place among this step's.
+void place_contacts(WorldState& world, PairTouch& touch, bool is_same) {
+    const bool follows = touch.finder == PairTouch::follows;
+    for (std::uint32_t k = 0; k < touch.next_count && !(follows && is_same); ++k) {
+        Contact& contact = world.contacts[touch.next_first + k];
+        contact = follows ? world.last_contacts[touch.first + k]
+                          : world.touch_memory.workers[touch.finder].found[touch.found_first + k];
+        world.contact_glances[touch.next_first + k] = glance_at(contact);
+    }
+    touch.first = touch.next_first;
+    touch.count = touch.next_count;
 }
 
 // Calls work(worker, first, last) for shares of the live pairs, on all workers where there are enough of them.
@@ -333,8 +374,8 @@ void find_contacts(WorldState& world) {
 
     // What each live pair has.
     update_records(world);
-    world.last_contacts.swap(world.contacts);
     list_old_contacts(world);
+    world.contact_glances.resize(world.contacts.size());
     share_pairs(world, [&](int worker, Share share) {
         TouchMemory::Worker& own = memory.workers[static_cast<std::size_t>(worker)];
         own.found.clear();
@@ -343,17 +384,9 @@ void find_contacts(WorldState& world) {
             touch_pair(world, record, memory.pairs[i], static_cast<std::uint8_t>(worker), own);
         }
     });
-
-    // Its place in the order of the pairs, which does not depend on who found it.
-    std::uint32_t total = 0;
-    for (PairTouch& touch : memory.pairs) {
-        touch.first = total;
-        total += touch.count;
-    }
-    world.contacts.resize(total);
-    world.contact_glances.resize(total);
+    const bool is_same = lay_out(world);
     share_pairs(world, [&](int, Share share) {
-        for (std::size_t i = share.first; i < share.last; ++i) place_contacts(world, memory.pairs[i]);
+        for (std::size_t i = share.first; i < share.last; ++i) place_contacts(world, memory.pairs[i], is_same);
     });
 }
 

@@ -59,6 +59,7 @@ void wake_group_of(WorldState& world, std::uint32_t body) {
             {SleepEvent::Kind::woke, world.bodies.handle_at(member), world.record(member).definition.user_data});
     }
     add_touching(world.touching, world, found->second.contacts);
+    world.touch_memory.is_laid_out = false;
     auto& contacts = world.contacts;
     contacts.insert(contacts.end(), found->second.contacts.begin(), found->second.contacts.end());
     std::sort(contacts.begin(), contacts.end(),

@@ -75,10 +75,10 @@ struct PairRecord {
 
 /// What one pair has in a step: contacts that follow its bodies, or newly found ones.
 struct PairTouch {
-    std::uint32_t old_first = 0, old_count = 0;  ///< in the last step's contacts
-    std::uint32_t first = 0, count = 0;          ///< in this step's
-    std::uint32_t found_first = 0;               ///< in its finder's
-    std::uint8_t finder = follows;               ///< worker that found them
+    std::uint32_t first = 0, count = 0;            ///< its contacts as they lie now
+    std::uint32_t next_first = 0, next_count = 0;  ///< and as this step will have them
+    std::uint32_t found_first = 0;                 ///< in its finder's
+    std::uint8_t finder = follows;                 ///< worker that found them
     static constexpr std::uint8_t follows = 255;
 };
 
@@ -91,6 +91,7 @@ struct TouchMemory {
     std::vector<std::uint32_t> live;  ///< ascending indices of the pairs in which at least one body is awake
     std::uint64_t pairs_version = 0, awake_version = 0;  ///< that live was listed of
     std::vector<PairTouch> pairs;                        ///< one for each of live
+    bool is_laid_out = false;  ///< contacts lie as pairs tells; cleared by whoever adds or removes some
     std::vector<Worker> workers;
 };
 
@@ -126,9 +127,9 @@ struct WorldState {
     bool awake_changed = true;                             // face, wake, substeps, sleep: awake must be listed anew
     std::uint64_t awake_version = 0;                       // wake: counts the lists of awake
     std::vector<Contact> contacts;                         // touch; impulses: impact, substeps
-    std::vector<ContactGlance> contact_glances;            // touch
+    std::vector<ContactGlance> contact_glances;            // touch, substeps, sleep: one for each of contacts
     ImpactMemory impact_memory;                            // impact
-    std::vector<Contact> last_contacts;                    // touch: those of the step before, for the warm start
+    std::vector<Contact> last_contacts;                    // touch: memory only
     std::vector<Joint> active_joints;                      // islands; impulses: substeps
     std::vector<std::uint32_t> active_joint_slots;         // islands
     Islands islands;                                       // islands
