@@ -7,6 +7,7 @@
 #include "geometry/convex_hull.h"
 #include "physics/collision/collision_shape_data.h"
 #include "physics/collision/convex_pair.h"
+#include "physics/collision/convex_pairs.h"
 #include "physics/collision/shape_mass.h"
 
 namespace embody::physics {
@@ -136,7 +137,9 @@ private:
     Result<void> add_piece(const ConvexShape& shape, const Transform& local) const {
         Result<Convex> convex = make_convex(shape);
         if (!convex) return convex.error();
-        convex->reach = convex_radius_about(*convex, inner_point(*convex));
+        const Vec3 inside = inner_point(*convex);
+        convex->reach = convex_radius_about(*convex, inside);
+        convex->inner = -distance_from_surface(*convex, inside).distance - convex->polytope.unevenness;
         const geometry::MassProperties mass = geometry::transformed(local, mass_of(*convex));
         data.mass = data.pieces.empty() ? mass : geometry::combined(data.mass, mass);
         data.pieces.push_back({*std::move(convex), local, local == Transform{}});

@@ -11,6 +11,8 @@ namespace embody::physics {
 namespace {
 
 constexpr std::uint32_t reference_edge_tag = 0x8000u;
+// Polygons with more corners are looked at for high ones first.
+constexpr std::uint32_t few_corners = 8;
 
 /// Two axes of the reference's plane, and its origin there.
 struct ReferencePlane {
@@ -20,6 +22,7 @@ struct ReferencePlane {
         : origin(reference.points[0]), normal(reference.normal), across(any_perpendicular(normal)) {
         up = cross(normal, across);
     }
+    [[nodiscard]] double height(Vec3 p) const { return dot(p - origin, normal); }
     [[nodiscard]] ClipCorner flatten(Vec3 p, std::uint32_t edge_in, std::uint32_t edge_out) const {
         const Vec3 d = p - origin;
         return {dot(d, across), dot(d, up), dot(d, normal), edge_in, edge_out};
@@ -100,7 +103,16 @@ void clip_to_region(const ContactFeature& reference, const ContactFeature& incid
     corners.clear();
     sides.clear();
     const auto n = static_cast<std::uint32_t>(incident.points.size());
-    for (std::uint32_t i = 0; i < n; ++i) corners.push_back(plane.flatten(incident.points[i], (i + n - 1) % n, i));
+    const auto is_low = [&](std::uint32_t i) { return plane.height(incident.points[i]) <= lift + margin; };
+    bool was_low = is_low(n - 1), now_low = is_low(0);
+    for (std::uint32_t i = 0; i < n; ++i) {
+        // Of a tilted rim most is too high to count: between two high corners next to high ones all is.
+        const bool next_low = i + 1 < n ? is_low(i + 1) : is_low(0);
+        if (n <= few_corners || was_low || now_low || next_low)
+            corners.push_back(plane.flatten(incident.points[i], (i + n - 1) % n, i));
+        was_low = now_low;
+        now_low = next_low;
+    }
     for (const Vec3& p : reference.points) sides.push_back(plane.flatten(p, 0, 0));
 
     // By each side of the reference in turn.

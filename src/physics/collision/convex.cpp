@@ -161,6 +161,15 @@ std::uint32_t support_face(const Polytope& polytope, Vec3 direction) {
     return farthest(polytope.normal_lanes, direction).index;
 }
 
+std::uint32_t support_face(const Convex& convex, Vec3 d) {
+    if (!convex.is_box) return support_face(convex.polytope, d);
+    // In the order of box_polytope.
+    const Vec3 size = abs(d);
+    if (size.x >= size.y && size.x >= size.z) return d.x < 0 ? 0 : 1;
+    if (size.y >= size.z) return d.y < 0 ? 2 : 3;
+    return d.z < 0 ? 4 : 5;
+}
+
 Core::Core(const PlacedConvex& placed, double shrink)
     : shape(placed.shape),
       rotation(placed.rotation),

@@ -78,6 +78,7 @@ struct Convex {
     Bounds bounds;
     bool is_box = false;  ///< a polytope whose corners are those of `bounds`, centred
     double reach = 0;     ///< farthest surface point from the inner point, for whole pieces of shapes
+    double inner = 0;     ///< radius of a ball around the inner point that lies inside, likewise
 };
 
 /// A convex seen from the frame in which a pair is compared (world axes, origin near the pair: far from the world's
@@ -134,6 +135,8 @@ double shrinkable(const Convex& convex);
 std::uint32_t support_vertex(const Polytope& polytope, Vec3 direction);
 /// Index of the face whose normal is nearest to `direction` (local).
 std::uint32_t support_face(const Polytope& polytope, Vec3 direction);
+/// The same of a box or any other polytope.
+std::uint32_t support_face(const Convex& convex, Vec3 direction);
 /// Farthest point of the core along `direction` (frame, any length).
 Vec3 core_support(const PlacedConvex& convex, Vec3 direction);
 /// Gap between the two solids along the unit direction `normal` from a to b: never more than their true distance, and

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/collision/convex_pairs.h"
 #include "physics/collision/rim.h"
 
 namespace embody::physics {
@@ -13,6 +12,8 @@ namespace {
 
 // Directions within this sine of a side's or an edge's normal plane are taken to mean the side or the edge.
 constexpr double beside = 0.05;
+// Lines at a smaller angle than this run side by side.
+constexpr double least_sine = 0.03;
 
 /// A point (tangent zero), a straight line, or the circle of a rim; and the point on it where the other is looked for.
 struct Curve {
@@ -26,8 +27,13 @@ struct Curve {
     [[nodiscard]] bool is_line() const { return !is_circle && tangent != Vec3{}; }
     // How far a line goes on to both sides of the point; negative beyond its ends.
     [[nodiscard]] double room() const { return std::min(dot(point - from, tangent), dot(to - point, tangent)); }
+    [[nodiscard]] bool is_beyond_end() const { return is_line() && room() < 0; }
+    // The solid's core reaches as far in the direction n, around a line square to it.
+    [[nodiscard]] Vec3 on_surface(Vec3 n) const {
+        return reach == 0 ? point : point + normalized(n - tangent * dot(n, tangent)) * reach;
+    }
     void stay_within() {
-        if (is_line() && room() < 0) point = dot(point - from, tangent) < 0 ? from : to;
+        if (is_beyond_end()) point = dot(point - from, tangent) < 0 ? from : to;
     }
     // Goes along the tangent and back to the curve.
     void go(double way) {
@@ -152,6 +158,20 @@ void stay_within(Curve& p, Curve& q) {
     p.stay_within();
 }
 
+// What is met at the end of a line: the rim of a side, at its point nearest to the other curve, or the end itself.
+void turn_to_end(Curve& curve, Vec3 other) {
+    if (!curve.is_line() || curve.room() > 0) return;
+    if (curve.reach == 0) {
+        curve.tangent = {};
+        return;
+    }
+    const Vec3 way = other - curve.point, axis = curve.tangent;
+    const Vec3 outward = normalized(way - axis * dot(way, axis), any_perpendicular(axis));
+    curve = {.is_circle = true, .center = curve.point, .axis = axis, .outward = outward, .radius = curve.reach};
+    curve.point = curve.center + outward * curve.radius;
+    curve.tangent = cross(axis, outward);
+}
+
 // To the middle of the common part of two parallel lines, or to the ends that are nearest.
 void meet_halfway(Curve& p, Curve& q) {
     const double whole = dot(p.to - p.from, p.tangent);
@@ -162,6 +182,16 @@ void meet_halfway(Curve& p, Curve& q) {
     q.stay_within();
 }
 
+// Across both tangents; where one has none, or they are nearly parallel, along the gap, if it is not too short: else
+// zero.
+Vec3 common_normal(const Curve& p, const Curve& q, Vec3 direction, double shortest) {
+    const Vec3 across = cross(p.tangent, q.tangent), gap = q.point - p.point;
+    const double sine = length(across), apart = length(gap);
+    if (sine <= least_sine && !(apart > shortest)) return {};
+    const Vec3 n = sine > least_sine ? across / sine : gap / apart;
+    return dot(n, direction) < 0 ? -n : n;
+}
+
 /// How much of the difference of two solids a curve holds around its point: see is_best_crossing.
 struct Hold {
     double depth, width;
@@ -170,12 +200,6 @@ Hold hold_of(const Curve& curve, double square) {
     if (curve.is_circle) return {0.2 * curve.radius * square, 0.4 * curve.radius * square};
     const double width = curve.room() * std::sqrt(square);
     return {width, width};
-}
-
-// Radius of a ball around the inner point.
-double inner_radius(const PlacedConvex& convex) {
-    if (!has_volume(*convex.shape)) return 0;
-    return -distance_from_surface(*convex.shape, convex.to_local(interior_point(convex))).distance;
 }
 
 // Whether the normal n of two curves that cross at a depth d is the best one. It is if the difference b - a holds the
@@ -189,7 +213,9 @@ double inner_radius(const PlacedConvex& convex) {
 // Beyond it, at x = 90 degrees + z, the curves reach width cos z - d sin z, with the width l t or 0.4 t^2 r: far enough
 // until tan(45 degrees - z / 2) = d / width. From there on the balls inside the two solids must reach that far.
 bool is_best_crossing(const PlacedConvex& a, const PlacedConvex& b, const Curve& p, const Curve& q, Vec3 n) {
-    if (p.tangent == Vec3{} || q.tangent == Vec3{}) return false;
+    if (p.tangent == Vec3{} || q.tangent == Vec3{} ||
+        length_squared(cross(p.tangent, q.tangent)) < least_sine * least_sine)
+        return false;
     const double d = dot(n, p.point - q.point), square = 0.5 * (1 - std::fabs(dot(p.tangent, q.tangent)));
     const Hold of_p = hold_of(p, square), of_q = hold_of(q, square);
     if (!(d > 0 && d <= std::min(of_p.depth, of_q.depth))) return false;
@@ -197,42 +223,38 @@ bool is_best_crossing(const PlacedConvex& a, const PlacedConvex& b, const Curve&
     const double ratio = d / std::min(of_p.width, of_q.width), squared = ratio * ratio;
     const Vec3 way = interior_point(b) - interior_point(a);
     const double along = dot(way, n), aside = length(way - n * along);
-    const double radii = inner_radius(a) + inner_radius(b);
+    const double radii = a.shape->inner + b.shape->inner;
     return along >= 0 && along * (1 - squared) - 2 * ratio * aside + (radii - d) * (1 + squared) >= 0;
 }
 
 }  // namespace
 
 bool cross_curves(const PlacedConvex& a, const PlacedConvex& b, Vec3 direction, CurveCrossing& crossing) {
-    constexpr double least_sine = 0.03;
     Curve p, q;
     if (!get_curve(a, direction, p) || !get_curve(b, -direction, q)) return false;
     const auto offer_points = [&](Vec3 n) {
-        crossing = {p.point + n * p.reach, q.point - n * q.reach, n};
+        crossing = {p.on_surface(n), q.on_surface(-n), n};
         return true;
     };
     if (p.is_line() && q.is_line() && length_squared(cross(p.tangent, q.tangent)) < least_sine * least_sine) {
         meet_halfway(p, q);
-        return offer_points(normalized(direction - p.tangent * dot(direction, p.tangent), direction));
+        return offer_points(direction);
     }
     if (!approach(p, q)) return false;
-
-    // Across both tangents; where one has none, or they are nearly parallel, along the gap.
-    const Vec3 across = cross(p.tangent, q.tangent), gap = q.point - p.point;
-    const double sine = length(across), apart = length(gap);
-    const double scale = p.radius + q.radius + p.reach + q.reach + rounding(*a.shape) + rounding(*b.shape);
-    const bool is_crossing = sine > least_sine;
-    if (!is_crossing && !(apart > 1e-6 * scale)) return false;
-    Vec3 n = is_crossing ? across / sine : gap / apart;
-    if (dot(n, direction) < 0) n = -n;
-    if ((p.is_line() && p.room() < 0) || (q.is_line() && q.room() < 0)) {
+    if (p.is_beyond_end() || q.is_beyond_end()) {
         stay_within(p, q);
-        return offer_points(n);
+        offer_points(direction);
+        const Vec3 on_p = p.point, on_q = q.point;
+        turn_to_end(p, on_q);
+        turn_to_end(q, on_p);
+        if (!approach(p, q) || p.is_beyond_end() || q.is_beyond_end()) return true;
     }
+    const double radii = rounding(*a.shape) + rounding(*b.shape);
+    const Vec3 n = common_normal(p, q, direction, 1e-6 * (p.radius + q.radius + p.reach + q.reach + radii));
+    if (n == Vec3{}) return false;
     offer_points(n);
     crossing.is_within = true;
-    const bool is_bare = p.reach + q.reach + rounding(*a.shape) + rounding(*b.shape) == 0;
-    crossing.is_best = is_crossing && is_bare && is_best_crossing(a, b, p, q, n);
+    crossing.is_best = p.reach + q.reach + radii == 0 && is_best_crossing(a, b, p, q, n);
     return true;
 }
 

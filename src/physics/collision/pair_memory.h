@@ -17,9 +17,11 @@ struct PairMemory {
         face_of_a,  ///< the pair met on face `feature_a` of a
         face_of_b,  ///< … on face `feature_b` of b
         edges,      ///< … where edge `feature_a` of a crosses edge `feature_b` of b
-        along,      ///< … along `axis`, at no face or edges in particular
+        along,      ///< … along `axis`, at faces or sides
+        crossing,   ///< … along `axis`, where edges, rims or sides cross
     };
-    Vec3 axis;  ///< of `apart` and `along`: unit, in the frame of the piece compared first, towards the other
+    Vec3 axis;  ///< of `apart`, `along` and `crossing`: unit, in the frame of the piece compared first, towards the
+                ///< other
     std::uint16_t feature_a = 0, feature_b = 0;
     Kind kind = Kind::nothing;
 
@@ -27,9 +29,9 @@ struct PairMemory {
         axis = direction;
         kind = Kind::apart;
     }
-    void meet_along(Vec3 direction) {
+    void meet_along(Vec3 direction, bool is_crossing) {
         axis = direction;
-        kind = Kind::along;
+        kind = is_crossing ? Kind::crossing : Kind::along;
     }
 };
 static_assert(sizeof(PairMemory) <= 32);

@@ -39,12 +39,29 @@ struct AxisSearch {
     Core core_a, core_b;  ///< without the radii only
     double margin = 0, size = 0;
     CandidateScratch& scratch;
+    Vec3 inside_a, inside_b;                ///< the inner points
+    Vec3 on_a = inside_a, on_b = inside_b;  ///< points of the cores, where both reached farthest along some normal
     PartingAxis axis;
-    Vec3 apart;           ///< a direction that parts the pair by more than the margin; zero if none was found
-    double most = 1e300;  ///< no direction parts the pair by more than this
-    Vec3 toward;          ///< the surface's normal at the point that told so
+    bool is_crossing = false;  ///< the axis is where curves cross
+    Vec3 apart;                ///< a direction that parts the pair by more than the margin; zero if none was found
+    double most = 1e300;       ///< no direction parts the pair by more than this
+    Vec3 toward;               ///< the surface's normal at the point that told so
 
     [[nodiscard]] double separation(Vec3 normal) const { return separation_along(core_a, core_b, normal); }
+    // More than what any two points, one of each solid, are apart along the normal it can't be; nor less the balls
+    // around them: those inside the solids and the radii around the cores.
+    [[nodiscard]] double separation_at_most(Vec3 normal) const {
+        const double middle = dot(normal, inside_b - inside_a) - a.shape->inner - b.shape->inner;
+        const double from_a = dot(normal, on_b - inside_a) - a.shape->inner - core_b.depth;
+        const double from_b = dot(normal, inside_b - on_a) - b.shape->inner - core_a.depth;
+        return std::min({middle, from_a, from_b});
+    }
+    // Where both reach farthest along the normal.
+    double touch_along(Vec3 normal) {
+        on_a = core_a.support(normal);
+        on_b = core_b.support(-normal);
+        return dot(normal, on_b - on_a) - core_a.depth - core_b.depth;
+    }
     // Ends the search with the axis there is: the best one, or one that parts the pair.
     bool accept() {
         if (axis.separation > margin) apart = axis.normal;
@@ -64,17 +81,20 @@ void add_normals_of(const PlacedConvex& convex, Vec3 direction, double sign, boo
     }
 }
 
-void gather_candidates(AxisSearch& s, bool all_faces) {
-    const Vec3 normal = s.axis.normal;
+void gather_own_normals(AxisSearch& s, Vec3 normal, bool all_faces) {
+    s.scratch.candidates.clear();
+    add_normals_of(s.a, normal, 1, all_faces, s.scratch);
+    add_normals_of(s.b, -normal, -1, all_faces, s.scratch);
+}
+
+// Lines that cross part along what is perpendicular to both; a cone's line depends on the direction.
+void gather_crossing_lines(AxisSearch& s, Vec3 normal, bool exact_only) {
     CandidateScratch& scratch = s.scratch;
     scratch.candidates.clear();
     scratch.lines_a.clear();
     scratch.lines_b.clear();
-    add_normals_of(s.a, normal, 1, all_faces, scratch);
-    add_normals_of(s.b, -normal, -1, all_faces, scratch);
-
-    // Lines that cross part along what is perpendicular to both; a cone's line depends on the direction.
     const bool is_exact = s.a.shape->kind != ConvexKind::cone && s.b.shape->kind != ConvexKind::cone;
+    if (exact_only && !is_exact) return;
     add_line_directions(s.a, normal, scratch.lines_a);
     add_line_directions(s.b, -normal, scratch.lines_b);
     for (const Vec3& u : scratch.lines_a) {
@@ -87,24 +107,14 @@ void gather_candidates(AxisSearch& s, bool all_faces) {
     }
 }
 
-/// Where two cores reach farthest along a normal.
-struct Touch {
-    Vec3 on_a, on_b;
-    double separation = 0;  ///< of the solids
-};
-Touch touch_along(const AxisSearch& s, Vec3 normal) {
-    Touch touch{s.core_a.support(normal), s.core_b.support(-normal)};
-    touch.separation = dot(normal, touch.on_b - touch.on_a) - s.core_a.depth - s.core_b.depth;
-    return touch;
-}
-
 // Least cosine between normals that count as near each other.
 constexpr double near = 0.99;
 
 /// Which candidates may replace the normal that was found.
 struct Preference {
-    double hair = 0;     ///< they may part the pair by this much less
-    double within = -2;  ///< least cosine between the two
+    double hair = 0;        ///< they may part the pair by this much less
+    double within = -2;     ///< least cosine between the two
+    double enough = 1e300;  ///< a face that parts the pair as far is taken at once
     bool exact_only = false;
     bool all_faces = false;
 };
@@ -112,23 +122,31 @@ struct Preference {
 // By how much less an exact normal may part the pair than the best one: as among the axes of polytopes.
 double bias_of(const AxisSearch& s) { return 1e-4 * s.size + 0.02 * std::fabs(s.axis.separation); }
 
-// Replaces the normal by the best of the candidates, if it is good enough.
-bool prefer_candidate(AxisSearch& s, const Preference& preference) {
-    gather_candidates(s, preference.all_faces);
-    double best = s.axis.separation - preference.hair;
-    const Vec3 found = s.axis.normal;
-    bool is_replaced = false;
+// Replaces the axis by the best of the candidates that parts the pair by more than `least`. True if there was one.
+bool take_best_candidate(AxisSearch& s, const Preference& preference, Vec3 found, double least) {
+    double best = least;
     for (const CandidateNormal& candidate : s.scratch.candidates) {
         if (preference.exact_only && !candidate.is_exact) continue;
         if (dot(candidate.normal, found) < preference.within) continue;
+        if (s.separation_at_most(candidate.normal) <= best) continue;
         const double separation = s.separation(candidate.normal);
         if (separation <= best) continue;
         best = separation;
         s.axis.normal = candidate.normal;
         s.axis.separation = separation;
-        is_replaced = true;
     }
-    return is_replaced;
+    return best > least;
+}
+
+// Replaces the normal by the best of the candidates, if it is good enough.
+bool prefer_candidate(AxisSearch& s, const Preference& preference) {
+    const Vec3 found = s.axis.normal;
+    const double least = s.axis.separation - preference.hair;
+    gather_own_normals(s, found, preference.all_faces);
+    const bool is_own = take_best_candidate(s, preference, found, least);
+    if (is_own && s.axis.separation >= preference.enough) return true;
+    gather_crossing_lines(s, found, preference.exact_only);
+    return take_best_candidate(s, preference, found, is_own ? s.axis.separation : least) || is_own;
 }
 
 /// The solids with one of them shrunk to a core.
@@ -191,7 +209,7 @@ bool search_by_curves(AxisSearch& s, double loss) {
     const double separation = s.separation(crossing.normal);
     if (!is_certain(s, crossing, separation, loss) || separation < s.axis.separation - 1e-9 * s.size) return false;
     s.axis = {true, crossing.normal, separation, true, crossing.on_a, crossing.on_b};
-    prefer_candidate(s, {.hair = bias_of(s), .exact_only = true});
+    s.is_crossing = !prefer_candidate(s, {.hair = bias_of(s), .exact_only = true});
     return s.accept();
 }
 
@@ -200,16 +218,16 @@ bool has_few_faces(const Convex& convex) { return convex.kind != ConvexKind::pol
 // The best exact normal near the axis, if it is certain; else the better one of the two stays.
 bool take_exact_normal(AxisSearch& s) {
     const PartingAxis found = s.axis;
-    if (!prefer_candidate(s, {.hair = bias_of(s), .exact_only = true})) return false;
-    if (s.axis.separation > s.margin) return s.accept();
-    const Touch touch = touch_along(s, s.axis.normal);
-    limit_by_points(s, touch.on_a, touch.on_b);
-    if (s.axis.separation >= s.most - 1e-7 * s.size) return s.accept();
+    const double hair = 1e-7 * s.size;
+    if (!prefer_candidate(s, {.hair = bias_of(s), .enough = s.most - hair, .exact_only = true})) return false;
+    if (s.axis.separation > s.margin || s.axis.separation >= s.most - hair) return s.accept();
+    s.touch_along(s.axis.normal);
+    limit_by_points(s, s.on_a, s.on_b);
+    if (s.axis.separation >= s.most - hair) return s.accept();
     // Where faces, sides or edges lie on each other both reach farthest at corners that are not over the other one. A
     // hull has many faces that are as good but for the bias: which one it gets shall not depend on the start.
     if (has_few_faces(*s.a.shape) && has_few_faces(*s.b.shape)) {
-        limit_by_points(s, facing_point(s.a, s.axis.normal, interior_point(s.b)),
-                        facing_point(s.b, -s.axis.normal, interior_point(s.a)));
+        limit_by_points(s, facing_point(s.a, s.axis.normal, s.inside_b), facing_point(s.b, -s.axis.normal, s.inside_a));
         if (s.axis.separation >= s.most - bias_of(s)) return s.accept();
     }
     if (s.axis.separation < found.separation) s.axis = found;
@@ -227,16 +245,21 @@ bool take_surface_normal(AxisSearch& s) {
     return s.accept();
 }
 
+bool is_face_normal(const AxisSearch& s) {
+    constexpr double equal = 1 - 1e-15;
+    return has_aligned_face(s.a, s.axis.normal, equal) || has_aligned_face(s.b, -s.axis.normal, equal);
+}
+
 // From a normal to what is deepest along it, from there to the surface over it, whose normal is the next one. True
 // where a normal is certain or the pair is apart: mostly after two rounds. The one found does not depend on the start.
 bool search_by_surfaces(AxisSearch& s, Vec3 start) {
     constexpr int most_rounds = 4;
     Vec3 normal = start;
     for (int round = 0; round < most_rounds; ++round) {
-        const Touch touch = touch_along(s, normal);
-        s.axis = {true, normal, touch.separation, false, {}, {}};
-        if (touch.separation > s.margin) return s.accept();
-        limit_by_points(s, touch.on_a, touch.on_b);
+        s.axis = {true, normal, s.touch_along(normal), false, {}, {}};
+        if (s.axis.separation > s.margin) return s.accept();
+        limit_by_points(s, s.on_a, s.on_b);
+        if (is_face_normal(s) && s.axis.separation >= s.most - 1e-7 * s.size) return true;
         if (take_exact_normal(s) || take_surface_normal(s)) return true;
         // What the curves told may be a better limit.
         if (search_by_curves(s, 5e-5 * s.size) || take_surface_normal(s)) return true;
@@ -327,6 +350,20 @@ void search_at_corners(AxisSearch& s) {
     search_by_penetration(s);
 }
 
+// From the last normal on. Deep in each other two solids have more than one good normal: which one they get shall not
+// depend on the past.
+bool search_from_memory(AxisSearch& s, const PairMemory& memory) {
+    using Kind = PairMemory::Kind;
+    const double deep = -0.05 * s.size;
+    if (memory.kind == Kind::crossing) {
+        s.axis = {true, memory.axis, -1e300, false, {}, {}};
+        if (search_by_curves(s, 5e-5 * s.size)) return s.axis.separation > deep;
+    } else if (memory.kind != Kind::apart && memory.kind != Kind::along) {
+        return false;
+    }
+    return search_by_surfaces(s, memory.axis) && s.axis.separation > deep;
+}
+
 // As if nothing was known of the pair.
 void search_from_nothing(AxisSearch& s) {
     s.axis = {};
@@ -347,19 +384,15 @@ double smaller_size(const PlacedConvex& a, const PlacedConvex& b) {
 PartingAxis find_parting_axis(const PlacedConvex& a, const PlacedConvex& b, double margin, PairMemory& memory) {
     using Kind = PairMemory::Kind;
     thread_local CandidateScratch scratch;
-    AxisSearch s{a, b, Core(a), Core(b), margin, smaller_size(a, b), scratch};
+    AxisSearch s{a, b, Core(a), Core(b), margin, smaller_size(a, b), scratch, interior_point(a), interior_point(b)};
     if (memory.kind == Kind::apart && s.separation(memory.axis) > margin) return {};
-    const bool is_known = memory.kind == Kind::apart || memory.kind == Kind::along;
+    if (!search_from_memory(s, memory)) search_from_nothing(s);
     memory.kind = Kind::nothing;
-    // Deep in each other they have more than one good normal: which one they get shall not depend on the past.
-    const double deep = -0.05 * s.size;
-    const bool is_found = is_known && search_by_surfaces(s, memory.axis) && s.axis.separation > deep;
-    if (!is_found) search_from_nothing(s);
     if (length_squared(s.apart) > 0) {
         memory.part_along(s.apart);
         return {};
     }
-    if (s.axis.found) memory.meet_along(s.axis.normal);
+    if (s.axis.found) memory.meet_along(s.axis.normal, s.is_crossing);
     return s.axis;
 }
 

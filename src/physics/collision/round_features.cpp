@@ -111,19 +111,24 @@ void get_polytope_face(const PlacedConvex& convex, std::uint32_t face, ContactFe
     }
 }
 
-bool get_aligned_face(const PlacedConvex& convex, Vec3 direction, ContactFeature& feature) {
+bool has_aligned_face(const PlacedConvex& convex, Vec3 direction, double cosine) {
     const Vec3 d = convex.direction_to_local(direction);
     const Convex& shape = *convex.shape;
     if (shape.kind == ConvexKind::polytope) {
-        const std::uint32_t face = support_face(shape.polytope, d);
-        if (dot(shape.polytope.faces[face].normal, d) < aligned_cosine) return false;
-        get_polytope_face(convex, face, feature);
-        return true;
+        return dot(shape.polytope.faces[support_face(shape, d)].normal, d) >= cosine;
     }
     const bool has_top = shape.kind == ConvexKind::cylinder;
-    const bool has_bottom = has_top || shape.kind == ConvexKind::cone;
-    if (!(has_top && d.y > aligned_cosine) && !(has_bottom && d.y < -aligned_cosine)) return false;
-    get_cap(convex, d.y > 0, d, feature);
+    return (has_top && d.y >= cosine) || ((has_top || shape.kind == ConvexKind::cone) && d.y <= -cosine);
+}
+
+bool get_aligned_face(const PlacedConvex& convex, Vec3 direction, ContactFeature& feature) {
+    if (!has_aligned_face(convex, direction, aligned_cosine)) return false;
+    const Vec3 d = convex.direction_to_local(direction);
+    if (convex.shape->kind == ConvexKind::polytope) {
+        get_polytope_face(convex, support_face(*convex.shape, d), feature);
+    } else {
+        get_cap(convex, d.y > 0, d, feature);
+    }
     return true;
 }
 
@@ -162,7 +167,7 @@ void get_facing(const PlacedConvex& convex, Vec3 direction, ContactFeature& feat
             get_axis(convex, feature);
             return;
         case ConvexKind::polytope:
-            get_polytope_face(convex, support_face(shape.polytope, d), feature);
+            get_polytope_face(convex, support_face(shape, d), feature);
             return;
         case ConvexKind::cylinder:
         case ConvexKind::cone:
@@ -205,7 +210,7 @@ void add_own_normals(const PlacedConvex& convex, Vec3 direction, bool all_faces,
     const Convex& shape = *convex.shape;
     if (shape.kind == ConvexKind::polytope) {
         if (!all_faces) {
-            const std::uint32_t face = support_face(shape.polytope, d);
+            const std::uint32_t face = support_face(shape, d);
             normals.push_back(convex.direction_to_frame(shape.polytope.faces[face].normal));
             return;
         }

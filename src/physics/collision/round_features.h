@@ -10,6 +10,8 @@ namespace embody::physics {
 // polygons of rim_corners points, one of which is the farthest along the direction.
 inline constexpr int rim_corners = 24;
 
+/// Whether the convex has a flat face whose normal is as near to `direction` as that cosine tells.
+bool has_aligned_face(const PlacedConvex& convex, Vec3 direction, double cosine);
 /// The flat face whose normal is `direction` (within 1e-4.5 rad): false if there is none there.
 bool get_aligned_face(const PlacedConvex& convex, Vec3 direction, ContactFeature& feature);
 /// The straight line of the surface (edge, side of a round shape, axis of a capsule) that lies across `direction`.
