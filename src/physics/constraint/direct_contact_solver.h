@@ -14,7 +14,7 @@ namespace embody::physics {
 /// no island: it is given lists. Keeps its memory from step to step.
 class DirectContactSolver {
 public:
-    static constexpr std::size_t most_bodies = BlockCholesky::most_nodes;
+    static constexpr std::size_t most_bodies = 128;
 
     /// Slots of movable bodies, and indices of all the contacts that they have with each other and with bodies that
     /// stand still.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Joints as bilateral constraints, solved in the two phases of a substep.
-// Sources: J.-P. Ryckaert et al., "Numerical integration of the cartesian equations of motion of a system with
-// constraints", 1977 (Shake); H. Andersen, "Rattle", 1983. With the Jacobian J of the pose before the drift,
+// Joints as bilateral constraints: their errors C and rows J, and how one is solved after the other in the two phases
+// of a substep where a list is too long for all at once (joint_system.h). Sources: J.-P. Ryckaert et al., "Numerical
+// integration of the cartesian equations of motion of a system with constraints", 1977 (Shake); H. Andersen, "Rattle",
+// 1983. With the Jacobian J of the pose before the drift,
 //   position phase:  λ₁ such that C(pose after the drift) = 0      (C itself, not its linearisation)
 //   velocity phase:  λ₂ such that J v = 0 at the new pose
 // which is symplectic: a pendulum neither gains nor loses energy. The rows of one joint are one block, K = J M⁻¹ Jᵀ.
@@ -64,21 +65,23 @@ Vec3 rotation_error(const Frames& frames) {
     return Vec3{q.x, q.y, q.z} * (q.w < 0 ? -2.0 : 2.0);
 }
 
-// C(pose), one number a row, in the order of prepare_joint().
+// C(pose), one number a row, in the order of set_rows().
 std::array<double, max_joint_rows> constraint_errors(const Joint& joint, const Frames& frames) {
     const Vec3 gap = frames.b.position - frames.a.position;
-    std::array<double, max_joint_rows> errors{};
-    if (is<SliderJoint>(joint)) {
-        const Vec3 turn = rotation_error(frames);
-        errors = {dot(axis_of(frames.a, 1), gap), dot(axis_of(frames.a, 2), gap), turn.x, turn.y, turn.z, 0};
-    } else if (is<HingeJoint>(joint)) {
-        const Vec3 tilt = cross(axis_of(frames.a, 0), axis_of(frames.b, 0));
-        errors = {gap.x, gap.y, gap.z, dot(axis_of(frames.a, 1), tilt), dot(axis_of(frames.a, 2), tilt), 0};
-    } else {
-        const Vec3 turn = rotation_error(frames);
-        errors = {gap.x, gap.y, gap.z, turn.x, turn.y, turn.z};
+    if (is<BallJoint>(joint)) return {gap.x, gap.y, gap.z};
+    if (is<HingeJoint>(joint)) {
+        const Vec3 axis_b = axis_of(frames.b, 0);
+        return {gap.x, gap.y, gap.z, -dot(axis_of(frames.a, 2), axis_b), dot(axis_of(frames.a, 1), axis_b)};
     }
-    return errors;
+    const Vec3 turn = rotation_error(frames);
+    if (is<FixedJoint>(joint)) return {gap.x, gap.y, gap.z, turn.x, turn.y, turn.z};
+    return {dot(axis_of(frames.a, 1), gap), dot(axis_of(frames.a, 2), gap), turn.x, turn.y, turn.z};
+}
+
+JointGeometry geometry_of(const Frames& frames, Vec3 center_a, Vec3 center_b) {
+    return {frames.a.position - center_a, frames.b.position - center_b, frames.b.position - center_a,
+            axis_of(frames.a, 0),         axis_of(frames.a, 1),         axis_of(frames.a, 2),
+            axis_of(frames.b, 0)};
 }
 
 double coordinate_of(const Joint& joint, const Frames& frames) {
@@ -91,24 +94,11 @@ double coordinate_of(const Joint& joint, const Frames& frames) {
 // Joints are mended no faster than this: bodies that a user joined far apart come together instead of bursting.
 constexpr double fastest_mending = 5;  // m/s or rad/s
 
-// What may be left of an error after a substep.
-double rest_of(double error, double substep) {
-    const double most = fastest_mending * substep;
-    return error - std::clamp(error, -most, most);
-}
-
 Vec3 angular_effect(const BodyState& body, Vec3 row) { return body.inverse_inertia * row; }
 
 double row_product(const JointRow& i, const JointRow& j, const BodyState& a, const BodyState& b) {
     return (a.inverse_mass + b.inverse_mass) * dot(i.linear, j.linear) +
            dot(i.angular_a, angular_effect(a, j.angular_a)) + dot(i.angular_b, angular_effect(b, j.angular_b));
-}
-
-double row_speed(const Joint& joint, const JointRow& row, std::span<const BodyState> bodies) {
-    const BodyState& a = body_a(joint, bodies);
-    const BodyState& b = bodies[joint.b];
-    return dot(row.linear, b.linear_velocity - a.linear_velocity) + dot(row.angular_b, b.angular_velocity) -
-           dot(row.angular_a, a.angular_velocity);
 }
 
 void apply_row(const Joint& joint, const JointRow& row, double impulse, std::span<BodyState> bodies) {
@@ -198,35 +188,53 @@ std::array<double, max_joint_rows> position_excess(const Joint& joint, double su
     if (!is_linear) excess = constraint_errors(joint, frames_after_drift(joint, substep, bodies));
     for (std::size_t i = 0; i < max_joint_rows; ++i) {
         if (is_linear) excess[i] = joint.errors[i] + substep * row_speed(joint, joint.rows[i], bodies);
-        excess[i] = (excess[i] - rest_of(joint.errors[i], substep)) / substep;
+        excess[i] = (excess[i] - rest_of_error(joint.errors[i], substep)) / substep;
     }
     return excess;
 }
 
-// One side of the limit; `sign` is +1 for the lower and −1 for the upper bound.
-void solve_bound(Joint& joint, SolvePhase phase, double substep, double bound, double sign,
-                 std::span<BodyState> bodies) {
-    const bool is_lower = sign > 0;
-    const JointImpulses& first = joint.position_phase;
-    const double earlier = phase == SolvePhase::velocity ? (is_lower ? first.lower : first.upper) : 0;
-    double& impulse = is_lower ? impulses_of(joint, phase).lower : impulses_of(joint, phase).upper;
+// One side of a limit.
+struct Bound {
+    double value;  // of the joint coordinate
+    double sign;   // +1 for the lower, −1 for the upper one
+};
 
-    // How fast the coordinate leaves the allowed range: by where the drift would take it, or by its speed where it
-    // is held already. What the warm start gave to a bound that holds no more is taken back.
-    double leaving = 0;
-    if (phase == SolvePhase::position) {
-        const double now = -sign * (coordinate_of(joint, frames_now(joint, bodies)) - bound);
-        const double after = turns_too_far(joint, substep, bodies)
-                                 ? now - sign * substep * row_speed(joint, joint.free_row, bodies)
-                                 : -sign * (coordinate_of(joint, frames_after_drift(joint, substep, bodies)) - bound);
-        leaving = (after - rest_of(std::max(now, 0.0), substep)) / substep;
-    } else if (earlier > 0) {
-        leaving = -sign * row_speed(joint, joint.free_row, bodies);
-    } else {
-        change_free_impulse(joint, impulse, 0, sign, bodies);
+std::array<Bound, 2> bounds_of(const JointLimit& limit) { return {{{limit.lower, 1}, {limit.upper, -1}}}; }
+
+double& impulse_of(JointImpulses& impulses, const Bound& bound) {
+    return bound.sign > 0 ? impulses.lower : impulses.upper;
+}
+
+// The velocity phase may take back what the bound gave in the position phase.
+double earlier_impulse(Joint& joint, SolvePhase phase, const Bound& bound) {
+    return phase == SolvePhase::velocity ? impulse_of(joint.position_phase, bound) : 0;
+}
+
+// How fast the coordinate leaves the allowed range: by where the drift would take it, or by its speed.
+double leaving_speed(const Joint& joint, SolvePhase phase, double substep, const Bound& bound,
+                     std::span<const BodyState> bodies) {
+    const double speed = -bound.sign * row_speed(joint, joint.free_row, bodies);
+    if (phase == SolvePhase::velocity) return speed;
+    const auto beyond = [&](const Frames& frames) {
+        return -bound.sign * (coordinate_of(joint, frames) - bound.value);
+    };
+    const double now = beyond(frames_now(joint, bodies));
+    const double after = turns_too_far(joint, substep, bodies) ? now + substep * speed
+                                                               : beyond(frames_after_drift(joint, substep, bodies));
+    return (after - rest_of_error(std::max(now, 0.0), substep)) / substep;
+}
+
+void solve_bound(Joint& joint, SolvePhase phase, double substep, const Bound& bound, std::span<BodyState> bodies) {
+    const double earlier = earlier_impulse(joint, phase, bound);
+    double& impulse = impulse_of(impulses_of(joint, phase), bound);
+
+    // What the warm start gave to a bound that holds no more is taken back.
+    if (phase == SolvePhase::velocity && !(earlier > 0)) {
+        change_free_impulse(joint, impulse, 0, bound.sign, bodies);
         return;
     }
-    change_free_impulse(joint, impulse, std::max(impulse + joint.free_mass * leaving, -earlier), sign, bodies);
+    const double leaving = leaving_speed(joint, phase, substep, bound, bodies);
+    change_free_impulse(joint, impulse, std::max(impulse + joint.free_mass * leaving, -earlier), bound.sign, bodies);
 }
 
 void solve_free_row(Joint& joint, SolvePhase phase, double substep, std::span<BodyState> bodies) {
@@ -234,45 +242,90 @@ void solve_free_row(Joint& joint, SolvePhase phase, double substep, std::span<Bo
     solve_motor(joint, phase, substep, bodies);
     const auto* limit = limit_of(joint);
     if (!limit || !*limit) return;
-    solve_bound(joint, phase, substep, (*limit)->lower, 1, bodies);
-    solve_bound(joint, phase, substep, (*limit)->upper, -1, bodies);
+    for (const Bound& bound : bounds_of(**limit)) solve_bound(joint, phase, substep, bound, bodies);
 }
 
 }  // namespace
 
+JointGeometry mean_of(const JointGeometry& first, const JointGeometry& second) {
+    const auto mean = [](Vec3 p, Vec3 q) { return (p + q) * 0.5; };
+    return {mean(first.arm_a, second.arm_a),  mean(first.arm_b, second.arm_b), mean(first.reach_a, second.reach_a),
+            mean(first.x, second.x),          mean(first.y, second.y),         mean(first.z, second.z),
+            mean(first.axis_b, second.axis_b)};
+}
+
+JointPose pose_joint(const Joint& joint, const Transform& a, const Transform& b) {
+    const Frames frames{a * joint.local_a, b * joint.local_b};
+    return {geometry_of(frames, a.position, b.position), constraint_errors(joint, frames)};
+}
+
+// With the mean geometry of two poses these are discrete gradients: the rows times the way between the poses are the
+// difference of the errors, exactly so for points and hinges, whose errors are bilinear in what the bodies carry, and
+// for directions that turn together.
+JointRows make_rows(const Joint& joint, const JointGeometry& g) {
+    const auto point_row = [&](Vec3 d) { return JointRow{d, cross(g.arm_a, d), cross(g.arm_b, d)}; };
+    const auto slide_row = [&](Vec3 d) { return JointRow{d, cross(g.reach_a, d), cross(g.arm_b, d)}; };
+    const auto turn_row = [](Vec3 d) { return JointRow{{}, d, d}; };
+    constexpr Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+    if (is<SliderJoint>(joint)) {
+        return {5, {slide_row(g.y), slide_row(g.z), turn_row(x), turn_row(y), turn_row(z)}, slide_row(g.x)};
+    }
+    JointRows rows{3, {point_row(x), point_row(y), point_row(z)}, {}};
+    if (is<HingeJoint>(joint)) {
+        rows.rows[3] = turn_row(cross(g.z, g.axis_b));
+        rows.rows[4] = turn_row(cross(g.axis_b, g.y));
+        rows.count = 5;
+        rows.free_row = turn_row(g.x);
+    } else if (is<FixedJoint>(joint)) {
+        rows.rows[3] = turn_row(x);
+        rows.rows[4] = turn_row(y);
+        rows.rows[5] = turn_row(z);
+        rows.count = 6;
+    }
+    return rows;
+}
+
+void set_rows(Joint& joint, const JointGeometry& geometry) {
+    const JointRows rows = make_rows(joint, geometry);
+    joint.row_count = rows.count;
+    joint.rows = rows.rows;
+    joint.free_row = rows.free_row;
+    joint.arm_b = geometry.arm_b;
+}
+
+bool has_motor(const Joint& joint) {
+    const auto* motor = motor_of(joint);
+    return motor && *motor;
+}
+
+double row_response(const Joint& joint, const JointRow& row, std::span<const BodyState> bodies) {
+    return row_product(row, row, body_a(joint, bodies), bodies[joint.b]);
+}
+
+double row_speed(const Joint& joint, const JointRow& row, std::span<const BodyState> bodies) {
+    const BodyState& a = body_a(joint, bodies);
+    const BodyState& b = bodies[joint.b];
+    return dot(row.linear, b.linear_velocity - a.linear_velocity) + dot(row.angular_b, b.angular_velocity) -
+           dot(row.angular_a, a.angular_velocity);
+}
+
+double rest_of_error(double error, double substep) {
+    const double most = fastest_mending * substep;
+    return error - std::clamp(error, -most, most);
+}
+
 void prepare_joint(Joint& joint, std::span<const BodyState> bodies) {
     const BodyState& a = body_a(joint, bodies);
     const BodyState& b = bodies[joint.b];
-    const Frames frames = frames_now(joint, bodies);
-    const Vec3 arm_a = frames.a.position - a.center;
-    const Vec3 arm_b = frames.b.position - b.center;
-    const auto point_row = [&](Vec3 d) { return JointRow{d, cross(arm_a, d), cross(arm_b, d)}; };
-    const auto turn_row = [](Vec3 d) { return JointRow{{}, d, d}; };
-
-    // A slider's directions turn with body a, so a's arm reaches to b's joint point.
-    const Vec3 reach_a = frames.b.position - a.center;
-    const auto slide_row = [&](Vec3 d) { return JointRow{d, cross(reach_a, d), cross(arm_b, d)}; };
-
-    constexpr Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-    const Vec3 axis_x = axis_of(frames.a, 0), axis_y = axis_of(frames.a, 1), axis_z = axis_of(frames.a, 2);
-    joint.arm_b = arm_b;
-    joint.errors = constraint_errors(joint, frames);
-    joint.free_row = {};
-    if (is<SliderJoint>(joint)) {
-        joint.rows = {slide_row(axis_y), slide_row(axis_z), turn_row(x), turn_row(y), turn_row(z), JointRow{}};
-        joint.row_count = 5;
-        joint.free_row = slide_row(axis_x);
-    } else if (is<HingeJoint>(joint)) {
-        joint.rows = {point_row(x), point_row(y), point_row(z), turn_row(axis_y), turn_row(axis_z), JointRow{}};
-        joint.row_count = 5;
-        joint.free_row = turn_row(axis_x);
-    } else {
-        joint.rows = {point_row(x), point_row(y), point_row(z), turn_row(x), turn_row(y), turn_row(z)};
-        joint.row_count = is<BallJoint>(joint) ? 3 : 6;
-    }
-    factor_block(joint, a, b);
-    const double free_product = row_product(joint.free_row, joint.free_row, a, b);
+    const JointPose pose = pose_joint(joint, {a.center, a.rotation}, {b.center, b.rotation});
+    joint.errors = pose.errors;
+    set_rows(joint, pose.geometry);
+    const double free_product = row_response(joint, joint.free_row, bodies);
     joint.free_mass = free_product > 0 ? 1 / free_product : 0;
+}
+
+void factor_joint(Joint& joint, std::span<const BodyState> bodies) {
+    factor_block(joint, body_a(joint, bodies), bodies[joint.b]);
 }
 
 void warm_start_joint(Joint& joint, SolvePhase phase, std::span<BodyState> bodies) {
@@ -302,6 +355,57 @@ double solve_joint(Joint& joint, SolvePhase phase, double substep, std::span<Bod
         largest = std::max(largest, std::fabs(excess[i]));
     }
     return largest;
+}
+
+// Primal-dual active set: M. Hintermüller, K. Ito, K. Kunisch, "The primal-dual active set strategy as a semismooth
+// Newton method", 2003. A bound holds where its impulse and what the free row alone would add for the speed at which it
+// is left have a positive sum; a motor drives where that sum is within its force.
+double choose_free_hold(Joint& joint, SolvePhase phase, double substep, bool is_first, std::span<BodyState> bodies) {
+    JointImpulses& impulses = impulses_of(joint, phase);
+    const FreeHold last = impulses.hold;
+    impulses.hold = FreeHold::nothing;
+    if (joint.free_mass == 0) return 0;
+    double excess = 0;
+
+    // Limits.
+    const auto* limit = limit_of(joint);
+    if (limit && *limit) {
+        for (const Bound& bound : bounds_of(**limit)) {
+            const FreeHold side = bound.sign > 0 ? FreeHold::lower : FreeHold::upper;
+            double& impulse = impulse_of(impulses, bound);
+            const double earlier = earlier_impulse(joint, phase, bound);
+            const bool may_hold = impulses.hold == FreeHold::nothing && (phase == SolvePhase::position || earlier > 0);
+            const double leaving = may_hold ? leaving_speed(joint, phase, substep, bound, bodies) : 0;
+            const bool goes_on = is_first && last == side;
+            if (may_hold && (goes_on || impulse + joint.free_mass * leaving > -earlier)) {
+                impulses.hold = side;
+                excess = -bound.sign * leaving;
+            } else {
+                change_free_impulse(joint, impulse, -earlier, bound.sign, bodies);
+            }
+        }
+    }
+
+    // Motor. What a bound holds it only pushes.
+    const auto* motor = motor_of(joint);
+    if (!motor || !*motor) return excess;
+    const double largest = (*motor)->max_force * substep / 2;
+    const double too_fast = row_speed(joint, joint.free_row, bodies) - (*motor)->speed;
+    const double wanted = impulses.motor - joint.free_mass * too_fast;
+    const bool drives = std::fabs(wanted) < largest || (is_first && last == FreeHold::motor);
+    if (impulses.hold == FreeHold::nothing && drives) {
+        impulses.hold = FreeHold::motor;
+        return too_fast;
+    }
+    change_free_impulse(joint, impulses.motor, std::clamp(wanted, -largest, largest), 1, bodies);
+    return excess;
+}
+
+void add_free_impulse(Joint& joint, SolvePhase phase, double change) {
+    JointImpulses& impulses = impulses_of(joint, phase);
+    if (impulses.hold == FreeHold::motor) impulses.motor += change;
+    if (impulses.hold == FreeHold::lower) impulses.lower += change;
+    if (impulses.hold == FreeHold::upper) impulses.upper -= change;
 }
 
 void add_to_totals(Joint& joint, SolvePhase phase) {

@@ -27,13 +27,29 @@ void warm_start_joints(const ConstraintList& list, SolvePhase phase, std::span<B
     }
 }
 
+// One pass over the joints; returns the largest speed that it had to correct.
+double solve_joints(const ConstraintList& list, SolvePhase phase, double substep, std::span<BodyState> bodies,
+                    std::span<const BodyConstants> constants) {
+    if (list.system) return list.system->round({bodies, constants, list.joints});
+    double error = 0;
+    for (const std::uint32_t i : list.joint_order) {
+        error = std::max(error, solve_joint(list.joints[i], phase, substep, bodies));
+    }
+    return error;
+}
+
 }  // namespace
 
-void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, double time,
-                 std::span<BodyState> bodies) {
+void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, double time, std::span<BodyState> bodies,
+                 std::span<const BodyConstants> constants) {
     const ContactPlan plan = jointed_contact_plan(list.contact_order.size(), 1);
     const ContactSoftness softness = plan.softness(substep);
-    warm_start_joints(list, phase, bodies);
+    const JointSystem::View view{bodies, constants, list.joints};
+    if (list.system) {
+        list.system->begin_phase(phase, substep, JointSystem::Motion::small, view);
+    } else {
+        warm_start_joints(list, phase, bodies);
+    }
     const std::size_t count = list.contact_order.size();
     for (std::size_t k = 0; phase == SolvePhase::position && k < count; ++k) {
         warm_start_contact(list.contacts[list.contact_order[k]], list.prepared[k], time, bodies);
@@ -43,10 +59,7 @@ void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, d
     const int most = list.joint_order.empty() ? least : std::max(least, joint_passes(list.joint_order.size()));
     double error = 0;
     for (int pass = 0; pass < most; ++pass) {
-        error = 0;
-        for (const std::uint32_t i : list.joint_order) {
-            error = std::max(error, solve_joint(list.joints[i], phase, substep, bodies));
-        }
+        error = solve_joints(list, phase, substep, bodies, constants);
         // Bottom-up while positions are mended, top-down for the velocities: weights travel down, support travels up.
         for (std::size_t k = 0; k < count; ++k) {
             const std::size_t place = phase == SolvePhase::position ? k : count - 1 - k;
@@ -55,6 +68,7 @@ void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, d
         }
         if (pass + 1 >= least && error <= joint_tolerance) break;
     }
+    if (list.system && phase == SolvePhase::position) list.system->end_position_phase(view);
     for (const std::uint32_t i : list.joint_order) {
         add_to_totals(list.joints[i], phase);
         impulses_of(list.joints[i], phase).are_good = error <= warm_tolerance;

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "physics/constraint/contact_solver.h"
-#include "physics/constraint/joint.h"
+#include "physics/constraint/joint_system.h"
 
 namespace embody::physics {
 
@@ -15,11 +15,12 @@ struct ConstraintList {
     std::span<const PreparedContact> prepared;  ///< one for each of contact_order
     std::span<Joint> joints;
     std::span<const std::uint32_t> joint_order;
+    JointSystem* system = nullptr;  ///< all the joints, to be solved at once; none: one after the other
 };
 
 /// Passes over the list in one phase: few for long lists, more for short ones, until a joint's error is gone. `time`:
 /// of the substep's end in the step, s.
-void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, double time,
-                 std::span<BodyState> bodies);
+void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, double time, std::span<BodyState> bodies,
+                 std::span<const BodyConstants> constants);
 
 }  // namespace embody::physics

@@ -20,7 +20,8 @@ struct SolveWays {
         ContactPlan plan;
         std::vector<Island> islands;
     };
-    std::vector<Island> one_by_one;  // free bodies, and all that joints hold
+    std::vector<Island> one_by_one;  // free bodies, and what joints and contacts hold
+    std::vector<Island> jointed;     // joints only, all at once
     std::vector<Wide> wide;          // contacts only; the finest plan first
 
     void add(const Island& island, const ContactPlan& plan);
@@ -36,8 +37,22 @@ std::span<const std::uint32_t> contacts_of(const WorldState& world, const Island
     return std::span(world.islands.contacts).subspan(island.first_contact, island.contact_count);
 }
 
+std::span<const std::uint32_t> joints_of(const WorldState& world, const Island& island) {
+    return std::span(world.islands.joints).subspan(island.first_joint, island.joint_count);
+}
+
 std::span<const std::uint32_t> bodies_of(const WorldState& world, const Island& island) {
     return std::span(world.islands.bodies).subspan(island.first_body, island.body_count);
+}
+
+JointedList jointed_list(const WorldState& world, const Island& island) {
+    return {bodies_of(world, island), joints_of(world, island)};
+}
+
+// The system that solves the island's joints at once; null where there are none or too many.
+JointSystem* joint_system(WorldState& world, const Island& island) {
+    if (island.joint_count == 0 || !JointSystem::fits(jointed_list(world, island))) return nullptr;
+    return &world.joint_systems[world.islands.bodies[island.first_body]];
 }
 
 // Solves all given islands, of contacts only, through the step.
@@ -86,12 +101,40 @@ bool solve_directly(WorldState& world, const Island& island) {
     return true;
 }
 
+// The systems of islands that are no more, or sleep, are dropped.
+void set_up_joint_systems(WorldState& world) {
+    std::map<std::uint32_t, JointSystem> last = std::move(world.joint_systems);
+    world.joint_systems.clear();
+    for (const Island& island : world.islands.list) {
+        const JointedList list = jointed_list(world, island);
+        if (list.joints.empty() || !JointSystem::fits(list)) continue;
+        auto known = last.extract(list.bodies.front());
+        JointSystem& system = known.empty() ? world.joint_systems[list.bodies.front()]
+                                            : world.joint_systems.insert(std::move(known)).position->second;
+        system.set(list, {world.motion, world.constants, world.active_joints});
+    }
+}
+
+// Joints only: each island through the whole step. Kinematic bodies go along; others take them from where they were.
+void solve_jointed(WorldState& world, const std::vector<Island>& islands, double h) {
+    const JointSystem::View view{world.motion, world.constants, world.active_joints};
+    for (const Island& island : islands) {
+        JointSystem& system = *joint_system(world, island);
+        const std::vector<std::pair<std::uint32_t, BodyState>> carriers = system.carriers(view);
+        for (int k = 0; k < world.settings.substeps; ++k) system.advance(h, view);
+        for (const auto& [body, state] : carriers) world.motion[body] = state;
+    }
+}
+
 // Solves what is solved directly, and tells how the others have to be.
 SolveWays sort_islands(WorldState& world) {
     SolveWays ways;
+    set_up_joint_systems(world);
     world.direct_solver.begin(world.settings.time_step, world.settings.substeps);
     for (const Island& island : world.islands.list) {
-        if (island.joint_count > 0 || island.contact_count == 0) {
+        if (island.contact_count == 0 && joint_system(world, island)) {
+            ways.jointed.push_back(island);
+        } else if (island.joint_count > 0 || island.contact_count == 0) {
             ways.one_by_one.push_back(island);
         } else if (!solve_directly(world, island)) {
             ways.add(island, contact_plan(island.contact_count, world.settings.substeps));
@@ -108,8 +151,9 @@ void solve_islands(WorldState& world, const std::vector<Island>& islands, SolveP
             .contact_order = std::span(world.islands.contacts).subspan(island.first_contact, island.contact_count),
             .prepared = std::span(world.prepared_contacts).subspan(first, island.contact_count),
             .joints = world.active_joints,
-            .joint_order = std::span(world.islands.joints).subspan(island.first_joint, island.joint_count)};
-        solve_phase(list, phase, h, time, world.motion);
+            .joint_order = joints_of(world, island),
+            .system = joint_system(world, island)};
+        solve_phase(list, phase, h, time, world.motion, world.constants);
         first += island.contact_count;
     }
 }
@@ -168,8 +212,14 @@ void drift_all(WorldState& world, const std::vector<Island>& islands, double h) 
     }
 }
 
-void prepare_joints(WorldState& world) {
-    for (Joint& joint : world.active_joints) prepare_joint(joint, world.motion);
+void prepare_joints(WorldState& world, const std::vector<Island>& islands) {
+    for (const Island& island : islands) {
+        for (const std::uint32_t index : joints_of(world, island)) {
+            Joint& joint = world.active_joints[index];
+            prepare_joint(joint, world.motion);
+            if (!joint_system(world, island)) factor_joint(joint, world.motion);
+        }
+    }
 }
 
 bool is_state_finite(const BodyState& state) {
@@ -222,7 +272,7 @@ void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, dou
     for_each_contact(world, islands, [&](Contact& contact) {
         world.prepared_contacts.push_back(prepare_contact(contact, world.motion));
     });
-    prepare_joints(world);
+    prepare_joints(world, islands);
     world.kicked_velocity.resize(world.motion.size());
     for (int k = 1; k <= world.settings.substeps; ++k) {
         // Forces, constraints that also mend positions, motion.
@@ -231,7 +281,7 @@ void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, dou
         drift_all(world, islands, h);
 
         // Constraints on the velocity alone.
-        prepare_joints(world);
+        prepare_joints(world, islands);
         kick_after_drift(world, islands, h);
         solve_islands(world, islands, SolvePhase::velocity, h, k * h);
         for_each_contact(world, islands, [](Contact& contact) { add_to_totals(contact); });
@@ -263,6 +313,7 @@ void run_substeps(WorldState& world) {
 
     // The last one moves the kinematic bodies, which the others take from where the step found them.
     for (const SolveWays::Wide& way : ways.wide) solve_wide(world, way);
+    solve_jointed(world, ways.jointed, h);
     solve_one_by_one(world, ways.one_by_one, h);
     if (world.settings.shock_propagation) propagate_shocks(world, ways);
     limit_speeds(world);

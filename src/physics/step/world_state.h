@@ -13,7 +13,7 @@
 #include "physics/collision/pair_memory.h"
 #include "physics/constraint/contact.h"
 #include "physics/constraint/direct_contact_solver.h"
-#include "physics/constraint/joint.h"
+#include "physics/constraint/joint_system.h"
 #include "physics/constraint/wide_contact_solver.h"
 #include "physics/inter/definitions/events.h"
 #include "physics/inter/definitions/step_report.h"
@@ -137,6 +137,7 @@ struct WorldState {
     std::unique_ptr<TaskPool> workers = std::make_unique<TaskPool>(1);
     WideContactSolver wide_solver{widest_contact_kernels()};  // substeps: memory only
     DirectContactSolver direct_solver;                        // substeps: memory, and which islands it gave up
+    std::map<std::uint32_t, JointSystem> joint_systems;       // substeps: by an island's first body; memory only
     SolveSchedule schedule;                                   // substeps: memory only
     std::vector<PreparedContact> prepared_contacts;           // substeps: memory only
     std::vector<Vec3> kicked_velocity;                        // substeps: linear velocity before the constraints, m/s
