@@ -322,15 +322,15 @@ bool fill_edge_manifold(const BoxView& v, const EdgeAxis& edge, const ConvexPair
     return true;
 }
 
-// Whether the remembered direction still parts the boxes.
-bool still_apart(const BoxView& v, Vec3 direction, double margin) {
+// How far a direction parts the boxes.
+double gap_along(const BoxView& v, Vec3 direction) {
     const Triple n = triple(direction);
     double gap = n[0] * v.place[0] + n[1] * v.place[1] + n[2] * v.place[2];
     for (std::size_t j = 0; j < 3; ++j) {
         const double along_b = n[0] * v.turn[0][j] + n[1] * v.turn[1][j] + n[2] * v.turn[2][j];
         gap -= std::fabs(n[j]) * v.half_a[j] + std::fabs(along_b) * v.half_b[j];
     }
-    return gap > margin;
+    return gap;
 }
 
 Vec3 axis_of(const FaceAxis& face) {
@@ -343,18 +343,21 @@ Vec3 axis_of(const FaceAxis& face) {
 
 BoxMeeting collide_boxes(const ConvexPair& pair, double margin, PairMemory& memory, Manifold& manifold) {
     const BoxView v = view_of(pair);
-    if (memory.kind == PairMemory::Kind::apart && still_apart(v, memory.axis, margin)) return BoxMeeting::none;
+    if (memory.kind == PairMemory::Kind::apart) {
+        memory.gap = gap_along(v, memory.axis);
+        if (memory.gap > margin) return BoxMeeting::none;
+    }
 
     // Faces of a, faces of b, then edges that part the boxes more than these.
     const FaceAxis face_a = best_face(v);
     if (face_a.separation > margin) {
-        memory.part_along(axis_of(face_a));
+        memory.part_along(axis_of(face_a), face_a.separation);
         return BoxMeeting::none;
     }
     const BoxView w = seen_from_b(v);
     const FaceAxis face_b = best_face(w);
     if (face_b.separation > margin) {
-        memory.part_along(pair.turn * -axis_of(face_b));
+        memory.part_along(pair.turn * -axis_of(face_b), face_b.separation);
         return BoxMeeting::none;
     }
     // Faces are preferred by a little: they give a region, and the choice does not flicker by rounding.
@@ -366,7 +369,7 @@ BoxMeeting collide_boxes(const ConvexPair& pair, double margin, PairMemory& memo
     const double least = face_separation + bias + 0.02 * std::fabs(face_separation);
     const EdgeAxis edge = best_edge(v, std::min(least, margin));
     if (edge.separation > margin) {
-        memory.part_along(edge.normal);
+        memory.part_along(edge.normal, edge.separation);
         return BoxMeeting::none;
     }
     memory.kind = PairMemory::Kind::nothing;

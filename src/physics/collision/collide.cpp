@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // From a pair of shapes to pairs of convexes. Everything below works in a frame of world axes whose origin is shape a's
 // position, so that a scene far from the world's origin loses no digits.
+#include <cmath>
+
 #include "foundation/assert.h"
 #include "physics/collision/box_pair.h"
 #include "physics/collision/collision_shape.h"
@@ -48,7 +50,7 @@ void append(Manifold& manifold, Vec3 origin, std::vector<Manifold>& manifolds) {
 // The family of the pair; a's kind is not after b's.
 void find_region(const ConvexPair& pair, double margin, PairMemory& memory, ContactRegion& region) {
     if (pair.a->kind == ConvexKind::sphere) {
-        collide_sphere(pair.placed_a(), pair.placed_b(), margin, region);
+        collide_sphere(pair.placed_a(), pair.placed_b(), margin, memory, region);
         return;
     }
     const bool has_corners = pair.a->kind == ConvexKind::polytope && pair.b->kind == ConvexKind::polytope;
@@ -57,18 +59,23 @@ void find_region(const ConvexPair& pair, double margin, PairMemory& memory, Cont
 }
 
 // Whether the balls around two pieces' inner points are farther apart than the margin: most pairs whose boxes overlap.
-bool balls_are_apart(const PlacedConvex& a, const PlacedConvex& b, double margin) {
-    const double reach = a.shape->reach + b.shape->reach + margin;
-    return length_squared(interior_point(b) - interior_point(a)) > reach * reach;
+bool balls_are_apart(const PlacedConvex& a, const PlacedConvex& b, double margin, PairMemory& memory) {
+    const double reach = a.shape->reach + b.shape->reach;
+    const Vec3 way = interior_point(b) - interior_point(a);
+    const double squared = length_squared(way);
+    if (squared <= (reach + margin) * (reach + margin)) return false;
+    const double distance = std::sqrt(squared);
+    memory.part_along(a.direction_to_local(way / distance), distance - reach);
+    return true;
 }
 
 // Two convex pieces in world axes with the origin at `origin`; at most two manifolds.
 void collide_two(const PlacedConvex& first, const PlacedConvex& second, double margin, Vec3 origin, PairMemory& memory,
                  std::vector<Manifold>& manifolds) {
-    if (balls_are_apart(first, second, margin)) return;
     // Each pair of kinds in one order, so that swapped arguments give the mirrored answer.
     const bool is_swapped = first.shape->kind > second.shape->kind;
     const PlacedConvex &a = is_swapped ? second : first, &b = is_swapped ? first : second;
+    if (balls_are_apart(a, b, margin, memory)) return;
     const ConvexPair pair(*a.shape, a.rotation, *b.shape, b.rotation, b.position - a.position);
     if (a.shape->is_box && b.shape->is_box) {
         Manifold manifold;
@@ -113,6 +120,7 @@ void collide_compounds(const CollisionShape::Data& a, const Transform& pose_a, c
             }
         }
     }
+    memory.gap = 0;  // of two pieces only
 }
 
 void collide_pieces(const CollisionShape::Data& a, const Transform& pose_a, const CollisionShape::Data& b,

@@ -25,7 +25,8 @@ struct PlacedPlane {
 };
 
 /// a is a sphere, b any convex.
-void collide_sphere(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region);
+void collide_sphere(const PlacedConvex& a, const PlacedConvex& b, double margin, PairMemory& memory,
+                    ContactRegion& region);
 /// a is any convex, b the plane; the normal points from a into the plane.
 void collide_plane(const PlacedConvex& a, const PlacedPlane& plane, double margin, ContactRegion& region);
 /// Both are polytopes with volume. False, and nothing done, where they are so deep in each other that too many edges

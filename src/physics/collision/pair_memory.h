@@ -7,7 +7,7 @@
 
 namespace embody::physics {
 
-/// What the narrow phase keeps of a pair from one step to the next (32 bytes). Value-initialised: nothing known. It
+/// What the narrow phase keeps of a pair from one step to the next (40 bytes). Value-initialised: nothing known. It
 /// belongs to one ordered pair of shapes; clear it when a shape changes. Poses may jump: whatever is remembered is only
 /// tried first, so the contacts are those of an empty memory.
 struct PairMemory {
@@ -22,11 +22,13 @@ struct PairMemory {
     };
     Vec3 axis;  ///< of `apart`, `along` and `crossing`: unit, in the frame of the piece compared first, towards the
                 ///< other
+    double gap = 0;  ///< of `apart`: the shapes are at least so far from each other, m; 0 where nobody can tell
     std::uint16_t feature_a = 0, feature_b = 0;
     Kind kind = Kind::nothing;
 
-    void part_along(Vec3 direction) {
+    void part_along(Vec3 direction, double at_least) {
         axis = direction;
+        gap = at_least;
         kind = Kind::apart;
     }
     void meet_along(Vec3 direction, bool is_crossing) {
@@ -34,6 +36,6 @@ struct PairMemory {
         kind = is_crossing ? Kind::crossing : Kind::along;
     }
 };
-static_assert(sizeof(PairMemory) <= 32);
+static_assert(sizeof(PairMemory) <= 40);
 
 }  // namespace embody::physics

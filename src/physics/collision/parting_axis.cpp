@@ -385,11 +385,14 @@ PartingAxis find_parting_axis(const PlacedConvex& a, const PlacedConvex& b, doub
     using Kind = PairMemory::Kind;
     thread_local CandidateScratch scratch;
     AxisSearch s{a, b, Core(a), Core(b), margin, smaller_size(a, b), scratch, interior_point(a), interior_point(b)};
-    if (memory.kind == Kind::apart && s.separation(memory.axis) > margin) return {};
+    if (memory.kind == Kind::apart) {
+        memory.gap = s.separation(memory.axis);
+        if (memory.gap > margin) return {};
+    }
     if (!search_from_memory(s, memory)) search_from_nothing(s);
     memory.kind = Kind::nothing;
     if (length_squared(s.apart) > 0) {
-        memory.part_along(s.apart);
+        memory.part_along(s.apart, s.separation(s.apart));
         return {};
     }
     if (s.axis.found) memory.meet_along(s.axis.normal, s.is_crossing);

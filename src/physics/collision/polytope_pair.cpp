@@ -203,7 +203,7 @@ void add_nearest_points(const PlacedConvex& a, const PlacedConvex& b, double mar
             region.normal = normal;
             region.add(gap.on_a, gap.distance, 1);
         } else {
-            memory.part_along(normalized(gap.direction));
+            memory.part_along(normalized(gap.direction), margin);
         }
     }
 }
@@ -234,13 +234,16 @@ bool collide_polytopes(const ConvexPair& pair, double margin, PairMemory& memory
     s.a_in_b = {pair.a, transpose(pair.turn), s.b_in_a.direction_to_local(-pair.place)};
     s.margin = margin;
     using Kind = PairMemory::Kind;
-    if (memory.kind == Kind::apart && gap_along(s, memory.axis) > margin) return true;
+    if (memory.kind == Kind::apart) {
+        memory.gap = gap_along(s, memory.axis);
+        if (memory.gap > margin) return true;
+    }
 
     // The face of a that parts them most, beginning with the remembered one.
     const FaceAxis face_a = best_face_axis(*s.a, s.b_in_a, -1e300, s.b_in_a.to_frame(s.b->center),
                                            memory.kind == Kind::face_of_a ? memory.feature_a : none, s);
     if (face_a.separation > margin) {
-        memory.part_along(s.a->faces[face_a.face].normal);
+        memory.part_along(s.a->faces[face_a.face].normal, face_a.separation);
         return true;
     }
     // Faces are preferred by a little: they give a region, and the choice does not flicker by rounding.
@@ -252,7 +255,7 @@ bool collide_polytopes(const ConvexPair& pair, double margin, PairMemory& memory
     const FaceAxis face_b = best_face_axis(*s.b, s.a_in_b, face_a.separation + bias, witness_of_a,
                                            memory.kind == Kind::face_of_b ? memory.feature_b : none, s);
     if (face_b.separation > margin && face_b.face != none) {
-        memory.part_along(-s.b_in_a.direction_to_frame(s.b->faces[face_b.face].normal));
+        memory.part_along(-s.b_in_a.direction_to_frame(s.b->faces[face_b.face].normal), face_b.separation);
         return true;
     }
     const bool is_face_of_a = face_b.face == none;
@@ -264,7 +267,7 @@ bool collide_polytopes(const ConvexPair& pair, double margin, PairMemory& memory
     const double least = std::min(face_separation + bias + 0.02 * std::fabs(face_separation), margin);
     if (!best_edge_axis(least, face_a.witness, witness_of_a, s, edge)) return false;
     if (edge.separation > margin) {
-        memory.part_along(edge.normal);
+        memory.part_along(edge.normal, edge.separation);
         return true;
     }
     if (edge.separation > least) {

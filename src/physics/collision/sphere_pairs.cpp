@@ -150,11 +150,15 @@ SurfaceDistance distance_from_surface(const Convex& convex, Vec3 p, double enoug
     return convex.is_box ? distance_from_box(convex, p) : distance_from_polytope(convex, p, enough);
 }
 
-void collide_sphere(const PlacedConvex& a, const PlacedConvex& b, double margin, ContactRegion& region) {
+void collide_sphere(const PlacedConvex& a, const PlacedConvex& b, double margin, PairMemory& memory,
+                    ContactRegion& region) {
     const double radius = a.shape->radius;
     const SurfaceDistance gap = distance_from_surface(*b.shape, b.to_local(a.position), radius + margin);
     const double separation = gap.distance - radius;
-    if (separation > margin) return;
+    if (separation > margin) {
+        memory.part_along(a.direction_to_local(-b.direction_to_frame(gap.normal)), separation);
+        return;
+    }
     region.normal = -b.direction_to_frame(gap.normal);
     region.add(a.position + region.normal * radius, separation, 0);
 }

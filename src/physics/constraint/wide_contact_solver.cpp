@@ -244,7 +244,11 @@ void WideContactSolver::solve_share(const Work& work, int worker) {
 void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::span<BodyState> bodies,
                               std::span<const BodyConstants> constants, std::span<Contact> contacts,
                               std::span<ContactGlance> glances, TaskPool& pool) {
-    if (lines_.size() < used_lines_) lines_.resize(used_lines_ + used_lines_ / 2);
+    if (lines_.size() < used_lines_) {
+        // What they held is of the last step.
+        lines_.clear();
+        lines_.resize(used_lines_ + used_lines_ / 8);
+    }
     kicked_.assign(velocity_.size(), {});
     const ContactSweep sweep{.velocity = velocity_[0].value,
                              .motion = motion_[0].value,

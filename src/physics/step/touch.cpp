@@ -116,7 +116,7 @@ void wake_touched(WorldState& world, std::vector<Manifold>& manifolds) {
 constexpr double follow_window = 0.0025;
 // Where corners had to be left out (a foot of a chair whose four points lie on the three others) they sink unseen, so
 // the pair is compared again before that matters.
-constexpr double short_follow_window = 1e-4;
+constexpr double short_follow_window = 5e-4;
 // The point of contact of what rolls does not stay on it; after so short a way the gap is right to a hundredth of it.
 constexpr double round_follow_window = 2e-5;
 
@@ -149,19 +149,30 @@ double moved_since(const WorldState& world, const PairRecord& record, const Rela
     return distance(now.center, record.relative_center) + 2 * sine * reach;
 }
 
-// Brings the records in step with the pairs of the broad phase; both are sorted.
+// Lists of contacts grow by no more than they need: they are most of a world's memory.
+template <class Item>
+void resize_closely(std::vector<Item>& list, std::size_t size) {
+    if (size > list.capacity()) list.reserve(size + size / 8);
+    list.resize(size);
+}
+
+// Brings the records in step with the pairs of the broad phase, both sorted, in place: what is gone is taken out from
+// the front on, what is new put in from the back on.
 void update_records(WorldState& world) {
     if (world.pairs_version == world.broad_phase.pairs_version()) return;
     world.pairs_version = world.broad_phase.pairs_version();
-    std::vector<PairRecord> records;
-    records.reserve(world.pairs->size());
-    auto old_record = world.pair_records.begin();
-    for (const BroadPhase::Pair& pair : *world.pairs) {
-        while (old_record != world.pair_records.end() && old_record->pair < pair) ++old_record;
-        const bool is_known = old_record != world.pair_records.end() && old_record->pair == pair;
-        records.push_back(is_known ? *old_record : PairRecord{.pair = pair});
+    const std::vector<BroadPhase::Pair>& pairs = *world.pairs;
+    std::vector<PairRecord>& records = world.pair_records;
+    std::size_t kept = 0, next = 0;
+    for (const PairRecord& record : records) {
+        while (next < pairs.size() && pairs[next] < record.pair) ++next;
+        if (next < pairs.size() && pairs[next] == record.pair) records[kept++] = record;
     }
-    world.pair_records = std::move(records);
+    resize_closely(records, pairs.size());
+    for (std::size_t place = pairs.size(); place-- > 0;) {
+        const bool is_known = kept > 0 && records[kept - 1].pair == pairs[place];
+        records[place] = is_known ? records[--kept] : PairRecord{.pair = pairs[place]};
+    }
 }
 
 /// The contacts of one pair in the last step.
@@ -173,10 +184,12 @@ bool may_follow(const WorldState& world, const PairRecord& record, OldContacts o
     const BodyRecord &a = world.record(record.pair.a), &b = world.record(record.pair.b);
     if (record.version_a != a.version || record.version_b != b.version) return false;
     if (record.contact_count != old.size()) return false;
-    const bool rolls = !old.empty() && (a.is_round || b.is_round);
-    const double window = rolls ? round_follow_window : record.is_whole ? follow_window : short_follow_window;
     const double moved = moved_since(world, record, now);
-    return moved <= window && margin + moved <= record.margin;
+    if (margin + moved > record.margin) return false;
+    if (old.empty()) return true;
+    const bool rolls = a.is_round || b.is_round;
+    const double window = rolls ? round_follow_window : record.is_whole ? follow_window : short_follow_window;
+    return moved <= window;
 }
 
 // A contact with a mesh is named by a triangle, and another one comes under a sliding body all the time: what is new by
@@ -225,10 +238,16 @@ void compare_pair(const WorldState& world, PairRecord& record, OldContacts old, 
                                   [](const Manifold& manifold) { return manifold.is_whole; });
     record.relative_center = now.center;
     record.relative_rotation = now.rotation;
-    if (worker.manifolds.empty()) return;
+    if (worker.manifolds.empty()) {
+        const bool is_apart = record.memory.kind == PairMemory::Kind::apart;
+        if (is_apart) record.margin = std::max(searched, record.memory.gap);
+        return;
+    }
 
     const auto first = static_cast<std::ptrdiff_t>(worker.found.size());
     const Material material = combine(a.definition.material, b.definition.material);
+    const std::size_t wanted = worker.found.size() + worker.manifolds.size();
+    if (wanted > worker.found.capacity()) worker.found.reserve(wanted + wanted / 4);
     for (const Manifold& manifold : worker.manifolds) {
         worker.found.push_back(make_contact(pair.a, pair.b, manifold, world.motion, b_is_larger(world, pair)));
         Contact& contact = worker.found.back();
@@ -327,7 +346,7 @@ bool lay_out(WorldState& world) {
     is_same = is_same && total == world.contacts.size();
     if (!is_same) {
         world.last_contacts.swap(world.contacts);
-        world.contacts.resize(total);
+        resize_closely(world.contacts, total);
     }
     world.contact_glances.resize(total);
     world.touch_memory.is_laid_out = true;

@@ -66,7 +66,7 @@ struct PairRecord {
     BroadPhase::Pair pair;
     std::uint32_t version_a = 0, version_b = 0;  ///< of the bodies when last compared; 0: never
     std::uint32_t contact_count = 0;             ///< found then
-    double margin = 0;                           ///< searched then, m
+    double margin = 0;                           ///< nothing else was as near then, m
     bool is_whole = false;                       ///< the contacts are all corners within the margin, then
     Vec3 relative_center;                        ///< of the smaller body seen from the larger one, then
     Quat relative_rotation;
