@@ -312,7 +312,8 @@ bool search_by_core(AxisSearch& s, bool is_core_of_a) {
     return s.accept();
 }
 
-// Where neither core tells: GJK on the solids, and EPA where they overlap.
+// Where neither surfaces nor cores tell (rims and edges, at which shrinking takes away more than its depth): GJK on the
+// solids, and EPA where they overlap.
 void search_by_penetration(AxisSearch& s) {
     const double radii = s.core_a.depth + s.core_b.depth;
     const CoreDistance gap = core_distance(s.core_a, s.core_b, s.margin + radii);
@@ -340,16 +341,6 @@ void search_by_penetration(AxisSearch& s) {
     prefer_candidate(s, {.hair = 1e-7 * s.size, .all_faces = is_lost});
 }
 
-// Where neither surfaces nor cores tell: rims and edges, at which shrinking takes away more than its depth. A shallow
-// crossing is taken for the best.
-void search_at_corners(AxisSearch& s) {
-    const double shrink = std::max(shrinkable(*s.a.shape), shrinkable(*s.b.shape));
-    const PartingAxis rough = s.axis;
-    if (search_by_curves(s, 0.45 * shrink) && s.axis.separation >= -0.1 * shrink) return;
-    s.axis = rough;
-    search_by_penetration(s);
-}
-
 // From the last normal on. Deep in each other two solids have more than one good normal: which one they get shall not
 // depend on the past.
 bool search_from_memory(AxisSearch& s, const PairMemory& memory) {
@@ -369,7 +360,7 @@ void search_from_nothing(AxisSearch& s) {
     s.axis = {};
     s.most = 1e300;
     const bool is_found = search_by_surfaces(s, first_normal(s)) || search_by_core(s, true) || search_by_core(s, false);
-    if (!is_found) search_at_corners(s);
+    if (!is_found) search_by_penetration(s);
 }
 
 }  // namespace

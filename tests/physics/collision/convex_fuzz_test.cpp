@@ -127,6 +127,29 @@ TEST_P(ConvexFuzz, depth_is_that_of_the_best_direction) {
     RecordProperty("worst_depth_error", std::to_string(worst));
 }
 
+// Resting contacts are shallow: there the normal is the best of all but for what faces are preferred by.
+TEST_P(ConvexFuzz, no_direction_parts_a_shallow_overlap_sooner) {
+    constexpr double depth = 1e-3, preference = 2e-4 + 0.02 * depth;
+    const auto solids = all_solids();
+    const auto a = make_shape(solids[static_cast<std::size_t>(GetParam())].definition);
+    for (std::size_t other = 0; other < solids.size(); ++other) {
+        const auto b = make_shape(solids[other].definition);
+        Random random(700 + static_cast<std::uint64_t>(GetParam()) * 17 + other);
+        for (int trial = 0; trial < 40; ++trial) {
+            SCOPED_TRACE(std::string(solids[other].name) + ", trial " + std::to_string(trial));
+            PosedPair pose = random_pair(random);
+            pose.b.position += pose.a.position;
+            for (int step = 0; step < 4; ++step) {
+                const auto deep = contacts(*a, pose.a, *b, pose.b, 0.5);
+                if (!deep.empty()) pose.b.position -= deep[0].normal * (deepest(deep) + depth);
+            }
+            const auto manifolds = contacts(*a, pose.a, *b, pose.b, 0);
+            if (manifolds.empty() || deepest(manifolds) < -2 * depth) continue;
+            EXPECT_GE(deepest(manifolds), true_separation(*a, pose.a, *b, pose.b, random) - preference);
+        }
+    }
+}
+
 TEST_P(ConvexFuzz, swapped_shapes_give_the_mirrored_contact) {
     const auto solids = all_solids();
     const auto a = make_shape(solids[static_cast<std::size_t>(GetParam())].definition);
