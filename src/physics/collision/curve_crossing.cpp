@@ -62,7 +62,14 @@ bool get_round_curve(const PlacedConvex& round, Vec3 direction, Curve& curve) {
     if (is_cone) {
         const ConeSlope slope = cone_slope(shape);
         const double across = dot(d, start.along) * slope.axial - d.y * slope.radial;
-        if (std::fabs(across) < beside) return false;
+        if (std::fabs(across) < beside) {
+            // The line of the side that faces the direction.
+            curve.from = round.to_frame(start.along * shape.radius - Vec3{0, shape.half_height, 0});
+            curve.to = round.to_frame({0, shape.half_height, 0});
+            curve.point = curve.from;
+            curve.tangent = normalized(curve.to - curve.from);
+            return true;
+        }
         if (across < 0) {
             curve.point = round.to_frame({0, shape.half_height, 0});
             return true;

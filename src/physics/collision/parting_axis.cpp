@@ -29,7 +29,8 @@ struct CandidateNormal {
 };
 struct CandidateScratch {
     std::vector<CandidateNormal> candidates;
-    std::vector<Vec3> own, lines_a, lines_b;
+    std::vector<Vec3> own;
+    std::vector<SlopedLine> lines_a, lines_b;
 };
 
 /// A pair while its best normal is searched.
@@ -87,22 +88,33 @@ void gather_own_normals(AxisSearch& s, Vec3 normal, bool all_faces) {
     add_normals_of(s.b, -normal, -1, all_faces, s.scratch);
 }
 
-// Lines that cross part along what is perpendicular to both; a cone's line depends on the direction.
-void gather_crossing_lines(AxisSearch& s, Vec3 normal, bool exact_only) {
+// Unit vectors n with dot(n, u) = p and dot(n, v) = q: a u + b v + c u x v, where the square of the length gives c. Of
+// the two the one nearer to `wanted`; false where there is none or the lines are parallel.
+bool solve_normal(const SlopedLine& first, const SlopedLine& second, Vec3 wanted, Vec3& n) {
+    constexpr double least_square_sine = 1e-8;
+    const Vec3 u = first.direction, v = second.direction, across = cross(u, v);
+    const double p = first.cosine, q = second.cosine, uv = dot(u, v), square_sine = length_squared(across);
+    if (!(square_sine > least_square_sine)) return false;
+    const double a = (p - uv * q) / square_sine, b = (q - uv * p) / square_sine;
+    const double rest = 1 - (a * p + b * q);
+    if (!(rest >= 0)) return false;
+    const double c = std::sqrt(rest / square_sine);
+    n = u * a + v * b + across * (dot(across, wanted) < 0 ? -c : c);
+    return true;
+}
+
+// Two lines of surfaces part along the normal that is square to both, or leans from a cone's axis as its side does.
+void gather_crossing_lines(AxisSearch& s, Vec3 normal) {
     CandidateScratch& scratch = s.scratch;
     scratch.candidates.clear();
     scratch.lines_a.clear();
     scratch.lines_b.clear();
-    const bool is_exact = s.a.shape->kind != ConvexKind::cone && s.b.shape->kind != ConvexKind::cone;
-    if (exact_only && !is_exact) return;
-    add_line_directions(s.a, normal, scratch.lines_a);
-    add_line_directions(s.b, -normal, scratch.lines_b);
-    for (const Vec3& u : scratch.lines_a) {
-        for (const Vec3& v : scratch.lines_b) {
-            const Vec3 n = cross(u, v);
-            const double sine = length(n);
-            if (sine < 1e-4) continue;
-            scratch.candidates.push_back({n * ((dot(n, normal) < 0 ? -1 : 1) / sine), is_exact});
+    add_sloped_lines(s.a, normal, scratch.lines_a);
+    add_sloped_lines(s.b, -normal, scratch.lines_b);
+    for (const SlopedLine& of_a : scratch.lines_a) {
+        for (const SlopedLine& of_b : scratch.lines_b) {
+            Vec3 n;
+            if (solve_normal(of_a, {of_b.direction, -of_b.cosine}, normal, n)) scratch.candidates.push_back({n, true});
         }
     }
 }
@@ -145,7 +157,7 @@ bool prefer_candidate(AxisSearch& s, const Preference& preference) {
     gather_own_normals(s, found, preference.all_faces);
     const bool is_own = take_best_candidate(s, preference, found, least);
     if (is_own && s.axis.separation >= preference.enough) return true;
-    gather_crossing_lines(s, found, preference.exact_only);
+    gather_crossing_lines(s, found);
     return take_best_candidate(s, preference, found, is_own ? s.axis.separation : least) || is_own;
 }
 
@@ -359,8 +371,10 @@ bool search_from_memory(AxisSearch& s, const PairMemory& memory) {
 void search_from_nothing(AxisSearch& s) {
     s.axis = {};
     s.most = 1e300;
-    const bool is_found = search_by_surfaces(s, first_normal(s)) || search_by_core(s, true) || search_by_core(s, false);
-    if (!is_found) search_by_penetration(s);
+    // A capsule's axis and a triangle are soon found to be apart.
+    const bool is_simple = s.core_a.depth + s.core_b.depth > 0 && !(has_volume(*s.a.shape) && has_volume(*s.b.shape));
+    if (!is_simple && search_by_surfaces(s, first_normal(s))) return;
+    if (!search_by_core(s, true) && !search_by_core(s, false)) search_by_penetration(s);
 }
 
 }  // namespace

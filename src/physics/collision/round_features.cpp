@@ -224,7 +224,7 @@ void add_own_normals(const PlacedConvex& convex, Vec3 direction, bool all_faces,
     normals.push_back(convex.direction_to_frame(side_normal(shape, d)));
 }
 
-void add_line_directions(const PlacedConvex& convex, Vec3 direction, std::vector<Vec3>& lines) {
+void add_sloped_lines(const PlacedConvex& convex, Vec3 direction, std::vector<SlopedLine>& lines) {
     constexpr std::size_t few = 6;
     const Convex& shape = *convex.shape;
     const Vec3 d = convex.direction_to_local(direction);
@@ -233,27 +233,25 @@ void add_line_directions(const PlacedConvex& convex, Vec3 direction, std::vector
             return;
         case ConvexKind::capsule:
         case ConvexKind::cylinder:
-            lines.push_back(convex.rotation.y);
+            lines.push_back({convex.rotation.y, 0});
             return;
-        case ConvexKind::cone: {
-            const Vec3 outward = rim_start(d).along * shape.radius;
-            lines.push_back(normalized(convex.direction_to_frame(Vec3{0, 2 * shape.half_height, 0} - outward)));
+        case ConvexKind::cone:
+            lines.push_back({convex.rotation.y, cone_slope(shape).axial});
             return;
-        }
         case ConvexKind::polytope:
             break;
     }
     // All of a simple polytope's; of a rich one those at the farthest vertex.
     const Polytope& polytope = shape.polytope;
     if (polytope.edge_directions.size() <= few) {
-        for (const Vec3& e : polytope.edge_directions) lines.push_back(convex.direction_to_frame(e));
+        for (const Vec3& e : polytope.edge_directions) lines.push_back({convex.direction_to_frame(e), 0});
         return;
     }
     const std::uint32_t vertex = support_vertex(polytope, d);
     for (const Polytope::Edge& edge : polytope.edges) {
         if (edge.from != vertex && edge.to != vertex) continue;
         const Vec3 e = normalized(polytope.vertices[edge.to] - polytope.vertices[edge.from]);
-        lines.push_back(convex.direction_to_frame(e));
+        lines.push_back({convex.direction_to_frame(e), 0});
     }
 }
 

@@ -26,7 +26,13 @@ void get_facing(const PlacedConvex& convex, Vec3 direction, ContactFeature& feat
 
 /// Exact normals near `direction` that this convex may part along: its faces and its side.
 void add_own_normals(const PlacedConvex& convex, Vec3 direction, bool all_faces, std::vector<Vec3>& normals);
-/// Directions of its straight lines near `direction`: for the cross products of two shapes' lines.
-void add_line_directions(const PlacedConvex& convex, Vec3 direction, std::vector<Vec3>& lines);
+/// A family of straight lines of a surface by the outward normals along them: all whose cosine with `direction` is
+/// `cosine`. Edges, sides of cylinders and axes of capsules: zero; sides of a cone: that of its slope, with its axis.
+struct SlopedLine {
+    Vec3 direction;  ///< unit
+    double cosine = 0;
+};
+/// Those near `direction`: for the normals of two shapes' lines that cross.
+void add_sloped_lines(const PlacedConvex& convex, Vec3 direction, std::vector<SlopedLine>& lines);
 
 }  // namespace embody::physics
