@@ -22,13 +22,72 @@ std::array<Vec3, 4> quarters(const ContactFeature& cap, Vec3 normal, Vec3 center
     return {center + u * cap.radius, center + v * cap.radius, center - u * cap.radius, center - v * cap.radius};
 }
 
+/// A disc lying on a polygon while the common part is gathered: its corners one after another, in the polygon's plane.
+struct DiscOnPolygon {
+    const ContactFeature& polygon;
+    const ContactFeature& disc;
+    bool polygon_is_a;
+    double margin;
+    ContactRegion& region;
+
+    // With the height of the disc's plane over it.
+    void add(Vec3 point, std::uint32_t part) const {
+        const double separation = dot(disc.center - point, disc.normal) / dot(polygon.normal, disc.normal);
+        if (separation > margin) return;
+        const std::uint32_t name = feature_name({polygon_is_a ? 8u : 9u, polygon.id, disc.id, part});
+        region.add(polygon_is_a ? point : point - region.normal * separation, separation, name);
+    }
+};
+
+// The polygon's corners inside the rim, where its sides cross the rim, and of the rim itself four points, quarter by
+// quarter: from its first corner, or, where the centre is beyond a side, from the point that reaches farthest back.
+void add_disc_on_polygon(const DiscOnPolygon& d) {
+    constexpr std::uint32_t crossings = 0x100, rim = 0x1000;
+    const Vec3 n = d.polygon.normal, center = d.disc.center - n * dot(d.disc.center - d.polygon.points[0], n);
+    const double r = d.disc.radius;
+    const std::vector<Vec3>& corners = d.polygon.points;
+    const auto count = static_cast<std::uint32_t>(corners.size());
+    const auto side_at = [&](std::uint32_t i) { return corners[i + 1 == count ? 0 : i + 1] - corners[i]; };
+    double most_beyond = 0;
+    Vec3 start = d.disc.points[0] - d.disc.center;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Vec3 way = corners[i] - center, along = side_at(i), outwards = cross(along, n);
+        const double side = length(along);
+        if (!(side > 0)) continue;
+        if (length_squared(way) <= r * r) d.add(corners[i], i);
+        const double beyond = -dot(way, outwards) / side, nearest = -dot(way, along) / side;
+        if (beyond > most_beyond) {
+            most_beyond = beyond;
+            start = -outwards;
+        }
+        if (std::fabs(beyond) >= r) continue;
+        const double half = std::sqrt(r * r - beyond * beyond);
+        if (nearest - half > 0 && nearest - half < side)
+            d.add(corners[i] + along * ((nearest - half) / side), crossings + 2 * i);
+        if (nearest + half > 0 && nearest + half < side)
+            d.add(corners[i] + along * ((nearest + half) / side), crossings + 2 * i + 1);
+    }
+    const Vec3 u = in_plane(start, n) * r, v = cross(n, u);
+    const std::array<Vec3, 4> points{center + u, center + v, center - u, center - v};
+    for (std::uint32_t k = 0; k < 4; ++k) {
+        bool is_over = true;
+        for (std::uint32_t i = 0; i < count && is_over; ++i)
+            is_over = dot(points[k] - corners[i], cross(side_at(i), n)) <= 0;
+        if (is_over) d.add(points[k], rim + k);
+    }
+}
+
 }  // namespace
 
 bool add_disc_region(const ContactFeature& reference, const ContactFeature& incident, bool reference_is_a,
                      double margin, ContactRegion& region) {
     const Vec3 n = reference.normal;
     const double facing = dot(n, incident.normal);
-    if (reference.radius <= 0 || incident.radius <= 0 || facing > -square_cosine) return false;
+    if (incident.radius <= 0 || facing > -square_cosine) return false;
+    if (reference.radius <= 0) {
+        add_disc_on_polygon({reference, incident, reference_is_a, margin, region});
+        return true;
+    }
 
     // In the reference's plane: one inside the other, or a lens with two corners and two bulges.
     const Vec3 other = incident.center - n * dot(incident.center - reference.center, n);

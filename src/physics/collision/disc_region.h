@@ -5,8 +5,9 @@
 
 namespace embody::physics {
 
-/// Two caps that face each other nearly squarely: the common part of two discs, exact where a polygon of many corners
-/// is a little too small. Adds four points; false, and nothing added, where they are too oblique for it.
+/// A cap that faces another one, or a polygon's face, nearly squarely: corners of the common part and points of its
+/// rims, exact where a polygon of many corners is a little too small. False, and nothing added, where they are too
+/// oblique for it or the incident is no cap.
 bool add_disc_region(const ContactFeature& reference, const ContactFeature& incident, bool reference_is_a,
                      double margin, ContactRegion& region);
 

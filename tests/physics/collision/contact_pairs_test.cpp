@@ -49,6 +49,21 @@ TEST(ContactPairs, caps_meet_in_the_common_part_of_two_discs) {
     }
 }
 
+TEST(ContactPairs, a_cap_over_a_boxs_edge_keeps_its_whole_rim) {
+    // All corners of the common part lie on the rim: two of them on the edge, 0.2 m from the axis.
+    const auto box = make_shape(BoxShape{{0.5, 0.5, 0.5}}), cylinder = make_shape(CylinderShape{0.4, 0.3});
+    const auto manifolds = contacts(*box, {}, *cylinder, {{0.3, 0.799, 0}, {}}, 0);
+    ASSERT_EQ(manifolds.size(), 1u);
+    ASSERT_EQ(manifolds[0].count, 4);
+    double farthest = 0;
+    for (const ManifoldPoint& p : manifolds[0].points) {
+        EXPECT_NEAR(std::hypot(p.position.x - 0.3, p.position.z), 0.4, 1e-12);
+        EXPECT_NEAR(p.separation, -0.001, 1e-12);
+        farthest = std::max(farthest, p.position.x);
+    }
+    EXPECT_NEAR(farthest, 0.5, 1e-12);
+}
+
 // Every solid lying on a plane and on a big box: the corners of its region.
 struct Standing {
     const char* name;
