@@ -145,6 +145,27 @@ TEST(DirectSolver, LeaningTowerTips) {
     EXPECT_LT(world->pose(top).position.y, 3);
 }
 
+TEST(DirectSolver, ColumnsThatLandBouncingAndRockComeToRest) {
+    // What overlaps after a step by soft sweeps must not be lifted so fast that it feeds the rocking. How each of them
+    // bounces depends on the last bit, so they are counted: 13 rocked on, now one does.
+    int moving = 0;
+    for (std::uint64_t seed = 1; seed <= 32; ++seed) {
+        const Material bouncy{.restitution = 0.5};
+        const auto world = make_world({.sleeping = false});
+        add_plane(*world, bouncy);
+        const auto box = world->create_shape(BoxShape{}).value();
+        Random random(seed);
+        for (int i = 0; i < 10; ++i) {
+            const Vec3 place{random.between(-0.02, 0.02), 0.55 + 1.05 * i, random.between(-0.02, 0.02)};
+            const Quat turn = from_axis_angle({0, 1, 0}, random.between(-0.3, 0.3));
+            ASSERT_TRUE(world->create_body({.shape = box, .position = place, .rotation = turn, .material = bouncy}));
+        }
+        run(*world, 10);
+        if (world->conserved().kinetic_energy > least_noise) ++moving;
+    }
+    EXPECT_LE(moving, 4);
+}
+
 TEST(DirectSolver, FallingColumnsNeverGainEnergy) {
     for (const double spin : {0.0, 0.5, 2.0}) {
         const auto world = make_world({.sleeping = false});

@@ -16,7 +16,8 @@ constexpr double slow = 5e-3;        // m/s: an island of slower points is solve
 constexpr double end_slow = 1e-3;    // if then they are slower than this
 constexpr double rest_speed = 1e-6;  // m/s, rad/s: changes that rounding may leave
 constexpr double rest_gap = 2e-6;    // m: what resting points may be apart or overlap
-constexpr double mend_share = 0.2;   // of a gap or an overlap closed in one solve
+constexpr double mend_share = 0.2;   // of a gap or an overlap closed in the one solve of a step at rest,
+constexpr double slow_mend = 0.005;  // and in a substep of what moves: lifting is work that a rocking column keeps
 constexpr double mend_speed = 3;     // m/s, at most
 constexpr double mend_gap = 1e-7;    // m: smaller ones are let be
 // Products of 6×6 blocks a round: where the sweeps would do as well, a failed attempt must not cost much more.
@@ -237,7 +238,7 @@ bool DirectContactSolver::run(int substeps, bool is_patient, std::span<const Con
         // Motion.
         drift();
         measure_gaps(contacts);
-        mend_positions(contacts);
+        mend_positions(substeps > 1 ? slow_mend : mend_share, contacts);
         for (DirectPatch& patch : patches_) end_substep(patch);
     }
     return true;
@@ -282,7 +283,7 @@ void DirectContactSolver::measure_gaps(std::span<const Contact> contacts) {
     }
 }
 
-void DirectContactSolver::mend_positions(std::span<const Contact> contacts) {
+void DirectContactSolver::mend_positions(double share, std::span<const Contact> contacts) {
     // Nothing to do most of the time.
     double worst = 0;
     for (const DirectPatch& patch : patches_) {
@@ -291,7 +292,7 @@ void DirectContactSolver::mend_positions(std::span<const Contact> contacts) {
         }
     }
     if (worst < mend_gap) return;
-    newton_.find_shifts(patches_, mend_share, mend_speed * h_, shift_);
+    newton_.find_shifts(patches_, share, mend_speed * h_, shift_);
     for (std::size_t i = 0; i < motion_.size(); ++i) {
         motion_[i].way += shift_[i].linear();
         motion_[i].turn = normalized(cayley(shift_[i].angular()) * motion_[i].turn);

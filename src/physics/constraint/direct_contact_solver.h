@@ -62,7 +62,7 @@ private:
     void kick();
     void drift();
     void measure_gaps(std::span<const Contact> contacts);
-    void mend_positions(std::span<const Contact> contacts);
+    void mend_positions(double share, std::span<const Contact> contacts);
 
     double time_step_ = 0;  // s
     int moving_substeps_ = 0;
