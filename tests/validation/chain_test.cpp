@@ -162,6 +162,116 @@ TEST(Chain, OfLightLinksHoldsAThousandKilograms) {
     }
 }
 
+// A rope of balls on thin rods, wound around a drum and drawn over it slowly.
+TEST(Chain, SlidesOverADrumByTheCapstanEquation) {
+    const auto reference = reference_case("capstan");
+    const double angle = reference["setup"]["angle_rad"], drum_radius = 0.2, radius = 0.002, mass = 0.05;
+    const Material material = friction(reference["setup"]["mu"]);
+    const auto world = make_world({.gravity = {}});
+    const auto drum = world->create_shape(CylinderShape{drum_radius, 1}).value();
+    ASSERT_TRUE(world->create_body({.kind = BodyKind::static_body, .shape = drum, .material = material}));
+
+    // The way along the rope: a helix around the drum, with straight ends.
+    const double middle_line = drum_radius + radius, rise = 3 * radius / (2 * pi);
+    const auto place = [&](double way) {
+        const double turned = std::clamp(way / middle_line, 0.0, angle), beyond = way - turned * middle_line;
+        const Vec3 on_drum{middle_line * std::cos(turned), rise * way / middle_line, middle_line * std::sin(turned)};
+        return on_drum + Vec3{-std::sin(turned), 0, std::cos(turned)} * beyond;
+    };
+    const int links_on_drum = 63, links_beyond = 3;
+    const double length_of_link = middle_line * angle / links_on_drum;
+    const auto ball = world->create_shape(SphereShape{radius}).value();
+    std::vector<BodyHandle> links;
+    std::vector<JointHandle> joints;
+    Vec3 last_end;
+    for (int i = -links_beyond; i < links_on_drum + links_beyond; ++i) {
+        const Vec3 from = place(i * length_of_link), to = place((i + 1) * length_of_link), along = to - from;
+        const Quat rotation = normalized(Quat{0, -along.z, along.y, length(along) + along.x});
+        const double across = mass * length_squared(along) / 12, around = across / 10;
+        links.push_back(world
+                            ->create_body({.shape = ball,
+                                           .position = (from + to) * 0.5,
+                                           .rotation = rotation,
+                                           .mass = {.mass = mass, .inertia = Mat3::diagonal({around, across, across})},
+                                           .material = material,
+                                           .allow_sleep = false})
+                            .value());
+        const Vec3 half{length(along) / 2, 0, 0};
+        if (links.size() > 1) {
+            const JointDefinition joint{.joint = BallJoint{},
+                                        .body_a = links[links.size() - 2],
+                                        .body_b = links.back(),
+                                        .frame_a = {last_end, {}},
+                                        .frame_b = {-half, {}}};
+            joints.push_back(world->create_joint(joint).value());
+        }
+        last_end = half;
+    }
+
+    // A constant pull on one end, a slow one on the other.
+    const double whole = (links_on_drum + links_beyond) * length_of_link, pull = 2, speed = 0.03;
+    const Vec3 forward = normalized(place(whole) - place(whole - length_of_link));
+    const Vec3 backward = normalized(place(-length_of_link) - place(0));
+    const auto hand = world->create_body({.kind = BodyKind::kinematic_body, .position = place(whole)}).value();
+    joints.push_back(
+        world->create_joint({.joint = BallJoint{}, .body_a = hand, .body_b = links.back(), .frame_b = {last_end, {}}})
+            .value());
+    double sum_low = 0, sum_high = 0;
+    for (int i = 0; i < 150; ++i) {
+        const Transform first = world->pose(links.front());
+        ASSERT_TRUE(
+            world->apply_force(links.front(), backward * pull, transform_point(first, {-length_of_link / 2, 0, 0})));
+        ASSERT_TRUE(world->set_velocity(hand, forward * (speed * std::min(1.0, i / 60.0)), {}));
+        world->step();
+        if (i < 90) continue;
+        sum_low += length(world->joint_reaction(joints.front()).force);
+        sum_high += length(world->joint_reaction(joints.back()).force);
+    }
+
+    // T₂/T₁ = exp(μφ).
+    const double ratio = reference["expected"]["ratio"];
+    EXPECT_NEAR(sum_high / sum_low, ratio, reference["tolerance"]["rel"].get<double>() * ratio);
+}
+
+TEST(Chain, FallsOntoAFloorWithoutGainingEnergy) {
+    // As it is, and with 1000 kg at its end. Where contacts come in, the whole kick goes before the drift: a body that
+    // falls at v then has h v g/2 more energy a kilogram than a moment ago, a hundredth of this fall.
+    for (const double load : {0.0, 1000.0}) {
+        for (const int count : {8, 30, 100}) {
+            const auto world = make_world({});
+            add_plane(*world, {});
+            const double length_of_link = 2.0 / count, height = 1.4, mass = 0.1;
+            const auto box = world->create_shape(BoxShape{Vec3{0.45, 0.1, 0.1} * length_of_link}).value();
+            BodyHandle last;
+            const auto hang = [&](const BodyDefinition& definition, double half) {
+                const auto body = world->create_body(definition).value();
+                JointDefinition joint{
+                    .joint = BallJoint{}, .body_a = last, .body_b = body, .frame_b = {{-half, 0, 0}, {}}};
+                joint.frame_a = {last.is_null() ? Vec3{0, height, 0} : Vec3{length_of_link / 2, 0, 0}, {}};
+                EXPECT_TRUE(world->create_joint(joint));
+                last = body;
+            };
+            for (int i = 0; i < count; ++i) {
+                const Vec3 place{length_of_link * (i + 0.5), height, 0};
+                hang({.shape = box, .position = place, .mass = {.mass = mass}, .allow_sleep = false},
+                     length_of_link / 2);
+            }
+            const auto ball = world->create_shape(SphereShape{0.2}).value();
+            const Vec3 end{2.2, height, 0};
+            if (load > 0) {
+                hang({.shape = ball, .position = end, .mass = {.mass = load}, .allow_sleep = false}, 0.2);
+            }
+            const double start = energy(*world), fall = (load + mass * count / 2) * gravity * 2;
+            for (int i = 0; i < 180; ++i) {
+                world->step();
+                ASSERT_LT(energy(*world), start + 1e-2 * fall)
+                    << "load " << load << " links " << count << " step " << i;
+            }
+            EXPECT_EQ(world->last_report().limits, 0u) << "load " << load << " links " << count;
+        }
+    }
+}
+
 // Turns a door of 2 kg and 1 m by a motor, against a limit, or both: what a hinge must do at once with its other rows.
 TEST(Chain, HingesOfADoorDriveAndStopIt) {
     const Quat up = from_axis_angle({0, 0, 1}, pi / 2);  // turns the hinge's X axis to Y

@@ -440,7 +440,7 @@ bool JointSystem::advance_in_one(double time, Motion motion, const View& view) {
     add_impulses_to_totals(view);
     drift_all(view);
     prepare_all(view);
-    if (!has_motor_ && carriers_.empty()) bound_energy(energy, view);
+    bound_energy(energy, view);
 
     // Velocities.
     for (const Body& body : bodies_) kick(view.bodies[body.slot], view.constants[body.slot], time / 2);
@@ -493,15 +493,27 @@ double JointSystem::kinetic_energy(const View& view) const {
     return sum / 2;
 }
 
-// Joints do no work but where they are mended or could not be made to hold: then they must not add any.
-void JointSystem::bound_energy(double most, const View& view) const {
+// Joints do no work but where they are mended or could not be made to hold, contacts take energy but where sweeps come
+// to no end: then they must not add any.
+double JointSystem::bound_energy(double most, const View& view) const {
+    const auto moves = [&](std::uint32_t slot) {
+        return view.bodies[slot].linear_velocity != Vec3{} || view.bodies[slot].angular_velocity != Vec3{};
+    };
+    if (has_motor_ || std::any_of(carriers_.begin(), carriers_.end(), moves)) return 1;
     const double energy = kinetic_energy(view);
-    if (!(energy > most * (1 + energy_tolerance))) return;
+    if (!(energy > most * (1 + energy_tolerance))) return 1;
     const double share = std::sqrt(most / energy);
     for (const Body& body : bodies_) {
         view.bodies[body.slot].linear_velocity *= share;
         view.bodies[body.slot].angular_velocity *= share;
     }
+    return share;
+}
+
+double JointSystem::mass(const View& view) const {
+    double sum = 0;
+    for (const Body& body : bodies_) sum += view.constants[body.slot].mass;
+    return sum;
 }
 
 void JointSystem::add_impulses_to_totals(const View& view) const {

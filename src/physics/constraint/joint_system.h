@@ -57,6 +57,14 @@ public:
     /// After the last round of the position phase: prepares the bodies for their drift.
     void end_position_phase(const View& view);
 
+    /// Of the list, J.
+    [[nodiscard]] double kinetic_energy(const View& view) const;
+    /// Scales the velocities where they have more energy than that, unless motors or moving bodies outside the list may
+    /// have given it; returns by how much, at most 1.
+    double bound_energy(double most, const View& view) const;
+    /// kg
+    [[nodiscard]] double mass(const View& view) const;
+
 private:
     struct Body {
         std::uint32_t slot = 0;
@@ -92,8 +100,6 @@ private:
     void go_back(const Start& start, const View& view);
     void drift_all(const View& view);
     void prepare_all(const View& view) const;
-    [[nodiscard]] double kinetic_energy(const View& view) const;
-    void bound_energy(double most, const View& view) const;
     bool iterate(const View& view);
     void add_impulses_to_totals(const View& view) const;
 

@@ -266,7 +266,65 @@ void freeze_lost_bodies(WorldState& world) {
     if (lost_any) clear_traces_of_lost(world);
 }
 
-// Free bodies and those that joints hold: one constraint after the other, in double.
+// Whether a kinematic body may give the island energy by a contact.
+bool is_pushed(const WorldState& world, const Island& island) {
+    const auto pushes = [&](std::uint32_t body) {
+        const BodyState& state = world.motion[body];
+        return state.inverse_mass == 0 && (state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{});
+    };
+    const auto contacts = contacts_of(world, island);
+    return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t index) {
+        return pushes(world.contacts[index].a) || pushes(world.contacts[index].b);
+    });
+}
+
+// Sweeps over joints and contacts by turns may come to no end, and what they miss must not swing up. A substep does not
+// end with more energy than the forces gave; before the drift, bodies may also be parting and be mended.
+class EnergyBounds {
+public:
+    EnergyBounds(WorldState& world, const std::vector<Island>& islands)
+        : world_(world), view_{world.motion, world.constants, world.active_joints} {
+        for (const Island& island : islands) {
+            const JointSystem* system = island.contact_count > 0 ? joint_system(world, island) : nullptr;
+            if (!system || is_pushed(world, island)) continue;
+            bounds_.push_back({island, system, 0, system->mass(view_) * mending_speed * mending_speed / 2});
+        }
+    }
+    void note() {
+        for (Bound& bound : bounds_) bound.energy = bound.system->kinetic_energy(view_);
+    }
+    void keep_before_drift() const {
+        for (const Bound& bound : bounds_) keep(bound, bound.energy + bound.mending);
+    }
+    void keep() const {
+        for (const Bound& bound : bounds_) keep(bound, bound.energy);
+    }
+
+private:
+    static constexpr double mending_speed = 3;  // m/s
+    static constexpr double far_off = 0.7;      // impulses that gave so much too much are no guess for the next ones
+
+    struct Bound {
+        Island island;
+        const JointSystem* system;
+        double energy, mending;  // J
+    };
+    void keep(const Bound& bound, double most) const {
+        if (bound.system->bound_energy(most, view_) > far_off) return;
+        for (const std::uint32_t index : contacts_of(world_, bound.island)) {
+            Contact& contact = world_.contacts[index];
+            for (ContactPoint& point : contact.points) point.impulse = 0;
+            contact.friction = {};
+            contact.rolling = {};
+        }
+    }
+
+    WorldState& world_;
+    JointSystem::View view_;
+    std::vector<Bound> bounds_;
+};
+
+// Free bodies and those that joints and contacts hold: one constraint after the other, in double.
 void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, double h) {
     world.prepared_contacts.clear();
     for_each_contact(world, islands, [&](Contact& contact) {
@@ -274,16 +332,20 @@ void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, dou
     });
     prepare_joints(world, islands);
     world.kicked_velocity.resize(world.motion.size());
+    EnergyBounds energy_bounds(world, islands);
     for (int k = 1; k <= world.settings.substeps; ++k) {
         // Forces, constraints that also mend positions, motion.
         kick_before_drift(world, islands, h);
+        energy_bounds.note();
         solve_islands(world, islands, SolvePhase::position, h, k * h);
+        energy_bounds.keep_before_drift();
         drift_all(world, islands, h);
 
         // Constraints on the velocity alone.
         prepare_joints(world, islands);
         kick_after_drift(world, islands, h);
         solve_islands(world, islands, SolvePhase::velocity, h, k * h);
+        energy_bounds.keep();
         for_each_contact(world, islands, [](Contact& contact) { add_to_totals(contact); });
     }
     for (const Island& island : islands) note_outcomes(world, island);
