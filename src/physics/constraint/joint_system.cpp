@@ -106,7 +106,6 @@ void JointSystem::begin_phase(SolvePhase phase, double substep, Motion motion, c
         body.free_velocity = body.last_velocity = state.linear_velocity;
         body.free_spin = body.last_spin = state.angular_velocity;
         if (body.has_gyroscopic_torque) body.free_momentum = momentum_of(state, c);
-        body.before = {state.center, state.rotation};
     }
     for (Place& place : places_) {
         Joint& joint = view.joints[place.joint];

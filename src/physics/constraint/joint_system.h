@@ -62,7 +62,7 @@ public:
     /// Scales the velocities where they have more energy than that, unless motors or moving bodies outside the list may
     /// have given it; returns by how much, at most 1.
     double bound_energy(double most, const View& view) const;
-    /// kg
+    /// Of the list, kg.
     [[nodiscard]] double mass(const View& view) const;
 
 private:
@@ -74,7 +74,7 @@ private:
         Vec3 free_velocity, free_spin;  // without the joints' impulses; the spin of isotropic bodies
         Vec3 free_momentum;             // angular, of the others
         Vec3 last_velocity, last_spin;  // after the last round
-        Transform before, after;        // centre of mass and rotation before the drift and, now, after it
+        Transform after;                // centre of mass and rotation after the drift, as it looks now
         Vec6 impulse;                   // of the joints
         Vec6 second_half;               // change of the velocities after the drift
     };
