@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "physics/collision/choose_four.h"
+#include "physics/collision/round_features.h"
 
 namespace embody::physics {
 
@@ -322,6 +324,30 @@ bool fill_edge_manifold(const BoxView& v, const EdgeAxis& edge, const ConvexPair
     return true;
 }
 
+// The face of the box at home in this view that an edge's normal (its own axes, towards the other) is next to, if that
+// edge lies nearly flat on it: then it crosses two of the face's sides (round_features.h: span_face).
+std::optional<FaceAxis> flat_face(Vec3 normal) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double along = normal[static_cast<int>(k)];
+        if (std::fabs(along) > least_span_cosine)
+            return FaceAxis{.separation = 0, .axis = k, .side = along > 0 ? 1.0 : -1.0};
+    }
+    return std::nullopt;
+}
+
+// Sees the face's region along the edges' normal; whether it tells the depth that they do, at more than one point.
+bool spans(const EdgeAxis& edge, Vec3 normal, Manifold& manifold) {
+    const double cosine = std::fabs(dot(manifold.normal, normal));
+    double deepest = 1e300;
+    for (int i = 0; i < manifold.count; ++i) {
+        double& separation = manifold.points[static_cast<std::size_t>(i)].separation;
+        separation *= cosine;
+        deepest = std::min(deepest, separation);
+    }
+    manifold.normal = normal;
+    return manifold.count > 1 && is_span(deepest, edge.separation);
+}
+
 // How far a direction parts the boxes.
 double gap_along(const BoxView& v, Vec3 direction) {
     const Triple n = triple(direction);
@@ -374,6 +400,16 @@ BoxMeeting collide_boxes(const ConvexPair& pair, double margin, PairMemory& memo
     }
     memory.kind = PairMemory::Kind::nothing;
     if (edge.separation > least) {
+        if (const auto face = flat_face(edge.normal)) {
+            fill_face_manifold(v, *face, true, bias, margin, {nullptr, pair.turn_a, {}}, manifold);
+            if (spans(edge, pair.turn_a * edge.normal, manifold)) return BoxMeeting::region;
+            manifold = {};
+        }
+        if (const auto face = flat_face(transpose(pair.turn) * -edge.normal)) {
+            fill_face_manifold(w, *face, false, bias, margin, {nullptr, pair.turn_b, pair.apart}, manifold);
+            if (spans(edge, pair.turn_a * edge.normal, manifold)) return BoxMeeting::region;
+            manifold = {};
+        }
         return fill_edge_manifold(v, edge, pair, manifold) ? BoxMeeting::region : BoxMeeting::undecided;
     }
     if (face_b.separation <= face_a.separation + bias) {

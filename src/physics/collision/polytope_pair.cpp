@@ -275,7 +275,12 @@ bool collide_polytopes(const ConvexPair& pair, double margin, PairMemory& memory
         region.normal = edge.normal;
         get_edge(pair.placed_a(), edge.edge_a, region.reference);
         get_edge(s.b_in_a, edge.edge_b, region.incident);
-        cross_segments(region.reference, region.incident, 0, 0, margin, region);
+        // An edge that lies nearly flat on a face crosses two of its sides.
+        thread_local ContactFeature face;
+        const bool is_flat =
+            span_face(pair.placed_a(), true, region.incident, 0, edge.separation, margin, face, region) ||
+            span_face(s.b_in_a, false, region.reference, 0, edge.separation, margin, face, region);
+        if (!is_flat) cross_segments(region.reference, region.incident, 0, 0, margin, region);
     } else if (is_face_of_a) {
         memory.kind = Kind::face_of_a;
         memory.feature_a = static_cast<std::uint16_t>(face_a.face);

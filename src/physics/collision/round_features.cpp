@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "physics/collision/round_features.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "physics/collision/polytope_query.h"
 #include "physics/collision/rim.h"
 
 namespace embody::physics {
@@ -253,6 +255,32 @@ void add_sloped_lines(const PlacedConvex& convex, Vec3 direction, std::vector<Sl
         const Vec3 e = normalized(polytope.vertices[edge.to] - polytope.vertices[edge.from]);
         lines.push_back({convex.direction_to_frame(e), 0});
     }
+}
+
+bool is_span(double deepest, double separation) {
+    return std::fabs(deepest - separation) <= 1e-4 * std::fabs(separation) + 1e-6;
+}
+
+bool span_face(const PlacedConvex& owner, bool is_owner_a, const ContactFeature& line, double lift, double separation,
+               double margin, ContactFeature& face, ContactRegion& region) {
+    if (owner.shape->kind != ConvexKind::polytope) return false;
+    const Vec3 crossing_normal = region.normal, outwards = is_owner_a ? crossing_normal : -crossing_normal;
+    const auto nearest = farthest(owner.shape->polytope.normal_lanes, owner.direction_to_local(outwards));
+    if (nearest.along < least_span_cosine) return false;
+    get_polytope_face(owner, nearest.index, face);
+    region.normal = is_owner_a ? face.normal : -face.normal;
+    clip_to_region(face, line, is_owner_a, lift, margin, region);
+
+    // Seen along the crossing's normal, to which both edge and line are square.
+    region.normal = crossing_normal;
+    double deepest = margin;
+    for (ManifoldPoint& point : region.points) {
+        point.separation = (point.separation + lift) * nearest.along - lift;
+        deepest = std::min(deepest, point.separation);
+    }
+    if (region.points.size() > 1 && is_span(deepest, separation)) return true;
+    region.points.clear();
+    return false;
 }
 
 }  // namespace embody::physics

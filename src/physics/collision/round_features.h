@@ -35,4 +35,16 @@ struct SlopedLine {
 /// Those near `direction`: for the normals of two shapes' lines that cross.
 void add_sloped_lines(const PlacedConvex& convex, Vec3 direction, std::vector<SlopedLine>& lines);
 
+/// How near the crossing's normal is to a face's where the two span that face: 8 degrees.
+inline constexpr double least_span_cosine = 0.99;
+/// Whether a face's region is as deep as the crossing.
+bool is_span(double deepest, double separation);
+/// Where an edge of a polytope crosses a line or edge of another shape that lies nearly flat on a face beside that
+/// edge, one point says too little: a plank across a narrow block would rock on one end of its support after the other,
+/// and each end be found only when it has sunk. Adds where the line crosses the face's sides, seen along region.normal;
+/// false, and nothing added, where there is no such face or it tells another depth than `separation`.
+/// `is_owner_a`: the polytope is a; `lift`: radius around the line; `face`: room.
+bool span_face(const PlacedConvex& owner, bool is_owner_a, const ContactFeature& line, double lift, double separation,
+               double margin, ContactFeature& face, ContactRegion& region);
+
 }  // namespace embody::physics

@@ -83,7 +83,10 @@ void collide_round(const PlacedConvex& a, const PlacedConvex& b, double margin, 
     const bool is_line_a = get_aligned_line(a, axis.normal, f.line_a);
     const bool is_line_b = get_aligned_line(b, -axis.normal, f.line_b);
     if (is_line_a && is_line_b) {
-        cross_segments(f.line_a, f.line_b, rounding(*a.shape), rounding(*b.shape), margin, region);
+        const double lift_a = rounding(*a.shape), lift_b = rounding(*b.shape);
+        if (span_face(a, true, f.line_b, lift_b, axis.separation, margin, f.face_a, region)) return;
+        if (span_face(b, false, f.line_a, lift_a, axis.separation, margin, f.face_b, region)) return;
+        cross_segments(f.line_a, f.line_b, lift_a, lift_b, margin, region);
         // Lines that pass each other beyond an end do not meet there: the end itself is the point.
         const auto is_deepest = [&](const ManifoldPoint& p) {
             return p.separation <= axis.separation + 1e-5 * smaller_size(a, b);

@@ -206,7 +206,7 @@ ContactSoftness ContactPlan::softness(double time_step) const {
 }
 
 ContactPlan contact_plan(std::size_t contacts, int substeps) {
-    return contacts <= 64 ? ContactPlan{3 * substeps, 2, 0.3} : ContactPlan{2 * substeps, 1, 0.15};
+    return contacts <= 64 ? ContactPlan{substeps, 2, 0.3} : ContactPlan{2 * substeps, 1, 0.15};
 }
 
 ContactPlan jointed_contact_plan(std::size_t contacts, int substeps) {
