@@ -20,6 +20,7 @@ constexpr int patient_rounds = 12;                       // of such for each sti
 constexpr double softest_share = 1e-3, stiffening = 10;  // of the full one
 constexpr double slope_tolerance = 0.1;                  // of the slope along a step, where its length is searched
 constexpr int most_searches = 12;
+constexpr std::uint64_t least_idle_of_patience = 60;       // steps, as the next two
 constexpr std::uint64_t least_idle = 15, most_idle = 960;  // steps to the next attempt after a vain one
 constexpr std::uint64_t steps_kept = 60;                   // what was found about a graph is kept for, unused
 constexpr double force_tolerance = 1e-7;  // of the largest load: a step that misses the impulses by less is the last
@@ -195,6 +196,9 @@ bool ContactNewton::find_velocities(std::span<const Vec6> free, bool is_patient,
     for (;;) {
         const bool has_converged = iterate(free, patient_rounds, velocity, patches);
         if (stiffness_ >= full_stiffness_) return has_converged;
+        // What does not converge while it is soft hardly will when it is stiff: only what was in vain more than once,
+        // and so is seldom tried, is followed to the end.
+        if (!has_converged && structure_->idle < least_idle_of_patience) return false;
         stiffness_ = std::min(stiffness_ * stiffening, full_stiffness_);
         for (DirectPatch& patch : patches) evaluate(patch, stiffness_, is_damped_);
     }

@@ -2,7 +2,8 @@
 #include "physics/optimization/direct_islands.h"
 
 #include <algorithm>
-#include <array>
+#include <span>
+#include <vector>
 
 #include "physics/constraint/direct_contact_solver.h"
 
@@ -17,21 +18,20 @@ constexpr std::size_t most_products_slow = 20000;  // an upper bound, for what r
 constexpr std::size_t most_products_bad = 4000;    // where they could not
 constexpr double least_load_ratio = 2;             // of all that lies above to a body of a tree below
 
-/// Bodies of each level, and the extremes of their masses.
-struct Levels {
-    struct Level {
-        std::size_t bodies = 0;
-        double least_inverse_mass = 1e300, largest_inverse_mass = 0, mass = 0;
-    };
-    std::array<Level, DirectContactSolver::most_bodies + 1> level;
+/// Bodies of a level, and the extremes of their masses.
+struct Level {
+    std::size_t bodies = 0;
+    double least_inverse_mass = 1e300, largest_inverse_mass = 0, mass = 0;
 };
+using Levels = std::span<const Level>;
 
+// From the ground up; what nothing connects with the ground comes last. Valid until the next call.
 Levels count_levels(const Island& island, const Islands& islands, std::span<const BodyState> bodies) {
-    Levels levels;
+    thread_local std::vector<Level> levels;
+    levels.assign(island.deepest_level + 3, {});
     for (std::uint32_t k = 0; k < island.body_count; ++k) {
         const std::uint32_t body = islands.bodies[island.first_body + k];
-        const std::size_t place = std::min<std::size_t>(islands.level[body], island.deepest_level + 1);
-        Levels::Level& level = levels.level[std::min(place, levels.level.size() - 1)];
+        Level& level = levels[std::min<std::size_t>(islands.level[body], island.deepest_level + 1)];
         ++level.bodies;
         level.least_inverse_mass = std::min(level.least_inverse_mass, bodies[body].inverse_mass);
         level.largest_inverse_mass = std::max(level.largest_inverse_mass, bodies[body].inverse_mass);
@@ -41,20 +41,20 @@ Levels count_levels(const Island& island, const Islands& islands, std::span<cons
 }
 
 // An upper bound of what elimination level by level takes.
-std::size_t block_products(const Levels& levels) {
+std::size_t block_products(Levels levels) {
     std::size_t sum = 0;
-    for (std::size_t i = 0; i + 1 < levels.level.size(); ++i) {
-        const std::size_t here = levels.level[i].bodies, both = here + levels.level[i + 1].bodies;
+    for (std::size_t i = 0; i + 1 < levels.size(); ++i) {
+        const std::size_t here = levels[i].bodies, both = here + levels[i + 1].bodies;
         sum += here * both * both;
     }
     return sum;
 }
 
 // The heaviest body above another one, over that one.
-double mass_ratio(const Levels& levels) {
+double mass_ratio(Levels levels) {
     double ratio = 1, least_inverse_above = 1e300;
-    for (std::size_t i = levels.level.size(); i-- > 0;) {
-        const Levels::Level& level = levels.level[i];
+    for (std::size_t i = levels.size(); i-- > 0;) {
+        const Level& level = levels[i];
         if (level.bodies == 0) continue;
         ratio = std::max(ratio, level.largest_inverse_mass / least_inverse_above);
         least_inverse_above = std::min(least_inverse_above, level.least_inverse_mass);
@@ -63,10 +63,10 @@ double mass_ratio(const Levels& levels) {
 }
 
 // All that lies above a body, over that one.
-double load_ratio(const Levels& levels) {
+double load_ratio(Levels levels) {
     double ratio = 0, above = 0;
-    for (std::size_t i = levels.level.size(); i-- > 0;) {
-        const Levels::Level& level = levels.level[i];
+    for (std::size_t i = levels.size(); i-- > 0;) {
+        const Level& level = levels[i];
         if (level.bodies == 0) continue;
         ratio = std::max(ratio, above * level.largest_inverse_mass);
         above += level.mass;
