@@ -5,6 +5,7 @@
 #include "physics/optimization/solve_schedule.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 namespace embody::physics {
@@ -12,10 +13,12 @@ namespace embody::physics {
 namespace {
 
 constexpr std::uint32_t most_points = Manifold::max_points;
+constexpr std::uint32_t widest_batch = 16;  // contacts; whatever the processor has, so that the order is the same
 
 bool is_movable(const BodyState& body) { return body.inverse_mass > 0; }
 
-// The lowest colour that neither body has; what finds none is left for another round of 64 colours.
+// The lowest colour that neither body has, of those with a batch to fill if there are any; what finds none is left for
+// another round of 64 colours.
 std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<const ContactGlance> contacts,
                             std::span<const BodyState> bodies, SolveSchedule& s) {
     constexpr std::uint32_t colours = 64, none = 0xFFFFFFFFu;
@@ -24,6 +27,8 @@ std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<cons
     std::uint32_t count = 0;
     std::size_t left = order.size();
     for (std::uint32_t base = 0; left > 0; base += colours) {
+        std::array<std::uint32_t, colours> members{};
+        std::uint64_t open = 0;  // colours with a batch that is not full
         for (const std::uint32_t i : order) s.colours[contacts[i].a] = s.colours[contacts[i].b] = 0;
         for (std::size_t k = 0; k < order.size(); ++k) {
             if (s.stage_of[k] != none) continue;
@@ -31,7 +36,10 @@ std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<cons
             const bool a_moves = is_movable(bodies[c.a]), b_moves = is_movable(bodies[c.b]);
             const std::uint64_t used = (a_moves ? s.colours[c.a] : 0) | (b_moves ? s.colours[c.b] : 0);
             if (~used == 0) continue;
-            const auto colour = static_cast<std::uint32_t>(std::countr_one(used));
+            const std::uint64_t fitting = ~used & open ? ~used & open : ~used;
+            const auto colour = static_cast<std::uint32_t>(std::countr_zero(fitting));
+            const std::uint64_t is_open = ++members[colour] % widest_batch != 0 ? 1 : 0;
+            open = (open & ~(std::uint64_t{1} << colour)) | is_open << colour;
             if (a_moves) s.colours[c.a] |= std::uint64_t{1} << colour;
             if (b_moves) s.colours[c.b] |= std::uint64_t{1} << colour;
             s.stage_of[k] = base + colour;
