@@ -352,13 +352,13 @@ void warm_start(float* batch, int points, const ContactSweep& sweep) {
     v.put_back(batch, sweep);
 }
 
-// What a body's turn since the step began adds to an arm (as contact.cpp: motion_of): on a round body only the tilt
-// counts.
-EMBODY_WIDE_INLINE Wide3 turn_of(const Wide row[row_floats], const Wide3& arm, WideMask is_round) {
+// m with n·(what a body's turn R since the step began adds to an arm r) = m·r: m = Rᵀn − n. On a round body only the
+// tilt counts (as contact.cpp: motion_of).
+EMBODY_WIDE_INLINE Wide3 turned_back(const Wide row[row_floats], const Wide3& n, WideMask is_round) {
     const Wide3 turn{row[3], row[4], row[5]};
     const Wide w = row[6], two = broadcast(2);
-    const Wide3 by_tilt = cross(turn, arm) * two;
-    const Wide3 by_turn = by_tilt * w + cross(turn, by_tilt);
+    const Wide3 by_tilt = cross(n, turn) * two;
+    const Wide3 by_turn = by_tilt * w + cross(by_tilt, turn);
     return select(is_round, by_tilt, by_turn);
 }
 
@@ -366,18 +366,17 @@ void separate(float* batch, int points, const ContactSweep& sweep) {
     Wide a[row_floats], b[row_floats];
     gather_rows(sweep.motion, Velocities::rows_of(batch, BatchHead::body_a), a);
     gather_rows(sweep.motion, Velocities::rows_of(batch, BatchHead::body_b), b);
-    const WideMask round_a = load_mask(batch + BatchHead::round_a * lanes);
-    const WideMask round_b = load_mask(batch + BatchHead::round_b * lanes);
-    const Frame f = Frame::of(batch);
+    const Wide3 n = quantity_3(batch, BatchHead::normal);
+    const Wide3 by_arm_a = turned_back(a, n, load_mask(batch + BatchHead::round_a * lanes));
+    const Wide3 by_arm_b = turned_back(b, n, load_mask(batch + BatchHead::round_b * lanes));
 
     // The gap changes linearly over the region: at the anchor, and a metre along each tangent.
-    const Wide3 shift =
-        Wide3{b[0] - a[0], b[1] - a[1], b[2] - a[2]} + turn_of(b, f.arm_b, round_b) - turn_of(a, f.arm_a, round_a);
-    const Wide middle = dot(f.normal, shift);
-    const auto tilt = [&](const Wide3& tangent) {
-        return dot(f.normal, turn_of(b, tangent, round_b) - turn_of(a, tangent, round_a));
-    };
-    const Wide tilt_1 = points > 1 ? tilt(f.tangent_1) : Wide{}, tilt_2 = points > 1 ? tilt(f.tangent_2) : Wide{};
+    const Wide3 by_place = by_arm_b - by_arm_a;
+    const Wide middle =
+        dot(n, Wide3{b[0] - a[0], b[1] - a[1], b[2] - a[2]}) +
+        (dot(by_arm_b, quantity_3(batch, BatchHead::arm_b)) - dot(by_arm_a, quantity_3(batch, BatchHead::arm_a)));
+    const Wide tilt_1 = dot(by_place, quantity_3(batch, BatchHead::tangent_1));
+    const Wide tilt_2 = dot(by_place, quantity_3(batch, BatchHead::tangent_2));
     for (int k = 0; k < points; ++k) {
         float* point = point_of(batch, k);
         const Wide change =

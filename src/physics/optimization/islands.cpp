@@ -5,6 +5,8 @@
 #include "physics/optimization/islands.h"
 
 #include <algorithm>
+#include <span>
+#include <vector>
 
 namespace embody::physics {
 
@@ -88,6 +90,25 @@ void distribute(std::size_t count, std::vector<Island>& list, std::vector<std::u
     }
 }
 
+// By counting; keeps the order of equals.
+template <class LevelOf>
+void sort_by_level(std::span<std::uint32_t> contacts, LevelOf level_of) {
+    thread_local std::vector<std::uint32_t> unsorted, first_of_level;
+    if (std::is_sorted(contacts.begin(), contacts.end(),
+                       [&](std::uint32_t i, std::uint32_t j) { return level_of(i) < level_of(j); })) {
+        return;
+    }
+    unsorted.assign(contacts.begin(), contacts.end());
+    first_of_level.clear();
+    for (const std::uint32_t i : unsorted) {
+        const std::size_t next = std::size_t{level_of(i)} + 1;
+        if (next >= first_of_level.size()) first_of_level.resize(next + 1, 0);
+        ++first_of_level[next];
+    }
+    for (std::size_t i = 1; i < first_of_level.size(); ++i) first_of_level[i] += first_of_level[i - 1];
+    for (const std::uint32_t i : unsorted) contacts[first_of_level[level_of(i)]++] = i;
+}
+
 }  // namespace
 
 void build_islands(std::span<const std::uint32_t> awake, std::span<const BodyState> bodies,
@@ -132,14 +153,16 @@ void build_islands(std::span<const std::uint32_t> awake, std::span<const BodySta
 
     // Solve order: from the ground up; the contacts' own order breaks ties.
     find_levels(bodies, contacts, islands.level);
+    std::uint32_t deepest = 0;
+    for (const std::uint32_t body : awake) {
+        if (islands.level[body] != no_level) deepest = std::max(deepest, islands.level[body]);
+    }
     const auto contact_level = [&](std::uint32_t i) {
-        const std::uint32_t a = islands.level[contacts[i].a], b = islands.level[contacts[i].b];
-        return std::min(a, b);
+        const std::uint32_t level = std::min(islands.level[contacts[i].a], islands.level[contacts[i].b]);
+        return std::min(level, deepest + 1);  // what nothing connects with the ground comes last
     };
     for (Island& island : islands.list) {
-        const auto begin = islands.contacts.begin() + island.first_contact;
-        std::stable_sort(begin, begin + island.contact_count,
-                         [&](std::uint32_t i, std::uint32_t j) { return contact_level(i) < contact_level(j); });
+        sort_by_level(std::span(islands.contacts).subspan(island.first_contact, island.contact_count), contact_level);
         for (std::uint32_t k = 0; k < island.body_count; ++k) {
             const std::uint32_t level = islands.level[islands.bodies[island.first_body + k]];
             if (level != no_level) island.deepest_level = std::max(island.deepest_level, level);
