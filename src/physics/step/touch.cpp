@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <atomic>
 
 #include "physics/step/step.h"
 #include "physics/step/wake.h"
@@ -366,14 +367,21 @@ void place_contacts(WorldState& world, PairTouch& touch, bool is_same) {
     touch.count = touch.next_count;
 }
 
-// Calls work(worker, first, last) for shares of the live pairs, on all workers where there are enough of them.
+// Calls work(worker, share) for shares of the live pairs, on all workers where there are enough of them: each takes the
+// next share when it is done with one, since some pairs take a hundred times as long as others.
 template <class Work>
 void share_pairs(WorldState& world, Work work) {
-    constexpr std::size_t fewest_shared = 200;
+    constexpr std::size_t fewest_shared = 200, pairs_in_share = 64;
     const std::size_t count = world.touch_memory.live.size();
-    if (count < fewest_shared) return work(0, Share{0, count});
-    const int workers = world.workers->workers();
-    world.workers->run([&](int worker) { work(worker, share_of(count, worker, workers)); });
+    if (count < fewest_shared || world.workers->workers() == 1) return work(0, Share{0, count});
+    std::atomic<std::size_t> next{0};
+    world.workers->run([&](int worker) {
+        while (true) {
+            const std::size_t first = next.fetch_add(pairs_in_share, std::memory_order_relaxed);
+            if (first >= count) return;
+            work(worker, Share{first, std::min(first + pairs_in_share, count)});
+        }
+    });
 }
 
 }  // namespace
@@ -395,9 +403,9 @@ void find_contacts(WorldState& world) {
     update_records(world);
     list_old_contacts(world);
     world.contact_glances.resize(world.contacts.size());
+    for (TouchMemory::Worker& worker : memory.workers) worker.found.clear();
     share_pairs(world, [&](int worker, Share share) {
         TouchMemory::Worker& own = memory.workers[static_cast<std::size_t>(worker)];
-        own.found.clear();
         for (std::size_t i = share.first; i < share.last; ++i) {
             PairRecord& record = world.pair_records[memory.live[i]];
             touch_pair(world, record, memory.pairs[i], static_cast<std::uint8_t>(worker), own);
