@@ -247,7 +247,7 @@ void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::
     if (lines_.size() < used_lines_) {
         // What they held is of the last step.
         lines_.clear();
-        lines_.resize(used_lines_ + used_lines_ / 8);
+        lines_.resize(used_lines_ + used_lines_ / 2);
     }
     kicked_.assign(velocity_.size(), {});
     const ContactSweep sweep{.velocity = velocity_[0].value,

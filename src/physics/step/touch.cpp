@@ -150,10 +150,10 @@ double moved_since(const WorldState& world, const PairRecord& record, const Rela
     return distance(now.center, record.relative_center) + 2 * sine * reach;
 }
 
-// Lists of contacts grow by no more than they need: they are most of a world's memory.
+// Lists of contacts are most of a world's memory. They grow by half: by less, what they leave behind adds up to more.
 template <class Item>
-void resize_closely(std::vector<Item>& list, std::size_t size) {
-    if (size > list.capacity()) list.reserve(size + size / 8);
+void resize_list(std::vector<Item>& list, std::size_t size) {
+    if (size > list.capacity()) list.reserve(size + size / 2);
     list.resize(size);
 }
 
@@ -169,7 +169,7 @@ void update_records(WorldState& world) {
         while (next < pairs.size() && pairs[next] < record.pair) ++next;
         if (next < pairs.size() && pairs[next] == record.pair) records[kept++] = record;
     }
-    resize_closely(records, pairs.size());
+    resize_list(records, pairs.size());
     for (std::size_t place = pairs.size(); place-- > 0;) {
         const bool is_known = kept > 0 && records[kept - 1].pair == pairs[place];
         records[place] = is_known ? records[--kept] : PairRecord{.pair = pairs[place]};
@@ -248,7 +248,7 @@ void compare_pair(const WorldState& world, PairRecord& record, OldContacts old, 
     const auto first = static_cast<std::ptrdiff_t>(worker.found.size());
     const Material material = combine(a.definition.material, b.definition.material);
     const std::size_t wanted = worker.found.size() + worker.manifolds.size();
-    if (wanted > worker.found.capacity()) worker.found.reserve(wanted + wanted / 4);
+    if (wanted > worker.found.capacity()) worker.found.reserve(wanted + wanted / 2);
     for (const Manifold& manifold : worker.manifolds) {
         worker.found.push_back(make_contact(pair.a, pair.b, manifold, world.motion, b_is_larger(world, pair)));
         Contact& contact = worker.found.back();
@@ -347,7 +347,7 @@ bool lay_out(WorldState& world) {
     is_same = is_same && total == world.contacts.size();
     if (!is_same) {
         world.last_contacts.swap(world.contacts);
-        resize_closely(world.contacts, total);
+        resize_list(world.contacts, total);
     }
     world.contact_glances.resize(total);
     world.touch_memory.is_laid_out = true;
