@@ -14,6 +14,7 @@ namespace embody::physics {
 struct SurfaceDistance {
     Vec3 normal;  ///< unit, local
     double distance = 0;
+    std::uint32_t face = Polytope::no_face;  ///< of a hull: the point lies over it, or inside and nearest to it
 };
 /// Of points farther off than `enough` only that they are.
 SurfaceDistance distance_from_surface(const Convex& convex, Vec3 local_point, double enough = 1e300);

@@ -86,12 +86,13 @@ SurfaceDistance distance_from_box(const Convex& box, Vec3 p) {
     return {away / distance, distance};
 }
 
-// Whether the point stands over a face: on the inner side of each of its sides.
-bool is_over_face(const Polytope& polytope, const Polytope::Face& face, Vec3 p) {
+// Whether the point stands over a face: on the inner side of each of its sides, by at least `inset` (m, >= 0).
+bool is_over_face(const Polytope& polytope, const Polytope::Face& face, Vec3 p, double inset) {
     for (std::uint32_t i = 0; i < face.count; ++i) {
         const Vec3 u = polytope.vertices[polytope.loops[face.first + i]];
         const Vec3 v = polytope.vertices[polytope.loops[face.first + (i + 1 == face.count ? 0 : i + 1)]];
-        if (dot(cross(v - u, face.normal), p - u) > 0) return false;
+        const double beyond = dot(cross(v - u, face.normal), p - u);
+        if (beyond > 0 || beyond * beyond < inset * inset * length_squared(v - u)) return false;
     }
     return true;
 }
@@ -121,11 +122,11 @@ SurfaceDistance distance_from_polytope(const Convex& convex, Vec3 p, double enou
     std::uint32_t nearest = 0;
     while (heights[nearest] < most) ++nearest;
     const Polytope::Face& face = polytope.faces[nearest];
-    if (most <= 0 || most > enough) return {face.normal, most};
+    if (most <= 0 || most > enough) return {face.normal, most, nearest};
 
     // Outside: the face that it is highest above where it stands over that one (its normal is exact), for no plane is
     // farther. Else an edge or a vertex that it sees.
-    if (is_over_face(polytope, face, p)) return {face.normal, most};
+    if (is_over_face(polytope, face, p, 0)) return {face.normal, most, nearest};
     return to_point(nearest_on_seen_edges(polytope, heights, p), p, face.normal);
 }
 
@@ -150,10 +151,29 @@ SurfaceDistance distance_from_surface(const Convex& convex, Vec3 p, double enoug
     return convex.is_box ? distance_from_box(convex, p) : distance_from_polytope(convex, p, enough);
 }
 
+namespace {
+
+// Whether a sphere that meets the surface at `gap` meets the same face while its centre `p` moves by less than
+// Manifold::whole_way.
+bool stays_over_face(const Convex& convex, Vec3 p, const SurfaceDistance& gap) {
+    if (!convex.is_box) {
+        const Polytope& polytope = convex.polytope;
+        return gap.face != Polytope::no_face &&
+               is_over_face(polytope, polytope.faces[gap.face], p, Manifold::whole_way);
+    }
+    const Vec3 inset = convex.bounds.upper - abs(p);
+    int sides_within = 0;
+    for (int k = 0; k < 3; ++k) sides_within += gap.normal[k] == 0 && inset[k] >= Manifold::whole_way ? 1 : 0;
+    return sides_within == 2;
+}
+
+}  // namespace
+
 void collide_sphere(const PlacedConvex& a, const PlacedConvex& b, double margin, PairMemory& memory,
                     ContactRegion& region) {
     const double radius = a.shape->radius;
-    const SurfaceDistance gap = distance_from_surface(*b.shape, b.to_local(a.position), radius + margin);
+    const Vec3 local = b.to_local(a.position);
+    const SurfaceDistance gap = distance_from_surface(*b.shape, local, radius + margin);
     const double separation = gap.distance - radius;
     if (separation > margin) {
         memory.part_along(a.direction_to_local(-b.direction_to_frame(gap.normal)), separation);
@@ -161,6 +181,12 @@ void collide_sphere(const PlacedConvex& a, const PlacedConvex& b, double margin,
     }
     region.normal = -b.direction_to_frame(gap.normal);
     region.add(a.position + region.normal * radius, separation, 0);
+    const bool is_flat = b.shape->kind == ConvexKind::polytope && stays_over_face(*b.shape, local, gap);
+    memory.kind = PairMemory::Kind::nothing;
+    if (is_flat) {
+        memory.kind = PairMemory::Kind::face_of_b;
+        memory.feature_b = static_cast<std::uint16_t>(support_face(*b.shape, gap.normal));
+    }
 }
 
 }  // namespace embody::physics

@@ -20,18 +20,17 @@ void set_arms(Contact& contact, ContactPoint& point, Vec3 arm_a, Vec3 arm_b, std
 }  // namespace
 
 Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold, std::span<const BodyState> bodies,
-                     bool b_is_larger) {
+                     const SeenFrom& seen) {
     Contact contact;
     contact.a = a;
     contact.b = b;
     contact.piece_a = manifold.piece_a;
     contact.piece_b = manifold.piece_b;
     contact.part = static_cast<std::uint8_t>(manifold.part);
-    contact.b_is_larger = b_is_larger;
+    contact.b_is_larger = seen.b_is_larger;
     contact.normal = to_vec3f(manifold.normal);
     contact.tangent_1 = to_vec3f(any_perpendicular(manifold.normal));
-    const Quat larger = bodies[b_is_larger ? b : a].rotation;
-    contact.local_normal = to_vec3f(rotate_inverse(larger, manifold.normal));
+    contact.local_normal = to_vec3f(rotate_inverse(seen.axes, manifold.normal));
     contact.count = static_cast<std::uint8_t>(manifold.count);
     for (int i = 0; i < manifold.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
@@ -41,7 +40,7 @@ Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold,
         const Vec3 arm_a = found.position - bodies[a].center, arm_b = found.position - bodies[b].center;
         set_arms(contact, point, arm_a, arm_b, bodies);
         const Vec3 half_gap = manifold.normal * (0.5 * found.separation);
-        point.place = to_vec3f(rotate_inverse(larger, b_is_larger ? arm_a - half_gap : arm_b + half_gap));
+        point.place = to_vec3f(rotate_inverse(seen.axes, seen.b_is_larger ? arm_a - half_gap : arm_b + half_gap));
         point.place_separation = point.separation;
     }
     return contact;
@@ -160,7 +159,9 @@ void turn_frame(Contact& contact, Vec3f normal) {
 }  // namespace
 
 // With the smaller body's surface point s, its turn R and shift d since then, all in the larger body's axes: the point
-// is now at R s from the smaller centre, and the gap vector has changed by d + R s − s, up to the sign of who is b.
+// is now at R s from the smaller centre, and the gap vector has changed by d + R s − s, up to the sign of who is b. The
+// contact is midway between the two surface points; of a ball (R = 1) midway on the normal through s, whose foot on the
+// other surface has come along.
 void follow_bodies(Contact& contact, const FollowedPair& pair) {
     contact.was_touching = is_touching(contact);
     contact.was_loaded = is_pressed(contact);
@@ -184,12 +185,13 @@ void follow_bodies(Contact& contact, const FollowedPair& pair) {
     const Four3 by_tilt = cross(all(pair.turn), place) * all(2);
     const Four3 turned = by_tilt * all(pair.turn_w) + cross(all(pair.turn), by_tilt), change = all(pair.shift) + turned;
     const Four3 normal = all(contact.local_normal);
-    const Four3 half_gap = (normal * (separation * sign) + change) * all(0.5F);
+    const Four opening = dot(normal, change);
+    const Four3 half_gap = (normal * (separation * sign) + (pair.has_ball ? normal * opening : change)) * all(0.5F);
     const Four3 arm_smaller = in_axes(pair.axes, place + turned - half_gap);
     const Four3 arm_larger = arm_smaller + all(pair.apart) * sign;
     const Four3 &arm_a = contact.b_is_larger ? arm_smaller : arm_larger,
                 &arm_b = contact.b_is_larger ? arm_larger : arm_smaller;
-    separation += sign * dot(normal, change);
+    separation += sign * opening;
 
     // How fast a point approaches: −n·(Δv + ω_b × arm_b − ω_a × arm_a).
     const Four3 velocity = all(pair.velocity) + cross(all(pair.spin_b), arm_b) - cross(all(pair.spin_a), arm_a);

@@ -44,13 +44,13 @@ struct alignas(64) Contact {
     std::uint8_t count = 0;                  ///< of points
     std::uint8_t part = 0;
     bool sticks : 1 = true;                               ///< holds by static friction until its limit is left
-    bool b_is_larger : 1 = false;                         ///< the normal turns with it; else with a
+    bool b_is_larger : 1 = false;                         ///< see SeenFrom
     bool a_is_round : 1 = false, b_is_round : 1 = false;  ///< rolls: the point of contact does not turn with the body
     bool bounces : 1 = false;                             ///< has a restitution
     bool was_touching : 1 = false;                        ///< in the last step
     bool was_loaded : 1 = false;                          ///< pressed in the last step
     bool had_impact : 1 = false;                          ///< solved by the impact stage in this step
-    Vec3f local_normal;                                   ///< in the axes of the larger body
+    Vec3f local_normal;                                   ///< in the axes of its SeenFrom
     // Second row.
     Vec3f normal, tangent_1;  ///< world; normal from a to b
     float friction_static = 0, friction_dynamic = 0;
@@ -103,20 +103,29 @@ inline Vec3 position_of(const Contact& contact, const ContactPoint& point, std::
 /// Same bodies and pieces, in the order contacts are kept.
 inline std::array<std::uint32_t, 5> contact_key(const Contact& c) { return {c.a, c.b, c.piece_a, c.piece_b, c.part}; }
 
+/// What a contact is seen from while it follows its bodies: the larger body, and its axes; or others, in which the
+/// contact's normal stays as well.
+struct SeenFrom {
+    Quat axes;
+    bool b_is_larger = false;
+};
+
 /// Frame and arms from what the narrow phase found.
 Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold, std::span<const BodyState> bodies,
-                     bool b_is_larger = false);
+                     const SeenFrom& seen = {});
 
 /// A pair of bodies as its contacts see it: from the larger body, whose turning moves surface points the least. All but
-/// the step's motion is in the larger body's axes, and small: so nothing is lost where a body is far from its surface.
+/// the step's motion is in the axes of its SeenFrom, and small: so nothing is lost where a body is far from its
+/// surface.
 struct FollowedPair {
     Vec3f shift;  ///< of the smaller body's centre of mass since the pair was compared, m
     Vec3f turn;   ///< of the smaller body since then, imaginary part of a quaternion whose real part is not negative
     float turn_w = 1;
-    std::array<Vec3f, 3> axes;  ///< the larger body's, world
+    std::array<Vec3f, 3> axes;  ///< of the view, world
     Vec3f apart;                ///< from a's centre of mass to b's, m, world; so are the next three
     Vec3f velocity;             ///< of b's centre of mass relative to a's, m/s
     Vec3f spin_a, spin_b;       ///< rad/s
+    bool has_ball = false;      ///< one is a ball: its point of contact goes with its centre along the other's surface
 };
 
 /// Follows the bodies of a contact that was found in an earlier step: its surface points stay where they are on each

@@ -29,6 +29,7 @@ void set_up_sizes(BodySetup& setup) {
     setup.record.is_round = std::holds_alternative<SphereShape>(shape) || std::holds_alternative<CapsuleShape>(shape) ||
                             std::holds_alternative<CylinderShape>(shape) || std::holds_alternative<ConeShape>(shape);
     setup.record.reach = setup.record.shape->radius_about(setup.constants.local_center);
+    setup.record.is_ball = std::holds_alternative<SphereShape>(shape) && setup.constants.local_center == Vec3{};
     const Vec3 half = setup.record.shape->local_bounds().half_extents();
     setup.record.inner_radius = std::min({half.x, half.y, half.z});
 }

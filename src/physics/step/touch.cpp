@@ -114,36 +114,40 @@ void wake_touched(WorldState& world, std::vector<Manifold>& manifolds) {
 
 // Contacts follow their bodies for as long as the pair has moved less than this since it was compared, m. Every corner
 // that was within the margin then is among the contacts: whatever else comes near had been farther away by this.
-constexpr double follow_window = 0.0025;
+constexpr double follow_window = Manifold::whole_way;
 // Where corners had to be left out (a foot of a chair whose four points lie on the three others) they sink unseen, so
 // the pair is compared again before that matters.
 constexpr double short_follow_window = 5e-4;
 // The point of contact of what rolls does not stay on it; after so short a way the gap is right to a hundredth of it.
 constexpr double round_follow_window = 2e-5;
 
-/// A pair seen from its larger body: turning that one moves surface points the least.
+/// A pair seen from its larger body: turning that one moves surface points the least. A ball's own turn does not count:
+/// it is seen from the other body, and two balls in the world's axes.
 struct RelativePose {
     Vec3 center;
     Quat rotation;
+    SeenFrom seen;
+    bool has_ball = false;
 };
 
 // Planes and meshes have no reach; they count as larger than all else.
 double size_of(const BodyRecord& body) { return body.reach > 0 ? body.reach : 1e300; }
 
-bool b_is_larger(const WorldState& world, const BroadPhase::Pair& pair) {
-    return size_of(world.record(pair.b)) > size_of(world.record(pair.a));
-}
-
 RelativePose relative_pose(const WorldState& world, const BroadPhase::Pair& pair) {
-    const bool from_b = b_is_larger(world, pair);
+    const BodyRecord &a = world.record(pair.a), &b = world.record(pair.b);
+    const bool from_b = a.is_ball != b.is_ball ? a.is_ball : size_of(b) > size_of(a);
     const BodyState& larger = world.motion[from_b ? pair.b : pair.a];
     const BodyState& smaller = world.motion[from_b ? pair.a : pair.b];
-    return {rotate_inverse(larger.rotation, smaller.center - larger.center),
-            conjugate(larger.rotation) * smaller.rotation};
+    if (a.is_ball && b.is_ball) return {smaller.center - larger.center, {}, {{}, from_b}, true};
+    const Vec3 center = rotate_inverse(larger.rotation, smaller.center - larger.center);
+    const bool has_ball = a.is_ball || b.is_ball;
+    const Quat rotation = has_ball ? Quat{} : conjugate(larger.rotation) * smaller.rotation;
+    return {center, rotation, {larger.rotation, from_b}, has_ball};
 }
 
 // Farthest that a surface point of the smaller body has moved relative to the larger one since they were compared.
 double moved_since(const WorldState& world, const PairRecord& record, const RelativePose& now) {
+    if (now.has_ball) return distance(now.center, record.relative_center);
     const double reach = std::min(size_of(world.record(record.pair.a)), size_of(world.record(record.pair.b)));
     const Quat turn = now.rotation * conjugate(record.relative_rotation);
     const double sine = length(Vec3{turn.x, turn.y, turn.z});
@@ -176,6 +180,14 @@ void update_records(WorldState& world) {
     }
 }
 
+// How far a pair may move while its contacts follow it, m.
+double follow_window_of(const BodyRecord& a, const BodyRecord& b, bool is_whole) {
+    // A ball over a face is followed exactly; elsewhere its normal turns with every step.
+    const bool is_exact = is_whole && (a.is_ball || b.is_ball);
+    if ((a.is_round || b.is_round) && !is_exact) return round_follow_window;
+    return is_whole ? follow_window : short_follow_window;
+}
+
 /// The contacts of one pair in the last step.
 using OldContacts = std::span<const Contact>;
 
@@ -188,9 +200,7 @@ bool may_follow(const WorldState& world, const PairRecord& record, OldContacts o
     const double moved = moved_since(world, record, now);
     if (margin + moved > record.margin) return false;
     if (old.empty()) return true;
-    const bool rolls = a.is_round || b.is_round;
-    const double window = rolls ? round_follow_window : record.is_whole ? follow_window : short_follow_window;
-    return moved <= window;
+    return moved <= follow_window_of(a, b, record.is_whole);
 }
 
 // A contact with a mesh is named by a triangle, and another one comes under a sliding body all the time: what is new by
@@ -250,7 +260,7 @@ void compare_pair(const WorldState& world, PairRecord& record, OldContacts old, 
     const std::size_t wanted = worker.found.size() + worker.manifolds.size();
     if (wanted > worker.found.capacity()) worker.found.reserve(wanted + wanted / 2);
     for (const Manifold& manifold : worker.manifolds) {
-        worker.found.push_back(make_contact(pair.a, pair.b, manifold, world.motion, b_is_larger(world, pair)));
+        worker.found.push_back(make_contact(pair.a, pair.b, manifold, world.motion, now.seen));
         Contact& contact = worker.found.back();
         set_material(contact, material);
         contact.a_is_round = a.is_round;
@@ -277,7 +287,7 @@ FollowedPair followed_pair(const WorldState& world, const PairRecord& record, co
     const BodyState &a = world.motion[record.pair.a], &b = world.motion[record.pair.b];
     const Quat turn = now.rotation * conjugate(record.relative_rotation);
     const double sign = turn.w < 0 ? -1 : 1;
-    const Mat3 axes = to_matrix((b_is_larger(world, record.pair) ? b : a).rotation);
+    const Mat3 axes = to_matrix(now.seen.axes);
     return {.shift = to_vec3f(now.center - record.relative_center),
             .turn = to_vec3f(sign * Vec3{turn.x, turn.y, turn.z}),
             .turn_w = static_cast<float>(sign * turn.w),
@@ -285,7 +295,8 @@ FollowedPair followed_pair(const WorldState& world, const PairRecord& record, co
             .apart = to_vec3f(b.center - a.center),
             .velocity = to_vec3f(b.linear_velocity - a.linear_velocity),
             .spin_a = to_vec3f(a.angular_velocity),
-            .spin_b = to_vec3f(b.angular_velocity)};
+            .spin_b = to_vec3f(b.angular_velocity),
+            .has_ball = now.has_ball};
 }
 
 // Decides what a pair has in this step: what it had follows its bodies, or is found anew.

@@ -36,6 +36,7 @@ struct BodyRecord {
     const CollisionShape* shape = nullptr;  ///< nullptr: none
     double reach = 0;                       ///< farthest surface point from the centre of mass, m
     bool is_round = false;                  ///< rolls: its contacts do not stay where they are on it
+    bool is_ball = false;                   ///< a sphere about its centre of mass: turning changes nothing
     std::uint32_t version = 0;     ///< another one after each change of the body's shape, kind or pose by the user
     double inner_radius = 0;       ///< half the thinnest extent: a body that moves farther in a step may tunnel, m
     Vec3 next_force, next_torque;  ///< for the next step only, cleared by report; N, N m about the centre of mass
