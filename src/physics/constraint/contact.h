@@ -33,7 +33,7 @@ struct ContactPoint {
     float total = 0;             ///< along the normal, of the whole step, impacts included, N s
     float inactive_until = 0;    ///< s in the step: until then an impact lets the surfaces part, or they are not there
     std::uint32_t feature = 0;   ///< what it is on the two shapes
-    float unused = 0;
+    float unused = 0;            ///< fills the row
 };
 
 /// One contact region (paper, III.B) as a constraint between two bodies.
@@ -59,9 +59,9 @@ struct alignas(64) Contact {
     PatchFriction friction_total;  ///< of the whole step, impacts included
     float friction_torsional = 0, friction_rolling = 0;
     // Fourth row.
-    Vec3f rolling;             ///< moment of rolling resistance on b, of the last substep, N m s, world
-    float approach_speed = 0;  ///< fastest point when found, m/s, >= 0
-    std::array<float, 4> unused{};
+    Vec3f rolling;                  ///< moment of rolling resistance on b, of the last substep, N m s, world
+    float approach_speed = 0;       ///< fastest point when found, m/s, >= 0
+    std::array<float, 4> unused{};  ///< fills the row
 
     std::array<ContactPoint, Manifold::max_points> points;
 };
