@@ -4,9 +4,9 @@ target_compile_options(embody_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshad
                        -Woverloaded-virtual -Wnull-dereference -Wmisleading-indentation
                        -Wno-missing-field-initializers)  # designated initialisers leave out what keeps its default
 # gcc 12 reports null dereferences, uninitialised uses and (its bug 105651, "text" + string) overlapping copies inside
-# the standard library's own inlined code.
+# the standard library's own inlined code, and (psabi) what gcc 4.6 changed about types as wide as a cache line.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  target_compile_options(embody_warnings INTERFACE -Wno-null-dereference -Wno-maybe-uninitialized -Wno-restrict)
+  target_compile_options(embody_warnings INTERFACE -Wno-null-dereference -Wno-maybe-uninitialized -Wno-restrict -Wno-psabi)
 endif()
 if(EMBODY_WARNINGS_AS_ERRORS)
   target_compile_options(embody_warnings INTERFACE -Werror)
