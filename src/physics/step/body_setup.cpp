@@ -5,6 +5,7 @@
 
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/dynamic/mass.h"
+#include "physics/step/pair_watch.h"
 #include "physics/step/wake.h"
 
 namespace embody::physics {
@@ -88,6 +89,7 @@ void place_body(WorldState& world, std::uint32_t body, BodySetup setup) {
     world.constants[body] = setup.constants;
     world.motion[body] = setup.state;
     world.sleep[body] = setup.sleep;
+    introduce_body(world, body);
 
     const BodyRecord& record = world.record(body);
     const BodyDefinition& definition = record.definition;

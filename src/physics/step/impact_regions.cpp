@@ -32,9 +32,10 @@ void ImpactRegions::collide_at(const Contact& contact, double time) {
 
     // The touch stage's memory of the pair is of other poses, and stays so.
     const BroadPhase::Pair pair{contact.a, contact.b};
-    const auto record = std::lower_bound(world_.pair_records.begin(), world_.pair_records.end(), pair,
-                                         [](const PairRecord& r, const BroadPhase::Pair& p) { return r.pair < p; });
-    PairMemory pair_memory = record->memory;
+    const TouchMemory& touch = world_.touch_memory;
+    const auto watch = std::lower_bound(touch.watches.begin(), touch.watches.end(), pair,
+                                        [](const PairWatch& w, const BroadPhase::Pair& p) { return w.pair < p; });
+    PairMemory pair_memory = touch.records[watch->record].memory;
     collide(*a.shape, paths_.pose_at(contact.a, time), *b.shape, paths_.pose_at(contact.b, time), 0.02, pair_memory,
             memory_.manifolds);
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "physics/step/pair_watch.h"
 #include "physics/step/step.h"
 #include "physics/step/wake.h"
 
@@ -15,10 +16,8 @@ constexpr double base_margin = 0.005;
 constexpr double wake_gap = 1e-4;
 
 bool may_collide(const WorldState& world, std::uint32_t a, std::uint32_t b) {
-    const BodyDefinition& da = world.record(a).definition;
-    const BodyDefinition& db = world.record(b).definition;
-    if (!da.enabled || !db.enabled) return false;
-    if (!(da.collision_group & db.collision_mask) || !(db.collision_group & da.collision_mask)) return false;
+    const TouchBody &ta = world.touch_memory.bodies[a], &tb = world.touch_memory.bodies[b];
+    if (!(ta.group & tb.mask) || !(tb.group & ta.mask)) return false;
     return world.jointed_pairs.empty() || !world.jointed_pairs.contains({a, b});
 }
 
@@ -33,19 +32,15 @@ bool is_moving(const WorldState& world, std::uint32_t body) {
 // How far the surfaces can approach each other within the step: the margin of the narrow phase.
 double margin_of(const WorldState& world, std::uint32_t a, std::uint32_t b) {
     const double dt = world.settings.time_step;
-    const BodyState& ma = world.motion[a];
-    const BodyState& mb = world.motion[b];
-    const Vec3 velocity = mb.linear_velocity - ma.linear_velocity;
-    const Vec3 acceleration = (mb.inverse_mass > 0 ? world.constants[b].acceleration : Vec3{}) -
-                              (ma.inverse_mass > 0 ? world.constants[a].acceleration : Vec3{});
-    const double turning =
-        length(ma.angular_velocity) * world.record(a).reach + length(mb.angular_velocity) * world.record(b).reach;
-    const double travel = (length(velocity) + turning) * dt + length(acceleration) * dt * dt / 2;
+    const TouchBody &ta = world.touch_memory.bodies[a], &tb = world.touch_memory.bodies[b];
+    const Vec3 velocity = world.motion[b].linear_velocity - world.motion[a].linear_velocity;
+    const double travel =
+        (length(velocity) + (ta.turning + tb.turning)) * dt + length(tb.acceleration - ta.acceleration) * dt * dt / 2;
 
     // Beyond the size of the movable body a contact normal says little; the continuous stage takes over there.
     double size = 1e300;
-    if (ma.inverse_mass > 0) size = std::min(size, world.record(a).reach);
-    if (mb.inverse_mass > 0) size = std::min(size, world.record(b).reach);
+    if (ta.yields) size = std::min(size, ta.size);
+    if (tb.yields) size = std::min(size, tb.size);
     return base_margin + std::min(travel, 2 * size);
 }
 
@@ -63,24 +58,6 @@ bool meets_in_step(const WorldState& world, const Contact& contact) {
         if (point.separation - std::max(0.0, approach) * world.settings.time_step < wake_gap) return true;
     }
     return false;
-}
-
-// Lists the pairs that can have contacts or wake a sleeper; what sleeps, or stands for ever, costs nothing.
-void list_live_pairs(WorldState& world) {
-    TouchMemory& memory = world.touch_memory;
-    const std::uint64_t pairs_version = world.broad_phase.pairs_version();
-    if (memory.pairs_version == pairs_version && memory.awake_version == world.awake_version) return;
-    memory.pairs_version = pairs_version;
-    memory.awake_version = world.awake_version;
-    memory.is_laid_out = false;
-    memory.live.clear();
-    const auto is_awake = [&](std::uint32_t body) {
-        return !world.is_asleep(body) && world.record(body).definition.kind != BodyKind::static_body;
-    };
-    const std::vector<BroadPhase::Pair>& pairs = *world.pairs;
-    for (std::uint32_t i = 0; i < pairs.size(); ++i) {
-        if (is_awake(pairs[i].a) || is_awake(pairs[i].b)) memory.live.push_back(i);
-    }
 }
 
 // Wakes the sleeping one of two bodies, with its group, if the other one is about to touch it.
@@ -107,7 +84,8 @@ void wake_touched(WorldState& world, std::vector<Manifold>& manifolds) {
         // What woke may wake more: any later pair counts now.
         for (std::size_t i = live + 1; i < pairs.size(); ++i) wake_if_touched(world, pairs[i], manifolds);
         gather_awake(world);
-        list_live_pairs(world);
+        update_watches(world);
+        start_motion(world);
         return;
     }
 }
@@ -130,12 +108,9 @@ struct RelativePose {
     bool has_ball = false;
 };
 
-// Planes and meshes have no reach; they count as larger than all else.
-double size_of(const BodyRecord& body) { return body.reach > 0 ? body.reach : 1e300; }
-
 RelativePose relative_pose(const WorldState& world, const BroadPhase::Pair& pair) {
-    const BodyRecord &a = world.record(pair.a), &b = world.record(pair.b);
-    const bool from_b = a.is_ball != b.is_ball ? a.is_ball : size_of(b) > size_of(a);
+    const TouchBody &a = world.touch_memory.bodies[pair.a], &b = world.touch_memory.bodies[pair.b];
+    const bool from_b = a.is_ball != b.is_ball ? a.is_ball : b.size > a.size;
     const BodyState& larger = world.motion[from_b ? pair.b : pair.a];
     const BodyState& smaller = world.motion[from_b ? pair.a : pair.b];
     if (a.is_ball && b.is_ball) return {smaller.center - larger.center, {}, {{}, from_b}, true};
@@ -146,9 +121,10 @@ RelativePose relative_pose(const WorldState& world, const BroadPhase::Pair& pair
 }
 
 // Farthest that a surface point of the smaller body has moved relative to the larger one since they were compared.
-double moved_since(const WorldState& world, const PairRecord& record, const RelativePose& now) {
+double moved_since(const WorldState& world, const BroadPhase::Pair& pair, const PairRecord& record,
+                   const RelativePose& now) {
     if (now.has_ball) return distance(now.center, record.relative_center);
-    const double reach = std::min(size_of(world.record(record.pair.a)), size_of(world.record(record.pair.b)));
+    const double reach = std::min(world.touch_memory.bodies[pair.a].size, world.touch_memory.bodies[pair.b].size);
     const Quat turn = now.rotation * conjugate(record.relative_rotation);
     const double sine = length(Vec3{turn.x, turn.y, turn.z});
     return distance(now.center, record.relative_center) + 2 * sine * reach;
@@ -161,27 +137,8 @@ void resize_list(std::vector<Item>& list, std::size_t size) {
     list.resize(size);
 }
 
-// Brings the records in step with the pairs of the broad phase, both sorted, in place: what is gone is taken out from
-// the front on, what is new put in from the back on.
-void update_records(WorldState& world) {
-    if (world.pairs_version == world.broad_phase.pairs_version()) return;
-    world.pairs_version = world.broad_phase.pairs_version();
-    const std::vector<BroadPhase::Pair>& pairs = *world.pairs;
-    std::vector<PairRecord>& records = world.pair_records;
-    std::size_t kept = 0, next = 0;
-    for (const PairRecord& record : records) {
-        while (next < pairs.size() && pairs[next] < record.pair) ++next;
-        if (next < pairs.size() && pairs[next] == record.pair) records[kept++] = record;
-    }
-    resize_list(records, pairs.size());
-    for (std::size_t place = pairs.size(); place-- > 0;) {
-        const bool is_known = kept > 0 && records[kept - 1].pair == pairs[place];
-        records[place] = is_known ? records[--kept] : PairRecord{.pair = pairs[place]};
-    }
-}
-
 // How far a pair may move while its contacts follow it, m.
-double follow_window_of(const BodyRecord& a, const BodyRecord& b, bool is_whole) {
+double follow_window_of(const TouchBody& a, const TouchBody& b, bool is_whole) {
     // A ball over a face is followed exactly; elsewhere its normal turns with every step.
     const bool is_exact = is_whole && (a.is_ball || b.is_ball);
     if ((a.is_round || b.is_round) && !is_exact) return round_follow_window;
@@ -191,16 +148,22 @@ double follow_window_of(const BodyRecord& a, const BodyRecord& b, bool is_whole)
 /// The contacts of one pair in the last step.
 using OldContacts = std::span<const Contact>;
 
+/// A pair as it is in this step.
+struct PairNow {
+    BroadPhase::Pair pair;
+    RelativePose pose;
+    double margin = 0;  ///< how near the surfaces must be to meet within the step, m
+    double moved = 0;   ///< since the pair was compared, m
+    OldContacts old;
+};
+
 // Whether the last comparison still tells all: same bodies, hardly moved, and searched as far as now needed.
-bool may_follow(const WorldState& world, const PairRecord& record, OldContacts old, double margin,
-                const RelativePose& now) {
-    const BodyRecord &a = world.record(record.pair.a), &b = world.record(record.pair.b);
+bool may_follow(const WorldState& world, const PairRecord& record, const PairNow& now) {
+    const TouchBody &a = world.touch_memory.bodies[now.pair.a], &b = world.touch_memory.bodies[now.pair.b];
     if (record.version_a != a.version || record.version_b != b.version) return false;
-    if (record.contact_count != old.size()) return false;
-    const double moved = moved_since(world, record, now);
-    if (margin + moved > record.margin) return false;
-    if (old.empty()) return true;
-    return moved <= follow_window_of(a, b, record.is_whole);
+    if (record.contact_count != now.old.size()) return false;
+    if (now.margin + now.moved > record.margin) return false;
+    return now.old.empty() || now.moved <= follow_window_of(a, b, record.is_whole);
 }
 
 // A contact with a mesh is named by a triangle, and another one comes under a sliding body all the time: what is new by
@@ -233,13 +196,13 @@ void match_by_normal(OldContacts old, std::span<Contact> contacts, bool a_is_sur
 }
 
 // Finds the contacts of a pair anew and hands them the impulses of the old ones.
-void compare_pair(const WorldState& world, PairRecord& record, OldContacts old, double margin, const RelativePose& now,
-                  TouchMemory::Worker& worker) {
-    const BroadPhase::Pair pair = record.pair;
+void compare_pair(const WorldState& world, PairRecord& record, const PairNow& now, TouchMemory::Worker& worker) {
+    const BroadPhase::Pair pair = now.pair;
+    const OldContacts old = now.old;
     const BodyRecord &a = world.record(pair.a), &b = world.record(pair.b);
     if (record.version_a != a.version || record.version_b != b.version) record.memory = {};
     worker.manifolds.clear();
-    const double searched = margin + follow_window;
+    const double searched = now.margin + follow_window;
     collide(*a.shape, world.pose(pair.a), *b.shape, world.pose(pair.b), searched, record.memory, worker.manifolds);
     record.version_a = a.version;
     record.version_b = b.version;
@@ -247,8 +210,8 @@ void compare_pair(const WorldState& world, PairRecord& record, OldContacts old, 
     record.margin = searched;
     record.is_whole = std::all_of(worker.manifolds.begin(), worker.manifolds.end(),
                                   [](const Manifold& manifold) { return manifold.is_whole; });
-    record.relative_center = now.center;
-    record.relative_rotation = now.rotation;
+    record.relative_center = now.pose.center;
+    record.relative_rotation = now.pose.rotation;
     if (worker.manifolds.empty()) {
         const bool is_apart = record.memory.kind == PairMemory::Kind::apart;
         if (is_apart) record.margin = std::max(searched, record.memory.gap);
@@ -260,7 +223,7 @@ void compare_pair(const WorldState& world, PairRecord& record, OldContacts old, 
     const std::size_t wanted = worker.found.size() + worker.manifolds.size();
     if (wanted > worker.found.capacity()) worker.found.reserve(wanted + wanted / 2);
     for (const Manifold& manifold : worker.manifolds) {
-        worker.found.push_back(make_contact(pair.a, pair.b, manifold, world.motion, now.seen));
+        worker.found.push_back(make_contact(pair.a, pair.b, manifold, world.motion, now.pose.seen));
         Contact& contact = worker.found.back();
         set_material(contact, material);
         contact.a_is_round = a.is_round;
@@ -277,14 +240,15 @@ void compare_pair(const WorldState& world, PairRecord& record, OldContacts old, 
             match_points(*old_contact, *contact);
         }
     }
-    const bool a_is_surface = size_of(a) == 1e300;
-    if (!old.empty() && (a_is_surface || size_of(b) == 1e300)) {
+    const bool a_is_surface = a.reach == 0;
+    if (!old.empty() && (a_is_surface || b.reach == 0)) {
         match_by_normal(old, std::span(worker.found).subspan(static_cast<std::size_t>(first)), a_is_surface);
     }
 }
 
-FollowedPair followed_pair(const WorldState& world, const PairRecord& record, const RelativePose& now) {
-    const BodyState &a = world.motion[record.pair.a], &b = world.motion[record.pair.b];
+FollowedPair followed_pair(const WorldState& world, const PairRecord& record, const PairNow& pair) {
+    const BodyState &a = world.motion[pair.pair.a], &b = world.motion[pair.pair.b];
+    const RelativePose& now = pair.pose;
     const Quat turn = now.rotation * conjugate(record.relative_rotation);
     const double sign = turn.w < 0 ? -1 : 1;
     const Mat3 axes = to_matrix(now.seen.axes);
@@ -299,91 +263,111 @@ FollowedPair followed_pair(const WorldState& world, const PairRecord& record, co
             .has_ball = now.has_ball};
 }
 
-// Decides what a pair has in this step: what it had follows its bodies, or is found anew.
-void touch_pair(WorldState& world, PairRecord& record, PairTouch& touch, std::uint8_t finder,
-                TouchMemory::Worker& worker) {
-    // One of the two must be able to answer an impulse, and neither may sleep.
-    touch.next_count = 0;
-    touch.finder = PairTouch::follows;
-    const auto [a, b] = record.pair;
-    if (world.motion[a].inverse_mass == 0 && world.motion[b].inverse_mass == 0) return;
-    if (world.is_asleep(a) || world.is_asleep(b)) return;
-    if (!may_collide(world, a, b)) return;
-    const OldContacts old = OldContacts(world.contacts).subspan(touch.first, touch.count);
-    const double margin = margin_of(world, a, b);
-    const RelativePose now = relative_pose(world, record.pair);
-    if (may_follow(world, record, old, margin, now)) {
-        touch.next_count = touch.count;
-        if (touch.count == 0) return;
-        const FollowedPair followed = followed_pair(world, record, now);
-        for (std::uint32_t i = touch.first; i < touch.first + touch.count; ++i) {
-            follow_bodies(world.contacts[i], followed);
-            world.contact_glances[i] = glance_at(world.contacts[i]);
-        }
-        return;
+// Puts a pair's newly found contacts in the place of as many old ones.
+void replace_contacts(WorldState& world, PairTouch& touch, TouchMemory::Worker& worker) {
+    for (std::uint32_t k = 0; k < touch.count; ++k) {
+        world.contacts[touch.first + k] = worker.found[touch.found_first + k];
+        world.contact_glances[touch.first + k] = glance_at(world.contacts[touch.first + k]);
     }
+    worker.found.resize(touch.found_first);
+    touch.finder = PairTouch::keeps;
+}
+
+void follow_contacts(WorldState& world, const PairTouch& touch, const FollowedPair& followed) {
+    for (std::uint32_t i = touch.first; i < touch.first + touch.count; ++i) {
+        follow_bodies(world.contacts[i], followed);
+        world.contact_glances[i] = glance_at(world.contacts[i]);
+    }
+}
+
+// One of the two must be able to answer an impulse, and neither may sleep.
+bool may_touch(const WorldState& world, const BroadPhase::Pair& pair) {
+    const std::vector<TouchBody>& bodies = world.touch_memory.bodies;
+    if (!bodies[pair.a].yields && !bodies[pair.b].yields) return false;
+    const bool may_sleep = !world.sleepers.empty();
+    if (may_sleep && (world.is_asleep(pair.a) || world.is_asleep(pair.b))) return false;
+    return may_collide(world, pair.a, pair.b);
+}
+
+// Decides what a pair has in this step: what it had follows its bodies, or is found anew.
+void touch_pair(WorldState& world, PairTouch& touch, std::uint8_t finder, TouchMemory::Worker& worker) {
+    PairWatch& watch = world.touch_memory.watches[touch.watch];
+    if (!may_touch(world, watch.pair)) return;
+    PairRecord& record = world.touch_memory.records[watch.record];
+    PairNow now{.pair = watch.pair,
+                .pose = relative_pose(world, watch.pair),
+                .margin = margin_of(world, watch.pair.a, watch.pair.b),
+                .old = OldContacts(world.contacts).subspan(touch.first, touch.count)};
+    now.moved = moved_since(world, watch.pair, record, now.pose);
+    if (may_follow(world, record, now)) {
+        touch.next_count = touch.count;
+        if (touch.count > 0) return follow_contacts(world, touch, followed_pair(world, record, now));
+        return leave_alone(world, watch, record.margin - now.moved - base_margin);
+    }
+
     touch.finder = finder;
     touch.found_first = static_cast<std::uint32_t>(worker.found.size());
-    compare_pair(world, record, old, margin, now, worker);
+    compare_pair(world, record, now, worker);
     touch.next_count = static_cast<std::uint32_t>(worker.found.size()) - touch.found_first;
+    if (touch.next_count == touch.count) replace_contacts(world, touch, worker);
+    watch.look_again = 0;
+    if (touch.next_count == 0) leave_alone(world, watch, record.margin - base_margin);
 }
 
-// Pairs and the last contacts are sorted alike: one pass over the two meets every old partner.
-void list_old_contacts(WorldState& world) {
-    TouchMemory& memory = world.touch_memory;
-    if (memory.is_laid_out) return;
-    const std::vector<Contact>& last = world.contacts;
-    memory.pairs.resize(memory.live.size());
-    std::uint32_t next = 0;
-    const auto count = static_cast<std::uint32_t>(last.size());
-    for (std::size_t i = 0; i < memory.pairs.size(); ++i) {
-        const BroadPhase::Pair pair = world.pair_records[memory.live[i]].pair;
-        while (next < count && BroadPhase::Pair{last[next].a, last[next].b} < pair) ++next;
-        memory.pairs[i].first = next;
-        while (next < count && BroadPhase::Pair{last[next].a, last[next].b} == pair) ++next;
-        memory.pairs[i].count = next - memory.pairs[i].first;
-    }
+// Moves the contacts that a pair keeps to their next place.
+void move_kept(WorldState& world, const PairTouch& touch) {
+    const auto move = [&](auto& list) {
+        const auto from = list.begin() + touch.first, to = list.begin() + touch.next_first;
+        touch.next_first < touch.first ? std::copy(from, from + touch.count, to)
+                                       : std::copy_backward(from, from + touch.count, to + touch.count);
+    };
+    move(world.contacts);
+    move(world.contact_glances);
 }
 
-// Gives each pair's contacts their place in the order of the pairs, which does not depend on who found them. Where all
-// keep theirs the contacts stay where they lie; else they move over from the last ones.
-bool lay_out(WorldState& world) {
+// Gives each pair's contacts their place in the order of the pairs, which does not depend on who found them. All move
+// within one list: those that move down in ascending order, then those that move up in descending order, never come to
+// lie on one that has yet to move.
+void lay_out(WorldState& world) {
+    std::vector<PairTouch>& pairs = world.touch_memory.pairs;
     std::uint32_t total = 0;
     bool is_same = true;
-    for (PairTouch& touch : world.touch_memory.pairs) {
+    for (PairTouch& touch : pairs) {
         touch.next_first = total;
         total += touch.next_count;
-        is_same = is_same && touch.next_first == touch.first && touch.next_count == touch.count;
+        is_same = is_same && touch.next_count == touch.count;
     }
-    is_same = is_same && total == world.contacts.size();
-    if (!is_same) {
-        world.last_contacts.swap(world.contacts);
-        resize_list(world.contacts, total);
+    if (is_same) return;
+    resize_list(world.contacts, std::max<std::size_t>(world.contacts.size(), total));
+    world.contact_glances.resize(world.contacts.size());
+    const auto keeps = [](const PairTouch& t) { return t.finder == PairTouch::keeps && t.next_count > 0; };
+    for (auto t = pairs.begin(); t != pairs.end(); ++t) {
+        if (keeps(*t) && t->next_first < t->first) move_kept(world, *t);
     }
+    for (auto t = pairs.rbegin(); t != pairs.rend(); ++t) {
+        if (keeps(*t) && t->next_first > t->first) move_kept(world, *t);
+    }
+
+    // What is new fills the places between.
+    for (const PairTouch& touch : pairs) {
+        if (touch.next_count == touch.count) continue;
+        world.touch_memory.watches[touch.watch].count = touch.next_count;
+        for (std::uint32_t k = 0; k < touch.next_count; ++k) {
+            const Contact& contact = world.touch_memory.workers[touch.finder].found[touch.found_first + k];
+            world.contacts[touch.next_first + k] = contact;
+            world.contact_glances[touch.next_first + k] = glance_at(contact);
+        }
+    }
+    world.contacts.resize(total);
     world.contact_glances.resize(total);
-    world.touch_memory.is_laid_out = true;
-    return is_same;
 }
 
-// Puts a pair's contacts to their place among this step's.
-void place_contacts(WorldState& world, PairTouch& touch, bool is_same) {
-    const bool follows = touch.finder == PairTouch::follows;
-    for (std::uint32_t k = 0; k < touch.next_count && !(follows && is_same); ++k) {
-        Contact& contact = world.contacts[touch.next_first + k];
-        contact = follows ? world.last_contacts[touch.first + k]
-                          : world.touch_memory.workers[touch.finder].found[touch.found_first + k];
-        world.contact_glances[touch.next_first + k] = glance_at(contact);
-    }
-    touch.first = touch.next_first;
-    touch.count = touch.next_count;
-}
-
-// Calls work(worker, share) for shares of the live pairs, on all workers where there are enough of them: each takes the
-// next share when it is done with one, since some pairs take a hundred times as long as others.
+// Calls work(worker, share) for shares of the pairs to look at, on all workers where there are enough of them: each
+// takes the next share when it is done with one, since some pairs take a hundred times as long as others.
 template <class Work>
 void share_pairs(WorldState& world, Work work) {
     constexpr std::size_t fewest_shared = 200, pairs_in_share = 64;
-    const std::size_t count = world.touch_memory.live.size();
+    const std::size_t count = world.touch_memory.pairs.size();
     if (count < fewest_shared || world.workers->workers() == 1) return work(0, Share{0, count});
     std::atomic<std::size_t> next{0};
     world.workers->run([&](int worker) {
@@ -395,37 +379,35 @@ void share_pairs(WorldState& world, Work work) {
     });
 }
 
+// Records lie anywhere: they are asked for while the pairs before are looked at.
+constexpr std::size_t fetched_ahead = 4;
+void fetch(const TouchMemory& memory, const PairTouch& touch) {
+    const PairRecord& record = memory.records[memory.watches[touch.watch].record];
+    __builtin_prefetch(&record.version_a);
+    __builtin_prefetch(&record.memory);
+}
+
 }  // namespace
 
 void find_contacts(WorldState& world) {
-    // From here on the bodies' motion tells how contacts change.
     TouchMemory& memory = world.touch_memory;
     memory.workers.resize(static_cast<std::size_t>(world.workers->workers()));
-    list_live_pairs(world);
+    update_watches(world);
+    start_motion(world);
     wake_touched(world, memory.workers[0].manifolds);
-    for (const std::uint32_t body : world.awake) {
-        BodyState& state = world.motion[body];
-        state.start_center = state.center;
-        state.start_rotation = state.rotation;
-        state.turn = {};
-    }
 
-    // What each live pair has.
-    update_records(world);
-    list_old_contacts(world);
+    // What each near pair has.
+    list_near_pairs(world);
     world.contact_glances.resize(world.contacts.size());
     for (TouchMemory::Worker& worker : memory.workers) worker.found.clear();
     share_pairs(world, [&](int worker, Share share) {
         TouchMemory::Worker& own = memory.workers[static_cast<std::size_t>(worker)];
         for (std::size_t i = share.first; i < share.last; ++i) {
-            PairRecord& record = world.pair_records[memory.live[i]];
-            touch_pair(world, record, memory.pairs[i], static_cast<std::uint8_t>(worker), own);
+            if (i + fetched_ahead < share.last) fetch(memory, memory.pairs[i + fetched_ahead]);
+            touch_pair(world, memory.pairs[i], static_cast<std::uint8_t>(worker), own);
         }
     });
-    const bool is_same = lay_out(world);
-    share_pairs(world, [&](int, Share share) {
-        for (std::size_t i = share.first; i < share.last; ++i) place_contacts(world, memory.pairs[i], is_same);
-    });
+    lay_out(world);
 }
 
 }  // namespace embody::physics

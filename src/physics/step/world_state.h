@@ -10,7 +10,6 @@
 #include "foundation/task_pool.h"
 #include "physics/collision/broad_phase.h"
 #include "physics/collision/collision_shape.h"
-#include "physics/collision/pair_memory.h"
 #include "physics/constraint/contact.h"
 #include "physics/constraint/direct_contact_solver.h"
 #include "physics/constraint/joint_system.h"
@@ -22,6 +21,7 @@
 #include "physics/optimization/islands.h"
 #include "physics/optimization/solve_schedule.h"
 #include "physics/step/impact_memory.h"
+#include "physics/step/touch_memory.h"
 
 namespace embody::physics {
 
@@ -62,40 +62,6 @@ struct LeavingBody {
     Vec3 motion;    ///< m, in this step
 };
 
-/// What the touch stage remembers of a pair of bodies that may touch.
-struct PairRecord {
-    BroadPhase::Pair pair;
-    std::uint32_t version_a = 0, version_b = 0;  ///< of the bodies when last compared; 0: never
-    std::uint32_t contact_count = 0;             ///< found then
-    double margin = 0;                           ///< nothing else was as near then, m
-    bool is_whole = false;                       ///< the contacts are all corners within the margin, then
-    Vec3 relative_center;                        ///< of the smaller body seen from the larger one, then
-    Quat relative_rotation;
-    PairMemory memory;
-};
-
-/// What one pair has in a step: contacts that follow its bodies, or newly found ones.
-struct PairTouch {
-    std::uint32_t first = 0, count = 0;            ///< its contacts as they lie now
-    std::uint32_t next_first = 0, next_count = 0;  ///< and as this step will have them
-    std::uint32_t found_first = 0;                 ///< in its finder's
-    std::uint8_t finder = follows;                 ///< worker that found them
-    static constexpr std::uint8_t follows = 255;
-};
-
-/// Memory of the touch stage.
-struct TouchMemory {
-    struct Worker {
-        std::vector<Contact> found;
-        std::vector<Manifold> manifolds;
-    };
-    std::vector<std::uint32_t> live;  ///< ascending indices of the pairs in which at least one body is awake
-    std::uint64_t pairs_version = 0, awake_version = 0;  ///< that live was listed of
-    std::vector<PairTouch> pairs;                        ///< one for each of live
-    bool is_laid_out = false;  ///< contacts lie as pairs tells; cleared by whoever adds or removes some
-    std::vector<Worker> workers;
-};
-
 /// Two touching bodies as the contact events know them.
 struct TouchingPair {
     BodyHandle a, b;
@@ -119,8 +85,6 @@ struct WorldState {
     BroadPhase broad_phase;                                // find pairs
     std::vector<std::vector<LeavingBody>> leaving;         // find pairs: memory only, by worker
     const std::vector<BroadPhase::Pair>* pairs = nullptr;  // find pairs
-    std::vector<PairRecord> pair_records;                  // touch: one for each of pairs
-    std::uint64_t pairs_version = 0;                       // touch: of pair_records
     TouchMemory touch_memory;                              // touch
     std::uint32_t last_body_version = 0;                   // face
     std::vector<std::uint32_t> awake;                      // wake: slots of moving bodies, ascending
@@ -130,7 +94,6 @@ struct WorldState {
     std::vector<Contact> contacts;                         // touch; impulses: impact, substeps
     std::vector<ContactGlance> contact_glances;            // touch, substeps, sleep: one for each of contacts
     ImpactMemory impact_memory;                            // impact
-    std::vector<Contact> last_contacts;                    // touch: memory only
     std::vector<Joint> active_joints;                      // islands; impulses: substeps
     std::vector<std::uint32_t> active_joint_slots;         // islands
     Islands islands;                                       // islands
