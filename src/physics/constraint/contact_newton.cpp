@@ -11,18 +11,17 @@ namespace embody::physics {
 
 namespace {
 
-constexpr double stiffness_share = 1e5;                  // k over the heaviest mass
-constexpr int whole_rounds = 4;                          // of Newton's method with whole steps; then
-constexpr int damped_rounds = 8;                         // with steps as far as f falls, or, with patience,
-constexpr std::size_t patient_work = 12000;              // products of 6×6 blocks in all
-constexpr double small_miss = 0.1;                       // of the largest load: patience is not needed
-constexpr int patient_rounds = 12;                       // of such for each stiffness from
-constexpr double softest_share = 1e-3, stiffening = 10;  // of the full one
-constexpr double slope_tolerance = 0.1;                  // of the slope along a step, where its length is searched
+constexpr double stiffness_share = 1e5;     // k over the heaviest mass,
+constexpr double rest_stiffness = 1e-2;     // of that where the sweeps' loads are the guess for what rests,
+constexpr double settling_stiffness = 0.1;  // and where those of a step before are, which found it at rest
+constexpr int hasty_rounds = 4;             // of Newton's method with whole steps; then
+constexpr int lagged_rounds = 8;            // with steps as far as f falls
+constexpr int rest_rounds = 16;             // of such for what rests
+constexpr double slope_tolerance = 0.1;     // of the slope along a step, where its length is searched
 constexpr int most_searches = 12;
-constexpr std::uint64_t least_idle_of_patience = 60;       // steps, as the next two
 constexpr std::uint64_t least_idle = 15, most_idle = 960;  // steps to the next attempt after a vain one
-constexpr std::uint64_t steps_kept = 60;                   // what was found about a graph is kept for, unused
+constexpr std::uint64_t most_rests = 60;  // steps in a row: what is not held by its last impulses then never will be
+constexpr std::uint64_t steps_kept = 60;  // what was found about a graph is kept for, unused
 constexpr double force_tolerance = 1e-7;  // of the largest load: a step that misses the impulses by less is the last
 constexpr std::uint32_t no_edge = 0xFFFFFFFFu;
 
@@ -62,6 +61,11 @@ WorldStiffness world_stiffness(const DirectPatch& patch) {
     s.uu = outer(n, n * p.x.x) + outer(t1, t1 * f.x.x) + outer(t2, t2 * f.y.y) + symmetric_outer(t1, t2 * f.x.y);
     s.uw = outer(n, t1 * p.x.y + t2 * p.x.z) + outer(t1 * f.x.z + t2 * f.y.z, n);
     s.ww = outer(n, n * f.z.z) + outer(t1, t1 * p.y.y) + outer(t2, t2 * p.z.z) + symmetric_outer(t1, t2 * p.y.z);
+    const Mat3& c = patch.coupling_slope;
+    if (c == Mat3::zero()) return s;
+    s.uu += symmetric_outer(n, t1 * c(0, 0) + t2 * c(0, 1));
+    s.uw += outer(n, n * c(0, 2)) + outer(t1, t1 * c(1, 0) + t2 * c(2, 0)) + outer(t2, t1 * c(1, 1) + t2 * c(2, 1));
+    s.ww += symmetric_outer(t1 * c(1, 2) + t2 * c(2, 2), n);
     return s;
 }
 
@@ -91,8 +95,20 @@ bool ContactNewton::has_given_up(std::uint32_t key) const {
 }
 
 void ContactNewton::give_up() {
+    structure_->rests = 0;
     structure_->idle = std::clamp(2 * structure_->idle, least_idle, most_idle);
     structure_->idle_until = step_ + structure_->idle;
+}
+
+void ContactNewton::note_rest() {
+    if (structure_->last_rest + 1 != step_) structure_->rests = 0;
+    structure_->last_rest = step_;
+    ++structure_->rests;
+    if (structure_->rests < most_rests) {
+        structure_->idle = 0;
+    } else {
+        give_up();
+    }
 }
 
 // The one of that key, or one that was not needed for a while, or a new one.
@@ -137,10 +153,12 @@ void ContactNewton::find_structure(std::uint32_t key, std::span<const DirectPatc
 void ContactNewton::factor(std::span<DirectPatch> patches) {
     const auto is_known = [](const DirectPatch& patch) {
         return patch.normal_slope == patch.factored_normal_slope &&
-               patch.friction_slope == patch.factored_friction_slope;
+               patch.friction_slope == patch.factored_friction_slope &&
+               patch.coupling_slope == patch.factored_coupling_slope;
     };
     if (has_factors_ && std::all_of(patches.begin(), patches.end(), is_known)) return;
     has_factors_ = true;
+    work_ += block_products();
     BlockCholesky& matrix = structure_->matrix;
     matrix.clear();
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -151,6 +169,7 @@ void ContactNewton::factor(std::span<DirectPatch> patches) {
         DirectPatch& patch = patches[i];
         patch.factored_normal_slope = patch.normal_slope;
         patch.factored_friction_slope = patch.friction_slope;
+        patch.factored_coupling_slope = patch.coupling_slope;
         const WorldStiffness s = world_stiffness(patch);
         const Mat3 wu = transpose(s.uw);
 
@@ -179,29 +198,27 @@ void ContactNewton::set_patch_velocities(std::span<const Vec6> velocity, std::sp
     for (DirectPatch& patch : patches) patch.velocity = relative_twist(patch, velocity);
 }
 
-bool ContactNewton::find_velocities(std::span<const Vec6> free, bool is_patient, std::span<Vec6> velocity,
+bool ContactNewton::find_velocities(std::span<const Vec6> free, std::span<Vec6> velocity,
                                     std::span<DirectPatch> patches) {
     stiffness_ = full_stiffness_;
     begin_from(free, velocity, patches);
-    is_damped_ = false;
-    is_patient_ = is_patient;
-    work_ = 0;
-    if (iterate(free, whole_rounds, velocity, patches)) return true;
-    is_damped_ = true;
-    if (!is_patient || miss_ < small_miss) return iterate(free, damped_rounds, velocity, patches);
+    bound_ = FrictionBound::hasty;
+    if (iterate(free, hasty_rounds, velocity, patches)) return true;
+    bound_ = FrictionBound::lagged;
+    return iterate(free, lagged_rounds, velocity, patches);
+}
 
-    // From soft to stiff: which points are loaded and what sticks changes little by little while nothing is stiff.
-    stiffness_ = full_stiffness_ * softest_share;
-    begin_from(free, velocity, patches);
-    for (;;) {
-        const bool has_converged = iterate(free, patient_rounds, velocity, patches);
-        if (stiffness_ >= full_stiffness_) return has_converged;
-        // What does not converge while it is soft hardly will when it is stiff: only what was in vain more than once,
-        // and so is seldom tried, is followed to the end.
-        if (!has_converged && structure_->idle < least_idle_of_patience) return false;
-        stiffness_ = std::min(stiffness_ * stiffening, full_stiffness_);
-        for (DirectPatch& patch : patches) evaluate(patch, stiffness_, is_damped_);
+bool ContactNewton::find_rest(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches) {
+    const bool is_settling = structure_->rests > 0 && structure_->last_rest + 1 == step_;
+    stiffness_ = full_stiffness_ * (is_settling ? settling_stiffness : rest_stiffness);
+    bound_ = FrictionBound::coupled;
+    std::fill(velocity.begin(), velocity.end(), Vec6{});
+    set_patch_velocities(velocity, patches);
+    for (DirectPatch& patch : patches) {
+        begin_coupled(patch);
+        evaluate(patch, stiffness_, bound_);
     }
+    return iterate(free, rest_rounds, velocity, patches);
 }
 
 // The first step goes where all that was loaded and stuck stays so.
@@ -214,15 +231,14 @@ void ContactNewton::begin_from(std::span<const Vec6> free, std::span<Vec6> veloc
 // Rounds until the impulses are right for this stiffness.
 bool ContactNewton::iterate(std::span<const Vec6> free, int rounds, std::span<Vec6> velocity,
                             std::span<DirectPatch> patches) {
-    for (int round = 0; round < rounds && (!is_patient_ || work_ < patient_work); ++round) {
-        work_ += block_products();
+    for (int round = 0; round < rounds; ++round) {
         if (!step(free, velocity, patches)) continue;
 
         // Friction under the loads that were found.
         bool is_wrong = false;
         for (DirectPatch& patch : patches) is_wrong = breaks_away(patch) || is_wrong;
         if (!is_wrong) return true;
-        for (DirectPatch& patch : patches) evaluate(patch, stiffness_, is_damped_);
+        for (DirectPatch& patch : patches) evaluate(patch, stiffness_, bound_);
     }
     return false;
 }
@@ -243,7 +259,7 @@ bool ContactNewton::step(std::span<const Vec6> free, std::span<Vec6> velocity, s
 
     // How far.
     double share = 1;
-    if (is_damped_) {
+    if (bound_ != FrictionBound::hasty) {
         slope_by_mass_ = curvature_by_mass_ = 0;
         for (std::size_t i = 0; i < bodies_.size(); ++i) {
             slope_by_mass_ -= dot(right_side_[i], direction[i]);
@@ -259,7 +275,7 @@ bool ContactNewton::step(std::span<const Vec6> free, std::span<Vec6> velocity, s
 double ContactNewton::slope_at(double share, std::span<const DirectPatch> patches) const {
     double slope = slope_by_mass_ + share * curvature_by_mass_;
     for (const DirectPatch& patch : patches) {
-        slope -= dot(impulse_at(patch, patch.velocity + patch.change * share, stiffness_), patch.change);
+        slope -= dot(impulse_at(patch, patch.velocity + patch.change * share, stiffness_, bound_), patch.change);
     }
     return slope;
 }
@@ -286,17 +302,24 @@ bool ContactNewton::evaluate_after(double share, std::span<DirectPatch> patches)
     double largest = 0, error = 0;
     for (DirectPatch& patch : patches) {
         patch.change = patch.change * share;
-        const Vec3 foretold_normal = patch.impulse.normal_part - patch.normal_slope * patch.change.normal_part;
-        const Vec3 foretold_friction = patch.impulse.friction_part - patch.friction_slope * patch.change.friction_part;
+        const PatchTwist change = patch.change;
+        const Vec3 foretold_normal = patch.impulse.normal_part - patch.normal_slope * change.normal_part -
+                                     patch.coupling_slope * change.friction_part;
+        const Vec3 foretold_friction = patch.impulse.friction_part - patch.friction_slope * change.friction_part -
+                                       transpose(patch.coupling_slope) * change.normal_part;
         foretell_loads(patch, stiffness_);
         patch.velocity = patch.velocity + patch.change;
-        evaluate(patch, stiffness_, is_damped_);
+        evaluate(patch, stiffness_, bound_);
         largest = std::max(largest, std::fabs(patch.impulse.normal_part.x));
         error = std::max(error, length_squared(patch.impulse.normal_part - foretold_normal));
         error = std::max(error, length_squared(patch.impulse.friction_part - foretold_friction));
     }
-    miss_ = error > 0 ? std::sqrt(error) / std::max(largest, std::sqrt(error)) : 0;
-    return miss_ <= force_tolerance;
+    return std::sqrt(error) <= force_tolerance * std::max(largest, std::sqrt(error));
+}
+
+void ContactNewton::drop_friction(std::span<DirectPatch> patches) {
+    for (DirectPatch& patch : patches) physics::drop_friction(patch, stiffness_);
+    factor(patches);
 }
 
 void ContactNewton::find_shifts(std::span<const DirectPatch> patches, double share, double most,

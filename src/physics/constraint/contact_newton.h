@@ -21,23 +21,34 @@ struct NewtonBody {
 class ContactNewton {
 public:
     /// Starts a step.
-    void begin_step() { ++step_; }
+    void begin_step() {
+        ++step_;
+        work_ = 0;
+    }
     /// Starts a list. Patches number the bodies by their place; `key` names lists that are likely the same ones as in
     /// the last step.
     void begin(std::uint32_t key, std::span<const NewtonBody> bodies, std::span<const DirectPatch> patches);
-    /// A list that needed patience in vain is not tried again for a while.
+    /// A list that was tried in vain, or that does not come to a stop, is not tried again for a while.
     void give_up();
+    /// The list was solved, and its bodies hardly move.
+    void note_rest();
     [[nodiscard]] bool has_given_up(std::uint32_t key) const;
     /// Products of two 6×6 blocks that one round takes.
     [[nodiscard]] std::size_t block_products() const { return structure_->matrix.block_products(); }
 
-    /// From the velocities that the forces alone would give, finds the true ones and each patch's impulse. False where
-    /// the method does not converge; with patience it tries harder.
-    bool find_velocities(std::span<const Vec6> free, bool is_patient, std::span<Vec6> velocity,
-                         std::span<DirectPatch> patches);
+    /// The same, done in this step so far.
+    [[nodiscard]] std::size_t work() const { return work_; }
 
+    /// From the velocities that the forces alone would give, finds the true ones and each patch's impulse. False where
+    /// the method does not converge.
+    bool find_velocities(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches);
+    /// The same for bodies that hardly move: friction and loads together, from where nothing moves.
+    bool find_rest(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches);
+
+    /// Before find_shifts(): bodies may slide while they are moved. Else what sticks stays where it is.
+    void drop_friction(std::span<DirectPatch> patches);
     /// Small motions that close `share` of the gaps and overlaps of all loaded points, each by `most` m at most; after
-    /// find_velocities(), with its factors.
+    /// find_velocities() or find_rest(), with the last factors.
     void find_shifts(std::span<const DirectPatch> patches, double share, double most, std::span<Vec6> shifts);
 
 private:
@@ -45,6 +56,8 @@ private:
     struct Structure {
         std::uint32_t key = 0;
         std::uint64_t idle_until = 0, idle = 0;         ///< step; steps between the last two attempts
+        std::uint64_t last_rest = 0;                    ///< step that found it at rest
+        std::uint64_t rests = 0;                        ///< steps in a row that found it so
         std::uint64_t last_step = 0;                    ///< in which it was used
         std::vector<std::array<std::int32_t, 2>> ends;  ///< of the patches
         std::size_t bodies = 0;
@@ -65,12 +78,10 @@ private:
 
     std::span<const NewtonBody> bodies_;
     double full_stiffness_ = 0;
-    double stiffness_ = 0;      // k, kg
-    bool has_factors_ = false;  // of this list
-    double miss_ = 0;           // largest difference between an impulse and what was foretold, of the largest load
-    bool is_patient_ = false;
-    std::size_t work_ = 0;                              // products of 6×6 blocks so far
-    bool is_damped_ = false;                            // steps go only as far as f falls
+    double stiffness_ = 0;                              // k, kg
+    bool has_factors_ = false;                          // of this list
+    std::size_t work_ = 0;                              // products of 6×6 blocks
+    FrictionBound bound_ = FrictionBound::hasty;        // steps go only as far as f falls, but in haste
     double slope_by_mass_ = 0, curvature_by_mass_ = 0;  // of f along the step, kg m²/s²
     std::vector<Vec6> direction_, right_side_;
     std::vector<Structure> structures_;

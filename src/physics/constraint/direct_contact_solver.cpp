@@ -12,16 +12,16 @@ namespace embody::physics {
 
 namespace {
 
-constexpr double slow = 5e-3;        // m/s: an island of slower points is solved once a step,
-constexpr double end_slow = 1e-3;    // if then they are slower than this
+constexpr double slow = 0.02;        // m/s: an island of slower points is solved once a step, if they stay slower
 constexpr double rest_speed = 1e-6;  // m/s, rad/s: changes that rounding may leave
-constexpr double rest_gap = 2e-6;    // m: what resting points may be apart or overlap
-constexpr double mend_share = 0.2;   // of a gap or an overlap closed in the one solve of a step at rest,
+constexpr double rest_gap = 2e-5;    // m: what resting points may be apart or overlap
+constexpr double rest_mend = 0.5;    // of a gap or an overlap closed in the one solve of a step at rest,
 constexpr double slow_mend = 0.005;  // and in a substep of what moves: lifting is work that a rocking column keeps
+constexpr double rest_shift = 2e-3;  // m: of a body in a step at rest, at most
 constexpr double mend_speed = 3;     // m/s, at most
-constexpr double mend_gap = 1e-7;    // m: smaller ones are let be
-// Products of 6×6 blocks a round: where the sweeps would do as well, a failed attempt must not cost much more.
-constexpr std::size_t most_products_slow = 4000;
+constexpr double mend_gap = 1e-7;    // m: in motion smaller ones are let be
+// Products of 6×6 blocks, of a round and of all lists of a step, where the sweeps would do as well.
+constexpr std::size_t most_products_slow = 16000, most_products_step = 60000;
 constexpr double least_turn = 1e-3;  // rad in a step: slower, the inertia hardly turns with the body
 
 bool has_gyroscopic_torque(const BodyState& state, const BodyConstants& constants, double time) {
@@ -53,13 +53,14 @@ bool DirectContactSolver::solve(const List& list, Effort effort, std::span<BodyS
     const auto is_fast = [&](std::uint32_t body) { return length_squared(bodies[body].linear_velocity) > slow * slow; };
     if (only_slow && std::any_of(list.bodies.begin(), list.bodies.end(), is_fast)) return false;
 
-    if (only_slow && newton_.has_given_up(list.bodies.front())) return false;
+    if (only_slow && (newton_.has_given_up(list.bodies.front()) || newton_.work() > most_products_step)) return false;
 
     // Slow bodies in one go; should they turn out to move, from the beginning again.
     gather(list, bodies, constants, contacts, 1);
     if (only_slow && newton_.block_products() > most_products_slow) return false;
     if (is_slow(slow)) {
-        if (run(1, only_slow, contacts) && is_slow(end_slow)) {
+        if (rest(only_slow, contacts) && is_slow(slow)) {
+            newton_.note_rest();
             scatter(bodies, constants, contacts, 1);
             return true;
         }
@@ -67,7 +68,7 @@ bool DirectContactSolver::solve(const List& list, Effort effort, std::span<BodyS
     }
     if (only_slow) return false;
     gather(list, bodies, constants, contacts, moving_substeps_);
-    if (!run(moving_substeps_, false, contacts)) return false;
+    if (!move(moving_substeps_, contacts)) return false;
     scatter(bodies, constants, contacts, moving_substeps_);
     return true;
 }
@@ -227,18 +228,36 @@ bool DirectContactSolver::is_slow(double most) const {
     });
 }
 
-bool DirectContactSolver::run(int substeps, bool is_patient, std::span<const Contact> contacts) {
+// One solve for the whole step. What is solved directly in motion too mostly goes on as it was, which takes one round.
+bool DirectContactSolver::rest(bool only_slow, std::span<const Contact> contacts) {
+    measure_gaps(contacts);
+    for (DirectPatch& patch : patches_) begin_substep(patch, h_, h_, rest_gap);
+    kick();
+    const bool goes_on = !only_slow && newton_.find_velocities(free_velocity_, velocity_, patches_);
+    if (!goes_on && !newton_.find_rest(free_velocity_, velocity_, patches_)) return false;
+    drift();
+    measure_gaps(contacts);
+    if (worst_gap() > rest_gap) {
+        // What sticks would hold on to its overlaps, or open other contacts while they close.
+        newton_.drop_friction(patches_);
+        mend_positions(rest_mend, rest_shift, contacts);
+    }
+    for (DirectPatch& patch : patches_) end_substep(patch);
+    return true;
+}
+
+bool DirectContactSolver::move(int substeps, std::span<const Contact> contacts) {
     measure_gaps(contacts);
     for (int substep = 1; substep <= substeps; ++substep) {
         // Forces and what answers them.
         for (DirectPatch& patch : patches_) begin_substep(patch, substep * h_, h_);
         kick();
-        if (!newton_.find_velocities(free_velocity_, is_patient, velocity_, patches_)) return false;
+        if (!newton_.find_velocities(free_velocity_, velocity_, patches_)) return false;
 
         // Motion.
         drift();
         measure_gaps(contacts);
-        mend_positions(substeps > 1 ? slow_mend : mend_share, contacts);
+        if (worst_gap() > mend_gap) mend_positions(slow_mend, mend_speed * h_, contacts);
         for (DirectPatch& patch : patches_) end_substep(patch);
     }
     return true;
@@ -283,19 +302,24 @@ void DirectContactSolver::measure_gaps(std::span<const Contact> contacts) {
     }
 }
 
-void DirectContactSolver::mend_positions(double share, std::span<const Contact> contacts) {
-    // Nothing to do most of the time.
+double DirectContactSolver::worst_gap() const {
     double worst = 0;
     for (const DirectPatch& patch : patches_) {
         for (const DirectPatch::Point& point : patch.points) {
             if (point.is_loaded) worst = std::max(worst, std::fabs(point.gap));
         }
     }
-    if (worst < mend_gap) return;
+    return worst;
+}
+
+void DirectContactSolver::mend_positions(double share, double most, std::span<const Contact> contacts) {
     newton_.find_shifts(patches_, share, mend_speed * h_, shift_);
+    double longest = 0;
+    for (const Vec6& shift : shift_) longest = std::max(longest, length(shift.linear()));
+    const double scale = longest > most ? most / longest : 1;
     for (std::size_t i = 0; i < motion_.size(); ++i) {
-        motion_[i].way += shift_[i].linear();
-        motion_[i].turn = normalized(cayley(shift_[i].angular()) * motion_[i].turn);
+        motion_[i].way += shift_[i].linear() * scale;
+        motion_[i].turn = normalized(cayley(shift_[i].angular() * scale) * motion_[i].turn);
     }
     measure_gaps(contacts);
 }

@@ -14,7 +14,7 @@ namespace embody::physics {
 /// no island: it is given lists. Keeps its memory from step to step.
 class DirectContactSolver {
 public:
-    static constexpr std::size_t most_bodies = 128;
+    static constexpr std::size_t most_bodies = 256;
 
     /// Slots of movable bodies, and indices of all the contacts that they have with each other and with bodies that
     /// stand still.
@@ -58,11 +58,13 @@ private:
     void scatter(std::span<BodyState> bodies, std::span<const BodyConstants> constants, std::span<Contact> contacts,
                  int substeps) const;
     [[nodiscard]] bool is_slow(double most) const;
-    [[nodiscard]] bool run(int substeps, bool is_patient, std::span<const Contact> contacts);
+    [[nodiscard]] bool rest(bool only_slow, std::span<const Contact> contacts);
+    [[nodiscard]] bool move(int substeps, std::span<const Contact> contacts);
     void kick();
     void drift();
     void measure_gaps(std::span<const Contact> contacts);
-    void mend_positions(double share, std::span<const Contact> contacts);
+    [[nodiscard]] double worst_gap() const;
+    void mend_positions(double share, double most, std::span<const Contact> contacts);
 
     double time_step_ = 0;  // s
     int moving_substeps_ = 0;

@@ -8,8 +8,9 @@ namespace embody::physics {
 
 namespace {
 
-constexpr double lag_tolerance = 0.02;  // share of its size by which the metric of friction may be wrong
-constexpr double near = 1e-3;           // m/s: new points that part no faster are taken as loaded first
+constexpr double lag_tolerance = 0.02;   // share of its size by which the metric of friction may be wrong
+constexpr double near = 1e-3;            // m/s: new points that part no faster are taken as loaded first
+constexpr double least_spin_arm = 1e-3;  // of the patch's extent: less is what rounding left of a single loaded point
 
 double wanted_load(const DirectPatch::Point& point, Vec3 normal_part, double stiffness) {
     return point.guess - stiffness * (dot(row_of(point), normal_part) + point.limit);
@@ -27,9 +28,7 @@ Vec3 wanted_friction(const DirectPatch& patch, Vec3 friction_part, double stiffn
     return guess - stiffness * (metric(patch) * friction_part);
 }
 
-double friction_bound(const DirectPatch& patch) {
-    return (patch.sticks ? patch.friction_static : patch.friction_dynamic) * patch.lagged_load;
-}
+double coefficient(const DirectPatch& patch) { return patch.sticks ? patch.friction_static : patch.friction_dynamic; }
 
 // In the metric ℓ (w_1, w_2).
 Vec3 wanted_rolling(const DirectPatch& patch, Vec3 normal_part, double stiffness) {
@@ -143,12 +142,15 @@ void lag_loads(DirectPatch& patch, bool from_guess) {
         s /= sum;
         t /= sum;
     }
-    double arm = 0;
+    double arm = 0, extent = 0;
     for (const DirectPatch::Point& point : points) {
         const double along = point.s - s, across = point.t - t;
-        arm += load_of(point) * std::sqrt(along * along + across * across);
+        const double distance = std::sqrt(along * along + across * across);
+        arm += load_of(point) * distance;
+        extent = std::max(extent, distance);
     }
     arm = sum > 0 ? arm / sum : 0;
+    if (arm < least_spin_arm * extent) arm = 0;
     if (patch.friction_dynamic > 0) arm += patch.torsion_arm / patch.friction_dynamic;
 
     // A centre that hardly moved stays, so that the factors serve again.
@@ -160,31 +162,41 @@ void lag_loads(DirectPatch& patch, bool from_guess) {
     patch.spin_arm = arm;
 }
 
-// The loads that the last step foretold bound the friction: those at a velocity that is not yet the right one may be
-// anything. What sticks keeps its metric, so that the factors serve again.
-void lag_foretold_loads(DirectPatch& patch) {
+double foretold_load(const DirectPatch& patch) {
     double load = 0;
     for (int i = 0; i < patch.count; ++i) {
         load += std::max(patch.points[static_cast<std::size_t>(i)].foretold, 0.0);
     }
+    return load;
+}
+
+// The loads that the last step foretold bound the friction: those at a velocity that is not yet the right one may be
+// anything. What sticks keeps its metric, so that the factors serve again.
+void lag_foretold_loads(DirectPatch& patch) {
     if (patch.is_new || patch.is_sliding || patch.is_rolling) {
         lag_loads(patch, false);
     } else {
-        patch.lagged_load = load;
+        patch.lagged_load = foretold_load(patch);
     }
 }
 
 }  // namespace
 
-void begin_substep(DirectPatch& patch, double time, double duration) {
+void begin_substep(DirectPatch& patch, double time, double duration, double slack) {
     for (int i = 0; i < patch.count; ++i) {
         DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
         point.is_active = time > point.inactive_until;
         if (!point.is_active) point.guess = 0;
-        point.limit = std::max(point.gap, 0.0) / duration;
+        const bool touches = point.guess > 0 && point.gap <= slack;
+        point.limit = touches ? 0 : std::max(point.gap, 0.0) / duration;
     }
     lag_loads(patch, true);
     patch.is_new = patch.lagged_load == 0;
+}
+
+void begin_coupled(DirectPatch& patch) {
+    patch.is_sliding = !patch.sticks;
+    lag_loads(patch, true);
 }
 
 void end_substep(DirectPatch& patch) {
@@ -213,68 +225,173 @@ bool breaks_away(DirectPatch& patch) {
     return breaks;
 }
 
-void evaluate(DirectPatch& patch, double stiffness, bool is_damped) {
-    const PatchTwist& velocity = patch.velocity;
-    // Normal loads.
-    Vec3 normal_part;
-    patch.normal_slope = Mat3::zero();
-    for (int i = 0; i < patch.count; ++i) {
-        DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
-        const double wanted = wanted_load(point, velocity.normal_part, stiffness);
-        point.is_loaded = point.is_active && wanted > 0;
-        point.load = point.is_loaded ? wanted : 0;
+namespace {
+
+/// Loads and friction within Coulomb's cone.
+struct InCone {
+    std::array<double, Manifold::max_points> load{};
+    int loaded = 0;         // points
+    Vec3 friction;          // y, in the metric
+    bool is_inside = true;  // as wanted; else on the cone:
+    Vec3 direction;         // of y
+    double shorter = 0;     // s, by which y is shorter than wanted, N s
+    double size = 0;        // |y'|, N s
+};
+
+// The nearest to the wanted λ', y' with λ >= 0 and |y| <= μ Σ λ (paper, eqs. 4 and 7 together): λ_i = max(0, λ'_i + μ
+// s), |y| = |y'| − s. On the cone μ Σ max(0, λ'_i + μ s) = |y'| − s, whose left side is convex and rises: Newton's
+// method from s = 0 oversteps once, then comes down through one set of loaded points after the other.
+InCone nearest_in_cone(const DirectPatch& patch, const PatchTwist& velocity, double stiffness) {
+    InCone cone;
+    const double mu = coefficient(patch);
+    std::array<double, Manifold::max_points> wanted{};
+    const auto points = std::span(patch.points).first(static_cast<std::size_t>(patch.count));
+    double sum = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        wanted[i] = points[i].is_active ? wanted_load(points[i], velocity.normal_part, stiffness) : -1e300;
+        sum += std::max(wanted[i], 0.0);
+    }
+    cone.friction = wanted_friction(patch, velocity.friction_part, stiffness);
+    cone.size = length(cone.friction);
+    cone.is_inside = cone.size <= mu * sum;
+    for (std::size_t round = 0; !cone.is_inside && round < points.size() + 2; ++round) {
+        double load = 0, loaded = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (wanted[i] + mu * cone.shorter <= 0) continue;
+            load += wanted[i];
+            loaded += 1;
+        }
+        const double next = std::min((cone.size - mu * load) / (1 + mu * mu * loaded), cone.size);
+        if (next == cone.shorter) break;
+        cone.shorter = next;
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        cone.load[i] = std::max(wanted[i] + mu * cone.shorter, 0.0);
+        if (cone.load[i] > 0) ++cone.loaded;
+    }
+    if (cone.is_inside) return cone;
+    cone.direction = cone.friction / cone.size;
+    cone.friction = cone.direction * (cone.size - cone.shorter);
+    return cone;
+}
+
+// Writes down the points' loads; returns their force and moments, and the sum of their rows.
+template <class LoadOf>
+std::pair<Vec3, Vec3> note_loads(DirectPatch& patch, double stiffness, LoadOf load_of) {
+    Vec3 normal_part, rows;
+    patch.normal_slope = patch.coupling_slope = Mat3::zero();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(patch.count); ++i) {
+        DirectPatch::Point& point = patch.points[i];
+        point.load = load_of(i);
+        point.is_loaded = point.load > 0;
         if (!point.is_loaded) continue;
         const Vec3 row = row_of(point);
         normal_part += row * point.load;
+        rows += row;
         patch.normal_slope += outer(row, row * stiffness);
     }
+    return {normal_part, rows};
+}
+
+// Rolling resistance in its metric, under the lagged load.
+Vec3 note_rolling(DirectPatch& patch, double stiffness) {
+    patch.is_rolling = false;
+    if (patch.rolling_arm <= 0) return {};
+    const Vec3 wanted = wanted_rolling(patch, patch.velocity.normal_part, stiffness);
+    patch.is_rolling = length_squared(wanted) > patch.lagged_load * patch.lagged_load;
+    add_rolling_slope(patch, slope_of(wanted, patch.lagged_load, stiffness));
+    return bounded(wanted, patch.lagged_load);
+}
+
+// On the cone, with r = Σ row over the loaded points, m of them, d the direction of y and D = 1 + μ² m:
+//   −∂n/∂u_n = k (Σ row rowᵀ − (μ²/D) r rᵀ),   −∂n/∂u_t = k (μ/D) r (Rᵀ d)ᵀ,
+//   −∂f/∂u_t = k Rᵀ ((|y|/|y'|) (1 − d dᵀ) + (1 − 1/D) d dᵀ) R.
+void evaluate_coupled(DirectPatch& patch, double stiffness) {
+    const InCone cone = nearest_in_cone(patch, patch.velocity, stiffness);
+    const auto [normal_part, rows] = note_loads(patch, stiffness, [&](std::size_t i) { return cone.load[i]; });
+    patch.lagged_load = foretold_load(patch);
+    patch.is_sliding = !cone.is_inside;
+    const Mat3 r = metric(patch);
+    Mat3 slope = Mat3::identity();
+    if (!cone.is_inside) {
+        const double mu = coefficient(patch), spread = 1 + mu * mu * cone.loaded;
+        const Mat3 along = outer(cone.direction, cone.direction);
+        slope = (slope - along) * ((cone.size - cone.shorter) / cone.size) + along * (1 - 1 / spread);
+        patch.normal_slope += outer(rows, rows * (-stiffness * mu * mu / spread));
+        patch.coupling_slope = outer(rows, transpose(r) * cone.direction * (stiffness * mu / spread));
+    }
+    patch.friction_slope = transpose(r) * slope * r * stiffness;
+    const Vec3 rolling = note_rolling(patch, stiffness);
+    note_impulse(patch, normal_part, cone.friction, rolling);
+}
+
+// Friction under the lagged load. In haste what has just met sticks, and where the sliding turned round within the step
+// it stops, rather than slide to and fro for ever.
+void evaluate_lagged(DirectPatch& patch, double stiffness, bool is_hasty) {
+    const PatchTwist& velocity = patch.velocity;
+    const Vec3 normal_part = note_loads(patch, stiffness, [&](std::size_t i) {
+                                 const DirectPatch::Point& point = patch.points[i];
+                                 if (!point.is_active) return 0.0;
+                                 return std::max(wanted_load(point, velocity.normal_part, stiffness), 0.0);
+                             }).first;
     lag_foretold_loads(patch);
     const bool is_new = patch.lagged_load == 0 && normal_part.x > 0;
-
-    // Friction. What has just met sticks at first; where the sliding turned round within the step it stops, rather than
-    // slide to and fro for ever.
     const Vec3 wanted = wanted_friction(patch, velocity.friction_part, stiffness);
     const bool turned_round = patch.is_sliding && dot(wanted, patch.slide_direction) < 0;
-    const double bound = !is_damped && (is_new || turned_round) ? length(wanted) : friction_bound(patch);
+    const double bound = is_hasty && (is_new || turned_round) ? length(wanted) : coefficient(patch) * patch.lagged_load;
     patch.bound = bound;
     patch.is_sliding = length(wanted) > bound;
     if (patch.is_sliding) patch.slide_direction = normalized(wanted);
     const Mat3 r = metric(patch);
     patch.friction_slope = transpose(r) * slope_of(wanted, bound, stiffness) * r;
-
-    // Rolling resistance.
-    Vec3 rolling;
-    patch.is_rolling = false;
-    if (patch.rolling_arm > 0) {
-        const Vec3 wanted_turn = wanted_rolling(patch, velocity.normal_part, stiffness);
-        patch.is_rolling = length_squared(wanted_turn) > patch.lagged_load * patch.lagged_load;
-        rolling = bounded(wanted_turn, patch.lagged_load);
-        add_rolling_slope(patch, slope_of(wanted_turn, patch.lagged_load, stiffness));
-    }
+    const Vec3 rolling = note_rolling(patch, stiffness);
     note_impulse(patch, normal_part, bounded(wanted, bound), rolling);
 }
 
-PatchTwist impulse_at(const DirectPatch& patch, const PatchTwist& velocity, double stiffness) {
-    Vec3 normal_part;
-    for (int i = 0; i < patch.count; ++i) {
-        const DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
-        const double wanted = wanted_load(point, velocity.normal_part, stiffness);
-        if (point.is_active && wanted > 0) normal_part += row_of(point) * wanted;
+}  // namespace
+
+void evaluate(DirectPatch& patch, double stiffness, FrictionBound bound) {
+    if (bound == FrictionBound::coupled) return evaluate_coupled(patch, stiffness);
+    evaluate_lagged(patch, stiffness, bound == FrictionBound::hasty);
+}
+
+PatchTwist impulse_at(const DirectPatch& patch, const PatchTwist& velocity, double stiffness, FrictionBound bound) {
+    Vec3 normal_part, friction;
+    if (bound == FrictionBound::coupled) {
+        const InCone cone = nearest_in_cone(patch, velocity, stiffness);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(patch.count); ++i) {
+            normal_part += row_of(patch.points[i]) * cone.load[i];
+        }
+        friction = cone.friction;
+    } else {
+        for (std::size_t i = 0; i < static_cast<std::size_t>(patch.count); ++i) {
+            const DirectPatch::Point& point = patch.points[i];
+            const double wanted = wanted_load(point, velocity.normal_part, stiffness);
+            if (point.is_active && wanted > 0) normal_part += row_of(point) * wanted;
+        }
+        friction = bounded(wanted_friction(patch, velocity.friction_part, stiffness), patch.bound);
     }
     if (patch.rolling_arm > 0) {
         const Vec3 y = bounded(wanted_rolling(patch, velocity.normal_part, stiffness), patch.lagged_load);
         const Vec3 rolling = rolling_at_anchor(patch, y);
         normal_part += Vec3{0, rolling.x, rolling.y};
     }
-    const Vec3 y = bounded(wanted_friction(patch, velocity.friction_part, stiffness), patch.bound);
-    return {normal_part, friction_at_anchor(patch, y)};
+    return {normal_part, friction_at_anchor(patch, friction)};
+}
+
+void drop_friction(DirectPatch& patch, double stiffness) {
+    patch.friction_slope = patch.coupling_slope = patch.normal_slope = Mat3::zero();
+    for (int i = 0; i < patch.count; ++i) {
+        const DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
+        if (point.is_loaded) patch.normal_slope += outer(row_of(point), row_of(point) * stiffness);
+    }
 }
 
 void evaluate_as_before(DirectPatch& patch, double stiffness) {
     // A new patch has no memory: what does not part is loaded, and sticks.
     const PatchTwist& velocity = patch.velocity;
     Vec3 normal_part;
-    patch.normal_slope = Mat3::zero();
+    patch.normal_slope = patch.coupling_slope = Mat3::zero();
     for (int i = 0; i < patch.count; ++i) {
         DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
         const double wanted = wanted_load(point, velocity.normal_part, stiffness);

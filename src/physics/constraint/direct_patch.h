@@ -25,6 +25,13 @@ inline double dot(const PatchTwist& a, const PatchTwist& b) {
     return dot(a.normal_part, b.normal_part) + dot(a.friction_part, b.friction_part);
 }
 
+/// What bounds a patch's friction while Newton's method looks for it.
+enum class FrictionBound {
+    hasty,    ///< the load of the last round; what has just met, or turns round within the step, sticks
+    lagged,   ///< the load of the last round
+    coupled,  ///< the load itself, found with it: for what rests. What slides would be lifted
+};
+
 /// A contact region as the direct solver sees it (docs/physics/direct-solver.md): a law that gives the impulse for a
 /// relative velocity. Impulses are a substep's.
 struct DirectPatch {
@@ -69,8 +76,10 @@ struct DirectPatch {
     PatchTwist velocity, impulse;
     Mat3 friction_slope = Mat3::zero();  ///< −∂friction_part of the impulse / ∂friction_part of the velocity
     Mat3 normal_slope = Mat3::zero();
-    PatchTwist change;  ///< of the velocity, by a full step of Newton's method
-    Mat3 factored_friction_slope = Mat3::zero(), factored_normal_slope = Mat3::zero();
+    Mat3 coupling_slope = Mat3::zero();  ///< −∂normal_part of the impulse / ∂friction_part of the velocity
+    PatchTwist change;                   ///< of the velocity, by a full step of Newton's method
+    Mat3 factored_friction_slope = Mat3::zero(), factored_normal_slope = Mat3::zero(),
+         factored_coupling_slope = Mat3::zero();
 };
 
 /// From a contact; `substep_share` is what the new substep is of the last one.
@@ -81,8 +90,11 @@ void write_patch(const DirectPatch& patch, double substep_share, Contact& contac
 /// How the normal part of a velocity becomes a point's speed of parting.
 inline Vec3 row_of(const DirectPatch::Point& point) { return {1, point.t, -point.s}; }
 
-/// Begins a substep of `duration` that ends `time` s after the step began.
-void begin_substep(DirectPatch& patch, double time, double duration);
+/// Begins a substep of `duration` that ends `time` s after the step began. What was loaded and is apart by `slack` m or
+/// less counts as touching.
+void begin_substep(DirectPatch& patch, double time, double duration, double slack = 0);
+/// Before the first round with coupled bounds: what the guess tells of the friction's metric.
+void begin_coupled(DirectPatch& patch);
 /// The impulses become the next guess and part of the step's totals.
 void end_substep(DirectPatch& patch);
 /// The points' loads after the patch's change of velocity, were the same ones loaded.
@@ -91,9 +103,11 @@ void foretell_loads(DirectPatch& patch, double stiffness);
 bool breaks_away(DirectPatch& patch);
 
 /// Writes down the impulse for the patch's velocity, and how it changes with it. `stiffness` is k, kg.
-void evaluate(DirectPatch& patch, double stiffness, bool is_damped);
+void evaluate(DirectPatch& patch, double stiffness, FrictionBound bound);
 /// The impulse for another velocity under the same bounds; writes nothing down.
-PatchTwist impulse_at(const DirectPatch& patch, const PatchTwist& velocity, double stiffness);
+PatchTwist impulse_at(const DirectPatch& patch, const PatchTwist& velocity, double stiffness, FrictionBound bound);
+/// Leaves the slopes of the loaded points alone.
+void drop_friction(DirectPatch& patch, double stiffness);
 /// The same, were the loaded points and the sticking as they were in the last substep.
 void evaluate_as_before(DirectPatch& patch, double stiffness);
 /// Relative velocity (or small motion) of the bodies at the anchor.

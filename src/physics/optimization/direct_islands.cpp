@@ -14,7 +14,6 @@ namespace {
 constexpr std::uint32_t least_levels = 4;          // lower ones come to rest in the sweeps
 constexpr std::size_t most_products_high = 300;    // of 6×6 blocks: chains, few bodies a level
 constexpr double least_mass_ratio = 20;            // of what lies above to what is below
-constexpr std::size_t most_products_slow = 20000;  // an upper bound, for what rests; the solver counts them truly
 constexpr std::size_t most_products_bad = 4000;    // where they could not
 constexpr double least_load_ratio = 2;             // of all that lies above to a body of a tree below
 
@@ -105,7 +104,7 @@ DirectUse direct_use_of(const Island& island, const Islands& islands, std::span<
     const bool is_bad = mass_ratio(levels) > least_mass_ratio, is_high = island.deepest_level >= least_levels;
     if (load_ratio(levels) > least_load_ratio && is_tree(island, islands, contacts, bodies)) return DirectUse::always;
     if (products <= (is_bad ? most_products_bad : is_high ? most_products_high : 0)) return DirectUse::always;
-    return products <= most_products_slow ? DirectUse::while_slow : DirectUse::never;
+    return DirectUse::while_slow;
 }
 
 }  // namespace embody::physics

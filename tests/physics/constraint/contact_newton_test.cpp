@@ -77,7 +77,7 @@ TEST(ContactNewton, KeepsMomentumAndTheLawsOfContact) {
         FloatingColumn column(2 + round % 5, random);
         newton.begin_step();
         newton.begin(0, column.bodies, column.patches);
-        if (!newton.find_velocities(column.free, false, column.velocity, column.patches)) continue;
+        if (!newton.find_velocities(column.free, column.velocity, column.patches)) continue;
         ++solved;
         ASSERT_LT(length(column.momentum(column.velocity) - column.momentum(column.free)), 1e-9) << round;
         ASSERT_LT(length(column.angular_momentum(column.velocity) - column.angular_momentum(column.free)), 1e-9);
@@ -100,6 +100,74 @@ TEST(ContactNewton, KeepsMomentumAndTheLawsOfContact) {
     EXPECT_GT(solved, 100);
 }
 
+TEST(ContactNewton, RestKeepsMomentumAndLiesInTheCone) {
+    Random random(12);
+    ContactNewton newton;
+    int solved = 0;
+    for (int round = 0; round < 300; ++round) {
+        FloatingColumn column(2 + round % 5, random);
+        newton.begin_step();
+        newton.begin(0, column.bodies, column.patches);
+        for (DirectPatch& patch : column.patches) {
+            for (DirectPatch::Point& point : patch.points) point.guess = random.between(-1, 1) > 0 ? 0.2 : 0;
+            begin_substep(patch, 1, 1);
+        }
+        if (!newton.find_rest(column.free, column.velocity, column.patches)) continue;
+        ++solved;
+        ASSERT_LT(length(column.momentum(column.velocity) - column.momentum(column.free)), 1e-9) << round;
+        ASSERT_LT(length(column.angular_momentum(column.velocity) - column.angular_momentum(column.free)), 1e-9);
+        for (const DirectPatch& patch : column.patches) {
+            const PatchTwist u = relative_twist(patch, column.velocity);
+            double load = 0;
+            for (const DirectPatch::Point& point : patch.points) {
+                ASSERT_GE(point.load, 0) << round;
+                ASSERT_GT(dot(row_of(point), u.normal_part), -1e-2) << round;
+                load += point.load;
+            }
+            const Vec3 f = patch.friction;
+            ASSERT_LE(std::hypot(f.x, f.y), patch.friction_static * load * (1 + 1e-9) + 1e-12) << round;
+        }
+    }
+    // Bodies that move at a metre a second are far from rest.
+    EXPECT_GT(solved, 150);
+}
+
+TEST(ContactNewton, RestOfAColumnUnderItsWeightIsExactAfterAFewSteps) {
+    Random random(3);
+    FloatingColumn column(10, random);
+    DirectPatch ground = column.patches.front();
+    ground.a = DirectPatch::immovable;
+    ground.b = 0;
+    column.patches.push_back(ground);
+    std::fill(column.free.begin(), column.free.end(), make_vec6({0, -0.04, 0}, {}));
+    ContactNewton newton;
+    double worst = 0;
+    for (int step = 0; step < 10; ++step) {
+        for (DirectPatch& patch : column.patches) begin_substep(patch, 1, 1);
+        newton.begin_step();
+        newton.begin(0, column.bodies, column.patches);
+        ASSERT_TRUE(newton.find_rest(column.free, column.velocity, column.patches));
+        newton.note_rest();
+        worst = 0;
+        for (const Vec6& v : column.velocity) worst = std::max(worst, length(v.linear()));
+        for (DirectPatch& patch : column.patches) end_substep(patch);
+    }
+    EXPECT_LT(worst, 1e-9);
+}
+
+// The impulses of a few sweeps leave of a point's lever arm what rounding makes of zero: friction must not turn into
+// spin.
+TEST(ContactNewton, SingleLoadedPointHasNoLever) {
+    Random random(5);
+    FloatingColumn column(2, random);
+    DirectPatch& patch = column.patches.front();
+    patch.points[0].guess = 1;
+    patch.points[1].guess = 1e-9;
+    patch.friction_guess = {0.1, 0, 1e-4};
+    begin_substep(patch, 1, 1);
+    EXPECT_EQ(patch.spin_arm, 0);
+}
+
 TEST(ContactNewton, GuessOfTheLastSubstepIsExactTheSecondTime) {
     // Under its own weight on the ground: the loads of the first solve are off by the stiffness, those of the second
     // not.
@@ -116,7 +184,7 @@ TEST(ContactNewton, GuessOfTheLastSubstepIsExactTheSecondTime) {
         for (DirectPatch& patch : column.patches) begin_substep(patch, 1, 1);
         newton.begin_step();
         newton.begin(0, column.bodies, column.patches);
-        ASSERT_TRUE(newton.find_velocities(column.free, false, column.velocity, column.patches));
+        ASSERT_TRUE(newton.find_velocities(column.free, column.velocity, column.patches));
         for (const Vec6& v : column.velocity) worst = std::max(worst, length(v.linear()));
         for (DirectPatch& patch : column.patches) end_substep(patch);
     }
