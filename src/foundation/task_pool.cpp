@@ -13,8 +13,9 @@ namespace embody {
 
 namespace {
 
-// Rounds of looking before a thread gives its core away: some 20 microseconds at a barrier, 100 between tasks.
-constexpr int spins_at_barrier = 1000, spins_between_tasks = 5000;
+// Rounds of looking before a thread gives its core away: some 20 microseconds at a barrier, 100 between tasks, a
+// millisecond between those of a row.
+constexpr int spins_at_barrier = 1000, spins_between_tasks = 5000, spins_while_awake = 50000;
 
 void relax() {
 #if defined(__x86_64__)
@@ -44,16 +45,35 @@ void Barrier::wait() {
 struct TaskPool::State {
     const std::function<void(int)>* task = nullptr;  // of the present round
     std::atomic<unsigned> round{0};
+    std::atomic<unsigned> calls{0};  // another one with each round and with each StayAwake: what sleeping threads watch
+    std::atomic<int> spins{spins_between_tasks};
     std::atomic<int> running{0};
     std::atomic<bool> stops{false};
     std::vector<std::thread> threads;
 
+    // Wakes the threads that sleep.
+    void call() {
+        ++calls;  // in one order with the waiting, so that none is missed
+        calls.notify_all();
+    }
+
+    // Returns when the round is another one than `seen`: looks for a while, then sleeps until called, and again.
+    void await_round(unsigned seen) {
+        while (true) {
+            const unsigned call = calls.load(std::memory_order_acquire);
+            for (int i = 0; i < spins.load(std::memory_order_relaxed); ++i) {
+                if (round.load(std::memory_order_acquire) != seen) return;
+                relax();
+            }
+            if (round.load(std::memory_order_acquire) != seen) return;
+            calls.wait(call, std::memory_order_acquire);
+        }
+    }
+
     void work(int worker) {
         unsigned seen = 0;
         while (true) {
-            // Look for a while, then sleep until the round changes.
-            for (int i = 0; i < spins_between_tasks && round.load(std::memory_order_acquire) == seen; ++i) relax();
-            round.wait(seen, std::memory_order_acquire);
+            await_round(seen);
             seen = round.load(std::memory_order_acquire);
             if (stops.load(std::memory_order_relaxed)) return;
             (*task)(worker);
@@ -61,6 +81,13 @@ struct TaskPool::State {
         }
     }
 };
+
+TaskPool::StayAwake::StayAwake(TaskPool& pool) : pool_(pool) {
+    pool_.state_->spins.store(spins_while_awake, std::memory_order_relaxed);
+    pool_.state_->call();
+}
+
+TaskPool::StayAwake::~StayAwake() { pool_.state_->spins.store(spins_between_tasks, std::memory_order_relaxed); }
 
 TaskPool::TaskPool(int workers) : state_(std::make_unique<State>()) {
     EMBODY_ASSERT(workers >= 1);
@@ -72,7 +99,7 @@ TaskPool::TaskPool(int workers) : state_(std::make_unique<State>()) {
 TaskPool::~TaskPool() {
     state_->stops.store(true, std::memory_order_relaxed);
     state_->round.fetch_add(1, std::memory_order_release);
-    state_->round.notify_all();
+    state_->call();
     for (std::thread& thread : state_->threads) thread.join();
 }
 
@@ -84,7 +111,7 @@ void TaskPool::run(const std::function<void(int)>& task) {
     s.task = &task;
     s.running.store(static_cast<int>(s.threads.size()), std::memory_order_relaxed);
     s.round.fetch_add(1, std::memory_order_release);
-    s.round.notify_all();
+    s.call();
     task(0);
     for (int i = 0; s.running.load(std::memory_order_acquire) > 0; ++i) {
         if (i < spins_at_barrier) {

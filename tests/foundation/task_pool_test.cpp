@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <numeric>
+#include <thread>
 #include <vector>
 
 namespace embody {
@@ -17,6 +19,23 @@ TEST_P(EachPool, RunsATaskOnceOnEachWorkerAgainAndAgain) {
     std::vector<int> calls(static_cast<std::size_t>(GetParam()), 0);
     for (int round = 0; round < 2000; ++round) pool.run([&](int worker) { ++calls[static_cast<std::size_t>(worker)]; });
     for (const int count : calls) EXPECT_EQ(count, 2000);
+}
+
+TEST_P(EachPool, RunsTasksFarApartAwakeOrNot) {
+    // Longer apart than the threads look out for the next task, so that they sleep and must be woken.
+    TaskPool pool(GetParam());
+    std::vector<int> calls(static_cast<std::size_t>(GetParam()), 0);
+    const auto count = [&](int worker) { ++calls[static_cast<std::size_t>(worker)]; };
+    for (int round = 0; round < 20; ++round) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        pool.run(count);
+        const TaskPool::StayAwake stay_awake(pool);
+        for (const int pause : {0, 2}) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(pause));
+            pool.run(count);
+        }
+    }
+    for (const int each : calls) EXPECT_EQ(each, 60);
 }
 
 TEST_P(EachPool, WorkersMeetAtTheBarrier) {

@@ -12,8 +12,9 @@ namespace embody::physics {
 
 namespace {
 
-// Below this a step is done before a second worker has begun, or a stage before both have met at its end.
-constexpr std::size_t fewest_contacts_shared = 400, fewest_batches_shared = 2;
+// Batches that a worker needs in the mean of all stages, and in one stage: below, what bodies' velocities take from one
+// worker's cache to the other's, and the waiting at the stages' ends, is more than what is saved.
+constexpr std::size_t fewest_batches_in_mean = 4, fewest_batches_shared = 2;
 
 float to_float(double number) { return static_cast<float>(number); }
 
@@ -164,26 +165,63 @@ void WideContactSolver::fill_batch(const Batch& batch, std::span<const Contact> 
     std::memcpy(data + BatchHead::writable * lanes(), writable, sizeof writable);
 }
 
-template <class Kernel>
-void WideContactSolver::for_each_batch(const Work& work, int worker, Kernel kernel) {
-    const Share share = share_of(batches_.size(), worker, work.workers);
-    for (std::size_t i = share.first; i < share.last; ++i) kernel(batches_[i]);
+Share WideContactSolver::batches_of_stage(std::size_t stage) const {
+    return {stages_[stage], stage + 1 < stages_.size() ? stages_[stage + 1] : batches_.size()};
+}
+
+// A stage's batches lie by falling number of points, those of one number in the order of the contacts. Each worker gets
+// as many of each number, and in each the same part of that order: so it meets the same bodies in all stages, and the
+// contacts that it had in the touch stage. What is left over is dealt in turn.
+void WideContactSolver::deal_stage(std::size_t stage) {
+    const Share all = batches_of_stage(stage);
+    const std::size_t workers = parts_.size();
+    std::size_t turn = 0;
+    for (std::size_t first = all.first, last = first; first < all.last; first = last) {
+        while (last < all.last && batches_[last].points == batches_[first].points) ++last;
+        const std::size_t each = (last - first) / workers, left = (last - first) % workers;
+        for (std::size_t worker = 0; worker < workers; ++worker) {
+            const bool gets_more = (worker + workers - turn) % workers < left;
+            for (std::size_t k = each + (gets_more ? 1 : 0); k > 0; --k) {
+                parts_[worker].batches.push_back(static_cast<std::uint32_t>(first++));
+            }
+        }
+        turn = (turn + left) % workers;
+    }
+}
+
+// Stages of few batches are worker 0's.
+void WideContactSolver::deal_batches(int workers) {
+    parts_.resize(static_cast<std::size_t>(workers));
+    for (Part& part : parts_) {
+        part.batches.clear();
+        part.end.clear();
+    }
+    is_shared_.clear();
+    for (std::size_t stage = 0; stage < stages_.size(); ++stage) {
+        const Share all = batches_of_stage(stage);
+        const bool is_shared = all.last - all.first >= fewest_batches_shared * parts_.size();
+        is_shared_.push_back(is_shared ? 1 : 0);
+        if (is_shared) {
+            deal_stage(stage);
+        } else {
+            for (std::size_t i = all.first; i < all.last; ++i)
+                parts_[0].batches.push_back(static_cast<std::uint32_t>(i));
+        }
+        for (Part& part : parts_) part.end.push_back(static_cast<std::uint32_t>(part.batches.size()));
+    }
 }
 
 template <class Kernel>
 void WideContactSolver::sweep_down(const Work& work, int worker, Kernel kernel) {
-    // Stages of few batches are worker 0's; nobody waits between two of them.
+    const Part& part = parts_[static_cast<std::size_t>(worker)];
+    // Nobody waits between two stages of worker 0.
     bool is_pending = false;
     for (std::size_t stage = stages_.size(); stage-- > 0;) {
-        const std::size_t first = stages_[stage];
-        const std::size_t last = stage + 1 < stages_.size() ? stages_[stage + 1] : batches_.size();
-        const bool is_shared = last - first >= fewest_batches_shared * static_cast<std::size_t>(work.workers);
+        const bool is_shared = is_shared_[stage] != 0;
         if (is_shared && is_pending) work.barrier.wait();
-        const Share share = is_shared     ? share_of(last - first, worker, work.workers)
-                            : worker == 0 ? Share{0, last - first}
-                                          : Share{};
-        for (std::size_t i = first + share.first; i < first + share.last; ++i) {
-            kernel(lines_[batches_[i].first_line].value, batches_[i].points);
+        for (std::size_t i = stage > 0 ? part.end[stage - 1] : 0; i < part.end[stage]; ++i) {
+            const Batch& batch = batches_[part.batches[i]];
+            kernel(lines_[batch.first_line].value, batch.points);
         }
         if (is_shared) work.barrier.wait();
         is_pending = !is_shared;
@@ -201,10 +239,11 @@ void WideContactSolver::solve_share(const Work& work, int worker) {
     const Share share = share_of(velocity_.size() - 1, worker, work.workers);
     const auto first_row = static_cast<std::int32_t>(share.first + 1),
                last_row = static_cast<std::int32_t>(share.last + 1);
-    for_each_batch(work, worker, [&](const Batch& batch) {
-        fill_batch(batch, work.contacts);
-        k.separate(lines_[batch.first_line].value, batch.points, sweep);
-    });
+    const std::vector<std::uint32_t>& own = parts_[static_cast<std::size_t>(worker)].batches;
+    for (const std::uint32_t i : own) {
+        fill_batch(batches_[i], work.contacts);
+        k.separate(lines_[batches_[i].first_line].value, batches_[i].points, sweep);
+    }
     for (int substep = 1; substep <= substeps_; ++substep) {
         // Forces, constraints that also mend positions, motion.
         sweep.time = to_float(substep * substep_);
@@ -233,12 +272,13 @@ void WideContactSolver::solve_share(const Work& work, int worker) {
         const std::uint32_t body = slot_of_row_[r];
         if (r < movable_rows_) write_body(r, work.bodies[body], work.constants[body]);
     }
-    for_each_batch(work, worker, [&](const Batch& batch) {
+    for (const std::uint32_t i : own) {
+        const Batch& batch = batches_[i];
         for (std::uint32_t lane = 0; lane < batch.contact_count; ++lane) {
-            const std::size_t i = contact_of(batch.first_lane + lane);
-            write_contact(batch, lane, work.softness, work.contacts[i], work.glances[i]);
+            const std::size_t contact = contact_of(batch.first_lane + lane);
+            write_contact(batch, lane, work.softness, work.contacts[contact], work.glances[contact]);
         }
-    });
+    }
 }
 
 void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::span<BodyState> bodies,
@@ -258,8 +298,10 @@ void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::
                              .mass_scale = to_float(softness.mass_scale),
                              .impulse_scale = to_float(softness.impulse_scale),
                              .push_speed = to_float(softness.push_speed)};
+    const std::size_t worth_a_worker = fewest_batches_in_mean * stages_.size();
     const int workers =
-        batches_.size() * static_cast<std::size_t>(lanes()) < fewest_contacts_shared ? 1 : pool.workers();
+        batches_.size() < worth_a_worker * static_cast<std::size_t>(pool.workers()) ? 1 : pool.workers();
+    deal_batches(workers);
     Barrier barrier(workers);
     const Work work{bodies, constants, contacts, glances, softness, sweep, passes, workers, barrier};
     if (workers == 1) {

@@ -60,20 +60,25 @@ private:
         int workers;
         Barrier& barrier;
     };
+    /// One worker's batches.
+    struct Part {
+        std::vector<std::uint32_t> batches;  ///< stage by stage
+        std::vector<std::uint32_t> end;      ///< of each stage, into batches
+    };
 
     std::int32_t row_of(std::uint32_t body, std::span<const BodyState> bodies);
     void append_row(std::uint32_t body, const BodyState& state);
     [[nodiscard]] std::size_t contact_of(std::size_t lane) const {
         return static_cast<std::size_t>(contact_row_[lane] / ContactRow::size);
     }
+    [[nodiscard]] Share batches_of_stage(std::size_t stage) const;
+    void deal_stage(std::size_t stage);
+    void deal_batches(int workers);
     void fill_batch(const Batch& batch, std::span<const Contact> contacts);
     void solve_share(const Work& work, int worker);
     /// Calls kernel(batch's floats, points) for this worker's batches, stage after stage from the top down.
     template <class Kernel>
     void sweep_down(const Work& work, int worker, Kernel kernel);
-    /// The same for batches in any order.
-    template <class Kernel>
-    void for_each_batch(const Work& work, int worker, Kernel kernel);
     void write_body(std::size_t row, BodyState& state, const BodyConstants& constants) const;
     void write_contact(const Batch& batch, std::uint32_t lane, const ContactSoftness& softness, Contact& contact,
                        ContactGlance& glance) const;
@@ -90,6 +95,8 @@ private:
 
     std::vector<Batch> batches_;
     std::vector<std::uint32_t> stages_;                               // first batch of each
+    std::vector<std::uint8_t> is_shared_;                             // each stage
+    std::vector<Part> parts_;                                         // by worker
     std::vector<std::int32_t> contact_row_, body_a_, body_b_, bits_;  // lane by lane: BatchSource
     std::vector<CacheLine> lines_;                                    // never shrinks
     std::size_t used_lines_ = 0;

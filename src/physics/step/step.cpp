@@ -2,6 +2,7 @@
 #include "physics/step/step.h"
 
 #include <chrono>
+#include <optional>
 
 namespace embody::physics {
 
@@ -22,6 +23,11 @@ void run(WorldState& world, StepStage stage, void (*work)(WorldState&)) {
 
 // All that moves bodies; nothing to do while all sleep.
 void advance(WorldState& world) {
+    // In small worlds no stage is shared.
+    constexpr std::size_t fewest_shared = 200;  // awake bodies
+    std::optional<TaskPool::StayAwake> stay_awake;
+    if (world.awake.size() >= fewest_shared) stay_awake.emplace(*world.workers);
+
     run(world, StepStage::find_pairs, find_pairs);  // broad phase
     run(world, StepStage::touch, find_contacts);    // narrow phase → contact regions, warm start
     run(world, StepStage::impact, solve_impacts);   // new, fast contacts by eq. (3)

@@ -362,19 +362,29 @@ void lay_out(WorldState& world) {
     world.contact_glances.resize(total);
 }
 
-// Calls work(worker, share) for shares of the pairs to look at, on all workers where there are enough of them: each
-// takes the next share when it is done with one, since some pairs take a hundred times as long as others.
+// Calls work(worker, share) for shares of the pairs to look at, on all workers where there are enough of them. Some
+// pairs take a hundred times as long as others, so each worker takes the next few when it is done: first of its own
+// part, whose contacts it had in the last step, then of the others'.
 template <class Work>
 void share_pairs(WorldState& world, Work work) {
-    constexpr std::size_t fewest_shared = 200, pairs_in_share = 64;
+    constexpr std::size_t fewest_shared = 200, pairs_in_share = 32;
     const std::size_t count = world.touch_memory.pairs.size();
-    if (count < fewest_shared || world.workers->workers() == 1) return work(0, Share{0, count});
-    std::atomic<std::size_t> next{0};
+    const int workers = world.workers->workers();
+    if (count < fewest_shared || workers == 1) return work(0, Share{0, count});
+    struct alignas(64) Part {
+        std::atomic<std::size_t> next{0};
+    };
+    std::vector<Part> parts(static_cast<std::size_t>(workers));
     world.workers->run([&](int worker) {
-        while (true) {
-            const std::size_t first = next.fetch_add(pairs_in_share, std::memory_order_relaxed);
-            if (first >= count) return;
-            work(worker, Share{first, std::min(first + pairs_in_share, count)});
+        for (int turn = 0; turn < workers; ++turn) {
+            const int owner = (worker + turn) % workers;
+            const Share part = share_of(count, owner, workers);
+            std::atomic<std::size_t>& next = parts[static_cast<std::size_t>(owner)].next;
+            while (true) {
+                const std::size_t first = part.first + next.fetch_add(pairs_in_share, std::memory_order_relaxed);
+                if (first >= part.last) break;
+                work(worker, Share{first, std::min(first + pairs_in_share, part.last)});
+            }
         }
     });
 }
