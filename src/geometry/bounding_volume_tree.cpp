@@ -2,6 +2,7 @@
 #include "geometry/bounding_volume_tree.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 namespace embody::geometry {
@@ -19,7 +20,11 @@ double half_area(const Bounds& b) {
 
 float round_down(double x) {
     const auto f = static_cast<float>(x);
-    return static_cast<double>(f) <= x ? f : std::nextafter(f, -std::numeric_limits<float>::infinity());
+    if (static_cast<double>(f) <= x) return f;
+    // The next lower float: as an integer one more below zero, one less above it (IEEE 754, section 3.4).
+    const auto bits = std::bit_cast<std::uint32_t>(f);
+    constexpr std::uint32_t sign = 0x80000000U;
+    return std::bit_cast<float>(f > 0 ? bits - 1 : f < 0 ? bits + 1 : sign | 1U);
 }
 float round_up(double x) { return -round_down(-x); }
 

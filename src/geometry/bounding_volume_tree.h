@@ -64,9 +64,11 @@ private:
     static constexpr int max_depth = 80;
 
     static Box rounded_outwards(const Bounds& b);
+    // Without branches: which of the six comparisons fails cannot be foretold.
     static bool overlaps(const Box& a, const Box& b) {
-        return a.lower[0] <= b.upper[0] && b.lower[0] <= a.upper[0] && a.lower[1] <= b.upper[1] &&
-               b.lower[1] <= a.upper[1] && a.lower[2] <= b.upper[2] && b.lower[2] <= a.upper[2];
+        bool meets = true;
+        for (std::size_t k = 0; k < 3; ++k) meets &= (a.lower[k] <= b.upper[k]) & (b.lower[k] <= a.upper[k]);
+        return meets;
     }
     static Ray prepare_ray(Vec3 origin, Vec3 direction);
     // Where the ray enters the box; NaN where it misses it before max_t, which no `<= max_t` lets through (an infinite
@@ -82,7 +84,7 @@ template <class Visit>
 void BoundingVolumeTree::query(const Bounds& bounds, Visit&& visit) const {
     if (nodes_.empty() || bounds.is_empty()) return;
     const Box box = rounded_outwards(bounds);
-    std::array<std::uint32_t, max_depth> waiting{};
+    std::array<std::uint32_t, max_depth> waiting;
     std::size_t count = 0;
     std::uint32_t current = 0;
     for (;;) {

@@ -85,13 +85,13 @@ void collide_two(const PlacedConvex& first, const PlacedConvex& second, double m
     }
     thread_local ContactRegion region;
     region.points.clear();
+    region.has_all_corners = false;
     find_region(pair, margin, memory, region);
     if (region.points.empty()) return;
     const std::size_t before = manifolds.size();
     append_manifolds(region, pair.turn_a, origin + a.position, manifolds);
-    const bool is_face = memory.kind == PairMemory::Kind::face_of_a || memory.kind == PairMemory::Kind::face_of_b;
     for (std::size_t k = before; k < manifolds.size(); ++k) {
-        manifolds[k].is_whole = is_face && manifolds[k].is_whole;
+        manifolds[k].is_whole = region.has_all_corners && manifolds[k].is_whole;
         if (is_swapped) manifolds[k].normal = -manifolds[k].normal;
     }
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace embody::physics {
 
@@ -82,6 +83,14 @@ bool nearest_on_lines(Vec3 p, Vec3 u, Vec3 q, Vec3 v, double& s, double& t) {
     return true;
 }
 
+// Whether a point lies where one of the others does, but for rounding.
+bool is_known(const ManifoldPoint& point, std::span<const ManifoldPoint> others) {
+    constexpr double same_place = 1e-9;  // m
+    return std::any_of(others.begin(), others.end(), [&](const ManifoldPoint& other) {
+        return length_squared(other.position - point.position) < same_place * same_place;
+    });
+}
+
 }  // namespace
 
 std::uint32_t feature_name(std::initializer_list<std::uint32_t> parts) {
@@ -123,6 +132,7 @@ void clip_to_region(const ContactFeature& reference, const ContactFeature& incid
     }
 
     // What is near enough, with its height over the reference's plane.
+    const std::size_t known = region.points.size();
     for (const ClipCorner& corner : corners) {
         const double separation = corner.height - lift;
         if (separation > margin) continue;
@@ -131,6 +141,7 @@ void clip_to_region(const ContactFeature& reference, const ContactFeature& incid
         const Vec3 on_reference = plane.origin + plane.across * corner.x + plane.up * corner.y;
         const Vec3 on_a = reference_is_a ? on_reference : on_reference - region.normal * separation;
         region.add(on_a, separation, name);
+        if (is_known(region.points.back(), std::span(region.points).first(known))) region.points.pop_back();
     }
 }
 

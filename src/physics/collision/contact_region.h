@@ -41,11 +41,13 @@ struct ClipCorner {
 struct ContactRegion {
     Vec3 normal;  ///< unit, a to b
     std::vector<ManifoldPoint> points;
-    bool is_proper = false;  ///< known to be four points at most, of which each adds area
+    bool is_proper = false;        ///< known to be four points at most, of which each adds area
+    bool has_all_corners = false;  ///< of a face: no other corner of the two is within the margin
 
     ContactFeature reference, incident;
     std::vector<ClipCorner> sides, corners, clipped;
     std::vector<FlatPoint> flat;
+    std::vector<std::uint32_t> low;
 
     /// `on_a` on the surface of a, `separation` from there along the normal to b.
     void add(Vec3 on_a, double separation, std::uint32_t feature) {

@@ -57,7 +57,7 @@ void fill_spokes(Polytope& polytope) {
 }  // namespace
 
 void Lanes::assign(const std::vector<Vec3>& vectors) {
-    const std::size_t filled = (vectors.size() + 3) / 4 * 4;
+    const std::size_t filled = (vectors.size() + multiple - 1) / multiple * multiple;
     for (std::size_t i = 0; i < filled; ++i) {
         const Vec3 v = vectors[i < vectors.size() ? i : 0];
         x.push_back(v.x);
@@ -67,7 +67,7 @@ void Lanes::assign(const std::vector<Vec3>& vectors) {
 }
 
 void RoughLanes::assign(const std::vector<Vec3>& vectors) {
-    const std::size_t filled = (vectors.size() + 7) / 8 * 8;
+    const std::size_t filled = (vectors.size() + multiple - 1) / multiple * multiple;
     for (std::size_t i = 0; i < filled; ++i) {
         const Vec3f v = to_vec3f(vectors[i < vectors.size() ? i : 0]);
         x.push_back(v.x);

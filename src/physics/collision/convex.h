@@ -10,17 +10,19 @@
 
 namespace embody::physics {
 
-/// Vectors by components, in lanes: filled up to a multiple of four with copies of the first, so that loops over them
-/// need no rest and a maximum stays one of the originals.
+/// Vectors by components, in lanes: filled up to a multiple of the widest register with copies of the first, so that
+/// loops over them need no rest and a maximum stays one of the originals.
 struct Lanes {
+    static constexpr std::size_t multiple = 8;
     std::vector<double> x, y, z;
 
     void assign(const std::vector<Vec3>& vectors);
     [[nodiscard]] std::size_t size() const { return x.size(); }
 };
 
-/// The same in single precision, to a multiple of eight.
+/// The same in single precision.
 struct RoughLanes {
+    static constexpr std::size_t multiple = 16;
     std::vector<float> x, y, z;
 
     void assign(const std::vector<Vec3>& vectors);

@@ -7,6 +7,7 @@
 // Then the region: the incident face clipped by the reference face's sides.
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "physics/collision/convex_pairs.h"
 #include "physics/collision/gjk.h"
@@ -172,6 +173,42 @@ void get_edge(const PlacedConvex& placed, std::uint32_t edge, ContactFeature& fe
     feature.points.push_back(placed.to_frame(polytope.vertices[polytope.edges[edge].to]));
 }
 
+// Pairs that are searched farther than this move too fast for their contacts to be followed: what else is near need not
+// be known. m
+constexpr double widest_followed = 8 * Manifold::whole_way;
+
+// Whether corners other than the given ones lie up to `level` along a direction of the polytope's own frame.
+bool has_other_corners(const Polytope& polytope, Vec3 direction, double level, std::span<const std::uint32_t> known,
+                       std::vector<std::uint32_t>& low) {
+    low.resize(polytope.vertex_lanes.size());
+    const std::uint32_t count = find_low(polytope.vertex_lanes, direction, level, low.data());
+    return std::any_of(low.begin(), low.begin() + count, [&](std::uint32_t v) {
+        return v < polytope.vertices.size() && std::find(known.begin(), known.end(), v) == known.end();
+    });
+}
+
+// Whether a rich polytope has corners beside one of its faces that are near what meets the face: a rounded side comes
+// to lie on the next one of its many small faces before it has moved far.
+bool has_corners_beside(const PlacedConvex& owner, std::uint32_t face, const ContactFeature& facing, double margin,
+                        std::vector<std::uint32_t>& low) {
+    constexpr std::size_t corners_of_a_box = 8;
+    const Polytope& polytope = owner.shape->polytope;
+    if (polytope.vertices.size() <= corners_of_a_box) return false;
+    const double level = dot(facing.normal, facing.points[0] - owner.position) + margin;
+    const std::span loop(polytope.loops.data() + polytope.faces[face].first, polytope.faces[face].count);
+    return has_other_corners(polytope, owner.direction_to_local(facing.normal), level, loop, low);
+}
+
+// Whether no corner but those of two crossing edges is within the margin.
+bool has_edges_alone(const PolytopeSearch& s, const EdgeAxis& axis, std::vector<std::uint32_t>& low) {
+    const Polytope::Edge &a = s.a->edges[axis.edge_a], &b = s.b->edges[axis.edge_b];
+    const double reach_a = dot(axis.normal, s.a->vertices[a.from]);
+    const double level_b = reach_a - dot(axis.normal, s.b_in_a.position) + s.margin;
+    const std::uint32_t ends_a[] = {a.from, a.to}, ends_b[] = {b.from, b.to};
+    return !has_other_corners(*s.a, -axis.normal, s.margin - (reach_a + axis.separation), ends_a, low) &&
+           !has_other_corners(*s.b, s.b_in_a.direction_to_local(axis.normal), level_b, ends_b, low);
+}
+
 // A face of `owner` against what the other turns to it. `deepest` is the other's point nearest to the face.
 void add_face_region(const PlacedConvex& owner, const PlacedConvex& other, const FaceAxis& axis, Vec3 deepest,
                      bool is_face_of_a, double margin, double bias, ContactRegion& region) {
@@ -182,6 +219,8 @@ void add_face_region(const PlacedConvex& owner, const PlacedConvex& other, const
     region.normal = is_face_of_a ? normal : -normal;
     add_near_corners(region.reference, other, is_face_of_a, margin, region);
     clip_to_region(region.reference, region.incident, is_face_of_a, 0, margin, region);
+    region.has_all_corners = margin <= widest_followed && region.points.size() <= Manifold::max_points &&
+                             !has_corners_beside(owner, axis.face, region.incident, margin, region.low);
 
     // Where they overlap the deepest corner is over the reference face; a little apart it may be beside it.
     if (axis.separation >= 0) return;
@@ -281,6 +320,7 @@ bool collide_polytopes(const ConvexPair& pair, double margin, PairMemory& memory
             span_face(pair.placed_a(), true, region.incident, 0, edge.separation, margin, face, region) ||
             span_face(s.b_in_a, false, region.reference, 0, edge.separation, margin, face, region);
         if (!is_flat) cross_segments(region.reference, region.incident, 0, 0, margin, region);
+        region.has_all_corners = !is_flat && margin <= widest_followed && has_edges_alone(s, edge, region.low);
     } else if (is_face_of_a) {
         memory.kind = Kind::face_of_a;
         memory.feature_a = static_cast<std::uint16_t>(face_a.face);

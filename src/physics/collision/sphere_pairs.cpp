@@ -185,6 +185,7 @@ void collide_sphere(const PlacedConvex& a, const PlacedConvex& b, double margin,
     memory.kind = PairMemory::Kind::nothing;
     if (is_flat) {
         memory.kind = PairMemory::Kind::face_of_b;
+        region.has_all_corners = true;
         memory.feature_b = static_cast<std::uint16_t>(support_face(*b.shape, gap.normal));
     }
 }

@@ -60,12 +60,15 @@ struct Probe {
           reach(piece.convex.reach + extra),
           margin(extra) {}
 
+    [[nodiscard]] bool is_polytope() const { return placed.shape->kind == ConvexKind::polytope; }
+    // Around what of its own box is in its ball, with the margin: turned boxes reach far beyond what they hold.
     [[nodiscard]] Bounds bounds() const {
         const Bounds& box = placed.shape->bounds;
         const Vec3 half = box.half_extents(), center = placed.to_frame(box.center());
         const Mat3& r = placed.rotation;
-        const Vec3 extent = abs(r.x) * half.x + abs(r.y) * half.y + abs(r.z) * half.z;
-        return {center - extent, center + extent};
+        const Vec3 extent = abs(r.x) * half.x + abs(r.y) * half.y + abs(r.z) * half.z + Vec3{margin, margin, margin};
+        const Vec3 of_ball{reach, reach, reach};
+        return {max(center - extent, inside - of_ball), min(center + extent, inside + of_ball)};
     }
     // Farthest point of the core in its own frame; of a hull as far as floats tell.
     [[nodiscard]] Vec3 own_support(Vec3 direction) const {
@@ -86,7 +89,8 @@ struct Probe {
     }
 };
 
-// Puts a triangle into the convex's frame; false where its plane or one of its sides parts the two.
+// Puts a triangle into the convex's frame; false where its plane parts the two, or one of its sides a round convex,
+// which is slow to meet.
 bool place_near(const Probe& probe, const std::array<Vec3, 3>& corners, Vec3 normal, PlacedTriangle& t) {
     t.normal = probe.placed.direction_to_local(normal);
     t.corners[0] = probe.placed.to_local(corners[0]);
@@ -97,7 +101,7 @@ bool place_near(const Probe& probe, const std::array<Vec3, 3>& corners, Vec3 nor
     t.corners[2] = probe.placed.to_local(corners[2]);
     for (std::size_t i = 0; i < 3; ++i) {
         t.outward[i] = normalized(cross(t.along(i), t.normal));
-        if (t.beyond(i, probe.own_inside) <= probe.margin) continue;
+        if (probe.is_polytope() || t.beyond(i, probe.own_inside) <= probe.margin) continue;
         if (t.beyond(i, probe.own_support(-t.outward[i])) - probe.own.depth > probe.margin) return false;
     }
     return true;
@@ -136,11 +140,10 @@ void collide_surface(const ConvexPiece& piece, std::uint32_t piece_index, const 
     thread_local ContactRegion region;
     const Probe probe(piece, pose, placed.pose, margin);
     near.clear();
-    placed.surface.find(enlarged(probe.bounds(), margin), near);
+    placed.surface.find(probe.bounds(), near);
 
     // Each triangle's contacts join those of others with nearly the same normal.
     std::size_t count = 0;
-    const bool is_polytope = piece.convex.kind == ConvexKind::polytope;
     PlacedTriangle triangle;
     for (const std::uint32_t index : near) {
         const auto corners = placed.surface.corners(index);
@@ -151,7 +154,7 @@ void collide_surface(const ConvexPiece& piece, std::uint32_t piece_index, const 
         triangle.half_bends = placed.surface.half_bends(index);
         region.points.clear();
         bool has_all_corners = false;
-        if (is_polytope) {
+        if (probe.is_polytope()) {
             has_all_corners = collide_polytope_triangle(piece.convex, triangle, margin, region);
         } else {
             collide_round_triangle(piece.convex, triangle, margin, region);

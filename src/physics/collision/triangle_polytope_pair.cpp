@@ -50,6 +50,7 @@ struct PrismCorner {
 /// Room for the work of one thread.
 struct TriangleScratch {
     std::vector<double> heights;
+    std::vector<std::uint32_t> low;
     std::vector<PrismCorner> corners, clipped;  ///< large enough for any face; `count` of the first are used
     std::size_t count = 0;
 };
@@ -171,21 +172,23 @@ void clip_by_prism_side(const PrismSide& side, std::uint32_t name, TriangleScrat
 
 // Of a rich polytope all low corners over the triangle count, so that a rounded side does not stand on one small face
 // of many, another one each step. Those far above the lowest one are left to later steps, however wide the margin of a
-// fast body is.
-void add_low_corners(const TriangleSearch& s, const PrismSide (&sides)[3], double level, ContactRegion& region) {
+// fast body is: returns how far along the normal they may lie.
+double add_low_corners(const TriangleSearch& s, const PrismSide (&sides)[3], double level, TriangleScratch& scratch,
+                       ContactRegion& region) {
     constexpr std::size_t corners_of_a_box = 8;
     const std::vector<Vec3>& vertices = s.polytope.vertices;
-    if (vertices.size() <= corners_of_a_box) return;
+    if (vertices.size() <= corners_of_a_box) return -1e300;
     constexpr double low_share = 0.1;
     const Vec3 normal = s.triangle.normal;
-    const double highest = std::min(s.margin, s.triangle.height + low_share * s.convex.reach);
-    for (std::uint32_t i = 0; i < vertices.size(); ++i) {
-        const double separation = dot(normal, vertices[i]) - level;
-        if (separation > highest) continue;
-        const Vec3 corner = vertices[i];
+    const double highest = level + std::min(s.margin, s.triangle.height + low_share * s.convex.reach);
+    scratch.low.resize(s.polytope.vertex_lanes.size());
+    const std::uint32_t count = find_low(s.polytope.vertex_lanes, normal, highest, scratch.low.data());
+    for (std::uint32_t k = 0; k < count && scratch.low[k] < vertices.size(); ++k) {
+        const Vec3 corner = vertices[scratch.low[k]];
         if (sides[0].beyond(corner) > 0 || sides[1].beyond(corner) > 0 || sides[2].beyond(corner) > 0) continue;
-        region.add(corner, separation, feature_name({4u, i}));
+        region.add(corner, dot(normal, corner) - level, feature_name({4u, scratch.low[k]}));
     }
+    return highest;
 }
 
 // What of the polytope is over the triangle: the corners of the face that faces it, clipped, and low corners.
@@ -196,7 +199,7 @@ void add_over_triangle(const TriangleSearch& s, TriangleScratch& scratch, Contac
     const double level = dot(t.normal, t.corners[0]);
     const PrismSide sides[3] = {{t, 0}, {t, 1}, {t, 2}};
     region.normal = -t.normal;
-    add_low_corners(s, sides, level, region);
+    const double low = add_low_corners(s, sides, level, scratch, region);
 
     // The face turned to the triangle; each side may add one corner.
     const std::uint32_t face = support_face(p, -t.normal);
@@ -212,10 +215,11 @@ void add_over_triangle(const TriangleSearch& s, TriangleScratch& scratch, Contac
     for (std::uint32_t i = 0; i < 3 && scratch.count > 0; ++i) clip_by_prism_side(sides[i], side_tag | i, scratch);
     for (std::size_t i = 0; i < scratch.count; ++i) {
         const PrismCorner& c = scratch.corners[i];
-        const double separation = dot(t.normal, c.point) - level;
+        const double along = dot(t.normal, c.point), separation = along - level;
         if (separation > s.margin) continue;
         // A corner of the face keeps its name from triangle to triangle, so that sliding things are known again.
         const bool is_corner = (c.edge_in & side_tag) == 0 && (c.edge_out & side_tag) == 0;
+        if (is_corner && along <= low) continue;  // known
         const std::uint32_t owner = is_corner ? 0 : t.index + 1;
         region.add(c.point, separation, feature_name({1u, face, c.edge_in << 16 | c.edge_out, owner}));
     }

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace embody::physics {
+
+/// One of many and its value.
+struct Extreme {
+    double along = 0;
+    std::uint32_t index = 0;
+};
+
+/// Vectors by components; `count` is a multiple of what one instruction takes up.
+template <class Number>
+struct VectorLanes {
+    const Number *x, *y, *z;
+    std::size_t count;
+};
+
+/// Loops over all vertices or faces of a polytope for one width of the processor's registers; any width gives the same
+/// bits. `d` points to the three components of a vector. What they compute is told in polytope_query.h.
+struct PolytopeKernels {
+    Extreme (*farthest)(const VectorLanes<double>& vectors, const double* d);
+    std::uint32_t (*farthest_roughly)(const VectorLanes<float>& vectors, const float* d);
+    double (*heights_over_faces)(const VectorLanes<double>& normals, const double* reach, const double* d,
+                                 double* heights);
+    Extreme (*lower_bounds)(const VectorLanes<double>& normals, const double* reach, const double* d, double* bounds);
+    std::uint32_t (*find_low)(const VectorLanes<double>& vectors, const double* d, double limit, std::uint32_t* found);
+};
+
+/// Of 4, 8 or 16 floats side by side; nothing where this processor has none of that width.
+const PolytopeKernels* polytope_kernels(int lanes);
+
+}  // namespace embody::physics
