@@ -62,4 +62,12 @@ inline Share share_of(std::size_t count, int worker, int workers) {
     return {count * w / n, count * (w + 1) / n};
 }
 
+/// Calls work(worker, share) for shares of `count` things, on all workers if that is worth it; else work(0, all).
+template <class Work>
+void share_among(TaskPool& workers, std::size_t count, bool is_worth_it, Work work) {
+    const int number = workers.workers();
+    if (!is_worth_it || number == 1) return work(0, Share{0, count});
+    workers.run([&](int worker) { work(worker, share_of(count, worker, number)); });
+}
+
 }  // namespace embody

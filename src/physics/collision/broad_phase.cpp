@@ -143,14 +143,6 @@ void add_pair(std::vector<BroadPhase::Pair>& pairs, std::uint32_t a, std::uint32
     pairs.push_back({std::min(a, b), std::max(a, b)});
 }
 
-// Calls work(worker, first, last) for shares of `count` things, on all workers if they are worth it.
-template <class Work>
-void share_among(TaskPool& workers, std::size_t count, bool is_worth_it, Work work) {
-    const int number = workers.workers();
-    if (!is_worth_it || number == 1) return work(0, Share{0, count});
-    workers.run([&](int worker) { work(worker, share_of(count, worker, number)); });
-}
-
 }  // namespace
 
 // The changed boxes of one leaf against all others: first all of them together, then each against the leaves that they

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "physics/dynamic/equations_of_motion.h"
+#include "physics/step/share_awake.h"
 #include "physics/step/step.h"
 
 namespace embody::physics {
@@ -126,6 +127,22 @@ void for_each_met(const WorldState& world, std::uint32_t body, const Sweep& swee
     });
 }
 
+// Those that may tunnel, in the order of the bodies.
+std::vector<FastBody> list_fast(WorldState& world) {
+    std::vector<std::vector<FastBody>> found(static_cast<std::size_t>(world.workers->workers()));
+    share_awake(world, [&](int worker, Share share) {
+        for (std::size_t i = share.first; i < share.last; ++i) {
+            const std::uint32_t body = world.awake[i];
+            if (may_tunnel(world, body)) found[static_cast<std::size_t>(worker)].push_back({body});
+        }
+    });
+    std::vector<FastBody> fast = std::move(found[0]);
+    for (std::size_t worker = 1; worker < found.size(); ++worker) {
+        fast.insert(fast.end(), found[worker].begin(), found[worker].end());
+    }
+    return fast;
+}
+
 // Fast bodies that meet each other stop where they do, the earliest first; whoever stopped is met no more.
 void stop_at_meetings(WorldState& world, std::vector<FastBody>& fast) {
     std::vector<Meeting> meetings;
@@ -163,10 +180,7 @@ double first_touch(const WorldState& world, std::uint32_t body, const std::vecto
 }  // namespace
 
 void stop_tunnelling(WorldState& world) {
-    std::vector<FastBody> fast;
-    for (const std::uint32_t body : world.awake) {
-        if (may_tunnel(world, body)) fast.push_back({body});
-    }
+    std::vector<FastBody> fast = list_fast(world);
     if (fast.empty()) return;
     stop_at_meetings(world, fast);
     for (const FastBody& each : fast) put_back(world, each.body, first_touch(world, each.body, fast));

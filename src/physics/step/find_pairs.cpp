@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "physics/step/share_awake.h"
 #include "physics/step/step.h"
 
 namespace embody::physics {
@@ -8,7 +9,6 @@ namespace {
 // Lists which of a share of the awake bodies have left their bounds, and the bounds they want.
 void list_leaving(const WorldState& world, Share share, std::vector<LeavingBody>& leaving) {
     const double dt = world.settings.time_step;
-    leaving.clear();
     for (std::size_t i = share.first; i < share.last; ++i) {
         const std::uint32_t body = world.awake[i];
         const BodyRecord& record = world.record(body);
@@ -26,15 +26,12 @@ void list_leaving(const WorldState& world, Share share, std::vector<LeavingBody>
 }  // namespace
 
 void find_pairs(WorldState& world) {
-    // Bounds of what moves, and how far it will; on all workers where there is enough to do.
-    constexpr std::size_t fewest_shared = 500;
-    const std::size_t count = world.awake.size();
-    const int workers = count < fewest_shared ? 1 : world.workers->workers();
-    world.leaving.resize(static_cast<std::size_t>(workers));
-    const auto list = [&](int worker) {
-        list_leaving(world, share_of(count, worker, workers), world.leaving[static_cast<std::size_t>(worker)]);
-    };
-    workers == 1 ? list(0) : world.workers->run(list);
+    // Bounds of what moves, and how far it will.
+    world.leaving.resize(static_cast<std::size_t>(world.workers->workers()));
+    for (std::vector<LeavingBody>& leaving : world.leaving) leaving.clear();
+    share_awake(world, [&](int worker, Share share) {
+        list_leaving(world, share, world.leaving[static_cast<std::size_t>(worker)]);
+    });
 
     // In the order of the bodies, whoever looked at them.
     for (const std::vector<LeavingBody>& leaving : world.leaving) {

@@ -41,6 +41,7 @@ public:
 private:
     void push(double time, std::uint32_t contact);
     void predict(std::uint32_t contact);
+    void predict_all();
     void predict_again();
     void list_contacts();
     void take(const ImpactEvent& event);
@@ -65,6 +66,22 @@ void ImpactStage::predict(std::uint32_t contact) {
     if (memory_.impacts[contact] >= most_impacts) return;
     const double time = paths_.predict(world_.contacts[contact]);
     if (time <= step_) push(time, contact);
+}
+
+// Contacts are looked at on their own, so all workers can; the events are listed in the order of the contacts.
+void ImpactStage::predict_all() {
+    constexpr std::size_t fewest_shared = 1000;
+    const std::size_t count = world_.contacts.size();
+    memory_.first_time.resize(count);
+    share_among(*world_.workers, count, count >= fewest_shared, [&](int, Share share) {
+        for (std::size_t i = share.first; i < share.last; ++i) {
+            const bool is_slow = paths_.is_surely_slow(world_.contact_glances[i]);
+            memory_.first_time[i] = is_slow ? ImpactPaths::never : paths_.predict(world_.contacts[i]);
+        }
+    });
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (memory_.first_time[i] <= step_) push(memory_.first_time[i], i);
+    }
 }
 
 // The contacts of each body.
@@ -220,9 +237,7 @@ void ImpactStage::run() {
     memory_.impacts.assign(count, 0);
     memory_.events.clear();
     memory_.has_lists = false;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        if (!paths_.is_surely_slow(world_.contact_glances[i])) predict(i);
-    }
+    predict_all();
     std::size_t left = 64 + 32 * count;
     while (!memory_.events.empty()) {
         const ImpactEvent event = memory_.events.front();

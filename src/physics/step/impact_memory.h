@@ -28,6 +28,7 @@ struct ImpactMemory {
     std::vector<float> speed_gain;           ///< most that its free motion can add to an approach in the step, m/s
 
     // By contact; the lists of each body's contacts once there is an impact at all.
+    std::vector<double> first_time;  ///< of its first impact as predicted at the step's start
     std::vector<std::uint32_t> version;
     std::vector<std::uint8_t> impacts;  ///< in this step
     std::vector<std::uint32_t> first_of_body, of_body;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "physics/dynamic/equations_of_motion.h"
+#include "physics/step/share_awake.h"
 
 namespace embody::physics {
 
@@ -26,10 +27,10 @@ ImpactPaths::ImpactPaths(WorldState& world)
 
     // What the end of a free path can be faster than its start.
     memory_.speed_gain.assign(count, 0);
-    for (const std::uint32_t body : world.awake) {
+    for_each_awake(world, [&](std::uint32_t body) {
         const double turning = length_squared(world.motion[body].angular_velocity) * world.record(body).reach;
         memory_.speed_gain[body] = static_cast<float>(step_ * (length(free_acceleration(body)) + turning));
-    }
+    });
 }
 
 Vec3 ImpactPaths::free_acceleration(std::uint32_t body) const {

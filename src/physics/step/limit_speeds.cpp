@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <atomic>
+
+#include "physics/step/share_awake.h"
 #include "physics/step/step.h"
 
 namespace embody::physics {
@@ -16,16 +19,18 @@ bool limit_speed(Vec3& velocity, double most) {
 }  // namespace
 
 void limit_speeds(WorldState& world) {
-    for (const std::uint32_t body : world.awake) {
-        if (!world.is_dynamic(body)) continue;
+    std::atomic<std::uint32_t> limits{0};
+    for_each_awake(world, [&](std::uint32_t body) {
+        if (!world.is_dynamic(body)) return;
         BodyState& state = world.motion[body];
         if (limit_speed(state.linear_velocity, world.settings.max_linear_speed)) {
-            world.report.limits |= static_cast<std::uint32_t>(StepLimit::linear_speed_clamped);
+            limits |= static_cast<std::uint32_t>(StepLimit::linear_speed_clamped);
         }
         if (limit_speed(state.angular_velocity, world.settings.max_angular_speed)) {
-            world.report.limits |= static_cast<std::uint32_t>(StepLimit::angular_speed_clamped);
+            limits |= static_cast<std::uint32_t>(StepLimit::angular_speed_clamped);
         }
-    }
+    });
+    world.report.limits |= limits;
 }
 
 }  // namespace embody::physics

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
+#include "physics/step/share_awake.h"
 #include "physics/step/step.h"
 
 namespace embody::physics {
@@ -56,6 +57,7 @@ void end_touching(WorldState& world, const TouchingPair& pair) {
 // Walks through the pairs that touched in the last step and those that touch now, both sorted: ends first.
 void write_contact_events(WorldState& world) {
     list_touching(world, world.touching_now);
+    if (world.touching_now == world.touching) return;
     auto now = world.touching_now.begin();
     const auto last = world.touching_now.end();
     for (const TouchingPair& pair : world.touching) {
@@ -100,9 +102,8 @@ void write_report(WorldState& world) {
         if (contact.touches) ++world.report.contacts;
         if (contact.is_deep) world.report.limits |= static_cast<std::uint32_t>(StepLimit::deep_penetration);
     }
-    for (const std::uint32_t body : world.awake) {
-        world.record(body).next_force = world.record(body).next_torque = {};
-    }
+    for_each_awake(world,
+                   [&](std::uint32_t body) { world.record(body).next_force = world.record(body).next_torque = {}; });
 }
 
 }  // namespace embody::physics

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "physics/optimization/island_sleep.h"
+#include "physics/step/share_awake.h"
 #include "physics/step/step.h"
 
 namespace embody::physics {
@@ -49,9 +50,10 @@ void fall_asleep(WorldState& world, const Island& island, std::vector<bool>& lea
 
 void put_to_sleep(WorldState& world) {
     const double dt = world.settings.time_step;
-    for (const std::uint32_t body : world.islands.bodies) {
+    for_each_awake(world, [&](std::uint32_t body) {
+        if (world.motion[body].inverse_mass == 0) return;
         track_quietness(world.sleep[body], world.motion[body], world.constants[body], dt);
-    }
+    });
     if (!world.settings.sleeping) return;
 
     std::vector<bool> leaves;

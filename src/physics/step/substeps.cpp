@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "physics/constraint/substep_solver.h"
@@ -7,6 +8,7 @@
 #include "physics/optimization/direct_islands.h"
 #include "physics/optimization/shock_propagation.h"
 #include "physics/optimization/solve_schedule.h"
+#include "physics/step/share_awake.h"
 #include "physics/step/step.h"
 
 namespace embody::physics {
@@ -20,9 +22,10 @@ struct SolveWays {
         ContactPlan plan;
         std::vector<Island> islands;
     };
-    std::vector<Island> one_by_one;  // free bodies, and what joints and contacts hold
-    std::vector<Island> jointed;     // joints only, all at once
-    std::vector<Wide> wide;          // contacts only; the finest plan first
+    std::vector<std::uint32_t> free;  // bodies that nothing holds
+    std::vector<Island> one_by_one;   // joints and contacts, or too many joints
+    std::vector<Island> jointed;      // joints only, all at once
+    std::vector<Wide> wide;           // contacts only; the finest plan first
 
     void add(const Island& island, const ContactPlan& plan);
 };
@@ -132,9 +135,11 @@ SolveWays sort_islands(WorldState& world) {
     set_up_joint_systems(world);
     world.direct_solver.begin(world.settings.time_step, world.settings.substeps);
     for (const Island& island : world.islands.list) {
-        if (island.contact_count == 0 && joint_system(world, island)) {
+        if (island.contact_count == 0 && island.joint_count == 0) {
+            ways.free.push_back(world.islands.bodies[island.first_body]);
+        } else if (island.contact_count == 0 && joint_system(world, island)) {
             ways.jointed.push_back(island);
-        } else if (island.joint_count > 0 || island.contact_count == 0) {
+        } else if (island.joint_count > 0) {
             ways.one_by_one.push_back(island);
         } else if (!solve_directly(world, island)) {
             ways.add(island, contact_plan(island.contact_count, world.settings.substeps));
@@ -243,18 +248,25 @@ void clear_traces_of_lost(WorldState& world) {
     }
 }
 
+bool is_lost(const BodyState& state) { return !is_state_finite(state) || !(length(state.center) < 1e15); }
+
 // A body that left the finite numbers would take all it touches along: it is put back and switched off.
 void freeze_lost_bodies(WorldState& world) {
-    bool lost_any = false;
+    std::atomic<bool> lost_any{false};
+    for_each_awake(world, [&](std::uint32_t body) {
+        const BodyState& state = world.motion[body];
+        if (is_lost(state)) {
+            lost_any = true;
+            return;
+        }
+        world.record(body).last_center = state.center;
+        world.record(body).last_rotation = state.rotation;
+    });
+    if (!lost_any) return;
     for (const std::uint32_t body : world.awake) {
         BodyState& state = world.motion[body];
         BodyRecord& record = world.record(body);
-        if (is_state_finite(state) && length(state.center) < 1e15) {
-            record.last_center = state.center;
-            record.last_rotation = state.rotation;
-            continue;
-        }
-        lost_any = true;
+        if (!is_lost(state)) continue;
         state.center = record.last_center;
         state.rotation = record.last_rotation;
         state.linear_velocity = state.angular_velocity = {};
@@ -263,7 +275,7 @@ void freeze_lost_bodies(WorldState& world) {
         if (record.shape) world.broad_phase.remove(body);
         world.report.limits |= static_cast<std::uint32_t>(StepLimit::not_finite_body_frozen);
     }
-    if (lost_any) clear_traces_of_lost(world);
+    clear_traces_of_lost(world);
 }
 
 // Whether a kinematic body may give the island energy by a contact.
@@ -324,7 +336,24 @@ private:
     std::vector<Bound> bounds_;
 };
 
-// Free bodies and those that joints and contacts hold: one constraint after the other, in double.
+// Through the whole step: half of the forces before the drift and half after it.
+void solve_free(WorldState& world, const std::vector<std::uint32_t>& bodies, double h) {
+    constexpr std::size_t fewest_shared = 200;
+    share_among(*world.workers, bodies.size(), bodies.size() >= fewest_shared, [&](int, Share share) {
+        for (std::size_t i = share.first; i < share.last; ++i) {
+            BodyState& state = world.motion[bodies[i]];
+            const BodyConstants& constants = world.constants[bodies[i]];
+            for (int k = 0; k < world.settings.substeps; ++k) {
+                kick(state, constants, h / 2);
+                split_gyroscopic(state, constants, h);
+                drift(state, constants, h);
+                kick(state, constants, h / 2);
+            }
+        }
+    });
+}
+
+// What joints and contacts hold: one constraint after the other, in double. Moves the kinematic bodies too.
 void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, double h) {
     world.prepared_contacts.clear();
     for_each_contact(world, islands, [&](Contact& contact) {
@@ -376,6 +405,7 @@ void run_substeps(WorldState& world) {
     // The last one moves the kinematic bodies, which the others take from where the step found them.
     for (const SolveWays::Wide& way : ways.wide) solve_wide(world, way);
     solve_jointed(world, ways.jointed, h);
+    solve_free(world, ways.free, h);
     solve_one_by_one(world, ways.one_by_one, h);
     if (world.settings.shock_propagation) propagate_shocks(world, ways);
     limit_speeds(world);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "physics/step/share_awake.h"
 #include "physics/step/step.h"
 
 namespace embody::physics {
@@ -99,9 +100,9 @@ void wake_bodies(WorldState& world) {
 
 void gather_awake(WorldState& world) {
     if (world.awake_changed) list_awake(world);
-    for (const std::uint32_t body : world.awake) {
+    for_each_awake(world, [&](std::uint32_t body) {
         if (world.is_dynamic(body)) refresh_forces(world, body);
-    }
+    });
 }
 
 }  // namespace embody::physics
