@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "math/mat3.h"
+#include "physics/constraint/block_kernels.h"
 
 namespace embody::physics {
 
@@ -17,10 +18,11 @@ inline Vec6 make_vec6(Vec3 linear, Vec3 angular) {
     return {{linear.x, linear.y, linear.z, angular.x, angular.y, angular.z}};
 }
 
-/// 6×6 matrix by columns.
-struct alignas(16) Block6 {
-    double column[6][6] = {};
+/// 6×6 matrix by columns, each filled up with zeros.
+struct alignas(64) Block6 {
+    double column[6][column_stride] = {};
 };
+static_assert(sizeof(Block6) == block_stride * sizeof(double));
 /// Adds (uu uw; wu ww) to the block.
 inline void add_to(Block6& block, const Mat3& uu, const Mat3& uw, const Mat3& wu, const Mat3& ww) {
     for (int c = 0; c < 3; ++c) {
@@ -56,15 +58,6 @@ struct Column6 {
 inline double dot(const Column6& x, const Column6& y) {
     const NumberPair sum = x.a * y.a + x.b * y.b + x.c * y.c;
     return sum[0] + sum[1];
-}
-
-/// target −= rows columnsᵀ.
-inline void subtract_product(Block6& target, const Block6& rows, const Block6& columns) {
-    for (int c = 0; c < 6; ++c) {
-        Column6 sum = Column6::of(target.column[c]);
-        for (int p = 0; p < 6; ++p) sum.subtract(Column6::of(rows.column[p]), columns.column[p][c]);
-        sum.put(target.column[c]);
-    }
 }
 
 }  // namespace embody::physics

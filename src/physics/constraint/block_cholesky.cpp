@@ -5,37 +5,6 @@
 
 namespace embody::physics {
 
-namespace {
-
-constexpr double stuck_pivot = 1e100;
-
-// The pivot block becomes its L (unit, below the diagonal); the blocks below become theirs.
-void factor_column(Block6& pivot, Vec6& inverse_pivots, std::span<Block6> below) {
-    for (int p = 0; p < 6; ++p) {
-        double d = pivot.column[p][p];
-        if (!(d > 0)) d = stuck_pivot;
-        const double inverse = 1 / d;
-        inverse_pivots.value[p] = inverse;
-        const Column6 column = Column6::of(pivot.column[p]);
-        for (int c = p + 1; c < 6; ++c) {
-            Column6 next = Column6::of(pivot.column[c]);
-            next.subtract(column, pivot.column[p][c] * inverse);
-            next.put(pivot.column[c]);
-        }
-        for (int r = p + 1; r < 6; ++r) pivot.column[p][r] *= inverse;
-    }
-    for (Block6& block : below) {
-        Column6 columns[6];
-        for (int c = 0; c < 6; ++c) columns[c] = Column6::of(block.column[c]);
-        for (int p = 0; p < 6; ++p) {
-            for (int c = p + 1; c < 6; ++c) columns[c].subtract(columns[p], pivot.column[p][c]);
-        }
-        for (int c = 0; c < 6; ++c) columns[c].put(block.column[c]);
-    }
-}
-
-}  // namespace
-
 void BlockCholesky::analyse(std::size_t nodes, std::span<const Edge> edges) {
     pattern_.analyse(nodes, edges);
     diagonal_.resize(nodes);
@@ -49,26 +18,17 @@ void BlockCholesky::clear() {
     std::fill(blocks_.begin(), blocks_.end(), Block6{});
 }
 
-void BlockCholesky::factor() {
-    for (std::size_t place = 0; place < diagonal_.size(); ++place) {
-        const auto [first, last] = pattern_.column(place);
-        const double* inverse = inverse_pivots_[place].value;
-        factor_column(diagonal_[place], inverse_pivots_[place], std::span(blocks_).subspan(first, last - first));
-        const std::uint32_t* target = pattern_.targets(place);
-        for (std::size_t k = first; k < last; ++k) {
-            Block6 scaled;
-            for (int p = 0; p < 6; ++p) {
-                for (int c = 0; c < 6; ++c) scaled.column[p][c] = blocks_[k].column[p][c] * inverse[p];
-            }
-            subtract_product(diagonal_[pattern_.row_of(k)], blocks_[k], scaled);
-            for (std::size_t i = k + 1; i < last; ++i) subtract_product(blocks_[*target++], blocks_[i], scaled);
-        }
-        for (std::size_t k = first; k < last; ++k) {
-            for (int p = 0; p < 6; ++p) {
-                for (int c = 0; c < 6; ++c) blocks_[k].column[p][c] *= inverse[p];
-            }
-        }
-    }
+void BlockCholesky::factor(const BlockKernels& kernels) {
+    if (diagonal_.empty()) return;
+    static_assert(sizeof(Vec6) == 6 * sizeof(double));
+    kernels.factor({.nodes = pattern_.nodes(),
+                    .first = pattern_.first_blocks(),
+                    .row = pattern_.rows(),
+                    .first_target = pattern_.first_targets(),
+                    .target = pattern_.targets(0),
+                    .diagonal = diagonal_.front().column[0],
+                    .below = blocks_.empty() ? nullptr : blocks_.front().column[0],
+                    .inverse_pivots = inverse_pivots_.front().value});
 }
 
 void BlockCholesky::solve(std::span<Vec6> x) const {

@@ -30,7 +30,7 @@ public:
 
     /// Replaces the matrix by its factors. A pivot that rounding made zero or negative is replaced by a huge one: what
     /// it stands for then does not move.
-    void factor();
+    void factor(const BlockKernels& kernels = widest_block_kernels());
     /// Solves for one right side, in place; by node.
     void solve(std::span<Vec6> x) const;
 

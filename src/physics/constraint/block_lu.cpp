@@ -61,6 +61,10 @@ void BlockLu::clear() {
 }
 
 void BlockLu::factor() {
+    const auto subtract_product = [kernel = widest_block_kernels().subtract_product](Block6& target, const Block6& rows,
+                                                                                     const Block6& columns) {
+        kernel(target.column[0], rows.column[0], columns.column[0]);
+    };
     for (std::size_t place = 0; place < diagonal_.size(); ++place) {
         invert(diagonal_[place]);
         const auto [first, last] = pattern_.column(place);

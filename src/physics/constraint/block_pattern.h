@@ -39,6 +39,10 @@ public:
     [[nodiscard]] const std::uint32_t* targets(std::size_t place) const {
         return targets_.data() + first_target_[place];
     }
+    /// All of these in one list each: by place, by block, by place.
+    [[nodiscard]] const std::uint32_t* first_blocks() const { return first_.data(); }
+    [[nodiscard]] const std::uint16_t* rows() const { return below_.data(); }
+    [[nodiscard]] const std::uint32_t* first_targets() const { return first_target_.data(); }
     /// The block of an edge; its rows belong to `row_end(edge)` of the two ends (0 or 1).
     [[nodiscard]] std::size_t block_of(std::size_t edge) const { return edge_block_[edge]; }
     [[nodiscard]] int row_end(std::size_t edge) const { return row_end_[edge]; }

@@ -114,5 +114,27 @@ TEST(BlockCholesky, WhatNothingHoldsDoesNotMoveInASingularMatrix) {
     }
 }
 
+TEST(BlockCholesky, AnyWidthGivesTheSameBits) {
+    const auto solution_of = [](const BlockKernels& kernels) {
+        Random random(8);
+        Edges ring;
+        for (std::uint16_t i = 0; i < 12; ++i) ring.push_back({i, static_cast<std::uint16_t>((i + 1) % 12)});
+        Pair pair(12, ring, random);
+        pair.matrix.factor(kernels);
+        std::vector<Vec6> x(12, make_vec6({1, 2, 3}, {4, 5, 6}));
+        pair.matrix.solve(x);
+        return x;
+    };
+    const std::vector<Vec6> expected = solution_of(*block_kernels(4));
+    for (const int lanes : {8, 16}) {
+        const BlockKernels* kernels = block_kernels(lanes);
+        if (!kernels) continue;
+        const std::vector<Vec6> found = solution_of(*kernels);
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            for (int k = 0; k < 6; ++k) EXPECT_EQ(found[i].value[k], expected[i].value[k]) << lanes;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace embody::physics

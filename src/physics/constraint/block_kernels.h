@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+//
+// How blocks of 6×6 numbers lie in memory for the direct solvers. Only numbers here: kernels include this file, and
+// inline code would be merged across instruction sets.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace embody::physics {
+
+/// Of a block: numbers from one column to the next, of which the first six count and the others are 0, and all.
+inline constexpr std::size_t column_stride = 8, block_stride = 6 * column_stride;
+
+/// A matrix to factorise, as BlockCholesky holds it; pieces by place in the order of elimination.
+struct BlockFactors {
+    std::size_t nodes;
+    const std::uint32_t* first;         ///< of a column's blocks; one more than there are nodes
+    const std::uint16_t* row;           ///< place of a block's row
+    const std::uint32_t* first_target;  ///< of a column's pairs of blocks, into `target`
+    const std::uint32_t* target;        ///< block that the pair changes
+    double* diagonal;                   ///< blocks
+    double* below;                      ///< blocks
+    double* inverse_pivots;             ///< six a place
+};
+
+/// Any width of the processor's registers gives the same bits.
+struct BlockKernels {
+    /// Replaces the matrix by its factors L D Lᵀ.
+    void (*factor)(const BlockFactors& matrix);
+    /// target −= rows columnsᵀ, of blocks.
+    void (*subtract_product)(double* target, const double* rows, const double* columns);
+};
+
+/// Of 4, 8 or 16 floats side by side (half as many of these numbers); nothing where this processor has none of that
+/// width.
+const BlockKernels* block_kernels(int lanes);
+/// The widest that this processor has.
+const BlockKernels& widest_block_kernels();
+
+}  // namespace embody::physics
