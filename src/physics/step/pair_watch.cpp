@@ -115,17 +115,17 @@ void introduce_body(WorldState& world, std::uint32_t body) {
                            .yields = world.motion[body].inverse_mass > 0};
 }
 
-// No surface point goes farther than the centre of mass and the chord of the body's turn at its reach; a ball that
+// No surface point goes farther than the centre of mass and the chord of the body's turn at its reach. A ball that
 // turns stays where it is.
 void start_motion(WorldState& world) {
     const double dt = world.settings.time_step;
     for (const std::uint32_t body : world.awake) {
         BodyState& state = world.motion[body];
         TouchBody& touch = world.touch_memory.bodies[body];
-        touch.turning = length(state.angular_velocity) * world.record(body).reach;
+        const double reach = touch.is_ball ? 0 : world.record(body).reach;
         const Quat turn = state.rotation * conjugate(state.start_rotation);
-        const double swing = touch.is_ball ? 0 : 2 * length(Vec3{turn.x, turn.y, turn.z}) * touch.size;
-        touch.path += distance(state.center, state.start_center) + swing;
+        touch.path += distance(state.center, state.start_center) + 2 * length(Vec3{turn.x, turn.y, turn.z}) * reach;
+        touch.turning = length(state.angular_velocity) * reach;
         state.start_center = state.center;
         state.start_rotation = state.rotation;
         state.turn = {};

@@ -15,7 +15,7 @@ namespace embody::physics {
 /// What the touch stage must know of a body besides its state, in one cache line.
 struct alignas(64) TouchBody {
     Vec3 acceleration;   ///< 0 of what forces do not move, m/s²
-    double turning = 0;  ///< of the fastest surface point about the centre of mass, m/s
+    double turning = 0;  ///< of the fastest surface point about the centre of mass, m/s; 0 of balls
     double size = 0;     ///< BodyRecord::reach; planes and meshes, which have none, count as larger than all else, m
     double path = 0;     ///< no surface point has gone farther since there is a body in the slot, m
     std::uint32_t version = 0;          ///< BodyRecord::version
