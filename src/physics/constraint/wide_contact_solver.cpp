@@ -52,92 +52,94 @@ bool may_wait(const Contact& contact) {
 
 }  // namespace
 
-void WideContactSolver::append_row(std::uint32_t body, const BodyState& state) {
+void WideContactSolver::add_row(std::uint32_t body) {
+    if (body >= row_of_slot_.size()) row_of_slot_.resize(body + 1);
+    row_of_slot_[body] = static_cast<std::int32_t>(slot_of_row_.size());
+    slot_of_row_.push_back(body);
+}
+
+void WideContactSolver::begin(const Members& members, double substep, int substeps) {
+    substep_ = substep;
+    substeps_ = substeps;
+    batches_.clear();
+    stages_.clear();
+    used_lines_ = used_lanes_ = 0;
+
+    // Row 0 is the immovable world.
+    slot_of_row_.assign(1, 0xFFFFFFFFu);
+    for (const std::uint32_t body : members.movable) add_row(body);
+    movable_rows_ = slot_of_row_.size();
+    for (const std::uint32_t body : members.carriers) add_row(body);
+    for (std::vector<Row>* rows : {&velocity_, &motion_, &start_, &kick_, &damping_, &kicked_, &inertia_}) {
+        rows->resize(slot_of_row_.size());
+        rows->front() = {};
+    }
+    motion_.front() = {{0, 0, 0, 0, 0, 0, 1, 0}};
+}
+
+void WideContactSolver::fill_row(std::size_t row, const Work& work) {
+    BodyState& state = work.bodies[slot_of_row_[row]];
+    const BodyConstants& c = work.constants[slot_of_row_[row]];
+    velocity_[row] = kick_[row] = kicked_[row] = {};
+    damping_[row] = {{1, 1, 1, 1, 1, 1, 1, 1}};
+    const double step = substep_ * substeps_;
+    const bool is_movable = row < movable_rows_;
+    if (is_movable) {
+        state.hidden_momentum = {};
+        if (has_gyroscopic_torque(state, c, step)) split_gyroscopic_of_turns(state, c, step, substeps_);
+    }
     const Vec3 way = state.center - state.start_center;
     const Vec3 v = state.linear_velocity, w = state.angular_velocity;
     const Quat& q = state.turn;
-    velocity_.push_back({});
-    start_.push_back({{to_float(v.x), to_float(v.y), to_float(v.z), to_float(w.x), to_float(w.y), to_float(w.z)}});
-    motion_.push_back({{to_float(way.x), to_float(way.y), to_float(way.z), to_float(q.x), to_float(q.y), to_float(q.z),
-                        to_float(q.w)}});
-    kick_.push_back({});
-    damping_.push_back({{1, 1, 1, 1, 1, 1, 1, 1}});
+    start_[row] = {{to_float(v.x), to_float(v.y), to_float(v.z), to_float(w.x), to_float(w.y), to_float(w.z)}};
+    motion_[row] = {{to_float(way.x), to_float(way.y), to_float(way.z), to_float(q.x), to_float(q.y), to_float(q.z),
+                     to_float(q.w)}};
     const Mat3& i = state.inverse_inertia;
-    inertia_.push_back({{to_float(i.x.x), to_float(i.x.y), to_float(i.x.z), to_float(i.y.y), to_float(i.y.z),
-                         to_float(i.z.z), to_float(state.inverse_mass)}});
-    slot_of_row_.push_back(body);
-    if (body >= row_of_slot_.size()) row_of_slot_.resize(body + 1);
-    row_of_slot_[body] = static_cast<std::int32_t>(slot_of_row_.size() - 1);
+    inertia_[row] = {{to_float(i.x.x), to_float(i.x.y), to_float(i.x.z), to_float(i.y.y), to_float(i.y.z),
+                      to_float(i.z.z), to_float(state.inverse_mass)}};
+    if (!is_movable) return;
+
+    // As kick() of equations_of_motion.h, for changes: v₀ + Δ ← (v₀ + Δ + a h) d.
+    const double linear = 1 / (1 + substep_ * c.linear_damping), angular = 1 / (1 + substep_ * c.angular_damping);
+    const Vec3 a = c.acceleration * (substep_ * linear) + v * (linear - 1);
+    const Vec3 t = state.inverse_inertia * c.torque * (substep_ * angular) + w * (angular - 1);
+    kick_[row] = {{to_float(a.x), to_float(a.y), to_float(a.z), to_float(t.x), to_float(t.y), to_float(t.z)}};
+    const float d = to_float(linear), e = to_float(angular);
+    damping_[row] = {{d, d, d, e, e, e, 1, 1}};
 }
 
-void WideContactSolver::begin(std::span<const std::uint32_t> movable, std::span<BodyState> bodies,
-                              std::span<const BodyConstants> constants, double substep, int substeps) {
-    substep_ = substep;
-    substeps_ = substeps;
-    for (std::vector<Row>* rows : {&velocity_, &motion_, &start_, &kick_, &damping_, &inertia_}) rows->clear();
-    slot_of_row_.clear();
-    batches_.clear();
-    stages_.clear();
-    for (std::vector<std::int32_t>* lanes : {&contact_row_, &body_a_, &body_b_, &bits_}) lanes->clear();
-    used_lines_ = 0;
-
-    // The immovable world.
-    velocity_.push_back({});
-    motion_.push_back({{0, 0, 0, 0, 0, 0, 1, 0}});
-    start_.push_back({});
-    kick_.push_back({});
-    damping_.push_back({});
-    inertia_.push_back({});
-    slot_of_row_.push_back(0xFFFFFFFFu);
-
-    const double step = substep * substeps;
-    for (const std::uint32_t body : movable) {
-        BodyState& state = bodies[body];
-        const BodyConstants& c = constants[body];
-        state.hidden_momentum = {};
-        if (has_gyroscopic_torque(state, c, step)) split_gyroscopic_of_turns(state, c, step, substeps);
-        append_row(body, state);
-
-        // As kick() of equations_of_motion.h, for changes: v₀ + Δ ← (v₀ + Δ + a h) d.
-        const double linear = 1 / (1 + substep * c.linear_damping), angular = 1 / (1 + substep * c.angular_damping);
-        const Vec3 a = c.acceleration * (substep * linear) + state.linear_velocity * (linear - 1);
-        const Vec3 t = state.inverse_inertia * c.torque * (substep * angular) + state.angular_velocity * (angular - 1);
-        kick_.back() = {{to_float(a.x), to_float(a.y), to_float(a.z), to_float(t.x), to_float(t.y), to_float(t.z)}};
-        const float d = to_float(linear), e = to_float(angular);
-        damping_.back() = {{d, d, d, e, e, e, 1, 1}};
-    }
-    movable_rows_ = slot_of_row_.size();
-}
-
-// Bodies that stand still for ever share row 0; a kinematic one gets a row when the first contact meets it.
-std::int32_t WideContactSolver::row_of(std::uint32_t body, std::span<const BodyState> bodies) {
-    const BodyState& state = bodies[body];
-    if (state.inverse_mass == 0 && state.linear_velocity == Vec3{} && state.angular_velocity == Vec3{}) return 0;
-    const bool is_known = body < row_of_slot_.size() &&
-                          static_cast<std::size_t>(row_of_slot_[body]) < slot_of_row_.size() &&
-                          slot_of_row_[static_cast<std::size_t>(row_of_slot_[body])] == body;
-    if (!is_known) append_row(body, state);
-    return row_of_slot_[body];
+// Bodies that stand still for ever share row 0.
+std::int32_t WideContactSolver::row_of(std::uint32_t body) const {
+    if (body >= row_of_slot_.size()) return 0;
+    const auto row = static_cast<std::size_t>(row_of_slot_[body]);
+    return row < slot_of_row_.size() && slot_of_row_[row] == body ? row_of_slot_[body] : 0;
 }
 
 void WideContactSolver::begin_stage() { stages_.push_back(static_cast<std::uint32_t>(batches_.size())); }
 
-void WideContactSolver::add_batch(std::span<const std::uint32_t> batch, int points, std::span<const Contact> contacts,
-                                  std::span<const BodyState> bodies) {
-    batches_.push_back({static_cast<std::uint32_t>(used_lines_), static_cast<std::uint32_t>(bits_.size()),
-                        static_cast<std::uint32_t>(batch.size()), points});
-    for (const std::uint32_t i : batch) {
-        contact_row_.push_back(static_cast<std::int32_t>(i) * ContactRow::size);
-        body_a_.push_back(row_of(contacts[i].a, bodies));
-        body_b_.push_back(row_of(contacts[i].b, bodies));
-        bits_.push_back(lane_bits(contacts[i]));
+void WideContactSolver::add_batch(std::span<const std::uint32_t> batch, int points) {
+    batches_.push_back(
+        {batch, static_cast<std::uint32_t>(used_lines_), static_cast<std::uint32_t>(used_lanes_), points});
+    used_lanes_ += static_cast<std::size_t>(lanes());
+    const auto floats = static_cast<std::size_t>(batch_floats(kernels_->lanes, points));
+    used_lines_ += (floats + 15) / 16;
+}
+
+void WideContactSolver::fill_lanes(const Batch& batch, std::span<const Contact> contacts) {
+    std::size_t lane = batch.first_lane;
+    for (const std::uint32_t i : batch.contacts) {
+        contact_row_[lane] = static_cast<std::int32_t>(i) * ContactRow::size;
+        body_a_[lane] = row_of(contacts[i].a);
+        body_b_[lane] = row_of(contacts[i].b);
+        bits_[lane] = lane_bits(contacts[i]);
+        ++lane;
     }
 
     // The other lanes.
-    contact_row_.resize(bits_.size() + static_cast<std::size_t>(lanes()) - batch.size(), contact_row_.back());
-    for (std::vector<std::int32_t>* lanes : {&body_a_, &body_b_, &bits_}) lanes->resize(contact_row_.size(), 0);
-    const auto floats = static_cast<std::size_t>(batch_floats(kernels_->lanes, points));
-    used_lines_ += (floats + 15) / 16;
+    for (; lane < batch.first_lane + static_cast<std::size_t>(lanes()); ++lane) {
+        contact_row_[lane] = contact_row_[lane - 1];
+        body_a_[lane] = body_b_[lane] = bits_[lane] = 0;
+    }
 }
 
 void WideContactSolver::fill_batch(const Batch& batch, std::span<const Contact> contacts) {
@@ -154,7 +156,7 @@ void WideContactSolver::fill_batch(const Batch& batch, std::span<const Contact> 
 
     // What may be written.
     std::int32_t writable[4] = {};
-    for (std::uint32_t lane = 0; lane < batch.contact_count; ++lane) {
+    for (std::uint32_t lane = 0; lane < batch.contacts.size(); ++lane) {
         const auto is_movable = [&](std::int32_t row) { return inertia_[static_cast<std::size_t>(row)].value[6] > 0; };
         writable[0] |= (is_movable(body_a_[first + lane]) ? 1 : 0) << lane;
         writable[1] |= (is_movable(body_b_[first + lane]) ? 1 : 0) << lane;
@@ -236,11 +238,14 @@ void WideContactSolver::solve_share(const Work& work, int worker) {
     ContactSweep sweep = work.sweep;
 
     // Row 0 never moves.
-    const Share share = share_of(velocity_.size() - 1, worker, work.workers);
+    const Share share = share_of(slot_of_row_.size() - 1, worker, work.workers);
     const auto first_row = static_cast<std::int32_t>(share.first + 1),
                last_row = static_cast<std::int32_t>(share.last + 1);
+    for (std::size_t row = share.first + 1; row < share.last + 1; ++row) fill_row(row, work);
+    work.barrier.wait();
     const std::vector<std::uint32_t>& own = parts_[static_cast<std::size_t>(worker)].batches;
     for (const std::uint32_t i : own) {
+        fill_lanes(batches_[i], work.contacts);
         fill_batch(batches_[i], work.contacts);
         k.separate(lines_[batches_[i].first_line].value, batches_[i].points, sweep);
     }
@@ -274,7 +279,7 @@ void WideContactSolver::solve_share(const Work& work, int worker) {
     }
     for (const std::uint32_t i : own) {
         const Batch& batch = batches_[i];
-        for (std::uint32_t lane = 0; lane < batch.contact_count; ++lane) {
+        for (std::uint32_t lane = 0; lane < batch.contacts.size(); ++lane) {
             const std::size_t contact = contact_of(batch.first_lane + lane);
             write_contact(batch, lane, work.softness, work.contacts[contact], work.glances[contact]);
         }
@@ -289,7 +294,7 @@ void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::
         lines_.clear();
         lines_.resize(used_lines_ + used_lines_ / 2);
     }
-    kicked_.assign(velocity_.size(), {});
+    for (std::vector<std::int32_t>* lanes : {&contact_row_, &body_a_, &body_b_, &bits_}) lanes->resize(used_lanes_);
     const ContactSweep sweep{.velocity = velocity_[0].value,
                              .motion = motion_[0].value,
                              .substep = to_float(substep_),

@@ -21,15 +21,18 @@ public:
     explicit WideContactSolver(const ContactKernels& kernels) : kernels_(&kernels) {}
     [[nodiscard]] int lanes() const { return kernels_->lanes; }
 
-    /// Starts a step of `substeps` substeps of `substep` s for the `movable` bodies (slots).
-    void begin(std::span<const std::uint32_t> movable, std::span<BodyState> bodies,
-               std::span<const BodyConstants> constants, double substep, int substeps);
+    /// Bodies (slots) that contacts move, and kinematic ones in motion; all others stand still.
+    struct Members {
+        std::span<const std::uint32_t> movable, carriers;
+    };
+
+    /// Starts a step of `substeps` substeps of `substep` s.
+    void begin(const Members& members, double substep, int substeps);
     /// Begins a stage: what is added from here on is solved after all that was added before.
     void begin_stage();
     /// Adds contacts of different movable bodies, at most lanes() of them, with up to `points` points. The batches of
-    /// one stage have no movable body in common.
-    void add_batch(std::span<const std::uint32_t> batch, int points, std::span<const Contact> contacts,
-                   std::span<const BodyState> bodies);
+    /// one stage have no movable body in common. The list of contacts stays where it is until they are solved.
+    void add_batch(std::span<const std::uint32_t> batch, int points);
     /// Solves the step, with `passes` sweeps before and after the drift of each substep, and hands the motion to the
     /// bodies, the impulses to the contacts and what came of them to their glances. The same for any number of workers.
     void solve(int passes, const ContactSoftness& softness, std::span<BodyState> bodies,
@@ -44,8 +47,9 @@ private:
         float value[16];
     };
     struct Batch {
+        std::span<const std::uint32_t> contacts;
         std::uint32_t first_line = 0;  ///< into lines_
-        std::uint32_t first_lane = 0, contact_count = 0;
+        std::uint32_t first_lane = 0;
         int points = 0;
     };
     /// What the workers of a step share.
@@ -66,14 +70,16 @@ private:
         std::vector<std::uint32_t> end;      ///< of each stage, into batches
     };
 
-    std::int32_t row_of(std::uint32_t body, std::span<const BodyState> bodies);
-    void append_row(std::uint32_t body, const BodyState& state);
+    void add_row(std::uint32_t body);
+    void fill_row(std::size_t row, const Work& work);
+    [[nodiscard]] std::int32_t row_of(std::uint32_t body) const;
     [[nodiscard]] std::size_t contact_of(std::size_t lane) const {
         return static_cast<std::size_t>(contact_row_[lane] / ContactRow::size);
     }
     [[nodiscard]] Share batches_of_stage(std::size_t stage) const;
     void deal_stage(std::size_t stage);
     void deal_batches(int workers);
+    void fill_lanes(const Batch& batch, std::span<const Contact> contacts);
     void fill_batch(const Batch& batch, std::span<const Contact> contacts);
     void solve_share(const Work& work, int worker);
     /// Calls kernel(batch's floats, points) for this worker's batches, stage after stage from the top down.
@@ -87,7 +93,7 @@ private:
     double substep_ = 0;  // s
     int substeps_ = 0;
 
-    // Row 0 is the immovable world; then the movable bodies, then the kinematic ones that contacts meet.
+    // Row 0 is the immovable world; then the movable bodies, then the kinematic ones in motion.
     std::vector<Row> velocity_, motion_, start_, kick_, damping_, kicked_, inertia_;
     std::vector<std::uint32_t> slot_of_row_;
     std::vector<std::int32_t> row_of_slot_;  // valid where slot_of_row_ agrees
@@ -99,7 +105,7 @@ private:
     std::vector<Part> parts_;                                         // by worker
     std::vector<std::int32_t> contact_row_, body_a_, body_b_, bits_;  // lane by lane: BatchSource
     std::vector<CacheLine> lines_;                                    // never shrinks
-    std::size_t used_lines_ = 0;
+    std::size_t used_lines_ = 0, used_lanes_ = 0;
 };
 
 }  // namespace embody::physics

@@ -58,6 +58,18 @@ JointSystem* joint_system(WorldState& world, const Island& island) {
     return &world.joint_systems[world.islands.bodies[island.first_body]];
 }
 
+// The kinematic bodies in motion.
+std::vector<std::uint32_t> list_carriers(const WorldState& world) {
+    std::vector<std::uint32_t> carriers;
+    if (world.awake.size() == world.islands.bodies.size()) return carriers;
+    for (const std::uint32_t body : world.awake) {
+        const BodyState& state = world.motion[body];
+        const bool moves = state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{};
+        if (state.inverse_mass == 0 && moves) carriers.push_back(body);
+    }
+    return carriers;
+}
+
 // Solves all given islands, of contacts only, through the step.
 void solve_wide(WorldState& world, const SolveWays::Wide& way) {
     std::vector<std::uint32_t> order, bodies;
@@ -70,13 +82,12 @@ void solve_wide(WorldState& world, const SolveWays::Wide& way) {
     WideContactSolver& solver = world.wide_solver;
     build_schedule(order, world.contact_glances, world.motion, solver.lanes(), world.schedule);
     const ContactSoftness softness = way.plan.softness(world.settings.time_step);
-    solver.begin(bodies, world.motion, world.constants, softness.substep, way.plan.substeps);
+    solver.begin({bodies, list_carriers(world)}, softness.substep, way.plan.substeps);
     for (const SolveSchedule::Stage& stage : world.schedule.stages) {
         solver.begin_stage();
         for (std::uint32_t i = 0; i < stage.batch_count; ++i) {
             const SolveSchedule::Batch& batch = world.schedule.batches[stage.first_batch + i];
-            const auto contacts = std::span(world.schedule.contacts).subspan(batch.first, batch.count);
-            solver.add_batch(contacts, batch.points, world.contacts, world.motion);
+            solver.add_batch(std::span(world.schedule.contacts).subspan(batch.first, batch.count), batch.points);
         }
     }
     solver.solve(way.plan.passes, softness, world.motion, world.constants, world.contacts, world.contact_glances,
