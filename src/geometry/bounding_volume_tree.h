@@ -8,6 +8,9 @@
 #include <span>
 #include <utility>
 #include <vector>
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 #include "geometry/triangle_mesh.h"
 #include "math/bounds.h"
@@ -64,12 +67,31 @@ private:
     static constexpr int max_depth = 80;
 
     static Box rounded_outwards(const Bounds& b);
-    // Without branches: which of the six comparisons fails cannot be foretold.
-    static bool overlaps(const Box& a, const Box& b) {
-        bool meets = true;
-        for (std::size_t k = 0; k < 3; ++k) meets &= (a.lower[k] <= b.upper[k]) & (b.lower[k] <= a.upper[k]);
-        return meets;
-    }
+    // A box that many others are held against, without branches: which of the six comparisons fails cannot be foretold.
+    struct Window {
+#if defined(__SSE2__)
+        __m128 most, least;  // of a box's numbers 0 … 3 (those of `lower` count) and 2 … 5 (of `upper`)
+
+        explicit Window(const Box& b)
+            : most(_mm_setr_ps(b.upper[0], b.upper[1], b.upper[2], std::numeric_limits<float>::infinity())),
+              least(_mm_setr_ps(-std::numeric_limits<float>::infinity(), b.lower[0], b.lower[1], b.lower[2])) {}
+        [[nodiscard]] bool overlaps(const Box& a) const {
+            static_assert(sizeof(Box) == 6 * sizeof(float));
+            const auto* numbers = reinterpret_cast<const float*>(&a);
+            const __m128 lower = _mm_loadu_ps(numbers), upper = _mm_loadu_ps(numbers + 2);
+            return _mm_movemask_ps(_mm_and_ps(_mm_cmple_ps(lower, most), _mm_cmpge_ps(upper, least))) == 0xF;
+        }
+#else
+        Box box;
+
+        explicit Window(const Box& b) : box(b) {}
+        [[nodiscard]] bool overlaps(const Box& a) const {
+            bool meets = true;
+            for (std::size_t k = 0; k < 3; ++k) meets &= (a.lower[k] <= box.upper[k]) & (box.lower[k] <= a.upper[k]);
+            return meets;
+        }
+#endif
+    };
     static Ray prepare_ray(Vec3 origin, Vec3 direction);
     // Where the ray enters the box; NaN where it misses it before max_t, which no `<= max_t` lets through (an infinite
     // max_t is allowed, so infinity could not mean a miss).
@@ -83,20 +105,22 @@ private:
 template <class Visit>
 void BoundingVolumeTree::query(const Bounds& bounds, Visit&& visit) const {
     if (nodes_.empty() || bounds.is_empty()) return;
-    const Box box = rounded_outwards(bounds);
+    const Window window(rounded_outwards(bounds));
     std::array<std::uint32_t, max_depth> waiting;
     std::size_t count = 0;
     std::uint32_t current = 0;
     for (;;) {
         const Node& node = nodes_[current];
-        if (overlaps(node.box, box)) {
+        if (window.overlaps(node.box)) {
             if (node.count == 0) {
+                // What waits comes from far-off memory meanwhile.
+                __builtin_prefetch(&nodes_[node.link]);
                 waiting[count++] = node.link;
                 ++current;
                 continue;
             }
             for (std::uint32_t i = node.link; i < node.link + node.count; ++i) {
-                if (overlaps(leaf_boxes_[i], box)) visit(leaf_indices_[i]);
+                if (window.overlaps(leaf_boxes_[i])) visit(leaf_indices_[i]);
             }
         }
         if (count == 0) return;

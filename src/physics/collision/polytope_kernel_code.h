@@ -29,16 +29,27 @@ std::uint32_t first_lane(std::size_t i, std::uint32_t mask) {
     return static_cast<std::uint32_t>(i) + static_cast<std::uint32_t>(__builtin_ctz(mask));
 }
 
+// The first number for which mask_at(i), the mask of the `width` numbers from i on, tells so; 0 where none does. Most
+// polytopes have no more than 64 of a kind: then there is no branch that cannot be foretold.
+template <class MaskAt>
+[[gnu::always_inline]] inline std::uint32_t find_first(std::size_t count, std::size_t width, MaskAt mask_at) {
+    for (std::size_t block = 0; block < count; block += 64) {
+        const std::size_t end = block + 64 < count ? block + 64 : count;
+        std::uint64_t mask = 0;
+        for (std::size_t i = block; i < end; i += width) mask |= std::uint64_t{mask_at(i)} << (i - block);
+        if (mask != 0) return static_cast<std::uint32_t>(block) + static_cast<std::uint32_t>(__builtin_ctzll(mask));
+    }
+    return 0;
+}
+
 Extreme farthest(const VectorLanes<double>& vectors, const double* d) {
     const Products products = Products::of(vectors, d);
     WideDouble high = broadcast(-1e300);
     for (std::size_t i = 0; i < vectors.count; i += double_lanes) high = maximum(high, products.at(i));
     const double along = highest(high);
     const WideDouble wanted = broadcast(along);
-    for (std::size_t i = 0; i < vectors.count; i += double_lanes) {
-        if (const std::uint32_t mask = equal_mask(products.at(i), wanted)) return {along, first_lane(i, mask)};
-    }
-    return {along, 0};  // none, or not a number
+    return {along,
+            find_first(vectors.count, double_lanes, [&](std::size_t i) { return equal_mask(products.at(i), wanted); })};
 }
 
 std::uint32_t farthest_roughly(const VectorLanes<float>& vectors, const float* d) {
@@ -49,10 +60,7 @@ std::uint32_t farthest_roughly(const VectorLanes<float>& vectors, const float* d
     Wide high = broadcast(-1e30F);
     for (std::size_t i = 0; i < vectors.count; i += lanes) high = maximum(high, product(i));
     const Wide wanted = broadcast(highest(high));
-    for (std::size_t i = 0; i < vectors.count; i += lanes) {
-        if (const std::uint32_t mask = equal_mask(product(i), wanted)) return first_lane(i, mask);
-    }
-    return 0;
+    return find_first(vectors.count, lanes, [&](std::size_t i) { return equal_mask(product(i), wanted); });
 }
 
 double heights_over_faces(const VectorLanes<double>& normals, const double* reach, const double* d, double* heights) {
@@ -76,10 +84,8 @@ Extreme lower_bounds(const VectorLanes<double>& normals, const double* reach, co
     }
     const double along = highest(high);
     const WideDouble wanted = broadcast(along);
-    for (std::size_t i = 0; i < normals.count; i += double_lanes) {
-        if (const std::uint32_t mask = equal_mask(load(bounds + i), wanted)) return {along, first_lane(i, mask)};
-    }
-    return {along, 0};  // not a number
+    return {along, find_first(normals.count, double_lanes,
+                              [&](std::size_t i) { return equal_mask(load(bounds + i), wanted); })};
 }
 
 std::uint32_t find_low(const VectorLanes<double>& vectors, const double* d, double limit, std::uint32_t* found) {

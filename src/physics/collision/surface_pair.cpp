@@ -5,8 +5,10 @@
 // frame, where they need no turning; the few that are left are met in the convex's.
 #include "physics/collision/surface_pair.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "physics/collision/near_triangles.h"
 #include "physics/collision/polytope_query.h"
 #include "physics/collision/triangle_pairs.h"
 
@@ -20,28 +22,6 @@ struct NormalGroup {
     std::uint32_t lowest_triangle = 0;
     bool has_all_corners = true;  ///< of the convex over these triangles, within the margin
 };
-
-// The triangle's point nearest to `p` (C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5).
-Vec3 nearest_on_triangle(Vec3 p, const std::array<Vec3, 3>& corners) {
-    const auto& [a, b, c] = corners;
-    const Vec3 ab = b - a, ac = c - a, from_a = p - a, from_b = p - b, from_c = p - c;
-    const double ab_a = dot(ab, from_a), ac_a = dot(ac, from_a);
-    if (ab_a <= 0 && ac_a <= 0) return a;
-    const double ab_b = dot(ab, from_b), ac_b = dot(ac, from_b);
-    if (ab_b >= 0 && ac_b <= ab_b) return b;
-    const double ab_c = dot(ab, from_c), ac_c = dot(ac, from_c);
-    if (ac_c >= 0 && ab_c <= ac_c) return c;
-
-    // Twice the areas over the sides, times the triangle's own: beyond a side where negative.
-    const double of_c = ab_a * ac_b - ab_b * ac_a;
-    if (of_c <= 0 && ab_a >= 0 && ab_b <= 0) return a + ab * (ab_a / (ab_a - ab_b));
-    const double of_b = ab_c * ac_a - ab_a * ac_c;
-    if (of_b <= 0 && ac_a >= 0 && ac_c <= 0) return a + ac * (ac_a / (ac_a - ac_c));
-    const double of_a = ab_b * ac_c - ab_c * ac_b, to_c = ac_b - ab_b, to_b = ab_c - ac_c;
-    if (of_a <= 0 && to_c >= 0 && to_b >= 0) return b + (c - b) * (to_c / (to_c + to_b));
-    const double sum = of_a + of_b + of_c;
-    return a + ab * (of_b / sum) + ac * (of_c / sum);
-}
 
 /// The convex that is held against triangles, seen in the surface's frame.
 struct Probe {
@@ -76,16 +56,15 @@ struct Probe {
         if (convex.kind != ConvexKind::polytope || convex.is_box) return own.support(direction);
         return convex.polytope.vertices[farthest_roughly(convex.polytope.rough_vertex_lanes, direction)];
     }
-    // Whether the convex may be within the margin of the triangle's front: by its ball, then by its extent along the
-    // shortest way from the triangle to its inside, which parts most of those that are only near.
-    [[nodiscard]] bool may_meet(const std::array<Vec3, 3>& corners, Vec3 across) const {
-        if (!(dot(inside - corners[0], across) > 0)) return false;
-        const Vec3 away = inside - nearest_on_triangle(inside, corners);
-        const double squared = length_squared(away);
-        if (squared > reach * reach) return false;
-        const Vec3 own_away = placed.direction_to_local(away);
-        const double gap = squared + dot(own_away, own_support(-own_away) - own_inside);
-        return !(gap > 0 && gap * gap > (margin + own.depth) * (margin + own.depth) * squared);
+    // Whether the convex may be within the margin of the triangle's front: by the extents of both along the shortest
+    // way from the triangle to its inside, which part most of those that are only near.
+    [[nodiscard]] bool may_meet(const NearTriangle& t, Vec3 across) const {
+        if (!(dot(inside - t.corners[0], across) > 0)) return false;
+        const Vec3 own_away = placed.direction_to_local(t.away);
+        const double nearest = std::min({dot(t.away, inside - t.corners[0]), dot(t.away, inside - t.corners[1]),
+                                         dot(t.away, inside - t.corners[2])});
+        const double gap = nearest + dot(own_away, own_support(-own_away) - own_inside);
+        return !(gap > 0 && gap * gap > (margin + own.depth) * (margin + own.depth) * length_squared(t.away));
     }
 };
 
@@ -142,13 +121,17 @@ void collide_surface(const ConvexPiece& piece, std::uint32_t piece_index, const 
     near.clear();
     placed.surface.find(probe.bounds(), near);
 
+    thread_local std::vector<NearTriangle> within_reach;
+    find_near_triangles(placed.surface, near, probe.inside, probe.reach, within_reach);
+
     // Each triangle's contacts join those of others with nearly the same normal.
     std::size_t count = 0;
     PlacedTriangle triangle;
-    for (const std::uint32_t index : near) {
-        const auto corners = placed.surface.corners(index);
+    for (const NearTriangle& found : within_reach) {
+        const std::uint32_t index = found.index;
+        const std::array<Vec3, 3>& corners = found.corners;
         const Vec3 across = cross(corners[1] - corners[0], corners[2] - corners[0]);
-        if (!probe.may_meet(corners, across)) continue;
+        if (!probe.may_meet(found, across)) continue;
         if (!place_near(probe, corners, across / length(across), triangle)) continue;
         triangle.index = index;
         triangle.half_bends = placed.surface.half_bends(index);

@@ -91,7 +91,11 @@ void lean_over_edge(TriangleSearch& s, std::size_t edge) {
     const PlacedTriangle& t = s.triangle;
     // As far as the neighbour's normal, but not beyond the upright.
     const double half = std::min(1.0, static_cast<double>(t.half_bends[edge]));
-    const Vec3 end = (t.normal * (1 - half * half) + t.outward[edge] * (2 * half)) / (1 + half * half);
+    const double cosine = (1 - half * half) / (1 + half * half), sine = 2 * half / (1 + half * half);
+    // Leaning by an angle v the lowest point alone allows height cos v + beyond sin v.
+    const double most = std::max(t.height, t.height * cosine) + std::max(0.0, t.beyond(edge, t.lowest)) * sine;
+    if (most <= s.best.separation + s.bias) return;
+    const Vec3 end = t.normal * cosine + t.outward[edge] * sine;
     const Vec3 change = end - t.normal;
     std::uint32_t vertex = s.lowest;
     double passed = 0;

@@ -181,9 +181,11 @@ void TriangleSurface::find(const Bounds& box, std::vector<std::uint32_t>& found)
         find_in_field(box, found);
         return;
     }
-    const std::size_t first = found.size();
-    tree_->tree.query(box, [&found](std::uint32_t triangle) { found.push_back(triangle); });
-    std::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.end());
+    tree_->tree.query(box, [&](std::uint32_t triangle) {
+        __builtin_prefetch(&triangles_[triangle]);
+        __builtin_prefetch(&half_bends_[triangle]);
+        found.push_back(triangle);
+    });
 }
 
 void TriangleSurface::find_in_field(const Bounds& box, std::vector<std::uint32_t>& found) const {

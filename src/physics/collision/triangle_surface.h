@@ -36,7 +36,7 @@ public:
     /// Of all that is kept, bytes.
     [[nodiscard]] std::size_t memory_bytes() const;
 
-    /// Appends the triangles whose bounds meet the box, ascending.
+    /// Appends the triangles whose bounds meet the box, any two in the same order whatever the box.
     void find(const Bounds& box, std::vector<std::uint32_t>& found) const;
     /// Calls `visit` for triangles the ray may meet; it returns the new maximal distance.
     void find_along_ray(Vec3 origin, Vec3 direction, double max_distance,
