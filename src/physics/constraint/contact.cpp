@@ -162,11 +162,20 @@ void turn_frame(Contact& contact, Vec3f normal) {
 // is now at R s from the smaller centre, and the gap vector has changed by d + R s − s, up to the sign of who is b. The
 // contact is midway between the two surface points; of a ball (R = 1) midway on the normal through s, whose foot on the
 // other surface has come along.
-void follow_bodies(Contact& contact, const FollowedPair& pair) {
+void begin_step(Contact& contact) {
     contact.was_touching = is_touching(contact);
     contact.was_loaded = is_pressed(contact);
     contact.had_impact = false;
     contact.friction_total = {};
+    for (int i = 0; i < contact.count; ++i) {
+        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        point.total = 0;
+        point.inactive_until = 0;
+    }
+}
+
+void follow_bodies(Contact& contact, const FollowedPair& pair) {
+    begin_step(contact);
     turn_frame(contact, in_axes(pair.axes, contact.local_normal));
 
     // Points to lanes; those that the region does not have repeat the last one.
@@ -202,8 +211,6 @@ void follow_bodies(Contact& contact, const FollowedPair& pair) {
         point.arm_a = {arm_a.x[i], arm_a.y[i], arm_a.z[i]};
         point.arm_b = {arm_b.x[i], arm_b.y[i], arm_b.z[i]};
         point.separation = separation[i];
-        point.total = 0;
-        point.inactive_until = 0;
         fastest = std::max(fastest, approach[i]);
     }
     contact.approach_speed = fastest;

@@ -128,6 +128,9 @@ struct FollowedPair {
     bool has_ball = false;      ///< one is a ball: its point of contact goes with its centre along the other's surface
 };
 
+/// Clears what belongs to a step, and notes what the last one made of the contact.
+void begin_step(Contact& contact);
+
 /// Follows the bodies of a contact that was found in an earlier step: its surface points stay where they are on each
 /// body. Keeps impulses for the warm start, clears what belongs to a step.
 void follow_bodies(Contact& contact, const FollowedPair& pair);

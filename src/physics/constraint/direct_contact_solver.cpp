@@ -92,7 +92,7 @@ std::int32_t DirectContactSolver::number_of(std::uint32_t slot) const {
 
 // Whether the last impulses hold everything where it is: then they are the solution. What the rounding of the stored
 // impulses leaves over is no reason to move.
-bool DirectContactSolver::stays_at_rest(const List& list, std::span<const BodyState> bodies,
+bool DirectContactSolver::stays_at_rest(const List& list, std::span<BodyState> bodies,
                                         std::span<const BodyConstants> constants, std::span<Contact> contacts) {
     std::vector<Vec6>& momentum = shift_;
     const double most = rest_speed * rest_speed;
@@ -111,6 +111,9 @@ bool DirectContactSolver::stays_at_rest(const List& list, std::span<const BodySt
         const Vec3 linear = momentum[i].linear() * state.inverse_mass;
         const Vec3 angular = state.inverse_inertia * momentum[i].angular();
         if (!(length_squared(linear) + length_squared(angular) <= most)) return false;
+    }
+    for (const Motion& motion : motion_) {
+        bodies[motion.slot].linear_velocity = bodies[motion.slot].angular_velocity = {};
     }
     for (const std::uint32_t index : list.contacts) {
         Contact& contact = contacts[index];

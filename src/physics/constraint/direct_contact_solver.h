@@ -50,7 +50,7 @@ private:
 
     void number_bodies(std::span<const std::uint32_t> slots, std::size_t all);
     [[nodiscard]] std::int32_t number_of(std::uint32_t slot) const;
-    bool stays_at_rest(const List& list, std::span<const BodyState> bodies, std::span<const BodyConstants> constants,
+    bool stays_at_rest(const List& list, std::span<BodyState> bodies, std::span<const BodyConstants> constants,
                        std::span<Contact> contacts);
     bool holds_at_rest(const Contact& contact);
     void gather(const List& list, std::span<const BodyState> bodies, std::span<const BodyConstants> constants,

@@ -6,11 +6,22 @@ namespace embody::physics {
 
 namespace {
 
+// Whether the body is as it was when the last step began (docs/physics/direct-solver.md: at rest).
+bool stands(const WorldState& world, std::uint32_t body) {
+    const BodyState& state = world.motion[body];
+    return state.linear_velocity == Vec3{} && state.angular_velocity == Vec3{} && state.center == state.start_center &&
+           state.rotation == state.start_rotation && state.inverse_mass > 0 &&
+           world.constants[body].acceleration == world.touch_memory.bodies[body].acceleration;
+}
+
 // Lists which of a share of the awake bodies have left their bounds, and the bounds they want.
-void list_leaving(const WorldState& world, Share share, std::vector<LeavingBody>& leaving) {
+void list_leaving(WorldState& world, Share share, std::vector<LeavingBody>& leaving) {
     const double dt = world.settings.time_step;
     for (std::size_t i = share.first; i < share.last; ++i) {
         const std::uint32_t body = world.awake[i];
+        TouchBody& touch = world.touch_memory.bodies[body];
+        touch.stands = stands(world, body);
+        if (touch.stands) continue;
         const BodyRecord& record = world.record(body);
         if (!record.shape) continue;
         const Vec3 motion =

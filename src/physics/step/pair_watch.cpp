@@ -112,7 +112,8 @@ void introduce_body(WorldState& world, std::uint32_t body) {
                            .mask = record.definition.collision_mask,
                            .is_round = record.is_round,
                            .is_ball = record.is_ball,
-                           .yields = world.motion[body].inverse_mass > 0};
+                           .yields = world.motion[body].inverse_mass > 0,
+                           .stands = record.definition.kind == BodyKind::static_body};
 }
 
 // No surface point goes farther than the centre of mass and the chord of the body's turn at its reach. A ball that

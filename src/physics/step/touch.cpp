@@ -280,6 +280,20 @@ void follow_contacts(WorldState& world, const PairTouch& touch, const FollowedPa
     }
 }
 
+// Whether the pair's contacts are where they were in the last step, since its bodies are.
+bool may_keep(const WorldState& world, const PairWatch& watch, const PairRecord& record) {
+    const TouchBody &a = world.touch_memory.bodies[watch.pair.a], &b = world.touch_memory.bodies[watch.pair.b];
+    return a.stands && b.stands && watch.count > 0 && record.contact_count == watch.count &&
+           record.version_a == a.version && record.version_b == b.version;
+}
+
+void keep_contacts(WorldState& world, const PairTouch& touch) {
+    for (std::uint32_t i = touch.first; i < touch.first + touch.count; ++i) {
+        begin_step(world.contacts[i]);
+        world.contact_glances[i] = glance_at(world.contacts[i]);
+    }
+}
+
 // One of the two must be able to answer an impulse, and neither may sleep.
 bool may_touch(const WorldState& world, const BroadPhase::Pair& pair) {
     const std::vector<TouchBody>& bodies = world.touch_memory.bodies;
@@ -294,6 +308,10 @@ void touch_pair(WorldState& world, PairTouch& touch, std::uint8_t finder, TouchM
     PairWatch& watch = world.touch_memory.watches[touch.watch];
     if (!may_touch(world, watch.pair)) return;
     PairRecord& record = world.touch_memory.records[watch.record];
+    if (may_keep(world, watch, record)) {
+        touch.next_count = touch.count;
+        return keep_contacts(world, touch);
+    }
     PairNow now{.pair = watch.pair,
                 .pose = relative_pose(world, watch.pair),
                 .margin = margin_of(world, watch.pair.a, watch.pair.b),

@@ -22,6 +22,7 @@ struct alignas(64) TouchBody {
     std::uint32_t group = 0, mask = 0;  ///< of collision
     bool is_round = false, is_ball = false;
     bool yields = false;  ///< can answer an impulse
+    bool stands = false;  ///< has neither moved nor been pushed since the last step began, and has no velocity
 };
 static_assert(sizeof(TouchBody) == 64);
 
