@@ -95,7 +95,7 @@ void wake_touched(WorldState& world, std::vector<Manifold>& manifolds) {
 constexpr double follow_window = Manifold::whole_way;
 // Where corners had to be left out (a foot of a chair whose four points lie on the three others) they sink unseen, so
 // the pair is compared again before that matters.
-constexpr double short_follow_window = 5e-4;
+constexpr double short_follow_window = 1e-3;
 // The point of contact of what rolls does not stay on it; after so short a way the gap is right to a hundredth of it.
 constexpr double round_follow_window = 2e-5;
 
