@@ -83,6 +83,7 @@ struct ContactGlance {
     bool is_deep : 1 = false;  ///< bodies were found far in each other
     bool touches : 1 = false;  ///< in this step, once it was solved
     bool is_sunk : 1 = false;  ///< deeper than its load explains, once it was solved
+    bool is_kept : 1 = false;  ///< as in the last step: both bodies stand
 };
 static_assert(sizeof(ContactGlance) == 16);
 

@@ -43,34 +43,36 @@ void DirectContactSolver::begin(double time_step, int substeps) {
     newton_.begin_step();
 }
 
-bool DirectContactSolver::solve(const List& list, Effort effort, std::span<BodyState> bodies,
-                                std::span<const BodyConstants> constants, std::span<Contact> contacts) {
+DirectContactSolver::Outcome DirectContactSolver::solve(const List& list, Effort effort, std::span<BodyState> bodies,
+                                                        std::span<const BodyConstants> constants,
+                                                        std::span<Contact> contacts) {
     substeps_ = list.impulse_parts;
     substep_ = time_step_ / substeps_;
     number_bodies(list.bodies, bodies.size());
-    if (stays_at_rest(list, bodies, constants, contacts)) return true;
+    if (stays_at_rest(list, bodies, constants, contacts)) return Outcome::held;
     const bool only_slow = effort == Effort::while_slow;
     const auto is_fast = [&](std::uint32_t body) { return length_squared(bodies[body].linear_velocity) > slow * slow; };
-    if (only_slow && std::any_of(list.bodies.begin(), list.bodies.end(), is_fast)) return false;
+    if (only_slow && std::any_of(list.bodies.begin(), list.bodies.end(), is_fast)) return Outcome::unsolved;
 
-    if (only_slow && (newton_.has_given_up(list.bodies.front()) || newton_.work() > most_products_step)) return false;
+    const bool may_wait = newton_.has_given_up(list.bodies.front()) || newton_.work() > most_products_step;
+    if (only_slow && may_wait) return Outcome::unsolved;
 
     // Slow bodies in one go; should they turn out to move, from the beginning again.
     gather(list, bodies, constants, contacts, 1);
-    if (only_slow && newton_.block_products() > most_products_slow) return false;
+    if (only_slow && newton_.block_products() > most_products_slow) return Outcome::unsolved;
     if (is_slow(slow)) {
         if (rest(only_slow, contacts) && is_slow(slow)) {
             newton_.note_rest();
             scatter(bodies, constants, contacts, 1);
-            return true;
+            return Outcome::solved;
         }
         if (only_slow) newton_.give_up();
     }
-    if (only_slow) return false;
+    if (only_slow) return Outcome::unsolved;
     gather(list, bodies, constants, contacts, moving_substeps_);
-    if (!move(moving_substeps_, contacts)) return false;
+    if (!move(moving_substeps_, contacts)) return Outcome::unsolved;
     scatter(bodies, constants, contacts, moving_substeps_);
-    return true;
+    return Outcome::solved;
 }
 
 void DirectContactSolver::number_bodies(std::span<const std::uint32_t> slots, std::size_t all) {
@@ -115,9 +117,14 @@ bool DirectContactSolver::stays_at_rest(const List& list, std::span<BodyState> b
     for (const Motion& motion : motion_) {
         bodies[motion.slot].linear_velocity = bodies[motion.slot].angular_velocity = {};
     }
+    hold(list, contacts);
+    return true;
+}
+
+void DirectContactSolver::hold(const List& list, std::span<Contact> contacts) {
+    const auto times = static_cast<float>(list.impulse_parts);
     for (const std::uint32_t index : list.contacts) {
         Contact& contact = contacts[index];
-        const auto times = static_cast<float>(substeps_);
         for (int i = 0; i < contact.count; ++i) {
             ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
             point.total += point.impulse * times;
@@ -126,7 +133,6 @@ bool DirectContactSolver::stays_at_rest(const List& list, std::span<BodyState> b
         contact.friction_total.along_2 += contact.friction.along_2 * times;
         contact.friction_total.twist += contact.friction.twist * times;
     }
-    return true;
 }
 
 // Adds a contact's last impulses to the bodies' momentum; false where they cannot be the next ones.

@@ -29,12 +29,19 @@ public:
         any,
     };
 
+    enum class Outcome {
+        unsolved,  ///< nothing was changed
+        solved,
+        held,  ///< the last impulses hold everything where it is
+    };
+
     /// Starts a step of `time_step` s, in `substeps` parts for what moves.
     void begin(double time_step, int substeps);
-    /// Solves one list through the step: moves its bodies and hands the impulses to its contacts. Where the effort does
-    /// not suffice it returns false and changes nothing.
-    [[nodiscard]] bool solve(const List& list, Effort effort, std::span<BodyState> bodies,
-                             std::span<const BodyConstants> constants, std::span<Contact> contacts);
+    /// Solves one list through the step: moves its bodies and hands the impulses to its contacts.
+    [[nodiscard]] Outcome solve(const List& list, Effort effort, std::span<BodyState> bodies,
+                                std::span<const BodyConstants> constants, std::span<Contact> contacts);
+    /// What solve() does where it is known that the list is held.
+    static void hold(const List& list, std::span<Contact> contacts);
 
 private:
     /// How a body moves in this step.

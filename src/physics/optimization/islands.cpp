@@ -109,10 +109,23 @@ void sort_by_level(std::span<std::uint32_t> contacts, LevelOf level_of) {
     for (const std::uint32_t i : unsorted) contacts[first_of_level[level_of(i)]++] = i;
 }
 
+void list_graph(std::span<const std::uint32_t> awake, std::span<const ContactGlance> contacts,
+                std::span<const Joint> joints, ContactGraph& graph) {
+    graph.bodies.assign(awake.begin(), awake.end());
+    graph.contacts.clear();
+    graph.joints.clear();
+    for (const ContactGlance& c : contacts) graph.contacts.push_back({c.a, c.b});
+    for (const Joint& j : joints) graph.joints.push_back({j.a_is_world ? none : j.a, j.b});
+}
+
 }  // namespace
 
 void build_islands(std::span<const std::uint32_t> awake, std::span<const BodyState> bodies,
                    std::span<const ContactGlance> contacts, std::span<const Joint> joints, Islands& islands) {
+    std::swap(islands.graph, islands.last_graph);
+    list_graph(awake, contacts, joints, islands.graph);
+    if (islands.graph == islands.last_graph && islands.level.size() == bodies.size()) return;
+
     // Immovable bodies do not connect: two boxes on one floor are two islands.
     DisjointSets sets(bodies.size());
     for (const ContactGlance& c : contacts) {

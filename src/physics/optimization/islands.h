@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,6 +19,14 @@ struct Island {
     std::uint32_t deepest_level = 0;  ///< levels of the contact graph above the ground
 };
 
+/// What islands are cut from.
+struct ContactGraph {
+    using Ends = std::array<std::uint32_t, 2>;
+    std::vector<std::uint32_t> bodies;   ///< movable ones
+    std::vector<Ends> contacts, joints;  ///< of joints with the world one end is 0xFFFFFFFF
+    friend bool operator==(const ContactGraph&, const ContactGraph&) = default;
+};
+
 /// The contact graph cut into islands, and the order in which each is solved: from the ground up. Equal inputs give
 /// equal orders.
 struct Islands {
@@ -26,11 +35,13 @@ struct Islands {
     std::vector<std::uint32_t> contacts;  ///< indices, island by island, lowest level first
     std::vector<std::uint32_t> joints;    ///< indices, island by island
     std::vector<std::uint32_t> level;     ///< by body slot: steps through contacts to an immovable body; 0 is immovable
+    ContactGraph graph, last_graph;       ///< that all this was made of, and the one before: memory only
 };
 
 inline constexpr std::uint32_t no_level = 0xFFFFFFFFu;  ///< hangs in the air
 
-/// `awake` lists the movable bodies, ascending; every contact and joint must touch at least one of them.
+/// `awake` lists the movable bodies, ascending; every contact and joint must touch at least one of them. Where the
+/// graph is still the one that the islands were built of, they stay.
 void build_islands(std::span<const std::uint32_t> awake, std::span<const BodyState> bodies,
                    std::span<const ContactGlance> contacts, std::span<const Joint> joints, Islands& islands);
 

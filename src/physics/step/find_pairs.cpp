@@ -11,7 +11,8 @@ bool stands(const WorldState& world, std::uint32_t body) {
     const BodyState& state = world.motion[body];
     return state.linear_velocity == Vec3{} && state.angular_velocity == Vec3{} && state.center == state.start_center &&
            state.rotation == state.start_rotation && state.inverse_mass > 0 &&
-           world.constants[body].acceleration == world.touch_memory.bodies[body].acceleration;
+           world.constants[body].acceleration == world.touch_memory.bodies[body].acceleration &&
+           world.constants[body].torque == Vec3{};
 }
 
 // Lists which of a share of the awake bodies have left their bounds, and the bounds they want.

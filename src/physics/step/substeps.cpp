@@ -101,16 +101,44 @@ void note_outcomes(WorldState& world, const Island& island) {
     }
 }
 
+// Whether the last step's impulses held the island and nothing of it has changed since.
+bool is_still_held(const WorldState& world, const Island& island) {
+    const auto bodies = bodies_of(world, island);
+    const auto contacts = contacts_of(world, island);
+    const auto stands = [&](std::uint32_t body) {
+        const HeldRecord& held = world.held[body];
+        return world.touch_memory.bodies[body].stands && held.step + 1 == world.report.step &&
+               held.contacts == island.contact_count;
+    };
+    const auto is_kept = [&](std::uint32_t contact) { return world.contact_glances[contact].is_kept; };
+    return std::all_of(bodies.begin(), bodies.end(), stands) && std::all_of(contacts.begin(), contacts.end(), is_kept);
+}
+
+void note_held(WorldState& world, const Island& island) {
+    for (const std::uint32_t body : bodies_of(world, island)) {
+        world.held[body] = {world.report.step, island.contact_count};
+    }
+}
+
 // Whether the island was solved directly; else the sweeps have to.
 bool solve_directly(WorldState& world, const Island& island) {
+    // Impulses in the sweeps' measure, so that either way can go on where the other one left off.
+    const int parts = contact_plan(island.contact_count, world.settings.substeps).substeps;
+    const DirectContactSolver::List list{bodies_of(world, island), contacts_of(world, island), parts};
+    if (is_still_held(world, island)) {
+        DirectContactSolver::hold(list, world.contacts);
+        note_held(world, island);
+        note_outcomes(world, island);
+        return true;
+    }
     const DirectUse use = direct_use_of(island, world.islands, world.contacts, world.motion);
     if (use == DirectUse::never) return false;
     using Effort = DirectContactSolver::Effort;
     const Effort effort = use == DirectUse::always ? Effort::any : Effort::while_slow;
-    // Impulses in the sweeps' measure, so that either way can go on where the other one left off.
-    const int parts = contact_plan(island.contact_count, world.settings.substeps).substeps;
-    const DirectContactSolver::List list{bodies_of(world, island), contacts_of(world, island), parts};
-    if (!world.direct_solver.solve(list, effort, world.motion, world.constants, world.contacts)) return false;
+    using Outcome = DirectContactSolver::Outcome;
+    const Outcome outcome = world.direct_solver.solve(list, effort, world.motion, world.constants, world.contacts);
+    if (outcome == Outcome::unsolved) return false;
+    if (outcome == Outcome::held) note_held(world, island);
     note_outcomes(world, island);
     return true;
 }
@@ -144,6 +172,7 @@ void solve_jointed(WorldState& world, const std::vector<Island>& islands, double
 SolveWays sort_islands(WorldState& world) {
     SolveWays ways;
     set_up_joint_systems(world);
+    world.held.resize(world.bodies.slot_count());
     world.direct_solver.begin(world.settings.time_step, world.settings.substeps);
     for (const Island& island : world.islands.list) {
         if (island.contact_count == 0 && island.joint_count == 0) {

@@ -291,6 +291,7 @@ void keep_contacts(WorldState& world, const PairTouch& touch) {
     for (std::uint32_t i = touch.first; i < touch.first + touch.count; ++i) {
         begin_step(world.contacts[i]);
         world.contact_glances[i] = glance_at(world.contacts[i]);
+        world.contact_glances[i].is_kept = true;
     }
 }
 

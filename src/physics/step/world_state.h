@@ -68,6 +68,12 @@ struct TouchingPair {
     friend auto operator<=>(const TouchingPair&, const TouchingPair&) = default;
 };
 
+/// When the last impulses of a body's island held it where it was.
+struct HeldRecord {
+    std::uint64_t step = 0;
+    std::uint32_t contacts = 0;  ///< of the island
+};
+
 /// Everything a world remembers. Arrays over bodies are indexed by slot. Each array names the stage that writes it;
 /// "face" is World, between steps.
 struct WorldState {
@@ -101,6 +107,7 @@ struct WorldState {
     std::unique_ptr<TaskPool> workers = std::make_unique<TaskPool>(1);
     WideContactSolver wide_solver{widest_contact_kernels()};  // substeps: memory only
     DirectContactSolver direct_solver;                        // substeps: memory, and which islands it gave up
+    std::vector<HeldRecord> held;                             // substeps: by slot
     std::map<std::uint32_t, JointSystem> joint_systems;       // substeps: by an island's first body; memory only
     SolveSchedule schedule;                                   // substeps: memory only
     std::vector<PreparedContact> prepared_contacts;           // substeps: memory only
