@@ -105,7 +105,8 @@ void introduce_body(WorldState& world, std::uint32_t body) {
     const BodyRecord& record = world.record(body);
     const double path = memory.bodies[body].path + longest_way;
     memory.path_bounds[body] = path;
-    memory.bodies[body] = {.size = record.reach > 0 ? record.reach : 1e300,
+    const bool is_surface = record.reach == 0 && record.definition.kind == BodyKind::static_body;
+    memory.bodies[body] = {.size = is_surface ? 1e300 : record.reach,
                            .path = path,
                            .version = record.version,
                            .group = record.definition.collision_group,
@@ -123,7 +124,7 @@ void start_motion(WorldState& world) {
     for (const std::uint32_t body : world.awake) {
         BodyState& state = world.motion[body];
         TouchBody& touch = world.touch_memory.bodies[body];
-        const double reach = touch.is_ball ? 0 : world.record(body).reach;
+        const double reach = touch.is_ball ? 0 : touch.size;
         const Quat turn = state.rotation * conjugate(state.start_rotation);
         touch.path += distance(state.center, state.start_center) + 2 * length(Vec3{turn.x, turn.y, turn.z}) * reach;
         touch.turning = length(state.angular_velocity) * reach;

@@ -195,12 +195,22 @@ void match_by_normal(OldContacts old, std::span<Contact> contacts, bool a_is_sur
     }
 }
 
+// Takes the coefficients that the pair's contacts had in the last step.
+void take_material(const Contact& old, Contact& contact) {
+    contact.friction_static = old.friction_static;
+    contact.friction_dynamic = old.friction_dynamic;
+    contact.friction_torsional = old.friction_torsional;
+    contact.friction_rolling = old.friction_rolling;
+    contact.bounces = old.bounces;
+}
+
 // Finds the contacts of a pair anew and hands them the impulses of the old ones.
 void compare_pair(const WorldState& world, PairRecord& record, const PairNow& now, TouchMemory::Worker& worker) {
     const BroadPhase::Pair pair = now.pair;
     const OldContacts old = now.old;
     const BodyRecord &a = world.record(pair.a), &b = world.record(pair.b);
-    if (record.version_a != a.version || record.version_b != b.version) record.memory = {};
+    const bool is_known = record.version_a == a.version && record.version_b == b.version;
+    if (!is_known) record.memory = {};
     worker.manifolds.clear();
     const double searched = now.margin + follow_window;
     collide(*a.shape, world.pose(pair.a), *b.shape, world.pose(pair.b), searched, record.memory, worker.manifolds);
@@ -219,13 +229,14 @@ void compare_pair(const WorldState& world, PairRecord& record, const PairNow& no
     }
 
     const auto first = static_cast<std::ptrdiff_t>(worker.found.size());
-    const Material material = combine(a.definition.material, b.definition.material);
+    const bool has_material = is_known && !old.empty();
+    const Material material = has_material ? Material{} : combine(a.definition.material, b.definition.material);
     const std::size_t wanted = worker.found.size() + worker.manifolds.size();
     if (wanted > worker.found.capacity()) worker.found.reserve(wanted + wanted / 2);
     for (const Manifold& manifold : worker.manifolds) {
         worker.found.push_back(make_contact(pair.a, pair.b, manifold, world.motion, now.pose.seen));
         Contact& contact = worker.found.back();
-        set_material(contact, material);
+        has_material ? take_material(old.front(), contact) : set_material(contact, material);
         contact.a_is_round = a.is_round;
         contact.b_is_round = b.is_round;
     }
