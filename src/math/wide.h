@@ -74,6 +74,21 @@ EMBODY_WIDE_INLINE Wide square_root(Wide a) {
 }
 #endif
 
+/// Whether any lane is set; the lanes are full masks.
+EMBODY_WIDE_INLINE bool any(WideMask mask) {
+#if defined(__AVX512F__) && EMBODY_LANES == 16
+    return _mm512_test_epi32_mask(reinterpret_cast<__m512i>(mask), reinterpret_cast<__m512i>(mask)) != 0;
+#elif defined(__AVX__) && EMBODY_LANES == 8
+    return _mm256_movemask_ps(reinterpret_cast<__m256>(mask)) != 0;
+#elif defined(__SSE2__) && EMBODY_LANES == 4
+    return _mm_movemask_ps(reinterpret_cast<__m128>(mask)) != 0;
+#else
+    std::int32_t sum = 0;
+    for (int i = 0; i < lanes; ++i) sum |= mask[i];
+    return sum != 0;
+#endif
+}
+
 // Rows of eight floats, one a lane, to eight columns and back. `rows` is what they are counted in from `base`.
 constexpr int row_floats = 8;
 

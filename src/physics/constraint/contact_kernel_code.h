@@ -293,12 +293,32 @@ EMBODY_WIDE_INLINE void solve_rolling(float* batch, int points, const Frame& f, 
     apply(v, m, f.arm_a, f.arm_b, none, now - old);
 }
 
+// Whether no lane carries a load or friction, and no point comes nearer than it may in this substep: then the region
+// changes nothing.
+template <int points>
+EMBODY_WIDE_INLINE bool is_idle(float* batch, const RegionMotion& motion, const ContactSweep& sweep) {
+    const Wide zero{};
+    const Wide3 friction = quantity_3(batch, BatchHead::friction);
+    WideMask acts = (friction.x != zero) | (friction.y != zero) | (friction.z != zero);
+    for (int k = 0; k < points; ++k) {
+        const float* point = point_of(batch, k);
+        const Wide separation = quantity(point, BatchPoint::separation);
+        const Wide speed = motion.velocity.x + (quantity(point, BatchPoint::along_2) * motion.spin.x -
+                                                quantity(point, BatchPoint::along_1) * motion.spin.y);
+        const WideMask may_act = (quantity(point, BatchPoint::impulse) != zero) | (separation < zero) |
+                                 (speed + separation * broadcast(sweep.inverse_substep) < zero);
+        acts |= may_act & (quantity(point, BatchPoint::normal_mass) > zero);
+    }
+    return !any(acts);
+}
+
 template <Sweep kind, int points>
 EMBODY_WIDE_INLINE void solve_region(float* batch, const ContactSweep& sweep) {
     const Frame f = Frame::of(batch);
     const Inertia m = Inertia::of(batch);
     Velocities v = Velocities::take(batch, sweep);
     RegionMotion motion = RegionMotion::of(batch, v, f);
+    if (is_idle<points>(batch, motion, sweep)) return;
 
     // Non-penetration has the last word but for what resists rolling.
     const Wide3 friction = solve_friction(batch, points, motion);

@@ -57,11 +57,13 @@ void build_schedule(std::span<const std::uint32_t> order, std::span<const Contac
     s.stage_of.resize(order.size());
     const std::uint32_t stages = colour_stages(order, contacts, bodies, s);
 
-    // By stage, and in it by falling number of points: one counting sort.
+    // By stage, in it what carried a load before what did not, and by falling number of points: one counting sort.
+    constexpr std::uint32_t kinds = 2 * most_points;
     const auto key_of = [&](std::size_t k) {
-        return s.stage_of[k] * most_points + (most_points - contacts[order[k]].count);
+        const ContactGlance& contact = contacts[order[k]];
+        return s.stage_of[k] * kinds + (contact.was_loaded ? 0 : most_points) + (most_points - contact.count);
     };
-    s.first_of_key.assign(stages * most_points + 1, 0);
+    s.first_of_key.assign(stages * kinds + 1, 0);
     for (std::size_t k = 0; k < order.size(); ++k) ++s.first_of_key[key_of(k) + 1];
     for (std::size_t i = 1; i < s.first_of_key.size(); ++i) s.first_of_key[i] += s.first_of_key[i - 1];
     s.contacts.resize(order.size());
@@ -72,11 +74,15 @@ void build_schedule(std::span<const std::uint32_t> order, std::span<const Contac
     s.stages.clear();
     std::uint32_t first = 0;
     for (std::uint32_t stage = 0; stage < stages; ++stage) {
-        const std::uint32_t end = s.first_of_key[(stage + 1) * most_points - 1];
+        const std::uint32_t end = s.first_of_key[(stage + 1) * kinds - 1];
         const auto first_batch = static_cast<std::uint32_t>(s.batches.size());
         for (; first < end; first += static_cast<std::uint32_t>(lanes)) {
             const std::uint32_t count = std::min<std::uint32_t>(static_cast<std::uint32_t>(lanes), end - first);
-            s.batches.push_back({first, static_cast<std::uint8_t>(count), contacts[s.contacts[first]].count});
+            std::uint8_t points = 0;
+            for (std::uint32_t i = first; i < first + count; ++i) {
+                points = std::max(points, contacts[s.contacts[i]].count);
+            }
+            s.batches.push_back({first, static_cast<std::uint8_t>(count), points});
         }
         first = end;
         s.stages.push_back({first_batch, static_cast<std::uint32_t>(s.batches.size()) - first_batch});
