@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "foundation/task_pool.h"
 
+#include <algorithm>
 #include <thread>
 #include <vector>
 #if defined(__x86_64__)
@@ -49,7 +50,14 @@ struct TaskPool::State {
     std::atomic<int> spins{spins_between_tasks};
     std::atomic<int> running{0};
     std::atomic<bool> stops{false};
+    int workers = 1;
     std::vector<std::thread> threads;
+
+    void start() {
+        for (int worker = static_cast<int>(threads.size()) + 1; worker < workers; ++worker) {
+            threads.emplace_back([this, worker] { work(worker); });
+        }
+    }
 
     // Wakes the threads that sleep.
     void call() {
@@ -83,6 +91,7 @@ struct TaskPool::State {
 };
 
 TaskPool::StayAwake::StayAwake(TaskPool& pool) : pool_(pool) {
+    pool_.state_->start();
     pool_.state_->spins.store(spins_while_awake, std::memory_order_relaxed);
     pool_.state_->call();
 }
@@ -91,9 +100,7 @@ TaskPool::StayAwake::~StayAwake() { pool_.state_->spins.store(spins_between_task
 
 TaskPool::TaskPool(int workers) : state_(std::make_unique<State>()) {
     EMBODY_ASSERT(workers >= 1);
-    for (int worker = 1; worker < workers; ++worker) {
-        state_->threads.emplace_back([state = state_.get(), worker] { state->work(worker); });
-    }
+    state_->workers = workers;
 }
 
 TaskPool::~TaskPool() {
@@ -103,11 +110,17 @@ TaskPool::~TaskPool() {
     for (std::thread& thread : state_->threads) thread.join();
 }
 
-int TaskPool::workers() const { return static_cast<int>(state_->threads.size()) + 1; }
+int TaskPool::workers_that_pay() {
+    const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    return std::clamp(threads / 2, std::min(threads, 2), 4);
+}
+
+int TaskPool::workers() const { return state_->workers; }
 
 void TaskPool::run(const std::function<void(int)>& task) {
     State& s = *state_;
-    if (s.threads.empty()) return task(0);
+    if (s.workers == 1) return task(0);
+    s.start();
     s.task = &task;
     s.running.store(static_cast<int>(s.threads.size()), std::memory_order_relaxed);
     s.round.fetch_add(1, std::memory_order_release);

@@ -20,13 +20,18 @@ private:
     std::atomic<unsigned> round_{0};
 };
 
-/// A fixed set of threads that run one task together. The calling thread is worker 0, so a pool of one has no threads.
-/// Between tasks the threads sleep, after a short while of looking for the next one.
+/// A fixed set of threads that run one task together. The calling thread is worker 0, so a pool of one has no threads;
+/// those of others begin with the first task. Between tasks they sleep, after a short while of looking for the next
+/// one.
 class TaskPool {
 public:
     /// `workers` >= 1.
     explicit TaskPool(int workers);
     ~TaskPool();
+    /// How many workers pay on this machine: half of what it can run at once, since two threads of one core gain
+    /// little, but two where it can; four at most.
+    static int workers_that_pay();
+
     TaskPool(const TaskPool&) = delete;
     TaskPool& operator=(const TaskPool&) = delete;
 

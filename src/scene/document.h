@@ -64,7 +64,7 @@ struct SceneJoint {
 struct Document {
     std::string title = "Untitled";
     std::string description;
-    physics::WorldSettings settings;
+    physics::WorldSettings settings{.workers = 0};
     std::vector<Entity> entities;                 ///< ascending index
     std::vector<SceneJoint> joints;               ///< ascending index
     std::vector<Action> actions;                  ///< ascending id

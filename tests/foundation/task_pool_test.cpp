@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <numeric>
 #include <thread>
@@ -19,6 +20,12 @@ TEST_P(EachPool, RunsATaskOnceOnEachWorkerAgainAndAgain) {
     std::vector<int> calls(static_cast<std::size_t>(GetParam()), 0);
     for (int round = 0; round < 2000; ++round) pool.run([&](int worker) { ++calls[static_cast<std::size_t>(worker)]; });
     for (const int count : calls) EXPECT_EQ(count, 2000);
+}
+
+TEST(TaskPool, TakesNoMoreWorkersThanTheMachineHasThreads) {
+    const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    EXPECT_GE(TaskPool::workers_that_pay(), std::min(threads, 2));
+    EXPECT_LE(TaskPool::workers_that_pay(), std::min(threads, 4));
 }
 
 TEST_P(EachPool, RunsTasksFarApartAwakeOrNot) {

@@ -23,7 +23,8 @@ const WorldSettings& World::settings() const { return state_->settings; }
 Result<void> World::set_settings(const WorldSettings& settings) {
     if (auto result = validate(settings); !result) return result;
     if (auto result = choose_lanes(*state_, settings.lanes); !result) return result;
-    if (settings.workers != state_->workers->workers()) state_->workers = std::make_unique<TaskPool>(settings.workers);
+    const int workers = settings.workers > 0 ? settings.workers : TaskPool::workers_that_pay();
+    if (workers != state_->workers->workers()) state_->workers = std::make_unique<TaskPool>(workers);
     state_->settings = settings;
 
     // Another gravity or no sleeping moves everything.

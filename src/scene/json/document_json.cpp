@@ -78,7 +78,8 @@ Result<Document> document_from_json(const json& value) {
     reader.text("title", document.title);
     reader.text("description", document.description);
     if (const json* field = reader.take("settings")) {
-        Result<physics::WorldSettings> settings = settings_from_json(*field, reader.path("settings"));
+        Result<physics::WorldSettings> settings =
+            settings_from_json(*field, reader.path("settings"), document.settings);
         if (!settings.ok()) return settings.error();
         document.settings = settings.value();
     }

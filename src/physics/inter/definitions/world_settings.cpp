@@ -19,7 +19,7 @@ Result<void> validate(const WorldSettings& settings) {
                        check_number("time_to_sleep", settings.time_to_sleep, 0.05, 60, "s"),
                        check_number("max_linear_speed", settings.max_linear_speed, 1, largest_linear_speed, "m/s"),
                        check_number("max_angular_speed", settings.max_angular_speed, 1, largest_angular_speed, "rad/s"),
-                       check_number("workers", settings.workers, 1, 64), check_lanes(settings.lanes));
+                       check_number("workers", settings.workers, 0, 64), check_lanes(settings.lanes));
 }
 
 }  // namespace embody::physics
