@@ -21,12 +21,10 @@ void run(WorldState& world, StepStage stage, void (*work)(WorldState&)) {
     world.report.stage_milliseconds[static_cast<std::size_t>(stage)] = milliseconds_since(start);
 }
 
-// All that moves bodies; nothing to do while all sleep.
-void advance(WorldState& world) {
-    // In small worlds no stage is shared.
-    constexpr std::size_t fewest_shared = 200;  // awake bodies
+// All that moves bodies; nothing to do while all sleep. Workers are kept awake if the step is going to be a long one.
+void advance(WorldState& world, bool is_long) {
     std::optional<TaskPool::StayAwake> stay_awake;
-    if (world.awake.size() >= fewest_shared) stay_awake.emplace(*world.workers);
+    if (is_long) stay_awake.emplace(*world.workers);
 
     run(world, StepStage::find_pairs, find_pairs);  // broad phase
     run(world, StepStage::touch, find_contacts);    // narrow phase → contact regions, warm start
@@ -40,10 +38,12 @@ void advance(WorldState& world) {
 }  // namespace
 
 void step(WorldState& world) {
+    constexpr double long_step = 0.2;  // ms; to wake the workers takes 0.015
     const auto start = Clock::now();
+    const bool is_long = world.report.milliseconds > long_step;
     world.report = {.step = world.report.step + 1, .time = world.report.time + world.settings.time_step};
     run(world, StepStage::wake, wake_bodies);  // apply commands, wake touched islands
-    if (!world.awake.empty() || !world.contacts.empty()) advance(world);
+    if (!world.awake.empty() || !world.contacts.empty()) advance(world, is_long);
     write_report(world);  // events, counts
     world.report.milliseconds = milliseconds_since(start);
 }
