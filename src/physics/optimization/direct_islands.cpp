@@ -11,11 +11,11 @@ namespace embody::physics {
 
 namespace {
 
-constexpr std::uint32_t least_levels = 4;          // lower ones come to rest in the sweeps
-constexpr std::size_t most_products_high = 300;    // of 6×6 blocks: chains, few bodies a level
-constexpr double least_mass_ratio = 20;            // of what lies above to what is below
-constexpr std::size_t most_products_bad = 4000;    // where they could not
-constexpr double least_load_ratio = 2;             // of all that lies above to a body of a tree below
+constexpr std::uint32_t least_levels = 4;        // lower ones come to rest in the sweeps
+constexpr std::size_t most_products_high = 300;  // of 6×6 blocks: chains, few bodies a level
+constexpr double least_mass_ratio = 20;          // of what lies above to what is below
+constexpr std::size_t most_products_bad = 4000;  // where they could not
+constexpr double least_load_ratio = 2;           // of all that lies above to a body of a tree below
 
 /// Bodies of a level, and the extremes of their masses.
 struct Level {
