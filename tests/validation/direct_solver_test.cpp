@@ -134,6 +134,23 @@ TEST(DirectSolver, PilesOfPlatesSlideDownAnInclineTogether) {
     }
 }
 
+TEST(DirectSolver, WhatBeginsToSlideSlowlyGoesAsFarAsItShould) {
+    // Just beyond the angle of friction a block is as slow as what rests for the first steps.
+    const double mu = 0.5, tangent = 0.52, angle = std::atan(tangent);
+    const auto world = make_world({.sleeping = false});
+    add_plane(*world, friction(mu), -angle);
+    const Quat tilt = from_axis_angle({0, 0, 1}, angle);
+    const auto box = world->create_shape(BoxShape{{1, 0.2, 1}}).value();
+    const Vec3 start = rotate(tilt, {0, 0.2, 0});
+    const BodyHandle block =
+        world->create_body({.shape = box, .position = start, .rotation = tilt, .material = friction(mu)}).value();
+    run(*world, 2);
+    const double way = gravity * std::cos(angle) * (tangent - mu) * 2 * 2 / 2;
+    const Vec3 moved = world->pose(block).position - start;
+    EXPECT_NEAR(length(moved), way, 0.02 * way);
+    EXPECT_NEAR(dot(moved, rotate(tilt, {0, 1, 0})), 0, 1e-4);
+}
+
 TEST(DirectSolver, LeaningTowerTips) {
     // Five cubes set back by 0.3 m each: the upper ones' weight lies beyond the edge of the lowest.
     const auto world = make_world({});
