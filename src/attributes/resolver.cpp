@@ -28,6 +28,7 @@ void put_identity(AttributeSet& set, const ModelFacts& facts, const Classificati
     };
     word("category", is_sub ? category.parent : category.name, what.source, what.level);
     if (is_sub) word("subcategory", category.name, what.source, what.level);
+    if (!category.synset.empty()) word("synset", category.synset, "meaning of " + category.name, what.level);
     word("placement", category.placement, "usual for " + category.name, what.level);
 
     // Who says whether it moves: the catalogue's flags before the category.
@@ -136,6 +137,16 @@ void put_form(AttributeSet& set, const ModelFacts& facts, const Form& form) {
     set.put({"collision_shape", shape.shape, {}, {}, shape.source, shape.level});
 }
 
+// What the category says beside mass and material, where it concerns the kind that the model ended with.
+void put_category_attributes(AttributeSet& set, const Classification& what) {
+    const std::string kind = set.word("kind", "");
+    for (const CategoryAttribute& usual : what.category->attributes) {
+        if (!applies_to(usual.name, kind)) continue;
+        replace(set, {usual.name, usual.value.typical, usual.value.low, usual.value.high,
+                      what.category->name + ": " + usual.source, what.level});
+    }
+}
+
 }  // namespace
 
 std::optional<double> likely_unit(double largest, double usual_low, double usual_high) {
@@ -170,6 +181,7 @@ AttributeSet resolve(const Taxonomy& taxonomy, const ModelFacts& facts) {
     put_mass(set, facts, what, surface, form);
     put_mass_dependents(set, facts.geometry, form);
     put_form(set, facts, form);
+    put_category_attributes(set, what);
 
     // Defaults for the rest.
     complete_for_kind(set);

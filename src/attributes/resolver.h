@@ -16,7 +16,7 @@ namespace embody::attributes {
 /// data/taxonomy.
 class Taxonomy {
 public:
-    /// `folder` holds taxonomy.json and materials.json; the error names file, entry and field.
+    /// `folder` holds materials.json and categories/*.json; the error names file, entry and field.
     static Result<std::unique_ptr<Taxonomy>> load(const std::filesystem::path& folder);
     ~Taxonomy();
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Reads data/taxonomy/*.json. The only file of this layer besides attribute_json.cpp that sees the JSON library.
-#include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <set>
+// Reads data/taxonomy. Of this layer only this file, field_reader and attribute_json see the JSON library.
+#include <algorithm>
 #include <utility>
 
+#include "attributes/assemble.h"
+#include "attributes/field_reader.h"
 #include "attributes/phrase_match.h"
 #include "attributes/registry.h"
 #include "attributes/taxonomy_data.h"
@@ -14,129 +13,6 @@ namespace embody::attributes {
 namespace {
 
 using nlohmann::json;
-
-// Reads the fields of one object; remembers the first thing that is wrong and which fields were asked for.
-class FieldReader {
-public:
-    FieldReader(const json& object, std::string where) : object_(object), where_(std::move(where)) {
-        if (!object.is_object()) fail("", "must be an object");
-    }
-
-    void word(const char* field, std::string& value, bool required) {
-        if (const json* found = find(field, required)) {
-            if (found->is_string() && !found->get_ref<const std::string&>().empty())
-                value = found->get<std::string>();
-            else
-                fail(field, "must be a non-empty string");
-        }
-    }
-    void words(const char* field, std::vector<std::string>& value, bool required) {
-        if (const json* found = find(field, required)) {
-            value.clear();
-            if (!found->is_array()) return fail(field, "must be a list of strings");
-            for (const json& item : *found) {
-                if (!item.is_string()) return fail(field, "must be a list of strings");
-                value.push_back(item.get<std::string>());
-            }
-        }
-    }
-    void truth(const char* field, bool& value, bool required) {
-        if (const json* found = find(field, required)) {
-            if (found->is_boolean())
-                value = found->get<bool>();
-            else
-                fail(field, "must be true or false");
-        }
-    }
-    void number(const char* field, double& value, std::pair<double, double> range, bool required) {
-        if (const json* found = find(field, required)) {
-            if (found->is_number() && in(found->get<double>(), range))
-                value = found->get<double>();
-            else
-                fail(field, "must be a number from " + text(range.first) + " to " + text(range.second));
-        }
-    }
-    /// [low, typical, high], ascending.
-    void interval(const char* field, Interval& value, std::pair<double, double> range, bool required) {
-        if (const auto n = numbers(field, 3, range, required)) {
-            if ((*n)[0] <= (*n)[1] && (*n)[1] <= (*n)[2])
-                value = {(*n)[0], (*n)[1], (*n)[2]};
-            else
-                fail(field, "must be [low, typical, high], ascending");
-        }
-    }
-    void size(const char* field, Vec3& value, bool required) {
-        if (const auto n = numbers(field, 3, {1e-5, 1e4}, required)) value = {(*n)[0], (*n)[1], (*n)[2]};
-    }
-    void range(const char* field, double& low, double& high, bool required) {
-        if (const auto n = numbers(field, 2, {1e-5, 1e4}, required)) {
-            low = (*n)[0];
-            high = (*n)[1];
-            if (low > high) fail(field, "must be [low, high], ascending");
-        }
-    }
-    const json* list(const char* field, bool required) {
-        const json* found = find(field, required);
-        if (found != nullptr && !found->is_array()) fail(field, "must be a list");
-        return error_ ? nullptr : found;
-    }
-    void fail(const std::string& field, const std::string& why) {
-        if (!error_) error_ = Error{field.empty() ? where_ : where_ + "." + field, why};
-    }
-    /// The first error; else the first field that nobody asked for.
-    std::optional<Error> finish() {
-        if (error_) return error_;
-        for (const auto& [field, value] : object_.items()) {
-            if (!known_.contains(field)) return Error{where_ + "." + field, "there is no field of this name"};
-        }
-        return std::nullopt;
-    }
-
-private:
-    static bool in(double value, std::pair<double, double> range) {
-        return std::isfinite(value) && value >= range.first && value <= range.second;
-    }
-    static std::string text(double value) { return json(value).dump(); }
-
-    const json* find(const char* field, bool required) {
-        known_.insert(field);
-        if (error_ || !object_.is_object()) return nullptr;
-        const auto found = object_.find(field);
-        if (found != object_.end()) return &*found;
-        if (required) fail(field, "is missing");
-        return nullptr;
-    }
-    std::optional<std::vector<double>> numbers(const char* field, std::size_t count, std::pair<double, double> range,
-                                               bool required) {
-        const json* found = find(field, required);
-        if (found == nullptr) return std::nullopt;
-        std::vector<double> values;
-        if (found->is_array() && found->size() == count) {
-            for (const json& item : *found) {
-                if (item.is_number() && in(item.get<double>(), range)) values.push_back(item.get<double>());
-            }
-        }
-        if (values.size() == count) return values;
-        fail(field,
-             "must be " + std::to_string(count) + " numbers from " + text(range.first) + " to " + text(range.second));
-        return std::nullopt;
-    }
-
-    const json& object_;
-    std::string where_;
-    std::set<std::string, std::less<>> known_;
-    std::optional<Error> error_;
-};
-
-Result<json> read_json(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return Error{file.string(), "cannot be opened"};
-    try {
-        return json::parse(stream);
-    } catch (const json::exception& problem) {
-        return Error{file.string(), problem.what()};
-    }
-}
 
 Result<MaterialData> read_material(const json& object, const std::string& where) {
     MaterialData material;
@@ -162,12 +38,38 @@ void check_choice(FieldReader& reader, const char* attribute, const std::string&
     if (!value.empty() && !valid) reader.fail(attribute, valid.error().why);
 }
 
+// {"youngs_modulus": {"value": [low, typical, high], "source": "…"}}: numbers of the registry that the entry's kind
+// has.
+void read_attributes(FieldReader& reader, const std::string& where, CategoryData& category) {
+    const json* object = reader.object("attributes", false);
+    if (object == nullptr) return;
+    for (const auto& [name, content] : object->items()) {
+        const std::string field = "attributes." + name;
+        const AttributeDescription* description = describe(name);
+        if (description == nullptr || description->type != ValueType::number) {
+            return reader.fail(field, "the registry has no number of this name");
+        }
+        if (!applies_to(name, category.kind)) {
+            return reader.fail(field, "is no attribute of the kind " + category.kind);
+        }
+        CategoryAttribute attribute{name, {}, {}};
+        FieldReader inner(content, where + "." + field);
+        inner.interval("value", attribute.value, {description->low.value_or(-1e300), description->high.value_or(1e300)},
+                       true);
+        inner.word("source", attribute.source, true);
+        if (auto error = inner.finish()) return reader.fail(field, error->message());
+        std::erase_if(category.attributes, [&](const CategoryAttribute& of_parent) { return of_parent.name == name; });
+        category.attributes.push_back(std::move(attribute));
+    }
+}
+
 Result<CategoryData> read_category(const json& object, const std::string& where, const CategoryData* parent) {
     // A subcategory starts as its category; words are its own, and numbers that it changes need a source of their own.
     CategoryData category = parent != nullptr ? *parent : CategoryData{};
     const bool top = parent == nullptr;
     category.words.clear();
     category.catalogue.clear();
+    category.synset.clear();
     if (!top) category.parent = parent->name;
 
     FieldReader reader(object, where);
@@ -175,6 +77,7 @@ Result<CategoryData> read_category(const json& object, const std::string& where,
     const bool has_numbers = object.is_object() && (object.contains("mass") || object.contains("at_size") ||
                                                     object.contains("fill_fraction") || object.contains("usual_size"));
     reader.word("name", category.name, true);
+    reader.word("synset", category.synset, false);
     reader.words("words", category.words, true);
     reader.words("catalogue", category.catalogue, false);
     reader.word("kind", category.kind, top);
@@ -197,6 +100,9 @@ Result<CategoryData> read_category(const json& object, const std::string& where,
         reader.fail("kind", "must say what it is when it moves; static is \"movable\": false");
     if (scaling != "volume" && scaling != "area") reader.fail("mass_grows_with", "must be volume or area");
     category.scaling = scaling == "area" ? MassScaling::area : MassScaling::volume;
+    // Those of a parent of another kind say nothing of this one.
+    std::erase_if(category.attributes, [&](const CategoryAttribute& a) { return !applies_to(a.name, category.kind); });
+    read_attributes(reader, where, category);
     if (auto error = reader.finish()) return *error;
     return category;
 }
@@ -278,8 +184,23 @@ Result<void> load_categories(Taxonomy::Data& data, const std::filesystem::path& 
         const std::string where = file.filename().string() + ": categories[" + std::to_string(i) + "]";
         if (auto loaded = load_category_tree(data, (*list)[i], where); !loaded) return loaded;
     }
+    return {};
+}
+
+// All files of the folder, in the order of their names.
+Result<void> load_categories_of(Taxonomy::Data& data, const std::filesystem::path& folder) {
+    std::error_code failure;
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, failure)) {
+        if (entry.path().extension() == ".json") files.push_back(entry.path());
+    }
+    if (failure) return Error{folder.string(), failure.message()};
+    std::ranges::sort(files);
+    for (const std::filesystem::path& file : files) {
+        if (auto loaded = load_categories(data, file); !loaded) return loaded;
+    }
     const CategoryData* unknown = data.category("object");
-    if (unknown == nullptr) return Error{file.filename().string(), "has no category \"object\" for what nothing tells"};
+    if (unknown == nullptr) return Error{folder.string(), "has no category \"object\" for what nothing tells"};
     data.unknown = static_cast<std::size_t>(unknown - data.categories.data());
     return {};
 }
@@ -306,7 +227,9 @@ Taxonomy::~Taxonomy() = default;
 Result<std::unique_ptr<Taxonomy>> Taxonomy::load(const std::filesystem::path& folder) {
     std::unique_ptr<Taxonomy> taxonomy(new Taxonomy);
     if (auto loaded = load_materials(*taxonomy->data_, folder / "materials.json"); !loaded) return loaded.error();
-    if (auto loaded = load_categories(*taxonomy->data_, folder / "taxonomy.json"); !loaded) return loaded.error();
+    if (auto loaded = load_categories_of(*taxonomy->data_, folder / "categories"); !loaded) {
+        return loaded.error();
+    }
     return taxonomy;
 }
 

@@ -30,10 +30,18 @@ struct MaterialData {
 /// How the mass of a thing grows with its size.
 enum class MassScaling { volume, area };
 
-/// A category or subcategory of taxonomy.json; what a subcategory leaves out is its category's.
+/// A number of the registry that is usual for a category.
+struct CategoryAttribute {
+    std::string name;
+    Interval value;
+    std::string source;
+};
+
+/// A category or subcategory of data/taxonomy/categories; what a subcategory leaves out is its category's.
 struct CategoryData {
     std::string name;
     std::string parent;  ///< of a subcategory: its category; else empty
+    std::string synset;  ///< its meaning in WordNet 3.0, such as "chair.n.01"; empty where WordNet has none
     std::vector<std::string> words;
     std::vector<std::string> catalogue;  ///< names of catalogue categories that mean this where no word tells more
     std::string kind;                    ///< when movable
@@ -47,7 +55,8 @@ struct CategoryData {
     bool solid = false;                    ///< the closed surface is filled to fill_fraction with the material
     Interval fill_fraction;                ///< used where solid
     std::string material;
-    std::string source;  ///< of the numbers
+    std::string source;                         ///< of the numbers above
+    std::vector<CategoryAttribute> attributes;  ///< what else is usual, such as the stiffness of a cushion
 };
 
 /// A phrase that names an entry, e.g. "coffee table".

@@ -99,7 +99,7 @@ std::string taxonomy_hash(const std::filesystem::path& taxonomy_folder) {
     // In the order of names, so that the folder's own order does not matter.
     std::error_code failure;
     std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(taxonomy_folder, failure)) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(taxonomy_folder, failure)) {
         if (entry.path().extension() == ".json") files.push_back(entry.path());
     }
     std::sort(files.begin(), files.end());

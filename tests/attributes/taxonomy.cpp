@@ -28,9 +28,9 @@ std::string category(const std::string& name, const std::string& words, const st
 // Loads the two texts from a folder of their own; the message of the error, or "".
 std::string load_error(const std::string& materials_text, const std::string& taxonomy_text) {
     const auto folder = std::filesystem::temp_directory_path() / ("embody_taxonomy_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder);
+    std::filesystem::create_directories(folder / "categories");
     std::ofstream(folder / "materials.json") << materials_text;
-    std::ofstream(folder / "taxonomy.json") << taxonomy_text;
+    std::ofstream(folder / "categories" / "things.json") << taxonomy_text;
     const auto loaded = Taxonomy::load(folder);
     std::filesystem::remove_all(folder);
     return loaded ? "" : loaded.error().message();
@@ -42,12 +42,12 @@ std::string load_error(const std::string& categories) {
 TEST(TaxonomyLoad, NamesFileEntryAndField) {
     EXPECT_FALSE(Taxonomy::load("/nowhere").ok());
     EXPECT_NE(load_error("{", "{}").find("materials.json"), std::string::npos);
-    EXPECT_NE(load_error(materials, "[1").find("taxonomy.json"), std::string::npos);
-    EXPECT_EQ(load_error(materials, "{}"), "taxonomy.json.categories: is missing");
-    EXPECT_EQ(load_error(R"({"name": "a"})"), "taxonomy.json: categories[1].words: is missing");
-    EXPECT_EQ(load_error("7"), "taxonomy.json: categories[1]: must be an object");
+    EXPECT_NE(load_error(materials, "[1").find("things.json"), std::string::npos);
+    EXPECT_EQ(load_error(materials, "{}"), "things.json.categories: is missing");
+    EXPECT_EQ(load_error(R"({"name": "a"})"), "things.json: categories[1].words: is missing");
+    EXPECT_EQ(load_error("7"), "things.json: categories[1]: must be an object");
     EXPECT_EQ(load_error(category("a", R"(["a"])", R"(, "colour": "red")")),
-              "taxonomy.json: categories[1].colour: there is no field of this name");
+              "things.json: categories[1].colour: there is no field of this name");
 }
 
 TEST(TaxonomyLoad, RefusesImpossibleValues) {
@@ -82,7 +82,51 @@ TEST(TaxonomyLoad, NumbersNeedASource) {
         R"(, "subcategories": [{"name": "b", "words": [], "mass": [1, 2, 3], "at_size": [1, 1, 1]}])";
     // The category's source does not vouch for the subcategory's numbers.
     EXPECT_EQ(load_error(category("a", R"(["a"])", sub)),
-              "taxonomy.json: categories[1].subcategories[0].source: is missing");
+              "things.json: categories[1].subcategories[0].source: is missing");
+}
+
+TEST(TaxonomyLoad, AttributesAreNumbersOfTheRegistryThatTheKindHas) {
+    const auto with = [](const std::string& kind, const std::string& attributes) {
+        return load_error(category("a", R"(["a"])",
+                                   ", \"subcategories\": [{\"name\": \"b\", \"words\": [], \"kind\": \"" + kind +
+                                       "\", \"attributes\": {" + attributes + "}}]"));
+    };
+    EXPECT_EQ(with("soft", R"("youngs_modulus": {"value": [1e4, 2e4, 3e4], "source": "s"})"), "");
+    EXPECT_NE(with("rigid", R"("youngs_modulus": {"value": [1e4, 2e4, 3e4], "source": "s"})").find("the kind rigid"),
+              std::string::npos);
+    EXPECT_NE(with("soft", R"("stiffness": {"value": [1, 2, 3], "source": "s"})").find("no number of this name"),
+              std::string::npos);
+    EXPECT_NE(with("soft", R"("collision_shape": {"value": [1, 2, 3], "source": "s"})").find("no number of this name"),
+              std::string::npos);
+    EXPECT_NE(with("soft", R"("youngs_modulus": {"value": [1, 2e4, 3e4], "source": "s"})").find("must be 3 numbers"),
+              std::string::npos);
+    EXPECT_NE(with("soft", R"("youngs_modulus": {"value": [1e4, 2e4, 3e4]})").find("source: is missing"),
+              std::string::npos);
+    EXPECT_NE(with("soft", R"("youngs_modulus": 7)").find("must be an object"), std::string::npos);
+}
+
+TEST(TaxonomyLoad, WhatACategorySaysReachesTheSetWithItsSource) {
+    const auto folder = std::filesystem::temp_directory_path() / ("embody_usual_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder / "categories");
+    std::ofstream(folder / "materials.json") << materials;
+    std::ofstream(folder / "categories" / "a.json") << R"({"categories": [)" + category("object", "[]") + "]}";
+    std::ofstream(folder / "categories" / "b.json")
+        << R"({"categories": [{"name": "cushion", "synset": "cushion.n.03", "words": ["cushion"], "kind": "soft",
+               "placement": "floor", "movable": true, "mass": [1, 2, 3], "at_size": [1, 1, 1], "usual_size": [0.1, 2],
+               "material": "generic", "source": "s",
+               "attributes": {"youngs_modulus": {"value": [1e4, 2e4, 3e4], "source": "a handbook"}}}]})";
+    const auto taxonomy = Taxonomy::load(folder);
+    std::filesystem::remove_all(folder);
+    ASSERT_TRUE(taxonomy) << taxonomy.error().message();
+    const AttributeSet set = resolve(**taxonomy, named("red cushion", {0.4, 0.1, 0.4}));
+    EXPECT_EQ(set.word("synset", ""), "cushion.n.03");
+    const AttributeEntry* modulus = set.find("youngs_modulus");
+    ASSERT_NE(modulus, nullptr);
+    EXPECT_EQ(std::get<double>(modulus->value), 2e4);
+    EXPECT_EQ(modulus->low, 1e4);
+    EXPECT_EQ(modulus->high, 3e4);
+    EXPECT_EQ(modulus->source, "cushion: a handbook");
+    EXPECT_EQ(modulus->level, AttributeLevel::category);
 }
 
 TEST(ShippedTaxonomy, EveryEntryGivesASetThatHoldsTogether) {

@@ -140,7 +140,7 @@ TEST_F(CatalogTest, AChangedTaxonomyResolvesAllModelsAgain) {
         auto same = Catalog::open(database(), own);
         EXPECT_TRUE((*same)->automatic_attributes((*same)->model("office chair")->id)->entries().empty());
     }
-    std::ofstream(own / "taxonomy.json", std::ios::app) << "\n\n";
+    std::ofstream(own / "categories" / "furniture.json", std::ios::app) << "\n\n";
     auto changed = Catalog::open(database(), own);
     ASSERT_TRUE(changed);
     const std::int64_t id = (*changed)->model("office chair")->id;
