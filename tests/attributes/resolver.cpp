@@ -76,9 +76,9 @@ constexpr Expected real_names[] = {
     {"Christmas tree", "sculpture", "christmas tree", "rigid"},
     {"Palm tree", "tree", "", "static"},
     {"Pine under snow", "tree", "", "static"},
-    {"Hot dog", "food", "", "rigid"},  // not a dog
+    {"Hot dog", "prepared dish", "hot dog", "soft"},  // not a dog
     {"Bulldog", "animal", "dog", "articulated"},
-    {"Roasted chicken", "food", "", "rigid"},
+    {"Roasted chicken", "meat", "roast chicken", "soft"},
     {"Chicken", "animal", "chicken", "articulated"},
     {"Plate, glass and cutlery", "plate", "", "rigid"},
     {"Bowl with fruits", "bowl", "full bowl", "rigid"},
