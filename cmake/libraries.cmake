@@ -14,6 +14,13 @@ pkg_check_modules(minizip REQUIRED IMPORTED_TARGET minizip)
 pkg_check_modules(seccomp REQUIRED IMPORTED_TARGET libseccomp)
 find_package(embree 3 REQUIRED)
 
+# Text files, not a library: the nouns are compiled into a table while building.
+find_path(EMBODY_WORDNET data.noun PATHS /usr/share/wordnet /usr/share/wordnet/dict /usr/share/wordnet-3.0/dict
+          DOC "Folder of WordNet 3.0's data.noun, index.noun and noun.exc" NO_DEFAULT_PATH)
+if(NOT EMBODY_WORDNET)
+  message(FATAL_ERROR "WordNet's data.noun is not there: install wordnet-base, or give -DEMBODY_WORDNET=FOLDER.")
+endif()
+
 # Groups by the layer that uses them.
 add_library(embody_model_readers INTERFACE)
 target_link_libraries(embody_model_readers INTERFACE assimp::assimp PkgConfig::minizip PkgConfig::stb

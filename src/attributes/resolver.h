@@ -16,7 +16,8 @@ namespace embody::attributes {
 /// data/taxonomy.
 class Taxonomy {
 public:
-    /// `folder` holds materials.json and categories/*.json; the error names file, entry and field.
+    /// `folder` holds materials.json and categories/*.json; WordNet's nouns are read from its wordnet-nouns.table, or
+    /// from the one that the build wrote. The error names file, entry, field and remedy.
     static Result<std::unique_ptr<Taxonomy>> load(const std::filesystem::path& folder);
     ~Taxonomy();
 

@@ -124,6 +124,22 @@ Result<void> index_entry(PhraseIndex& index, std::size_t& longest, const std::ve
     return {};
 }
 
+// The entry's meaning; of two entries with the same one the more general stays, so that hypernyms lead to it.
+Result<void> index_synset(Taxonomy::Data& data, const std::string& where) {
+    const CategoryData& added = data.categories.back();
+    if (added.synset.empty()) return {};
+    const auto synset = data.nouns->find_synset(added.synset);
+    if (!synset) {
+        return Error{where + ".synset", "WordNet 3.0 has no noun \"" + added.synset + "\"",
+                     "write lemma.n.NN with the number of the lemma's sense in WordNet, or leave it out"};
+    }
+    const auto [held, is_new] = data.by_synset.emplace(*synset, data.categories.size() - 1);
+    if (!is_new && added.parent.empty() && !data.categories[held->second].parent.empty()) {
+        held->second = data.categories.size() - 1;
+    }
+    return {};
+}
+
 Result<void> add_category(Taxonomy::Data& data, CategoryData category, const std::string& where) {
     if (data.material(category.material) == nullptr) {
         return Error{where + ".material", "materials.json has no \"" + category.material + "\""};
@@ -134,7 +150,17 @@ Result<void> add_category(Taxonomy::Data& data, CategoryData category, const std
             return Error{where + ".catalogue", "\"" + name + "\" belongs to another entry already"};
         }
     }
+    if (auto indexed = index_synset(data, where); !indexed) return indexed;
     return index_entry(data.category_phrases, data.longest_phrase, data.categories, where);
+}
+
+// Beside the taxonomy where somebody put it there, else where the build wrote it.
+Result<void> load_nouns(Taxonomy::Data& data, const std::filesystem::path& folder) {
+    const std::filesystem::path own = folder / "wordnet-nouns.table";
+    auto nouns = wordnet::NounTable::load(std::filesystem::exists(own) ? own : EMBODY_WORDNET_TABLE);
+    if (!nouns) return nouns.error();
+    data.nouns = std::make_shared<const wordnet::NounTable>(std::move(*nouns));
+    return {};
 }
 
 Result<void> load_materials(Taxonomy::Data& data, const std::filesystem::path& file) {
@@ -160,6 +186,7 @@ Result<void> load_materials(Taxonomy::Data& data, const std::filesystem::path& f
 Result<void> load_category_tree(Taxonomy::Data& data, const json& object, const std::string& where) {
     auto category = read_category(object, where, nullptr);
     if (!category) return category.error();
+    category->domain = where.substr(0, where.find(".json"));
     if (auto added = add_category(data, *category, where); !added) return added;
     if (!object.contains("subcategories")) return {};
     const json& list = object["subcategories"];
@@ -227,6 +254,7 @@ Taxonomy::~Taxonomy() = default;
 Result<std::unique_ptr<Taxonomy>> Taxonomy::load(const std::filesystem::path& folder) {
     std::unique_ptr<Taxonomy> taxonomy(new Taxonomy);
     if (auto loaded = load_materials(*taxonomy->data_, folder / "materials.json"); !loaded) return loaded.error();
+    if (auto loaded = load_nouns(*taxonomy->data_, folder); !loaded) return loaded.error();
     if (auto loaded = load_categories_of(*taxonomy->data_, folder / "categories"); !loaded) {
         return loaded.error();
     }

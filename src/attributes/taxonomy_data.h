@@ -3,10 +3,13 @@
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "attributes/resolver.h"
+#include "attributes/wordnet/noun_table.h"
 
 namespace embody::attributes {
 
@@ -41,6 +44,7 @@ struct CategoryAttribute {
 struct CategoryData {
     std::string name;
     std::string parent;  ///< of a subcategory: its category; else empty
+    std::string domain;  ///< its file without ".json", such as "kitchen"
     std::string synset;  ///< its meaning in WordNet 3.0, such as "chair.n.01"; empty where WordNet has none
     std::vector<std::string> words;
     std::vector<std::string> catalogue;  ///< names of catalogue categories that mean this where no word tells more
@@ -76,6 +80,8 @@ struct Taxonomy::Data {
     std::map<std::string, std::size_t, std::less<>> by_catalogue;  ///< stems of the catalogue's category → index
     std::size_t unknown = 0;                                       ///< index of the category "object"
     std::size_t longest_phrase = 1;
+    std::shared_ptr<const wordnet::NounTable> nouns;                  ///< never null once loaded
+    std::unordered_map<wordnet::SynsetIndex, std::size_t> by_synset;  ///< index of the entry that has this meaning
 
     [[nodiscard]] const MaterialData* material(std::string_view name) const;
     [[nodiscard]] const CategoryData* category(std::string_view name) const;

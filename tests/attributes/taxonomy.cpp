@@ -77,6 +77,45 @@ TEST(TaxonomyLoad, EveryPhraseBelongsToOneEntry) {
     EXPECT_NE(load_error(category("a", R"(["--"])")).find("is empty"), std::string::npos);
 }
 
+TEST(TaxonomyLoad, SynsetsAreThoseOfWordNet) {
+    EXPECT_EQ(load_error(category("a", R"(["a"])", R"(, "synset": "chair.n.01")")), "");
+    const std::string why = load_error(category("a", R"(["a"])", R"(, "synset": "chiar.n.01")"));
+    EXPECT_NE(why.find("things.json: categories[1].synset: WordNet 3.0 has no noun \"chiar.n.01\""), std::string::npos);
+    EXPECT_NE(why.find("or leave it out"), std::string::npos);
+}
+
+TEST(TaxonomyLoad, ABrokenTableOfWordNetBesideTheTaxonomyIsNamed) {
+    const auto folder = std::filesystem::temp_directory_path() / ("embody_words_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder / "categories");
+    std::ofstream(folder / "materials.json") << materials;
+    std::ofstream(folder / "categories" / "a.json") << R"({"categories": [)" + category("object", "[]") + "]}";
+    std::ofstream(folder / "wordnet-nouns.table") << "cut off";
+    const auto loaded = Taxonomy::load(folder);
+    std::filesystem::remove_all(folder);
+    ASSERT_FALSE(loaded.ok());
+    EXPECT_NE(loaded.error().where.find("wordnet-nouns.table"), std::string::npos);
+    EXPECT_FALSE(loaded.error().remedy.empty());
+}
+
+TEST(TaxonomyLoad, OfTwoEntriesWithOneMeaningTheMoreGeneralIsFound) {
+    const auto folder = std::filesystem::temp_directory_path() / ("embody_twice_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder / "categories");
+    std::ofstream(folder / "materials.json") << materials;
+    const std::string sub = R"(, "subcategories": [{"name": "stool", "synset": "chair.n.01", "words": []}])";
+    std::ofstream(folder / "categories" / "a.json")
+        << R"({"categories": [)" + category("object", "[]") + "," + category("first", "[]", sub) + "," +
+               category("general", "[]", R"(, "synset": "chair.n.01")") + "," +
+               category("later", "[]", R"(, "synset": "chair.n.01")") + "]}";
+    const auto loaded = Taxonomy::load(folder);
+    std::filesystem::remove_all(folder);
+    ASSERT_TRUE(loaded.ok()) << loaded.error().message();
+    const Taxonomy::Data& data = (*loaded)->data();
+    const auto found = data.by_synset.find(*data.nouns->find_synset("chair.n.01"));
+    ASSERT_NE(found, data.by_synset.end());
+    EXPECT_EQ(data.categories[found->second].name, "general");
+    EXPECT_EQ(data.categories[found->second].domain, "a");
+}
+
 TEST(TaxonomyLoad, NumbersNeedASource) {
     const std::string sub =
         R"(, "subcategories": [{"name": "b", "words": [], "mass": [1, 2, 3], "at_size": [1, 1, 1]}])";
