@@ -77,9 +77,9 @@ constexpr Expected real_names[] = {
     {"Palm tree", "tree", "", "static"},
     {"Pine under snow", "tree", "", "static"},
     {"Hot dog", "prepared dish", "hot dog", "soft"},  // not a dog
-    {"Bulldog", "animal", "dog", "articulated"},
+    {"Bulldog", "pet", "dog", "articulated"},
     {"Roasted chicken", "meat", "roast chicken", "soft"},
-    {"Chicken", "animal", "chicken", "articulated"},
+    {"Chicken", "bird", "chicken", "articulated"},
     {"Plate, glass and cutlery", "plate", "", "rigid"},
     {"Bowl with fruits", "bowl", "full bowl", "rigid"},
     {"Fridge & Freezer", "refrigerator", "", "rigid"},
