@@ -45,6 +45,7 @@ public:
         add_reset();
         add_simulate();
         add_check();
+        add_evaluate();
         add_scene();
         add_bench();
     }
@@ -162,6 +163,32 @@ private:
         add_database(c);
         c.app->add_option("scenes", c.into->scenes, "Scene files")->required();
         add_json(c);
+    }
+    void add_evaluate() {
+        auto c = add<EvaluateArguments>("evaluate", "Compare automatic attributes with what is known of real things",
+                                        "embody evaluate mass --truth tests/reference/mass-held-out-dev.csv");
+        c.app->require_subcommand(1);
+        CLI::App* mass = c.app->add_subcommand("mass", "Predicted masses beside those of measured objects");
+        mass->add_option("--truth", c.into->truth,
+                         "CSV with the columns id, name, category, dim_x_m, dim_y_m, dim_z_m, mass_kg and perhaps "
+                         "mesh_volume_m3")
+            ->required()
+            ->check(CLI::ExistingFile);
+        mass->add_option("--told", c.into->told,
+                         "What the predictor is told beside the size: everything, name, category")
+            ->capture_default_str()
+            ->check(CLI::IsMember({"everything", "name", "category"}).description(""));
+        mass->add_option("--worst", c.into->worst, "List so many of the worst predictions")
+            ->capture_default_str()
+            ->check(CLI::NonNegativeNumber);
+        CLI::App* catalogue = c.app->add_subcommand(
+            "catalogue", "Models of the database that are understood, beside what their catalogue says");
+        c.into->database = catalog::Catalog::default_file();
+        catalogue->add_option("--database", c.into->database, "Model database")->capture_default_str();
+        for (CLI::App* one : {mass, catalogue}) {
+            one->add_flag("--json", c.into->json, "Print JSON, for programs");
+            one->callback([into = c.into, one] { into->what = one->get_name(); });
+        }
     }
     void add_scene() {
         auto c = add<SceneArguments>("scene", "List the built-in scenes, or write one as a scene file",

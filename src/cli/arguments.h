@@ -64,6 +64,14 @@ struct CheckArguments {
     std::vector<std::filesystem::path> scenes;
     bool json = false;
 };
+struct EvaluateArguments {
+    std::string what;  ///< "mass" or "catalogue"
+    std::filesystem::path database;
+    std::filesystem::path truth;      ///< table of measured objects
+    std::string told = "everything";  ///< or "name", "category"
+    int worst = 20;                   ///< objects to list
+    bool json = false;
+};
 struct SceneArguments {
     std::string name;  ///< of a builder; empty: list them
     std::filesystem::path output;
@@ -79,7 +87,8 @@ struct BenchArguments {
 };
 
 using Arguments = std::variant<ServeArguments, ImportArguments, SearchArguments, ShowArguments, SetArguments,
-                               ResetArguments, SimulateArguments, CheckArguments, SceneArguments, BenchArguments>;
+                               ResetArguments, SimulateArguments, CheckArguments, EvaluateArguments, SceneArguments,
+                               BenchArguments>;
 
 /// Exit codes of the program.
 enum ExitCode : int { exit_ok = 0, exit_failed = 1, exit_usage = 2, exit_partly = 3 };

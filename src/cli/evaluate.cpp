@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/locations.h"
+#include "cli/output.h"
+#include "evaluation/catalogue_evaluation.h"
+#include "evaluation/mass_evaluation.h"
+
+namespace embody::cli {
+namespace {
+
+using evaluation::CatalogueEvaluation;
+using evaluation::MassEvaluation;
+using evaluation::MassFigures;
+using evaluation::MassPrediction;
+
+nlohmann::json figures_to_json(const MassFigures& figures) {
+    return {{"objects", figures.objects},
+            {"alde", figures.alde},
+            {"alde_95", {figures.alde_low, figures.alde_high}},
+            {"bias", figures.bias},
+            {"mnre", figures.mnre},
+            {"within_factor_2", figures.within_factor_2},
+            {"coverage_80", figures.coverage_80}};
+}
+
+nlohmann::json groups_to_json(const std::map<std::string, MassFigures>& groups) {
+    nlohmann::json json = nlohmann::json::object();
+    for (const auto& [group, figures] : groups) json[group] = figures_to_json(figures);
+    return json;
+}
+
+nlohmann::json mass_to_json(const MassEvaluation& evaluation) {
+    nlohmann::json rows = nlohmann::json::array();
+    for (const MassPrediction& prediction : evaluation.predictions) {
+        rows.push_back({{"id", prediction.object.id},
+                        {"name", prediction.object.name},
+                        {"category", prediction.category},
+                        {"level", prediction.level},
+                        {"mass_kg", prediction.object.mass},
+                        {"predicted_kg", prediction.mass},
+                        {"predicted_80_kg", {prediction.low, prediction.high}}});
+    }
+    return {{"all", figures_to_json(evaluation.all)},
+            {"by_source", groups_to_json(evaluation.by_source)},
+            {"by_level", groups_to_json(evaluation.by_level)},
+            {"without_mass", evaluation.without_mass},
+            {"predictions", std::move(rows)}};
+}
+
+void print_figures(const std::string& group, const MassFigures& figures) {
+    fmt::print("{} {:>7}  {:.3f} [{:.2f} … {:.2f}]  {:+.2f}  {:.3f}  {:>6.1f} %  {:>9.1f} %\n", padded(group, 16),
+               figures.objects, figures.alde, figures.alde_low, figures.alde_high, figures.bias, figures.mnre,
+               100 * figures.within_factor_2, 100 * figures.coverage_80);
+}
+
+void print_mass(const MassEvaluation& evaluation, std::size_t worst) {
+    fmt::print("{} {:>7}  {}  {}  {}  {}  {}\n", padded("", 16), "objects", padded("ALDE  [95 %]", 19), " bias",
+               "MnRE ", "within ×2", "in 80 % interval");
+    print_figures("all", evaluation.all);
+    for (const auto* groups : {&evaluation.by_source, &evaluation.by_level}) {
+        print_line("");
+        for (const auto& [group, figures] : *groups) print_figures("  " + group, figures);
+    }
+    if (!evaluation.without_mass.empty()) {
+        std::string ids;
+        for (const std::string& id : evaluation.without_mass) ids += " " + id;
+        fmt::print("\nWithout a mass, not counted:{}\n", ids);
+    }
+    if (worst == 0) return;
+    fmt::print("\nWorst:\n{:>10}  {:>10}  {}  {}\n", "real kg", "predicted", padded("taken for", 22), "name");
+    for (std::size_t i = 0; i < std::min(worst, evaluation.predictions.size()); ++i) {
+        const MassPrediction& prediction = evaluation.predictions[i];
+        fmt::print("{:>10.4g}  {:>10.4g}  {}  {} ({})\n", prediction.object.mass, prediction.mass,
+                   padded(prediction.category, 22), prediction.object.name.substr(0, 60), prediction.object.id);
+    }
+}
+
+nlohmann::json catalogue_to_json(const CatalogueEvaluation& evaluation) {
+    nlohmann::json disagreements = nlohmann::json::array(), broken = nlohmann::json::array();
+    for (const auto& model : evaluation.disagreements) {
+        disagreements.push_back({{"key", model.key},
+                                 {"name", model.name},
+                                 {"category", model.category},
+                                 {"catalogue_says_movable", model.catalogue_says_movable}});
+    }
+    for (const auto& model : evaluation.broken) {
+        nlohmann::json issues = nlohmann::json::array();
+        for (const attributes::Issue& issue : model.issues)
+            issues.push_back({{"attribute", issue.attribute}, {"why", issue.why}});
+        broken.push_back({{"key", model.key}, {"issues", std::move(issues)}});
+    }
+    return {{"models", evaluation.models},
+            {"above_default", evaluation.above_default()},
+            {"by_level", evaluation.by_level},
+            {"unknown", evaluation.unknown},
+            {"movable",
+             {{"models", evaluation.flagged},
+              {"agreement", evaluation.movable_agreement()},
+              {"disagreements", std::move(disagreements)}}},
+            {"broken", std::move(broken)}};
+}
+
+void print_catalogue(const CatalogueEvaluation& evaluation) {
+    fmt::print("{} models; category better than default: {:.1f} %\n", evaluation.models,
+               100 * evaluation.above_default());
+    for (const auto& [level, models] : evaluation.by_level) fmt::print("  {} {:>6}\n", padded(level, 14), models);
+    for (const std::string& name : evaluation.unknown) fmt::print("  unknown: {}\n", name);
+    fmt::print("static or movable as {} catalogue entries say: {:.1f} %\n", evaluation.flagged,
+               100 * evaluation.movable_agreement());
+    for (const auto& model : evaluation.disagreements) {
+        fmt::print("  {} {} taken for {}\n",
+                   model.catalogue_says_movable ? "movable:" : "static: ", padded(model.name, 34), model.category);
+    }
+    fmt::print("models whose attributes contradict each other: {}\n", evaluation.broken.size());
+    for (const auto& model : evaluation.broken)
+        for (const attributes::Issue& issue : model.issues)
+            fmt::print("  {}: {}: {}\n", model.key, issue.attribute, issue.why);
+}
+
+int evaluate_masses(const EvaluateArguments& arguments, const attributes::Taxonomy& taxonomy) {
+    const auto objects = evaluation::read_measured_objects(arguments.truth);
+    if (!objects) return report(objects.error());
+    const evaluation::Told told = arguments.told == "name"       ? evaluation::Told::name
+                                  : arguments.told == "category" ? evaluation::Told::category
+                                                                 : evaluation::Told::everything;
+    const MassEvaluation result = evaluation::evaluate_mass(taxonomy, *objects, told);
+    if (arguments.json)
+        print_json(mass_to_json(result));
+    else
+        print_mass(result, static_cast<std::size_t>(arguments.worst));
+    return exit_ok;
+}
+
+int evaluate_models(const EvaluateArguments& arguments, const attributes::Taxonomy& taxonomy) {
+    const auto catalog = open_catalog(arguments.database);
+    if (!catalog) return report(catalog.error());
+    const auto result = evaluation::evaluate_catalogue(taxonomy, **catalog);
+    if (!result) return report(result.error());
+    if (arguments.json)
+        print_json(catalogue_to_json(*result));
+    else
+        print_catalogue(*result);
+    return exit_ok;
+}
+
+}  // namespace
+
+int run_evaluate(const EvaluateArguments& arguments) {
+    const auto taxonomy = attributes::Taxonomy::load(data_folder() / "taxonomy");
+    if (!taxonomy) return report(taxonomy.error());
+    return arguments.what == "mass" ? evaluate_masses(arguments, **taxonomy) : evaluate_models(arguments, **taxonomy);
+}
+
+}  // namespace embody::cli

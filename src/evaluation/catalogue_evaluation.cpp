@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "evaluation/catalogue_evaluation.h"
+
+#include <optional>
+
+namespace embody::evaluation {
+namespace {
+
+using attributes::AttributeSet;
+using attributes::ModelFacts;
+
+double share(std::size_t part, std::size_t whole) {
+    return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+// The model's kind if the catalogue had said nothing. Doors and windows are the catalogue's own word for not moving.
+void compare_movable(const attributes::Taxonomy& taxonomy, ModelFacts facts, const std::string& key,
+                     CatalogueEvaluation& evaluation) {
+    if (!facts.movable) return;
+    const bool catalogue_says = *facts.movable && !facts.door_or_window;
+    facts.movable.reset();
+    facts.door_or_window = false;
+    const AttributeSet set = resolve(taxonomy, facts);
+    ++evaluation.flagged;
+    if ((set.word("kind", "") != "static") != catalogue_says) {
+        evaluation.disagreements.push_back(
+            {key, facts.name, set.word("subcategory", set.word("category", "")), catalogue_says});
+    }
+}
+
+void evaluate_model(const attributes::Taxonomy& taxonomy, const ModelFacts& facts, const std::string& key,
+                    CatalogueEvaluation& evaluation) {
+    const AttributeSet set = resolve(taxonomy, facts);
+    const attributes::AttributeLevel level = set.find("category")->level;
+    ++evaluation.models;
+    ++evaluation.by_level[level_name(level)];
+    if (level == attributes::AttributeLevel::standard) evaluation.unknown.push_back(facts.name);
+    compare_movable(taxonomy, facts, key, evaluation);
+    if (auto issues = check(set, facts); !issues.empty()) evaluation.broken.push_back({key, std::move(issues)});
+}
+
+}  // namespace
+
+double CatalogueEvaluation::above_default() const { return share(models - unknown.size(), models); }
+
+double CatalogueEvaluation::movable_agreement() const { return share(flagged - disagreements.size(), flagged); }
+
+Result<CatalogueEvaluation> evaluate_catalogue(const attributes::Taxonomy& taxonomy, const catalog::Catalog& catalog) {
+    CatalogueEvaluation evaluation;
+    catalog::SearchQuery query{.limit = 1000};
+    for (;;) {
+        const auto page = catalog.search(query);
+        if (!page) return page.error();
+        for (const catalog::ModelSummary& model : page->models) {
+            const auto facts = catalog.facts(model.id);
+            if (!facts) return facts.error();
+            evaluate_model(taxonomy, *facts, model.key, evaluation);
+        }
+        query.offset += query.limit;
+        if (page->models.empty() || query.offset >= page->total) return evaluation;
+    }
+}
+
+}  // namespace embody::evaluation

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+//
+// How well the models of a database are understood, beside what their catalogue itself says of them.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "attributes/check.h"
+#include "attributes/resolver.h"
+#include "catalog/catalog.h"
+#include "foundation/result.h"
+
+namespace embody::evaluation {
+
+/// A model whose catalogue says otherwise whether it moves.
+struct MovableDisagreement {
+    std::string key, name, category;
+    bool catalogue_says_movable = false;
+};
+
+/// A model whose attributes contradict each other.
+struct BrokenModel {
+    std::string key;
+    std::vector<attributes::Issue> issues;
+};
+
+struct CatalogueEvaluation {
+    std::size_t models = 0;
+    std::map<std::string, std::size_t> by_level;  ///< models by level_name() of their category
+    std::size_t flagged = 0;                      ///< models whose catalogue says whether they move
+    std::vector<MovableDisagreement> disagreements;
+    std::vector<BrokenModel> broken;
+    std::vector<std::string> unknown;  ///< names of the models at level default
+
+    [[nodiscard]] double above_default() const;      ///< share of all models
+    [[nodiscard]] double movable_agreement() const;  ///< share of the flagged
+};
+
+/// Resolves every model of the database anew. What the catalogue says of a model's moving is hidden for the comparison
+/// with it; the rules of check() are asked of the attributes as they are used.
+Result<CatalogueEvaluation> evaluate_catalogue(const attributes::Taxonomy& taxonomy, const catalog::Catalog& catalog);
+
+}  // namespace embody::evaluation

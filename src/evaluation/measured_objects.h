@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "attributes/model_facts.h"
+#include "foundation/result.h"
+
+namespace embody::evaluation {
+
+/// A real object that somebody put on a scale.
+struct MeasuredObject {
+    std::string id;                     ///< "source:number"
+    std::string name;                   ///< as a catalogue would call it
+    std::string category;               ///< words, the most exact first, separated by ";"
+    Vec3 size;                          ///< extents of its box, m
+    std::optional<double> mesh_volume;  ///< inside its scanned surface, m³
+    double mass = 0;                    ///< kg
+
+    /// What stands before the colon of the id.
+    [[nodiscard]] std::string source() const;
+};
+
+/// Reads a table with the columns id, name, category, dim_x_m, dim_y_m, dim_z_m, mass_kg and, where there is one,
+/// mesh_volume_m3. Refuses what is not a positive number, and a table without rows.
+Result<std::vector<MeasuredObject>> read_measured_objects(const std::filesystem::path& file);
+
+/// What of a row the predictor is told: never its mass.
+enum class Told : std::uint8_t { everything, name, category };
+
+/// The row as the facts of a model: name, category words as tags, stated size, the mesh's volume as that of a closed
+/// surface. Told only its category, a thing's name is its first category word.
+attributes::ModelFacts facts_of(const MeasuredObject& object, Told told);
+
+}  // namespace embody::evaluation

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+//
+// The only file that sees the CSV library, which reports by exceptions: they end here.
+#include "evaluation/table_reader.h"
+
+#define CSV_IO_NO_THREAD
+#include <libfccp/csv.h>
+
+#include <utility>
+
+namespace embody::evaluation {
+namespace {
+
+using Reader = io::CSVReader<most_columns, io::trim_chars<' ', '\t'>, io::double_quote_escape<',', '"'>>;
+
+template <std::size_t... I>
+void read_header(Reader& reader, const ColumnNames& names, std::index_sequence<I...>) {
+    // The library wants a name for every column; one that no table has stands for those that nobody asks for.
+    const auto name_of = [&](std::size_t i) { return names[i].empty() ? "\x01" + std::to_string(i) : names[i]; };
+    reader.read_header(io::ignore_extra_column | io::ignore_missing_column, name_of(I)...);
+}
+
+template <std::size_t... I>
+bool read_row(Reader& reader, TableRow& row, std::index_sequence<I...>) {
+    return reader.read_row(row.cells[I]...);
+}
+
+}  // namespace
+
+Result<void> read_table(const std::filesystem::path& file, const ColumnNames& names, std::size_t required_columns,
+                        const std::function<Result<void>(const TableRow&)>& take) {
+    constexpr auto columns = std::make_index_sequence<most_columns>();
+    if (!std::filesystem::is_regular_file(file)) return Error{file.string(), "is not a file", "name a CSV file"};
+    try {
+        Reader reader(file.string());
+        read_header(reader, names, columns);
+        for (std::size_t i = 0; i < required_columns; ++i) {
+            if (!reader.has_column(names[i]))
+                return Error{file.string(), "has no column \"" + names[i] + "\"", "name it in the first line"};
+        }
+        TableRow row;
+        while (read_row(reader, row, columns)) {
+            row.line = reader.get_file_line();
+            if (const auto taken = take(row); !taken) {
+                return Error{file.string() + ", line " + std::to_string(row.line) + ": " + taken.error().where,
+                             taken.error().why, taken.error().remedy};
+            }
+            row.cells.fill({});
+        }
+    } catch (const io::error::base& broken) {
+        return Error{file.string(), broken.what(), "check its quotes and the number of columns"};
+    }
+    return {};
+}
+
+}  // namespace embody::evaluation

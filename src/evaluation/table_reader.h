@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "foundation/result.h"
+
+namespace embody::evaluation {
+
+/// Most columns that a table of labels is asked for.
+inline constexpr std::size_t most_columns = 10;
+
+/// Columns of a table to read, in the order in which a row's cells are handed over; unused names are empty.
+using ColumnNames = std::array<std::string, most_columns>;
+
+/// One row: the cells of the named columns, empty where the table has no such column, and the line it stands in.
+struct TableRow {
+    std::array<std::string, most_columns> cells;
+    unsigned line = 0;
+};
+
+/// Reads a comma-separated file with a header (RFC 4180 quotes on one line, UTF-8, further columns are ignored) and
+/// hands over row after row, until `take` returns an error. Errors name the file and the line; the first
+/// `required_columns` of `names` must be in the header.
+Result<void> read_table(const std::filesystem::path& file, const ColumnNames& names, std::size_t required_columns,
+                        const std::function<Result<void>(const TableRow&)>& take);
+
+}  // namespace embody::evaluation
