@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Reads data/taxonomy. Of this layer only this file, field_reader and attribute_json see the JSON library.
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "attributes/assemble.h"
