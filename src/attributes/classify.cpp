@@ -1,10 +1,37 @@
 // SPDX-License-Identifier: MIT
 #include "attributes/classify.h"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "attributes/form.h"
+#include "attributes/noun_reading.h"
 #include "attributes/phrase_match.h"
+#include "attributes/words.h"
 
 namespace embody::attributes {
 namespace {
+
+using wordnet::NounTable;
+
+// How far each source is believed: of the taxonomy's own phrases, and of nouns that only WordNet knows. How they were
+// found is in docs/decisions/0009-wordnet.md.
+struct Trust {
+    const char* where;
+    double phrase;
+    double noun;
+};
+constexpr Trust name_trust{"name", 0.95, 0.9};
+constexpr Trust tag_trust{"tag", 0.65, 0.55};
+constexpr Trust folder_trust{"folder", 0.5, 0.4};
+constexpr Trust category_trust{"catalogue category", 0.3, 0.15};
+constexpr double usual_of_catalogue = 0.35;  // "Lights" → lamp
+constexpr double a_step = 0.93;              // each hypernym
+constexpr double own_word = 3;               // the taxonomy's reading of a word before WordNet's others
+constexpr double overruled = 0.5;            // what stands in the name, but is not what it is about
+constexpr double nothing_known = 0.05;
+constexpr double close_runner_up = 0.6;  // of the winner's confidence
 
 AttributeLevel level_of(const CategoryData& category) {
     return category.parent.empty() ? AttributeLevel::category : AttributeLevel::subcategory;
@@ -19,22 +46,241 @@ std::string because(std::string_view where, const PhraseMatch& match) {
     return match.others.empty() ? text : text + "\", which a name's last noun or first part overrules";
 }
 
-bool classify_by_words(const Taxonomy::Data& data, std::string_view where, std::string_view text,
-                       Classification& result) {
-    const auto match = match_phrase(data.category_phrases, data.longest_phrase, text);
-    if (!match) return false;
-    const CategoryData& category = data.categories[match->entry];
-    result = {&category, because(where, *match), match->phrase, level_of(category)};
-    return true;
+Candidate candidate_of(const Taxonomy::Data& data, const Trust& trust, const PhraseMatch& match) {
+    const CategoryData& category = data.categories[match.entry];
+    return {.category = &category,
+            .confidence = trust.phrase,
+            .source = because(trust.where, match),
+            .phrase = match.phrase,
+            .synset = category.synset,
+            .reckoning = "the taxonomy's own word in the " + std::string(trust.where),
+            .level = level_of(category)};
 }
 
-bool classify_by_catalogue(const Taxonomy::Data& data, const std::string& name, Classification& result) {
-    const auto found = data.by_catalogue.find(stems_of(name));
-    if (found == data.by_catalogue.end()) return false;
-    const CategoryData& category = data.categories[found->second];
-    result = {&category, "the catalogue files it under \"" + name + "\"; no word of its name is known", "",
-              level_of(category)};
-    return true;
+bool are_of_one_family(const CategoryData& a, const CategoryData& b) {
+    const std::string& of_a = a.parent.empty() ? a.name : a.parent;
+    return of_a == (b.parent.empty() ? b.name : b.parent);
+}
+
+// A noun as it stands in the text, with its readings.
+struct ReadNoun {
+    NounOccurrence noun;
+    std::string text;
+    std::vector<NounReading> readings;
+};
+
+// A noun that shares little with the tags may be a brand or an ornament.
+double trust_beside(const Surroundings& surroundings, const NounReading& reading) {
+    const auto kin = surroundings.kinship(reading.meaning);
+    return kin ? std::clamp(0.75 + 0.6 * (*kin - 0.15), 0.75, 1.05) : 1;
+}
+
+Candidate candidate_of(const Taxonomy::Data& data, const Trust& trust, const ReadNoun& read, std::size_t choice) {
+    const NounReading& reading = read.readings[choice];
+    const CategoryData& category = data.categories[reading.entry];
+    // Half of the doubt between readings counts: those that lose are often near the one that wins. And a word that
+    // mostly means no thing at all is seldom what a thing is called by.
+    const double confidence = trust.noun * std::pow(a_step, static_cast<double>(reading.steps)) *
+                              (0.5 + 0.5 * reading.share) * (0.6 + 0.4 * std::min(1.0, 2 * read.noun.physical));
+    return {.category = &category,
+            .confidence = choice == 0 ? confidence : confidence * reading.share,
+            .source = std::string(trust.where) + " says \"" + read.text + "\" → " + path_text(*data.nouns, reading),
+            .phrase = read.text,
+            .synset = data.nouns->name(reading.meaning),
+            .steps = reading.steps,
+            .reckoning = "noun of WordNet in the " + std::string(trust.where) + ", " + std::to_string(reading.steps) +
+                         " steps up, " + short_number(100 * reading.share) + " % of what it can mean here",
+            .level = level_of(category)};
+}
+
+std::string text_of(const std::vector<Token>& tokens, const NounOccurrence& noun) {
+    std::string text = tokens[noun.first].text;
+    for (std::size_t i = noun.first + 1; i < noun.end; ++i) text += " " + tokens[i].text;
+    return text;
+}
+
+// As for phrases: the first part of the name, in it the last noun, of these the longest; plain nouns first of all.
+bool says_more(const NounOccurrence& a, const NounOccurrence& b) {
+    if (a.is_plain != b.is_plain) return a.is_plain;
+    if (a.segment != b.segment) return a.segment < b.segment;
+    if (a.end != b.end) return a.end > b.end;
+    return a.end - a.first > b.end - b.first;
+}
+
+// The noun of the text that says most and leads to a category.
+std::optional<ReadNoun> read_noun(const Taxonomy::Data& data, const std::vector<Token>& tokens,
+                                  const Surroundings& surroundings, bool is_name) {
+    std::vector<NounOccurrence> nouns = nouns_of(data, tokens);
+    std::ranges::stable_sort(nouns, says_more);
+    for (const NounOccurrence& noun : nouns) {
+        auto readings = is_name ? readings_of(data, noun.lemma, surroundings.beside(tokens, noun))
+                                : readings_of(data, noun.lemma, surroundings);
+        if (!readings.empty()) return ReadNoun{noun, text_of(tokens, noun), std::move(readings)};
+    }
+    return std::nullopt;
+}
+
+bool is_kind_of_any(const NounTable& nouns, wordnet::SynsetIndex meaning, std::optional<wordnet::LemmaIndex> noun) {
+    if (!noun) return false;
+    return std::ranges::any_of(
+        nouns.senses(*noun), [&](const wordnet::NounSense& sense) { return is_kind_of(nouns, meaning, sense.synset); });
+}
+
+// Whether a noun that only WordNet knows, and not the taxonomy's phrase, is what the name is about: "guinea pig" is no
+// pig, "wine decanter" no wine; but a "coffee mug" is a mug, and a "sofa classic" a sofa.
+bool noun_overrules(const Taxonomy::Data& data, const std::vector<Token>& tokens, const PhraseMatch& phrase,
+                    const ReadNoun& read) {
+    const NounOccurrence& noun = read.noun;
+    const NounReading& reading = read.readings.front();
+    const CategoryData& category = data.categories[phrase.entry];
+    if (reading.entry == phrase.entry) return false;
+
+    // What the phrase names is a kind of what the noun names: the phrase says more.
+    const auto meant = data.nouns->find_synset(category.synset);
+    if (meant && is_kind_of(*data.nouns, *meant, reading.meaning)) return false;
+
+    // Several words that WordNet has as one, with the phrase among them.
+    const bool covers = noun.first <= phrase.first && noun.end >= phrase.end;
+    if (covers && noun.end - noun.first > phrase.end - phrase.first) {
+        if (noun.physical < 0.4) return false;
+        if (noun.end > phrase.end) return true;
+        if (meant && is_kind_of(*data.nouns, reading.meaning, *meant)) return false;
+        return !is_kind_of_any(*data.nouns, reading.meaning, data.nouns->find_inflected(tokens[noun.end - 1].text));
+    }
+    if (covers || !noun.is_plain || noun.physical < 0.6 || reading.share < 0.4) return false;
+    // The last noun of the same part, or one of a part before it.
+    return noun.segment == phrase.segment ? noun.first >= phrase.end : noun.segment < phrase.segment;
+}
+
+// The taxonomy's word may mean something else as well, and what else is known may say that it does here: a "bat" beside
+// the tag "animal", a "crane" as large as a house. The other reading, where it is likelier.
+std::optional<ReadNoun> other_meaning(const Taxonomy::Data& data, const std::vector<Token>& tokens,
+                                      const PhraseMatch& phrase, const Surroundings& surroundings) {
+    const auto noun = data.nouns->find_inflected(tokens[phrase.end - 1].text);
+    const CategoryData& category = data.categories[phrase.entry];
+    const auto meant = data.nouns->find_synset(category.synset);
+    if (phrase.end - phrase.first != 1 || !noun || !meant || !surroundings.tell()) return std::nullopt;
+    ReadNoun read{{.lemma = *noun, .first = phrase.first, .end = phrase.end, .physical = 1}, phrase.phrase, {}};
+    read.readings = readings_of(data, *noun, surroundings);
+    if (read.readings.empty()) return std::nullopt;
+
+    // Only what is something else altogether, not a neighbour of what the taxonomy means.
+    const NounReading& best = read.readings.front();
+    const CategoryData& other = data.categories[best.entry];
+    if (best.entry == phrase.entry || are_of_one_family(category, other) ||
+        common_content(*data.nouns, *meant, best.meaning) > 0.3)
+        return std::nullopt;
+    const double here = own_word * surroundings.support(meant, category);
+    if (best.prior * surroundings.support(best.meaning, other) <= here) return std::nullopt;
+    return read;
+}
+
+// What the name says: the taxonomy's phrase, or the noun that it does not have; the other one follows, less believed.
+std::vector<Candidate> ask_name(const Taxonomy::Data& data, std::string_view name, const Surroundings& surroundings) {
+    const std::vector<Token> tokens = tokens_of(name);
+    const auto phrase = match_phrase(data.category_phrases, data.longest_phrase, name);
+    const auto read = read_noun(data, tokens, surroundings, true);
+    std::vector<Candidate> found;
+    if (phrase) {
+        found.push_back(candidate_of(data, name_trust, *phrase));
+        if (const auto other = other_meaning(data, tokens, *phrase, surroundings)) {
+            found.front().confidence *= overruled;
+            found.front().reckoning += ", which what else is known speaks against";
+            found.push_back(candidate_of(data, name_trust, *other, 0));
+            return found;
+        }
+    }
+    if (!read) return found;
+
+    if (!phrase) {
+        for (std::size_t i = 0; i < read->readings.size() && i < 4; ++i) {
+            found.push_back(candidate_of(data, name_trust, *read, i));
+            found.back().confidence *= trust_beside(surroundings, read->readings[i]);
+        }
+    } else if (noun_overrules(data, tokens, *phrase, *read)) {
+        found.front().confidence *= overruled;
+        found.front().reckoning += ", which another noun of the name overrules";
+        found.push_back(candidate_of(data, name_trust, *read, 0));
+    }
+    return found;
+}
+
+void ask_text(const Taxonomy::Data& data, const Trust& trust, std::string_view text, const Surroundings& surroundings,
+              std::vector<Candidate>& found) {
+    if (const auto phrase = match_phrase(data.category_phrases, data.longest_phrase, text)) {
+        found.push_back(candidate_of(data, trust, *phrase));
+    } else if (const auto read = read_noun(data, tokens_of(text), surroundings, false)) {
+        found.push_back(candidate_of(data, trust, *read, 0));
+    }
+}
+
+void ask_catalogue(const Taxonomy::Data& data, const std::string& name, std::vector<Candidate>& found) {
+    const auto usual = data.by_catalogue.find(stems_of(name));
+    if (usual == data.by_catalogue.end()) return;
+    const CategoryData& category = data.categories[usual->second];
+    found.push_back({.category = &category,
+                     .confidence = usual_of_catalogue,
+                     .source = "the catalogue files it under \"" + name + "\"",
+                     .synset = category.synset,
+                     .reckoning = "only the catalogue's own category tells",
+                     .level = level_of(category)});
+}
+
+// "deskchair" → "desk chair": an unknown word as two known ones, the second as long as possible. Empty where no word
+// can be split.
+std::string with_compounds_split(const Taxonomy::Data& data, const std::vector<Token>& tokens) {
+    const auto is_known = [&](const std::string& word) {
+        return data.category_phrases.contains(singular_of(word)) || data.nouns->find_inflected(word).has_value();
+    };
+    std::string text;
+    bool any = false;
+    for (const Token& token : tokens) {
+        text += (text.empty() ? "" : " ") + token.text;
+        if (token.text.size() < 6 || is_known(token.text)) continue;
+        for (std::size_t cut = 3; cut + 3 <= token.text.size(); ++cut) {
+            const std::string end = token.text.substr(cut);
+            // Three letters are a word by chance, unless it is one of ours: "katana" is no "kat ana".
+            if (end.size() < 4 && !data.category_phrases.contains(end)) continue;
+            if (!is_known(token.text.substr(0, cut)) || !is_known(end)) continue;
+            text.insert(text.size() - token.text.size() + cut, " ");
+            any = true;
+            break;
+        }
+    }
+    return any ? text : std::string();
+}
+
+// What else speaks for a general answer being right: a more specific one of another source that is a kind of it.
+void support_each_other(const Taxonomy::Data& data, std::vector<Candidate>& found) {
+    if (found.empty()) return;
+    const auto meaning_of = [&](const Candidate& c) { return data.nouns->find_synset(c.category->synset); };
+    const auto general = meaning_of(found.front());
+    if (!general || found.front().steps < 2) return;
+    for (Candidate& other : found) {
+        const auto specific = meaning_of(other);
+        if (other.category == found.front().category || !specific || !is_kind_of(*data.nouns, *specific, *general))
+            continue;
+        if (other.source.starts_with(name_trust.where)) continue;
+        other.confidence = std::max(other.confidence, found.front().confidence * 1.02);
+        other.source += ", which " + found.front().source + " agrees with";
+    }
+}
+
+// The likeliest first, each category once; the source of the first names the next where that is close.
+Classification decide(std::vector<Candidate> found) {
+    std::ranges::stable_sort(found, std::greater{}, &Candidate::confidence);
+    Classification result;
+    static_cast<Candidate&>(result) = found.front();
+    for (const Candidate& other : found) {
+        const auto same = [&](const Candidate& c) { return c.category == other.category; };
+        if (!same(result) && std::ranges::none_of(result.others, same)) result.others.push_back(other);
+    }
+    if (result.others.empty()) return result;
+    const Candidate& next = result.others.front();
+    if (next.confidence < close_runner_up * result.confidence || are_of_one_family(*next.category, *result.category))
+        return result;
+    result.source += "; or " + next.category->name + ": " + next.source;
+    return result;
 }
 
 bool material_by_words(const Taxonomy::Data& data, const std::string& where, std::string_view text,
@@ -49,17 +295,27 @@ bool material_by_words(const Taxonomy::Data& data, const std::string& where, std
 }  // namespace
 
 Classification classify(const Taxonomy::Data& data, const ModelFacts& facts) {
-    Classification result{&data.categories[data.unknown], "no word of its name, tags or folder is known", "",
-                          AttributeLevel::standard};
-    if (classify_by_words(data, "name", facts.name, result)) return result;
-    for (const std::string& tag : facts.tags) {
-        if (classify_by_words(data, "tag", tag, result)) return result;
+    const Surroundings surroundings(data, facts);
+    std::vector<Candidate> found = ask_name(data, facts.name, surroundings);
+    if (found.empty()) found = ask_name(data, with_compounds_split(data, tokens_of(facts.name)), surroundings);
+
+    // What stands elsewhere is asked where the name leaves doubt.
+    if (found.empty() || found.front().confidence < name_trust.phrase) {
+        for (const std::string& tag : facts.tags) ask_text(data, tag_trust, tag, surroundings, found);
+        ask_text(data, folder_trust, facts.folder, surroundings, found);
+        ask_catalogue(data, facts.catalogue_category, found);
+        ask_text(data, category_trust, facts.catalogue_category, surroundings, found);
+        support_each_other(data, found);
     }
-    if (classify_by_words(data, "folder", facts.folder, result)) return result;
-    if (classify_by_catalogue(data, facts.catalogue_category, result)) return result;
-    classify_by_words(data, "catalogue category", facts.catalogue_category, result);
-    return result;
+    if (found.empty())
+        found.push_back({.category = &data.categories[data.unknown],
+                         .confidence = nothing_known,
+                         .source = "no word of its name, tags or folder is known",
+                         .reckoning = "nothing tells"});
+    return decide(std::move(found));
 }
+
+double spread_of_steps(std::size_t steps) { return 0.25 * std::sqrt(static_cast<double>(steps)); }
 
 MaterialChoice choose_material(const Taxonomy::Data& data, const ModelFacts& facts, const Classification& what) {
     const MaterialData* usual = data.material(what.category->material);

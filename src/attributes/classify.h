@@ -1,23 +1,38 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "attributes/model_facts.h"
 #include "attributes/taxonomy_data.h"
 
 namespace embody::attributes {
 
-/// What a model is, and why we think so.
-struct Classification {
+/// One answer to what a model is.
+struct Candidate {
     const CategoryData* category = nullptr;  ///< never null
-    std::string source;
-    std::string phrase;                               ///< the words that decided; empty where none did
+    double confidence = 0;  ///< 0 to 1: how likely the category, or what is above it, is what the thing is
+    std::string source;     ///< "name says "tureen" → tureen.n.01 → bowl.n.01 (1 step up)"
+    std::string phrase;     ///< the words that decided; empty where none did
+    std::string synset;     ///< what these words mean in WordNet; empty where unknown
+    std::size_t steps = 0;  ///< hypernyms from that meaning up to the category
+    std::string reckoning;  ///< how the confidence comes about
     AttributeLevel level = AttributeLevel::standard;  ///< subcategory, category, or standard where nothing tells
 };
 
-/// From the name, else the tags, else the folder, else the catalogue's category.
+/// What a model is, and why we think so.
+struct Classification : Candidate {
+    std::vector<Candidate> others;  ///< what else it could be, the likeliest first
+};
+
+/// From the name, else the tags, the folder, the catalogue's category; of each the taxonomy's own phrases first, then
+/// the nearest category above a noun that WordNet knows. The source names a runner-up that is close.
 Classification classify(const Taxonomy::Data& data, const ModelFacts& facts);
+
+/// By how much hypernyms widen what is known of a category: standard deviation of ln(mass) that comes on top.
+double spread_of_steps(std::size_t steps);
 
 struct MaterialChoice {
     const MaterialData* material = nullptr;  ///< never null

@@ -74,7 +74,8 @@ std::optional<PhraseMatch> match_phrase(const PhraseIndex& index, std::size_t lo
     const Occurrence& best = *std::min_element(found.begin(), found.end(), says_more);
 
     // What else the text could have meant, for the reader; parts of the deciding phrase say nothing more.
-    PhraseMatch match{best.phrase->entry, best.phrase->text, best.segment, {}};
+    PhraseMatch match{
+        best.phrase->entry, best.phrase->text, best.segment, best.end - best.phrase->length, best.end, {}};
     for (const Occurrence& other : found) {
         const bool inside = other.end <= best.end && other.end + best.phrase->length > best.end;
         const bool told = std::ranges::find(match.others, other.phrase->text) != match.others.end();

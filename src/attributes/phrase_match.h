@@ -14,6 +14,7 @@ struct PhraseMatch {
     std::size_t entry = 0;
     std::string phrase;               ///< the words that decided
     int segment = 0;                  ///< in which part of the text they stand, counted by separators
+    std::size_t first = 0, end = 0;   ///< indices of their tokens: from first to before end
     std::vector<std::string> others;  ///< phrases of other entries in the same text that did not
 };
 
@@ -21,8 +22,7 @@ struct PhraseMatch {
 bool add_phrase(PhraseIndex& index, std::string_view words, std::size_t entry);
 
 /// The phrase that says what a thing is: in the first part of the name that has one ("chair with cushion"), the last
-/// noun
-/// ("bedside lamp"), and of those the longest ("coffee table").
+/// noun ("bedside lamp"), and of those the longest ("coffee table").
 std::optional<PhraseMatch> match_phrase(const PhraseIndex& index, std::size_t longest_phrase, std::string_view text);
 
 /// The text without the words of the phrase (words in lower case, separators as they were).

@@ -82,6 +82,11 @@ void add_identity(Rows& rows) {
     group.word({"subcategory", all_kinds, "Subcategory", "What it is more exactly, where known."}, "", {});
     group.word({"synset", all_kinds, "WordNet synset", "Meaning in WordNet 3.0, such as chair.n.01, where known."}, "",
                {});
+    group.number(
+        {"category_confidence", all_kinds, "Confidence of the category",
+         "How likely the category is right: by which source tells it, by how many steps WordNet leads to it, by "
+         "what else the words could mean."},
+        "1", 0, 0, 1);
     group.word({"placement", all_kinds, "Usual place", "Where such a thing usually stands or hangs."}, "floor",
                {"floor", "wall", "ceiling", "table", "ground", "free"});
     group.number({"scale_to_m", all_kinds, "Metres per unit", "Length of one unit of the stored geometry."}, "m", 1,

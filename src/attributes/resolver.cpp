@@ -28,7 +28,9 @@ void put_identity(AttributeSet& set, const ModelFacts& facts, const Classificati
     };
     word("category", is_sub ? category.parent : category.name, what.source, what.level);
     if (is_sub) word("subcategory", category.name, what.source, what.level);
-    if (!category.synset.empty()) word("synset", category.synset, "meaning of " + category.name, what.level);
+    const std::string named = what.steps > 0 ? "\"" + what.phrase + "\"" : category.name;
+    if (!what.synset.empty()) word("synset", what.synset, "meaning of " + named, what.level);
+    set.put({"category_confidence", what.confidence, {}, {}, what.reckoning, what.level});
     word("placement", category.placement, "usual for " + category.name, what.level);
 
     // Who says whether it moves: the catalogue's flags before the category.
@@ -96,12 +98,24 @@ MassEstimate mass_of_box(const CategoryData& category, const Form& form, Attribu
     return {mass, source, level};
 }
 
+// A category reached over hypernyms says less of the thing: its interval grows, and says so.
+void widen(MassEstimate& estimate, std::size_t steps) {
+    if (steps == 0) return;
+    constexpr double within_80_percent = 1.2816;  // standard deviations of a normal distribution
+    const double more = within_80_percent * spread_of_steps(steps);
+    Interval& mass = estimate.mass;
+    mass.low = mass.typical * std::exp(-std::hypot(std::log(mass.typical / mass.low), more));
+    mass.high = mass.typical * std::exp(std::hypot(std::log(mass.high / mass.typical), more));
+    estimate.source += "; interval widened for " + std::to_string(steps) + (steps == 1 ? " step" : " steps") + " up";
+}
+
 void put_mass(AttributeSet& set, const ModelFacts& facts, const Classification& what, const MaterialChoice& surface,
               const Form& form) {
     const CategoryData& category = *what.category;
     const bool by_volume = category.solid && facts.geometry.closed && form.volume_is_own;
-    const MassEstimate estimate =
+    MassEstimate estimate =
         by_volume ? mass_of_solid(category, *surface.material, form) : mass_of_box(category, form, what.level);
+    widen(estimate, what.steps);
 
     // Into the registry's range, and never denser than the densest element.
     const AttributeDescription& range = *describe("mass");

@@ -125,19 +125,24 @@ Result<void> index_entry(PhraseIndex& index, std::size_t& longest, const std::ve
     return {};
 }
 
-// The entry's meaning; of two entries with the same one the more general stays, so that hypernyms lead to it.
+// Of two entries with one meaning the more general: a category before a subcategory, then the wider interval of mass.
+bool is_more_general(const CategoryData& a, const CategoryData& b) {
+    if (a.parent.empty() != b.parent.empty()) return a.parent.empty();
+    return a.mass.high * b.mass.low > b.mass.high * a.mass.low;
+}
+
+// The entry's meaning, so that hypernyms lead to it.
 Result<void> index_synset(Taxonomy::Data& data, const std::string& where) {
     const CategoryData& added = data.categories.back();
     if (added.synset.empty()) return {};
     const auto synset = data.nouns->find_synset(added.synset);
     if (!synset) {
         return Error{where + ".synset", "WordNet 3.0 has no noun \"" + added.synset + "\"",
-                     "write lemma.n.NN with the number of the lemma's sense in WordNet, or leave it out"};
+                     "write lemma.n.NN with the number of the lemma's sense, as `embody classify LEMMA` shows it, or "
+                     "leave it out"};
     }
     const auto [held, is_new] = data.by_synset.emplace(*synset, data.categories.size() - 1);
-    if (!is_new && added.parent.empty() && !data.categories[held->second].parent.empty()) {
-        held->second = data.categories.size() - 1;
-    }
+    if (!is_new && is_more_general(added, data.categories[held->second])) held->second = data.categories.size() - 1;
     return {};
 }
 

@@ -66,7 +66,7 @@ public:
                                [](char c) { return is_upper(c) ? static_cast<char>(c - 'A' + 'a') : c; });
         // A number after the noun counts parts: a "sofa 2 seats" is a sofa.
         const bool is_count = is_digit(word_.front()) && !tokens_.empty();
-        if (is_count || std::ranges::find(separators, word_) != separators.end()) ++segment_;
+        if (is_count || is_separating_word(word_)) ++segment_;
         tokens_.push_back({word_, singular_of(word_), segment_});
         word_.clear();
     }
@@ -88,6 +88,8 @@ bool ends_with_any(std::string_view word, std::initializer_list<std::string_view
 }
 
 }  // namespace
+
+bool is_separating_word(std::string_view word) { return std::ranges::find(separators, word) != separators.end(); }
 
 std::string singular_of(std::string_view word) {
     const std::string_view shorter = word.substr(0, word.empty() ? 0 : word.size() - 1);

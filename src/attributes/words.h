@@ -19,6 +19,9 @@ struct Token {
 /// camelCase. Punctuation that separates stays as a token ",", so that no phrase reaches across it.
 std::vector<Token> tokens_of(std::string_view text);
 
+/// Whether the word ("with", "of" …) ends the part of a name that says what the thing is.
+bool is_separating_word(std::string_view word);
+
 /// Singular of an English noun, well enough to compare two words that both went through it.
 std::string singular_of(std::string_view word);
 

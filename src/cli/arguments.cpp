@@ -45,6 +45,7 @@ public:
         add_reset();
         add_simulate();
         add_check();
+        add_classify();
         add_evaluate();
         add_scene();
         add_bench();
@@ -162,6 +163,18 @@ private:
                                      "embody check data/scenes/*.json");
         add_database(c);
         c.app->add_option("scenes", c.into->scenes, "Scene files")->required();
+        add_json(c);
+    }
+    void add_classify() {
+        auto c = add<ClassifyArguments>("classify",
+                                        "Say what a thing of this name is taken for, why, and what else it "
+                                        "could be",
+                                        "embody classify tureen --category Kitchen --size 0.3 0.25 0.2");
+        c.app->add_option("name", c.into->name, "Name of a model")->required();
+        c.app->add_option("--tag", c.into->tags, "A tag of it; may be given again")->expected(1);
+        c.app->add_option("--category", c.into->category, "The catalogue's own category");
+        c.app->add_option("--folder", c.into->folder, "Folder of its file");
+        c.app->add_option("--size", c.into->size, "Extents of its box, m")->expected(3)->check(between(1e-6, 1e6));
         add_json(c);
     }
     void add_evaluate() {

@@ -64,6 +64,13 @@ struct CheckArguments {
     std::vector<std::filesystem::path> scenes;
     bool json = false;
 };
+struct ClassifyArguments {
+    std::string name;
+    std::vector<std::string> tags;
+    std::string category, folder;  ///< as a catalogue would say
+    std::vector<double> size;      ///< extents, m; empty: unknown
+    bool json = false;
+};
 struct EvaluateArguments {
     std::string what;  ///< "mass" or "catalogue"
     std::filesystem::path database;
@@ -87,8 +94,8 @@ struct BenchArguments {
 };
 
 using Arguments = std::variant<ServeArguments, ImportArguments, SearchArguments, ShowArguments, SetArguments,
-                               ResetArguments, SimulateArguments, CheckArguments, EvaluateArguments, SceneArguments,
-                               BenchArguments>;
+                               ResetArguments, SimulateArguments, CheckArguments, ClassifyArguments, EvaluateArguments,
+                               SceneArguments, BenchArguments>;
 
 /// Exit codes of the program.
 enum ExitCode : int { exit_ok = 0, exit_failed = 1, exit_usage = 2, exit_partly = 3 };

@@ -19,7 +19,7 @@ import urllib.request
 
 EMBODY = ""
 SOURCE = pathlib.Path(__file__).resolve().parent.parent.parent
-COMMANDS = ("serve", "import", "search", "show", "set", "reset", "simulate", "check", "scene", "bench")
+COMMANDS = ("serve", "import", "search", "show", "set", "reset", "simulate", "check", "classify", "scene", "bench")
 
 # A tetrahedron of 1 m, closed and outward.
 TETRAHEDRON = """v 0 0 0
@@ -53,6 +53,31 @@ class Help(unittest.TestCase):
         self.assertEqual(run().returncode, 2)
         self.assertEqual(run("fly").returncode, 2)
         self.assertEqual(run("search", "--limit", "0").returncode, 2)
+
+
+class Classify(unittest.TestCase):
+    def test_a_word_that_only_wordnet_knows_is_explained(self):
+        result = run("classify", "tureen", "--category", "Kitchen", "--size", "0.3", "0.25", "0.2", "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        answer = json.loads(result.stdout)
+        self.assertEqual(answer["synset"], "tureen.n.01")
+        self.assertGreater(answer["steps"], 0)
+        self.assertIn('name says "tureen" → tureen.n.01 → ', answer["source"])
+        self.assertTrue(0 < answer["confidence"] < 0.95)
+        mass = answer["mass_kg"]
+        self.assertTrue(0.2 < mass["low"] < mass["value"] < mass["high"] < 20, mass)
+
+    def test_people_read_what_else_it_could_be(self):
+        result = run("classify", "mouse", "--tag", "animal")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("mouse.n.01", result.stdout)
+        self.assertIn("or ", result.stdout)
+
+    def test_a_missing_taxonomy_is_said(self):
+        result = run("classify", "chair", EMBODY_DATA="/nowhere")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("/nowhere", result.stderr)
+        self.assertEqual(run("classify", "chair", "--size", "1", "-2", "1").returncode, 2)
 
 
 class Database(unittest.TestCase):

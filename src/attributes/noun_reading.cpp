@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: MIT
+// From a noun to the taxonomy through WordNet: choice of the sense, then the nearest hypernym that is a category.
+// Kinship of meanings is the information content of what they have in common (P. Resnik, "Using information content to
+// evaluate semantic similarity in a taxonomy", IJCAI 1995), here from the number of synsets below a node in place of a
+// corpus.
+#include "attributes/noun_reading.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "attributes/phrase_match.h"
+
+namespace embody::attributes {
+namespace {
+
+using wordnet::LemmaIndex;
+using wordnet::NounSense;
+using wordnet::NounTable;
+using wordnet::SynsetIndex;
+using wordnet::Topic;
+
+constexpr std::size_t longest_collocation = 5;
+constexpr std::size_t meanings_asked = 12;  // of a noun; the rarer ones are hardly ever meant
+constexpr std::size_t words_asked = 24;     // of the surroundings
+
+// How often a meaning is meant: its count in the tagged texts, and for what these lack a share by its place in the
+// list.
+double frequency(const NounSense& sense, std::size_t place) {
+    return sense.tag_count + 1.0 / (1.0 + static_cast<double>(place));
+}
+
+double physical_share(const NounTable& nouns, LemmaIndex noun) {
+    double all = 0, physical = 0;
+    const auto senses = nouns.senses(noun);
+    for (std::size_t i = 0; i < senses.size(); ++i) {
+        const double weight = frequency(senses[i], i);
+        all += weight;
+        if (nouns.is_physical(senses[i].synset) && !nouns.is_instance(senses[i].synset)) physical += weight;
+    }
+    return all > 0 ? physical / all : 0;
+}
+
+// What a model of a thing is likely to be a model of.
+double topic_factor(Topic topic) {
+    switch (topic) {
+        case Topic::artifact:
+            return 1;
+        case Topic::food:
+        case Topic::plant:
+        case Topic::animal:
+            return 0.6;
+        case Topic::object:
+        case Topic::substance:
+            return 0.4;
+        case Topic::body:
+            return 0.3;
+        case Topic::person:
+            return 0.15;
+        default:
+            return 0.25;
+    }
+}
+
+// The hypernyms of a meaning, itself first, nearest first, each with the steps up to it.
+struct Above {
+    SynsetIndex synset;
+    std::size_t steps;
+};
+std::vector<Above> all_above(const NounTable& nouns, SynsetIndex meaning) {
+    std::vector<Above> above{{meaning, 0}};
+    for (std::size_t i = 0; i < above.size(); ++i) {
+        const Above current = above[i];
+        for (const SynsetIndex hypernym : nouns.hypernyms(current.synset)) {
+            if (std::ranges::find(above, hypernym, &Above::synset) == above.end()) {
+                above.push_back({hypernym, current.steps + 1});
+            }
+        }
+    }
+    return above;
+}
+
+// The nearest category; of two equally near ones the more specific.
+std::optional<NounReading> nearest_category(const Taxonomy::Data& data, SynsetIndex meaning) {
+    std::optional<NounReading> best;
+    for (const Above& above : all_above(*data.nouns, meaning)) {
+        if (best && above.steps > best->steps) break;
+        const auto found = data.by_synset.find(above.synset);
+        if (found == data.by_synset.end()) continue;
+        if (best && data.nouns->count_of_kind(above.synset) >= data.nouns->count_of_kind(best->anchor)) continue;
+        best = NounReading{found->second, meaning, above.synset, above.steps};
+    }
+    return best;
+}
+
+// 1 for a meaning that nothing is a kind of, 0 for what everything is.
+double content_of(const NounTable& nouns, SynsetIndex synset) {
+    return 1 - std::log(nouns.count_of_kind(synset)) / std::log(nouns.synset_count());
+}
+
+std::string joined(const std::vector<Token>& tokens, std::size_t first, std::size_t length, const char* between) {
+    std::string text = tokens[first].text;
+    for (std::size_t i = first + 1; i < first + length; ++i) text += between + tokens[i].text;
+    return text;
+}
+
+bool can_be_noun(const Token& token) {
+    return token.text.size() > 1 && token.text.front() > '9' && !is_separating_word(token.text);
+}
+
+// Two letters are a size, a unit or an element far more often than what else they can mean, unless that is a thing
+// that is made: a TV, a PC.
+std::optional<LemmaIndex> one_word(const NounTable& nouns, const Token& token) {
+    if (!can_be_noun(token)) return std::nullopt;
+    const auto lemma = nouns.find_inflected(token.text);
+    if (!lemma || token.text.size() > 2) return lemma;
+    return nouns.topic(nouns.senses(*lemma).front().synset) == Topic::artifact ? lemma : std::nullopt;
+}
+
+std::optional<LemmaIndex> lemma_at(const NounTable& nouns, const std::vector<Token>& tokens, std::size_t first,
+                                   std::size_t length) {
+    if (length == 1) return one_word(nouns, tokens[first]);
+    for (std::size_t i = first; i < first + length; ++i) {
+        if (tokens[i].text == ",") return std::nullopt;
+    }
+    if (const auto lemma = nouns.find_inflected(joined(tokens, first, length, "_"))) return lemma;
+    // What is one word in WordNet: "flower pot".
+    const bool could_join = length == 2 && can_be_noun(tokens[first]) && can_be_noun(tokens[first + 1]);
+    return could_join ? nouns.find_inflected(joined(tokens, first, length, "")) : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<NounOccurrence> nouns_of(const Taxonomy::Data& data, const std::vector<Token>& tokens) {
+    std::vector<NounOccurrence> found;
+    for (std::size_t first = 0; first < tokens.size(); ++first) {
+        for (std::size_t length = 1; length <= longest_collocation && first + length <= tokens.size(); ++length) {
+            const auto lemma = lemma_at(*data.nouns, tokens, first, length);
+            if (!lemma) continue;
+            const double physical = physical_share(*data.nouns, *lemma);
+            if (physical <= 0) continue;
+            const bool is_material = data.material_phrases.contains(stems_of(joined(tokens, first, length, " ")));
+            const bool is_plain = physical >= 0.5 && !is_material && !data.nouns->is_mostly_adjective(*lemma);
+            found.push_back({*lemma, tokens[first].segment, first, first + length, physical, is_plain});
+        }
+    }
+    return found;
+}
+
+Surroundings::Surroundings(const Taxonomy::Data& data, const ModelFacts& facts)
+    : data_(data), size_is_stated_(facts.size_is_stated) {
+    const Vec3 size = facts.geometry.size;
+    const double largest = std::max({size.x, size.y, size.z});
+    if (is_finite(size) && largest > 0) largest_ = largest;
+    for (const std::string& tag : facts.tags) add_words(tokens_of(tag), nullptr);
+    add_words(tokens_of(facts.folder), nullptr);
+
+    // The catalogue's own category says a room or a trade, which is what our files are called by too.
+    const std::vector<Token> category = tokens_of(facts.catalogue_category);
+    add_words(category, nullptr);
+    for (const Token& token : category) domains_.insert(token.stem);
+    const auto usual = data.by_catalogue.find(stems_of(facts.catalogue_category));
+    if (usual != data.by_catalogue.end()) domains_.insert(data.categories[usual->second].domain);
+}
+
+Surroundings Surroundings::beside(const std::vector<Token>& name, const NounOccurrence& asked) const {
+    Surroundings all = *this;
+    all.add_words(name, &asked);
+    return all;
+}
+
+void Surroundings::add_words(const std::vector<Token>& tokens, const NounOccurrence* without) {
+    std::size_t asked = 0;
+    for (const NounOccurrence& noun : nouns_of(data_, tokens)) {
+        const bool overlaps = without != nullptr && noun.first < without->end && noun.end > without->first;
+        if (overlaps || ++asked > words_asked) continue;
+        const auto senses = data_.nouns->senses(noun.lemma);
+        for (const NounSense& sense : senses.first(std::min<std::size_t>(senses.size(), 4))) {
+            if (!data_.nouns->is_physical(sense.synset) || data_.nouns->is_instance(sense.synset)) continue;
+            words_.insert(sense.synset);
+            for (const Above& above : all_above(*data_.nouns, sense.synset)) above_words_.insert(above.synset);
+        }
+    }
+}
+
+// Information content of the most specific thing that the meaning shares with another word. Of a kind of what another
+// word says (a bat beside "animal") more than that, unless that word says next to nothing ("object").
+std::optional<double> Surroundings::kinship(SynsetIndex meaning) const {
+    if (above_words_.empty()) return std::nullopt;
+    constexpr double of_that_kind = 0.75;
+    double most = 0;
+    for (const Above& above : all_above(*data_.nouns, meaning)) {
+        if (!above_words_.contains(above.synset)) continue;
+        const double content = content_of(*data_.nouns, above.synset);
+        const bool says_kind = content > 0.2 && words_.contains(above.synset);
+        most = std::max(most, says_kind ? std::max(content, of_that_kind) : content);
+    }
+    return most;
+}
+
+// 1 within the usual size of the category, falling with the factor by which the size lies outside.
+double Surroundings::size_fit(const CategoryData& category) const {
+    if (largest_ <= 0) return 1;
+    const double outside =
+        std::max({std::log(largest_ / category.usual_high), std::log(category.usual_low / largest_), 0.0});
+    // A size whose unit is only guessed says less.
+    const double strength = size_is_stated_ ? 1.5 : 0.4;
+    return std::max(std::exp(-strength * outside), 0.05);
+}
+
+double Surroundings::support(std::optional<SynsetIndex> meaning, const CategoryData& category) const {
+    // What nearly everything shares, such as artifact.n.01, tells nothing.
+    const double kin = meaning ? kinship(*meaning).value_or(0) : 0;
+    const double related = std::exp(5 * std::max(kin - 0.25, 0.0));
+    const double at_home = domains_.contains(category.domain) ? 1.6 : 1;
+    return related * at_home * size_fit(category);
+}
+
+std::vector<NounReading> readings_of(const Taxonomy::Data& data, LemmaIndex noun, const Surroundings& surroundings) {
+    const NounTable& nouns = *data.nouns;
+    const auto senses = nouns.senses(noun);
+    std::vector<NounReading> readings;
+    double priors = 0;
+    for (std::size_t i = 0; i < senses.size() && i < meanings_asked; ++i) {
+        const SynsetIndex meaning = senses[i].synset;
+        if (!nouns.is_physical(meaning) || nouns.is_instance(meaning)) continue;
+        auto reading = nearest_category(data, meaning);
+        if (!reading) continue;
+        // Counts of a corpus of essays and news say little of a catalogue of things: only their square root is used.
+        reading->prior = std::sqrt(frequency(senses[i], i)) * topic_factor(nouns.topic(meaning)) *
+                         std::pow(0.85, static_cast<double>(reading->steps));
+        reading->fit = reading->prior * surroundings.support(meaning, data.categories[reading->entry]);
+        priors += reading->prior;
+        readings.push_back(*reading);
+    }
+    for (NounReading& reading : readings) reading.prior /= priors;
+    std::ranges::stable_sort(readings, std::greater{}, &NounReading::fit);
+
+    // Meanings that lead to the same category speak for it together.
+    std::vector<NounReading> best;
+    double sum = 0;
+    for (const NounReading& reading : readings) {
+        sum += reading.fit;
+        const auto same = std::ranges::find(best, reading.entry, &NounReading::entry);
+        if (same == best.end())
+            best.push_back(reading);
+        else
+            same->fit += reading.fit;
+    }
+    std::ranges::stable_sort(best, std::greater{}, &NounReading::fit);
+    for (NounReading& reading : best) reading.share = reading.fit / sum;
+    return best;
+}
+
+std::string path_text(const NounTable& nouns, const NounReading& reading) {
+    if (reading.steps == 0) return nouns.name(reading.meaning);
+    return nouns.name(reading.meaning) + " → " + nouns.name(reading.anchor) + " (" + std::to_string(reading.steps) +
+           (reading.steps == 1 ? " step up)" : " steps up)");
+}
+
+double common_content(const NounTable& nouns, SynsetIndex a, SynsetIndex b) {
+    const std::vector<Above> above_b = all_above(nouns, b);
+    double most = 0;
+    for (const Above& above : all_above(nouns, a)) {
+        const bool shared = std::ranges::find(above_b, above.synset, &Above::synset) != above_b.end();
+        if (shared) most = std::max(most, content_of(nouns, above.synset));
+    }
+    return most;
+}
+
+bool is_kind_of(const NounTable& nouns, SynsetIndex meaning, SynsetIndex other) {
+    const std::vector<Above> above = all_above(nouns, meaning);
+    return std::ranges::find(above, other, &Above::synset) != above.end();
+}
+
+}  // namespace embody::attributes

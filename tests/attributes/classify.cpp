@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+#include "attributes/classify.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "attributes/check.h"
+#include "attributes/noun_reading.h"
+#include "attributes/sample_facts.h"
+
+namespace embody::attributes {
+namespace {
+
+// A taxonomy of a few meanings, so that what is tested is the way through WordNet and not the table of categories.
+const Taxonomy& small_taxonomy() {
+    static const std::unique_ptr<Taxonomy> taxonomy = [] {
+        const auto folder = std::filesystem::temp_directory_path() / ("embody_classify_" + std::to_string(getpid()));
+        std::filesystem::create_directories(folder / "categories");
+        std::ofstream(folder / "materials.json") << R"({"materials": [
+            {"name": "generic", "words": [], "density": [500, 1000, 3000], "friction_static": [0.1, 0.2, 0.3],
+             "friction_dynamic": [0.1, 0.2, 0.3], "friction_rolling": 0, "restitution": [0, 0.1, 0.2], "source": "s"},
+            {"name": "wood", "words": ["oak"], "density": [400, 600, 800], "friction_static": [0.1, 0.2, 0.3],
+             "friction_dynamic": [0.1, 0.2, 0.3], "friction_rolling": 0, "restitution": [0, 0.1, 0.2], "source": "s"}]})";
+        const auto entry = [](const std::string& name, const std::string& synset, const std::string& words, double low,
+                              double high) {
+            const std::string size = std::to_string(std::sqrt(low * high));
+            return R"({"name": ")" + name + R"(", "synset": ")" + synset + R"(", "words": [)" + words +
+                   R"(], "kind": "rigid", "placement": "floor", "movable": true, "mass": [1, 2, 3], "at_size": [)" +
+                   size + "," + size + "," + size + R"(], "usual_size": [)" + std::to_string(low) + "," +
+                   std::to_string(high) + R"(], "material": "generic", "source": "s"})";
+        };
+        std::ofstream(folder / "categories" / "kitchen.json")
+            << R"({"categories": [)" + entry("container", "container.n.01", "", 0.05, 2) + "," +
+                   entry("dish", "dish.n.01", R"("dish")", 0.05, 0.6) + "," +
+                   entry("wine", "wine.n.01", R"("wine")", 0.05, 0.5) + "]}";
+        std::ofstream(folder / "categories" / "music.json")
+            << R"({"categories": [)" + entry("instrument", "musical_instrument.n.01", "", 0.1, 3) + "," +
+                   entry("bird", "bird.n.01", R"("bird")", 0.05, 1.5) + "," +
+                   entry("machine", "device.n.01", "", 3, 60) + "," + entry("pig", "swine.n.01", R"("pig")", 0.5, 2) +
+                   "," + entry("rodent", "rodent.n.01", "", 0.05, 0.5) + "," +
+                   entry("seat", "seat.n.03", R"("seat", "sofa")", 0.3, 3) + "," +
+                   entry("object", "object.n.01", "", 0.01, 30) + "]}";
+        auto loaded = Taxonomy::load(folder);
+        std::filesystem::remove_all(folder);
+        EXPECT_TRUE(loaded.ok()) << loaded.error().message();
+        return std::move(*loaded);
+    }();
+    return *taxonomy;
+}
+
+ModelFacts unsized(std::string name) {
+    ModelFacts facts;
+    facts.name = std::move(name);
+    return facts;
+}
+Classification taken(const ModelFacts& facts) { return classify(small_taxonomy().data(), facts); }
+std::string category_of(std::string name) { return taken(unsized(std::move(name))).category->name; }
+
+TEST(Classify, AnUnknownWordClimbsToTheNearestCategory) {
+    const Classification what = taken(unsized("Tureen"));
+    EXPECT_EQ(what.category->name, "dish");
+    EXPECT_EQ(what.synset, "tureen.n.01");
+    EXPECT_EQ(what.steps, 2u);
+    EXPECT_EQ(what.source, "name says \"tureen\" → tureen.n.01 → dish.n.01 (2 steps up)");
+    EXPECT_LT(what.confidence, taken(unsized("dish")).confidence);
+    // More steps, less confidence.
+    EXPECT_GT(what.confidence, taken(unsized("sarcophagus")).confidence);
+    EXPECT_EQ(category_of("sarcophagus"), "container");
+}
+
+TEST(Classify, TheTaxonomysOwnWordNeedsNoWordNet) {
+    const Classification what = taken(unsized("dish"));
+    EXPECT_EQ(what.steps, 0u);
+    EXPECT_EQ(what.source, "name says \"dish\"");
+    EXPECT_EQ(what.confidence, 0.95);
+}
+
+TEST(Classify, WordsOfNoMeaningStayUnknown) {
+    for (const char* name : {"", "qwzx", "12345", "of with", "idea", "X", "Z80"}) {
+        const Classification what = taken(unsized(name));
+        EXPECT_EQ(what.category->name, "object") << name;
+        EXPECT_EQ(what.level, AttributeLevel::standard) << name;
+        EXPECT_LT(what.confidence, 0.1) << name;
+    }
+}
+
+TEST(Classify, PluralsCompoundsAndHyphensAreFound) {
+    EXPECT_EQ(category_of("Tureens"), "dish");
+    EXPECT_EQ(category_of("geese"), "bird");
+    EXPECT_EQ(category_of("soup-tureen"), "dish");
+    EXPECT_EQ(category_of("jew's harp"), "instrument");
+    EXPECT_EQ(category_of("winetureen"), "dish");
+}
+
+TEST(Classify, TheLastNounOfTheFirstPartIsWhatTheNameIsAbout) {
+    // A modifier that the taxonomy knows does not decide …
+    EXPECT_EQ(category_of("wine decanter"), "container");
+    EXPECT_EQ(category_of("guinea pig"), "rodent");
+    EXPECT_EQ(category_of("trombone with seat"), "instrument");
+    // … what follows as an adjective, a material, a name or a separated part does not either.
+    EXPECT_EQ(category_of("sofa classic"), "seat");
+    EXPECT_EQ(category_of("sofa oak"), "seat");
+    EXPECT_EQ(category_of("sofa Oslo"), "seat");
+    EXPECT_EQ(category_of("seat with trombone"), "seat");
+    // A noun that says less than the phrase.
+    EXPECT_EQ(category_of("bird animal"), "bird");
+}
+
+TEST(Classify, WhatElseIsKnownChoosesTheSense) {
+    ModelFacts facts = unsized("crane");
+    facts.tags = {"animal"};
+    EXPECT_EQ(taken(facts).category->name, "bird");
+    facts.tags = {"engine"};
+    EXPECT_EQ(taken(facts).category->name, "machine");
+
+    // The size: no bird stands twenty metres high, and no crane for loads a metre.
+    facts.tags.clear();
+    facts.size_is_stated = true;
+    facts.geometry.size = {12, 20, 3};
+    EXPECT_EQ(taken(facts).category->name, "machine");
+    facts.geometry.size = {0.3, 0.9, 0.4};
+    EXPECT_EQ(taken(facts).category->name, "bird");
+}
+
+TEST(Classify, AmbiguityIsTold) {
+    const Classification crane = taken(unsized("crane"));
+    ASSERT_FALSE(crane.others.empty());
+    EXPECT_LT(crane.confidence, 0.9 * std::pow(0.93, crane.steps));
+    for (const Candidate& other : crane.others) EXPECT_LE(other.confidence, crane.confidence);
+    // A word that means one thing only leaves no doubt.
+    EXPECT_TRUE(taken(unsized("tureen")).others.empty());
+    // A runner-up that is close stands in the source.
+    ModelFacts facts = unsized("tureen");
+    facts.tags = {"seat"};
+    EXPECT_NE(taken(facts).source.find("; or dish: name says \"tureen\" → "), std::string::npos) << taken(facts).source;
+}
+
+TEST(Classify, ATagMakesAGeneralAnswerMoreExactAndOverrulesWhatSharesNothingWithIt) {
+    // Sarcophagus is three steps below container; a dish is a container, so the tag only makes that more exact.
+    ModelFacts facts = unsized("sarcophagus");
+    facts.tags = {"dish"};
+    EXPECT_EQ(taken(facts).category->name, "dish");
+    EXPECT_NE(taken(facts).source.find("agrees with"), std::string::npos);
+    // A name may be a brand: "Trombone", filed under seats, is a seat; filed under instruments it is what it says.
+    facts.name = "Trombone";
+    facts.tags = {"seat"};
+    EXPECT_EQ(taken(facts).category->name, "seat");
+    facts.tags = {"instrument"};
+    EXPECT_EQ(taken(facts).category->name, "instrument");
+}
+
+TEST(Classify, StepsWidenTheMassAndLowerTheConfidence) {
+    const auto ratio = [](const AttributeSet& set) {
+        const AttributeEntry* mass = set.find("mass");
+        return *mass->high / *mass->low;
+    };
+    const AttributeSet near = resolve(small_taxonomy(), named("dish"));
+    const AttributeSet far = resolve(small_taxonomy(), named("tureen"));
+    EXPECT_NEAR(ratio(near), 3, 1e-9);
+    // Two independent spreads add like errors do; the entry's own is lopsided: [1, 2, 3] around 2.
+    const double more = 1.2816 * spread_of_steps(2);
+    const double expected = std::hypot(std::log(2), more) + std::hypot(std::log(1.5), more);
+    EXPECT_NEAR(std::log(ratio(far)), expected, 1e-9);
+    EXPECT_EQ(far.number("mass", 0), resolve(small_taxonomy(), named("dish")).number("mass", 1));
+    EXPECT_EQ(far.word("synset", ""), "tureen.n.01");
+    EXPECT_LT(far.number("category_confidence", 1), near.number("category_confidence", 0));
+    EXPECT_FALSE(far.find("category_confidence")->source.empty());
+    EXPECT_TRUE(check(far, named("tureen")).empty());
+}
+
+TEST(Classify, AccentsAndOtherLanguagesWordsOfTheTaxonomyAreFound) {
+    const Taxonomy::Data& data = shipped_taxonomy().data();
+    EXPECT_EQ(classify(data, unsized("Po\xC3\xAAle")).category->name,
+              classify(data, unsized("frying pan")).category->name);
+    EXPECT_NE(classify(data, unsized("Cuill\xC3\xA8re")).level, AttributeLevel::standard);
+}
+
+TEST(NounReading, KinshipIsThatOfMeanings) {
+    const wordnet::NounTable& nouns = *small_taxonomy().data().nouns;
+    const auto synset = [&](const char* name) { return *nouns.find_synset(name); };
+    const double cups = common_content(nouns, synset("cup.n.01"), synset("mug.n.04"));
+    EXPECT_GT(cups, common_content(nouns, synset("cup.n.01"), synset("chair.n.01")));
+    EXPECT_EQ(cups, common_content(nouns, synset("mug.n.04"), synset("cup.n.01")));
+    EXPECT_NEAR(common_content(nouns, synset("cup.n.01"), synset("idea.n.01")), 0, 1e-12);
+    EXPECT_EQ(common_content(nouns, synset("tureen.n.01"), synset("tureen.n.01")), 1);
+    EXPECT_TRUE(is_kind_of(nouns, synset("tureen.n.01"), synset("container.n.01")));
+    EXPECT_FALSE(is_kind_of(nouns, synset("container.n.01"), synset("tureen.n.01")));
+}
+
+}  // namespace
+}  // namespace embody::attributes
