@@ -145,13 +145,15 @@ void add_surface(Rows& rows) {
         "1", 0.3, 0, 1);
     group.number({"restitution_threshold", "SRAVG", "Least bounce speed", "Slower impacts do not bounce."}, "m/s", 0, 0,
                  10);
-    const std::vector<std::string> rules{"average", "geometric_mean", "minimum", "maximum", "multiply"};
+    const std::vector<std::string> rules{"pair_table", "average", "geometric_mean", "minimum", "maximum", "multiply"};
     group.word(
-        {"friction_combine", "SRA", "Friction of a pair", "How the friction of two touching things becomes one."},
-        "geometric_mean", rules);
-    group.word({"restitution_combine", "SRA", "Bounciness of a pair",
-                "How the bounciness of two touching things becomes one."},
-               "maximum", rules);
+        {"friction_combine", "SRA", "Friction of a pair",
+         "How the friction of two touching things becomes one: measured for the pair of materials, or by a rule."},
+        "pair_table", rules);
+    group.word(
+        {"restitution_combine", "SRA", "Bounciness of a pair",
+         "How the bounciness of two touching things becomes one: measured for the pair of materials, or by a rule."},
+        "pair_table", rules);
 }
 
 void add_motion(Rows& rows) {

@@ -12,21 +12,26 @@
 
 namespace embody::attributes {
 
+class Surfaces;
+
 /// The mapping of the paper's Fig. 4: words → category → physical kind → predefined attribute set. Read from
 /// data/taxonomy.
 class Taxonomy {
 public:
-    /// `folder` holds materials.json and categories/*.json; WordNet's nouns are read from its wordnet-nouns.table, or
-    /// from the one that the build wrote. The error names file, entry, field and remedy.
+    /// `folder` holds materials.json, material_pairs.json and categories/*.json; WordNet's nouns are read from its
+    /// wordnet-nouns.table, or from the one that the build wrote. The error names file, entry, field and remedy.
     static Result<std::unique_ptr<Taxonomy>> load(const std::filesystem::path& folder);
     ~Taxonomy();
 
     struct Data;
     [[nodiscard]] const Data& data() const { return *data_; }
+    /// Friction and restitution by pair of materials.
+    [[nodiscard]] const Surfaces& surfaces() const { return *surfaces_; }
 
 private:
     Taxonomy();
     std::unique_ptr<Data> data_;
+    std::unique_ptr<const Surfaces> surfaces_;
 };
 
 /// All attributes of a model from what is known of it, each with source and level: category → kind → attribute set,

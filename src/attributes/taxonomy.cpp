@@ -8,6 +8,7 @@
 #include "attributes/field_reader.h"
 #include "attributes/phrase_match.h"
 #include "attributes/registry.h"
+#include "attributes/surfaces.h"
 #include "attributes/taxonomy_data.h"
 
 namespace embody::attributes {
@@ -260,6 +261,9 @@ Taxonomy::~Taxonomy() = default;
 Result<std::unique_ptr<Taxonomy>> Taxonomy::load(const std::filesystem::path& folder) {
     std::unique_ptr<Taxonomy> taxonomy(new Taxonomy);
     if (auto loaded = load_materials(*taxonomy->data_, folder / "materials.json"); !loaded) return loaded.error();
+    auto surfaces = Surfaces::load(folder / "material_pairs.json", taxonomy->data_->materials);
+    if (!surfaces) return surfaces.error();
+    taxonomy->surfaces_ = std::make_unique<Surfaces>(std::move(*surfaces));
     if (auto loaded = load_nouns(*taxonomy->data_, folder); !loaded) return loaded.error();
     if (auto loaded = load_categories_of(*taxonomy->data_, folder / "categories"); !loaded) {
         return loaded.error();

@@ -8,13 +8,17 @@
 
 #include "attributes/form.h"
 #include "attributes/registry.h"
+#include "attributes/surfaces.h"
+#include "attributes/taxonomy_data.h"
 
 namespace embody::attributes {
 namespace {
 
-physics::CombineRule combine_rule(const std::string& name, physics::CombineRule fallback) {
-    constexpr std::array<std::pair<std::string_view, physics::CombineRule>, 5> rules{
-        {{"average", physics::CombineRule::average},
+// Of a word of the registry; its default where a file left it out.
+physics::CombineRule combine_rule(const std::string& name) {
+    constexpr std::array<std::pair<std::string_view, physics::CombineRule>, 6> rules{
+        {{"pair_table", physics::CombineRule::pair_table},
+         {"average", physics::CombineRule::average},
          {"geometric_mean", physics::CombineRule::geometric_mean},
          {"minimum", physics::CombineRule::minimum},
          {"maximum", physics::CombineRule::maximum},
@@ -22,7 +26,7 @@ physics::CombineRule combine_rule(const std::string& name, physics::CombineRule 
     for (const auto& [word, rule] : rules) {
         if (word == name) return rule;
     }
-    return fallback;
+    return physics::CombineRule::pair_table;
 }
 
 // The registry's default, for sets that a person or a file left incomplete.
@@ -38,9 +42,25 @@ physics::Material material_from(const AttributeSet& set) {
     material.friction_torsional = number_or_standard(set, "friction_torsional");
     material.restitution = number_or_standard(set, "restitution");
     material.restitution_threshold = number_or_standard(set, "restitution_threshold");
-    material.friction_combine = combine_rule(set.word("friction_combine", ""), physics::CombineRule::geometric_mean);
-    material.restitution_combine = combine_rule(set.word("restitution_combine", ""), physics::CombineRule::maximum);
+    material.friction_combine = combine_rule(set.word("friction_combine", ""));
+    material.restitution_combine = combine_rule(set.word("restitution_combine", ""));
     return material;
+}
+
+// The table speaks for things whose numbers are their material's. A number of a thing's own, from its category or a
+// person, would be lost in it: there the rules that stand in for the table hold.
+void put_surface_id(const AttributeSet& set, const Taxonomy& taxonomy, physics::Material& material) {
+    const std::string name = set.word("surface_material", "");
+    material.surface = taxonomy.surfaces().surface_of(name);
+    const MaterialData* usual = taxonomy.data().material(name);
+    if (usual == nullptr || material.surface == 0) return;
+    const bool rubs_as_usual = material.friction_static == usual->friction_static.typical &&
+                               material.friction_dynamic == usual->friction_dynamic.typical;
+    if (!rubs_as_usual && material.friction_combine == physics::CombineRule::pair_table)
+        material.friction_combine = physics::CombineRule::geometric_mean;
+    if (material.restitution != usual->restitution.typical &&
+        material.restitution_combine == physics::CombineRule::pair_table)
+        material.restitution_combine = physics::CombineRule::maximum;
 }
 
 physics::MassDefinition mass_from(const AttributeSet& set) {
@@ -95,7 +115,7 @@ Result<physics::ShapeDefinition> hull_shape(const GeometryFacts& facts, ModelGeo
 
 }  // namespace
 
-Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attributes) {
+Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attributes, const Taxonomy* taxonomy) {
     const std::string kind = attributes.word("kind", "rigid");
     if (kind == "visual") {
         return Error{"kind", "a thing that is only drawn has no body", "set kind to rigid or static"};
@@ -106,6 +126,7 @@ Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attribu
     if (kind == "static") body.kind = physics::BodyKind::static_body;
     body.mass = mass_from(attributes);
     body.material = material_from(attributes);
+    if (taxonomy != nullptr) put_surface_id(attributes, *taxonomy, body.material);
     body.linear_damping = number_or_standard(attributes, "linear_damping");
     body.angular_damping = number_or_standard(attributes, "angular_damping");
     body.gravity_factor = number_or_standard(attributes, "gravity_factor");

@@ -3,6 +3,7 @@
 
 #include "attributes/attribute.h"
 #include "attributes/model_facts.h"
+#include "attributes/resolver.h"
 #include "foundation/result.h"
 #include "physics/inter/definitions/body_definition.h"
 #include "physics/inter/definitions/shape_definition.h"
@@ -19,7 +20,10 @@ public:
 };
 
 /// A body's definition without pose, velocity and shape handle: kind, mass, material, damping … from the attributes.
-Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attributes);
+/// With a taxonomy, friction and restitution that are those of the surface material come from the pair table
+/// (Taxonomy::surfaces) where both things of a pair say pair_table; a number of the thing's own always counts itself.
+Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attributes,
+                                                     const Taxonomy* taxonomy = nullptr);
 
 /// The collision shape that the attributes name (collision_shape), in the model's frame.
 Result<physics::ShapeDefinition> shape_from_attributes(const AttributeSet& attributes, const GeometryFacts& facts,

@@ -80,6 +80,8 @@ struct Catalog::State {
 Catalog::Catalog() = default;
 Catalog::~Catalog() = default;
 
+const attributes::Taxonomy& Catalog::taxonomy() const { return *state_->taxonomy; }
+
 Result<std::unique_ptr<Catalog>> Catalog::open(const std::filesystem::path& file,
                                                const std::filesystem::path& taxonomy_folder) {
     auto taxonomy = attributes::Taxonomy::load(taxonomy_folder);

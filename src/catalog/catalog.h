@@ -80,6 +80,9 @@ public:
     static std::filesystem::path default_file();
     ~Catalog();
 
+    /// What it resolves attributes by.
+    [[nodiscard]] const attributes::Taxonomy& taxonomy() const;
+
     Result<SearchPage> search(const SearchQuery& query) const;
     Result<std::vector<CategoryCount>> categories() const;
     /// By key, id as decimal text, or a name that only one model has.

@@ -213,14 +213,22 @@ Result<AttributeSet> EntityBodies::attributes(const Entity& entity) {
     if (!own.ok()) return own.error();
     if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry)) {
         const ModelFacts& facts = primitive(*shape);
-        AttributeSet set = attributes::with_manual(primitive_attributes(entity, *shape, facts), own.value(), facts);
+        AttributeSet set = lay_over(primitive_attributes(entity, *shape, facts), own.value(), facts);
         set.erase("collision_shape");
         return set;
     }
     Result<AttributeSet> automatic = automatic_attributes(entity);
     if (!automatic.ok() || own.value().empty()) return automatic;
     const Model& model = *find(std::get<ModelReference>(entity.geometry).key).value();
-    return attributes::with_manual(automatic.value(), own.value(), scaled(model.facts, entity.scale));
+    return lay_over(automatic.value(), own.value(), scaled(model.facts, entity.scale));
+}
+
+const attributes::Taxonomy* EntityBodies::taxonomy() const { return catalog_ ? &catalog_->taxonomy() : nullptr; }
+
+AttributeSet EntityBodies::lay_over(const AttributeSet& automatic, const std::vector<AttributeEntry>& own,
+                                    const ModelFacts& facts) const {
+    return taxonomy() ? attributes::with_manual(*taxonomy(), automatic, own, facts)
+                      : attributes::with_manual(automatic, own, facts);
 }
 
 Result<physics::BodyDefinition> EntityBodies::body(const Entity& entity, const AttributeSet& attributes) {
@@ -229,7 +237,7 @@ Result<physics::BodyDefinition> EntityBodies::body(const Entity& entity, const A
         body.kind = physics::BodyKind::static_body;
         body.enabled = false;
     } else {
-        Result<physics::BodyDefinition> made = attributes::body_from_attributes(attributes);
+        Result<physics::BodyDefinition> made = attributes::body_from_attributes(attributes, taxonomy());
         if (!made.ok()) return at_field(made.error(), "attributes");
         body = std::move(made).value();
         body.enabled = entity.enabled;

@@ -34,6 +34,9 @@ public:
     /// The model's summary; fails for what is not a model.
     Result<catalog::ModelSummary> model(const Entity& entity);
 
+    /// The catalogue's; null without one.
+    [[nodiscard]] const attributes::Taxonomy* taxonomy() const;
+
     /// Forgets a model whose attributes were changed.
     void forget(const std::string& key) { models_.erase(key); }
 
@@ -44,6 +47,9 @@ private:
         attributes::AttributeSet attributes;
     };
     Result<const Model*> find(const std::string& key);
+    [[nodiscard]] attributes::AttributeSet lay_over(const attributes::AttributeSet& automatic,
+                                                    const std::vector<attributes::AttributeEntry>& own,
+                                                    const attributes::ModelFacts& facts) const;
     const attributes::ModelFacts& primitive(const physics::ShapeDefinition& shape);
 
     catalog::Catalog* catalog_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "attributes/surfaces.h"
 #include "scene/action_runner.h"
 #include "scene/entity_body.h"
 
@@ -308,6 +309,10 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document,
     Result<std::unique_ptr<physics::World>> world = physics::World::create(document.settings);
     if (!world.ok()) return Error{"settings." + world.error().where, world.error().why, world.error().remedy};
     state.world = std::move(world).value();
+    if (catalog != nullptr) {
+        Result<void> set = state.world->set_surface_pairs(catalog->taxonomy().surfaces().table());
+        if (!set.ok()) return set.error();
+    }
 
     // In the document's order, so that the same document is the same world.
     for (const Entity& entity : document.entities) {

@@ -30,6 +30,7 @@ std::string load_error(const std::string& materials_text, const std::string& tax
     const auto folder = std::filesystem::temp_directory_path() / ("embody_taxonomy_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder / "categories");
     std::ofstream(folder / "materials.json") << materials_text;
+    std::ofstream(folder / "material_pairs.json") << R"({"families": [], "pairs": []})";
     std::ofstream(folder / "categories" / "things.json") << taxonomy_text;
     const auto loaded = Taxonomy::load(folder);
     std::filesystem::remove_all(folder);
@@ -88,6 +89,7 @@ TEST(TaxonomyLoad, ABrokenTableOfWordNetBesideTheTaxonomyIsNamed) {
     const auto folder = std::filesystem::temp_directory_path() / ("embody_words_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder / "categories");
     std::ofstream(folder / "materials.json") << materials;
+    std::ofstream(folder / "material_pairs.json") << R"({"families": [], "pairs": []})";
     std::ofstream(folder / "categories" / "a.json") << R"({"categories": [)" + category("object", "[]") + "]}";
     std::ofstream(folder / "wordnet-nouns.table") << "cut off";
     const auto loaded = Taxonomy::load(folder);
@@ -101,6 +103,7 @@ TEST(TaxonomyLoad, OfTwoEntriesWithOneMeaningTheMoreGeneralIsFound) {
     const auto folder = std::filesystem::temp_directory_path() / ("embody_twice_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder / "categories");
     std::ofstream(folder / "materials.json") << materials;
+    std::ofstream(folder / "material_pairs.json") << R"({"families": [], "pairs": []})";
     const std::string sub = R"(, "subcategories": [{"name": "stool", "synset": "chair.n.01", "words": []}])";
     std::ofstream(folder / "categories" / "a.json")
         << R"({"categories": [)" + category("object", "[]") + "," + category("first", "[]", sub) + "," +
@@ -148,6 +151,7 @@ TEST(TaxonomyLoad, WhatACategorySaysReachesTheSetWithItsSource) {
     const auto folder = std::filesystem::temp_directory_path() / ("embody_usual_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder / "categories");
     std::ofstream(folder / "materials.json") << materials;
+    std::ofstream(folder / "material_pairs.json") << R"({"families": [], "pairs": []})";
     std::ofstream(folder / "categories" / "a.json") << R"({"categories": [)" + category("object", "[]") + "]}";
     std::ofstream(folder / "categories" / "b.json")
         << R"({"categories": [{"name": "cushion", "synset": "cushion.n.03", "words": ["cushion"], "kind": "soft",

@@ -32,6 +32,12 @@ Result<void> World::set_settings(const WorldSettings& settings) {
     return {};
 }
 
+Result<void> World::set_surface_pairs(SurfacePairs pairs) {
+    if (!bodies().empty()) return Error{"surface_pairs", "must be set before the first body is created"};
+    state_->surface_pairs = std::move(pairs);
+    return {};
+}
+
 // Shapes.
 
 Result<ShapeHandle> World::create_shape(const ShapeDefinition& definition) {

@@ -14,6 +14,7 @@
 #include "physics/inter/definitions/joint_definition.h"
 #include "physics/inter/definitions/shape_definition.h"
 #include "physics/inter/definitions/step_report.h"
+#include "physics/inter/definitions/surface_pairs.h"
 #include "physics/inter/definitions/world_settings.h"
 
 namespace embody::physics {
@@ -32,6 +33,10 @@ public:
 
     [[nodiscard]] const WorldSettings& settings() const;
     Result<void> set_settings(const WorldSettings& settings);
+
+    /// Friction and restitution by pair of surfaces, for bodies whose combine rule is pair_table. Refused once there
+    /// are bodies.
+    Result<void> set_surface_pairs(SurfacePairs pairs);
 
     // Shapes: built once, shared by any number of bodies.
     Result<ShapeHandle> create_shape(const ShapeDefinition& definition);

@@ -55,7 +55,8 @@ double ImpactPaths::earliest_time(const Contact& contact) const {
 }
 
 Material ImpactPaths::material_of(const Contact& contact) const {
-    return combine(world_.record(contact.a).definition.material, world_.record(contact.b).definition.material);
+    return combine(world_.record(contact.a).definition.material, world_.record(contact.b).definition.material,
+                   world_.surface_pairs);
 }
 
 bool ImpactPaths::bounces(const Contact& contact) const {

@@ -230,7 +230,8 @@ void compare_pair(const WorldState& world, PairRecord& record, const PairNow& no
 
     const auto first = static_cast<std::ptrdiff_t>(worker.found.size());
     const bool has_material = is_known && !old.empty();
-    const Material material = has_material ? Material{} : combine(a.definition.material, b.definition.material);
+    const Material material =
+        has_material ? Material{} : combine(a.definition.material, b.definition.material, world.surface_pairs);
     const std::size_t wanted = worker.found.size() + worker.manifolds.size();
     if (wanted > worker.found.capacity()) worker.found.reserve(wanted + wanted / 2);
     for (const Manifold& manifold : worker.manifolds) {

@@ -78,6 +78,7 @@ struct HeldRecord {
 /// "face" is World, between steps.
 struct WorldState {
     WorldSettings settings;
+    SurfacePairs surface_pairs;  // face
 
     HandleTable<struct ShapeTag, ShapeRecord> shapes;                 // face
     HandleTable<struct BodyTag, BodyRecord> bodies;                   // face

@@ -11,12 +11,13 @@ namespace embody::physics {
 namespace {
 
 Result<void> check_rule(const char* field, CombineRule rule) {
-    if (rule < CombineRule::average || rule > CombineRule::multiply) return Error{field, "is not a combine rule"};
+    if (rule < CombineRule::pair_table || rule > CombineRule::multiply) return Error{field, "is not a combine rule"};
     return {};
 }
 
 double combine(CombineRule rule, double a, double b) {
     switch (rule) {
+        case CombineRule::pair_table:  // replaced before by what stands in for it
         case CombineRule::average:
             return (a + b) / 2;
         case CombineRule::geometric_mean:
@@ -49,15 +50,27 @@ Result<void> validate(const Material& material) {
     return {};
 }
 
-Material combine(const Material& a, const Material& b) {
-    const CombineRule friction = std::max(a.friction_combine, b.friction_combine);
-    const CombineRule restitution = std::max(a.restitution_combine, b.restitution_combine);
+Material combine(const Material& a, const Material& b, const SurfacePairs& pairs) {
     Material pair;
+    pair.friction_combine = std::max(a.friction_combine, b.friction_combine);
+    pair.restitution_combine = std::max(a.restitution_combine, b.restitution_combine);
+    const PairCoefficients* known = pairs.find(a.surface, b.surface);
+
+    // Friction: of the table where both leave it to it, else by rule.
+    const bool by_table = pair.friction_combine == CombineRule::pair_table;
+    const CombineRule friction = by_table ? CombineRule::geometric_mean : pair.friction_combine;
     pair.friction_static = combine(friction, a.friction_static, b.friction_static);
     pair.friction_dynamic = combine(friction, a.friction_dynamic, b.friction_dynamic);
-    pair.restitution = combine(restitution, a.restitution, b.restitution);
-    pair.friction_combine = friction;
-    pair.restitution_combine = restitution;
+    if (by_table && known != nullptr) {
+        pair.friction_static = known->friction_static;
+        pair.friction_dynamic = known->friction_dynamic;
+    }
+
+    // Restitution likewise.
+    const bool bounces_by_table = pair.restitution_combine == CombineRule::pair_table;
+    const CombineRule restitution = bounces_by_table ? CombineRule::maximum : pair.restitution_combine;
+    pair.restitution =
+        bounces_by_table && known != nullptr ? known->restitution : combine(restitution, a.restitution, b.restitution);
 
     // A lever arm is a length of the softer of the two surfaces; the pair resists as the more resisting one does.
     pair.friction_rolling = std::max(a.friction_rolling, b.friction_rolling);
