@@ -198,6 +198,10 @@ private:
             "catalogue", "Models of the database that are understood, beside what their catalogue says");
         c.into->database = catalog::Catalog::default_file();
         catalogue->add_option("--database", c.into->database, "Model database")->capture_default_str();
+        catalogue
+            ->add_option("--kinds", c.into->kinds,
+                         "CSV with the columns words and kinds (parts separated by ;) to compare physical kinds with")
+            ->check(CLI::ExistingFile);
         for (CLI::App* one : {mass, catalogue}) {
             one->add_flag("--json", c.into->json, "Print JSON, for programs");
             one->callback([into = c.into, one] { into->what = one->get_name(); });

@@ -75,6 +75,7 @@ struct EvaluateArguments {
     std::string what;  ///< "mass" or "catalogue"
     std::filesystem::path database;
     std::filesystem::path truth;      ///< table of measured objects
+    std::filesystem::path kinds;      ///< table of labelled words; empty: none
     std::string told = "everything";  ///< or "name", "category"
     int worst = 20;                   ///< objects to list
     bool json = false;

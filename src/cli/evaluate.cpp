@@ -3,17 +3,20 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/locations.h"
 #include "cli/output.h"
 #include "evaluation/catalogue_evaluation.h"
+#include "evaluation/kind_evaluation.h"
 #include "evaluation/mass_evaluation.h"
 
 namespace embody::cli {
 namespace {
 
 using evaluation::CatalogueEvaluation;
+using evaluation::KindEvaluation;
 using evaluation::MassEvaluation;
 using evaluation::MassFigures;
 using evaluation::MassPrediction;
@@ -136,15 +139,51 @@ int evaluate_masses(const EvaluateArguments& arguments, const attributes::Taxono
     return exit_ok;
 }
 
+nlohmann::json kinds_to_json(const KindEvaluation& evaluation) {
+    nlohmann::json by_label = nlohmann::json::object(), mistakes = nlohmann::json::array();
+    for (const auto& [label, counts] : evaluation.by_label)
+        by_label[label] = {{"words", counts.first}, {"right", counts.second}};
+    for (const evaluation::KindMistake& mistake : evaluation.mistakes) {
+        mistakes.push_back({{"word", mistake.label.word},
+                            {"right", mistake.label.kinds},
+                            {"kind", mistake.kind},
+                            {"category", mistake.category}});
+    }
+    return {{"words", evaluation.words},
+            {"accuracy", evaluation.accuracy()},
+            {"by_label", std::move(by_label)},
+            {"mistakes", std::move(mistakes)}};
+}
+
+void print_kinds(const KindEvaluation& evaluation) {
+    fmt::print("kind as {} labelled words say: {:.1f} %\n", evaluation.words, 100 * evaluation.accuracy());
+    for (const auto& [label, counts] : evaluation.by_label)
+        fmt::print("  {} {:>6} of {:>6}\n", padded(label, 14), counts.second, counts.first);
+    for (const evaluation::KindMistake& mistake : evaluation.mistakes) {
+        fmt::print("  {} is {}, not {}: taken for {}\n", padded(mistake.label.word, 26), mistake.label.kinds.front(),
+                   mistake.kind, mistake.category);
+    }
+}
+
 int evaluate_models(const EvaluateArguments& arguments, const attributes::Taxonomy& taxonomy) {
     const auto catalog = open_catalog(arguments.database);
     if (!catalog) return report(catalog.error());
     const auto result = evaluation::evaluate_catalogue(taxonomy, **catalog);
     if (!result) return report(result.error());
-    if (arguments.json)
-        print_json(catalogue_to_json(*result));
-    else
-        print_catalogue(*result);
+    std::optional<KindEvaluation> kinds;
+    if (!arguments.kinds.empty()) {
+        const auto words = evaluation::read_labelled_words(arguments.kinds);
+        if (!words) return report(words.error());
+        kinds = evaluation::evaluate_kinds(taxonomy, *words);
+    }
+    if (arguments.json) {
+        nlohmann::json json = catalogue_to_json(*result);
+        if (kinds) json["kinds"] = kinds_to_json(*kinds);
+        print_json(json);
+        return exit_ok;
+    }
+    print_catalogue(*result);
+    if (kinds) print_kinds(*kinds);
     return exit_ok;
 }
 

@@ -3,6 +3,8 @@
 
 #include <optional>
 
+#include "evaluation/found_category.h"
+
 namespace embody::evaluation {
 namespace {
 
@@ -23,8 +25,7 @@ void compare_movable(const attributes::Taxonomy& taxonomy, ModelFacts facts, con
     const AttributeSet set = resolve(taxonomy, facts);
     ++evaluation.flagged;
     if ((set.word("kind", "") != "static") != catalogue_says) {
-        evaluation.disagreements.push_back(
-            {key, facts.name, set.word("subcategory", set.word("category", "")), catalogue_says});
+        evaluation.disagreements.push_back({key, facts.name, found_category(set), catalogue_says});
     }
 }
 

@@ -6,6 +6,8 @@
 #include <functional>
 #include <random>
 
+#include "evaluation/found_category.h"
+
 namespace embody::evaluation {
 namespace {
 
@@ -76,8 +78,7 @@ MassEvaluation evaluate_mass(const attributes::Taxonomy& taxonomy, const std::ve
         const double value = set.number("mass", 0);
         const AttributeEntry* category = set.find("category");
         evaluation.predictions.push_back({object, value, mass->low.value_or(value), mass->high.value_or(value),
-                                          set.word("subcategory", set.word("category", "")),
-                                          level_name(category->level)});
+                                          found_category(set), level_name(category->level)});
     }
     std::ranges::stable_sort(evaluation.predictions, std::greater(),
                              [](const MassPrediction& p) { return std::abs(p.log_error()); });

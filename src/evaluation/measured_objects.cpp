@@ -37,17 +37,6 @@ Result<MeasuredObject> object_of(const TableRow& row) {
     return object;
 }
 
-std::vector<std::string> words_of(const std::string& category) {
-    std::vector<std::string> words;
-    for (std::size_t first = 0; first < category.size();) {
-        const std::size_t end = std::min(category.find(';', first), category.size());
-        const std::size_t start = category.find_first_not_of(' ', first);
-        if (start < end) words.push_back(category.substr(start, end - start));
-        first = end + 1;
-    }
-    return words;
-}
-
 }  // namespace
 
 std::string MeasuredObject::source() const { return id.substr(0, id.find(':')); }
@@ -67,7 +56,7 @@ Result<std::vector<MeasuredObject>> read_measured_objects(const std::filesystem:
 
 attributes::ModelFacts facts_of(const MeasuredObject& object, Told told) {
     attributes::ModelFacts facts;
-    std::vector<std::string> words = words_of(object.category);
+    std::vector<std::string> words = split_cell(object.category);
     if (told == Told::category) {
         if (!words.empty()) facts.name = words.front();
     } else {

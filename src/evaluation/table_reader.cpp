@@ -6,6 +6,7 @@
 #define CSV_IO_NO_THREAD
 #include <libfccp/csv.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace embody::evaluation {
@@ -51,6 +52,18 @@ Result<void> read_table(const std::filesystem::path& file, const ColumnNames& na
         return Error{file.string(), broken.what(), "check its quotes and the number of columns"};
     }
     return {};
+}
+
+std::vector<std::string> split_cell(const std::string& cell) {
+    std::vector<std::string> parts;
+    for (std::size_t first = 0; first < cell.size();) {
+        const std::size_t end = std::min(cell.find(';', first), cell.size());
+        const std::size_t start = std::min(cell.find_first_not_of(' ', first), end);
+        const std::size_t last = cell.find_last_not_of(' ', end - 1);
+        if (start < end) parts.push_back(cell.substr(start, last - start + 1));
+        first = end + 1;
+    }
+    return parts;
 }
 
 }  // namespace embody::evaluation

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "foundation/result.h"
 
@@ -27,5 +28,8 @@ struct TableRow {
 /// `required_columns` of `names` must be in the header.
 Result<void> read_table(const std::filesystem::path& file, const ColumnNames& names, std::size_t required_columns,
                         const std::function<Result<void>(const TableRow&)>& take);
+
+/// The parts of a cell that holds several, separated by ";", without spaces around them; empty parts are left out.
+std::vector<std::string> split_cell(const std::string& cell);
 
 }  // namespace embody::evaluation
