@@ -20,6 +20,7 @@ const Taxonomy& small_taxonomy() {
     static const std::unique_ptr<Taxonomy> taxonomy = [] {
         const auto folder = std::filesystem::temp_directory_path() / ("embody_classify_" + std::to_string(getpid()));
         std::filesystem::create_directories(folder / "categories");
+        std::ofstream(folder / "material_pairs.json") << R"({"families": [], "pairs": []})";
         std::ofstream(folder / "materials.json") << R"({"materials": [
             {"name": "generic", "words": [], "density": [500, 1000, 3000], "friction_static": [0.1, 0.2, 0.3],
              "friction_dynamic": [0.1, 0.2, 0.3], "friction_rolling": 0, "restitution": [0, 0.1, 0.2], "source": "s"},
