@@ -74,8 +74,8 @@ constexpr Expected real_names[] = {
     {"Piano bench", "bench", "piano bench", "rigid"},
     {"Grand piano", "musical instrument", "grand piano", "rigid"},
     {"Christmas tree", "sculpture", "christmas tree", "rigid"},
-    {"Palm tree", "tree", "", "static"},
-    {"Pine under snow", "tree", "", "static"},
+    {"Palm tree", "tree", "palm", "static"},
+    {"Pine under snow", "tree", "conifer", "static"},
     {"Hot dog", "prepared dish", "hot dog", "soft"},  // not a dog
     {"Bulldog", "pet", "dog", "articulated"},
     {"Roasted chicken", "meat", "roast chicken", "soft"},
