@@ -134,6 +134,8 @@ bool noun_overrules(const Taxonomy::Data& data, const std::vector<Token>& tokens
     const NounReading& reading = read.readings.front();
     const CategoryData& category = data.categories[phrase.entry];
     if (reading.entry == phrase.entry) return false;
+    // A "waffle maker" is no person.
+    if (data.nouns->topic(reading.meaning) == wordnet::Topic::person) return false;
 
     // What the phrase names is a kind of what the noun names: the phrase says more.
     const auto meant = data.nouns->find_synset(category.synset);

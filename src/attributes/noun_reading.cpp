@@ -46,16 +46,18 @@ double topic_factor(Topic topic) {
         case Topic::artifact:
             return 1;
         case Topic::food:
-        case Topic::plant:
+            return 0.75;
         case Topic::animal:
             return 0.6;
+        case Topic::plant:
+            return 0.4;
         case Topic::object:
         case Topic::substance:
             return 0.4;
         case Topic::body:
             return 0.3;
         case Topic::person:
-            return 0.15;
+            return 0.08;
         default:
             return 0.25;
     }
