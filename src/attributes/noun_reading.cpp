@@ -81,17 +81,21 @@ std::vector<Above> all_above(const NounTable& nouns, SynsetIndex meaning) {
     return above;
 }
 
-// The nearest category; of two equally near ones the more specific.
+// The nearest category; of two equally near ones the more specific. A made thing that WordNet hangs under places or
+// signs is still a made thing.
 std::optional<NounReading> nearest_category(const Taxonomy::Data& data, SynsetIndex meaning) {
     std::optional<NounReading> best;
-    for (const Above& above : all_above(*data.nouns, meaning)) {
+    const std::vector<Above> above_meaning = all_above(*data.nouns, meaning);
+    for (const Above& above : above_meaning) {
         if (best && above.steps > best->steps) break;
         const auto found = data.by_synset.find(above.synset);
         if (found == data.by_synset.end()) continue;
         if (best && data.nouns->count_of_kind(above.synset) >= data.nouns->count_of_kind(best->anchor)) continue;
         best = NounReading{found->second, meaning, above.synset, above.steps};
     }
-    return best;
+    const auto made = data.nouns->find_synset("artifact.n.01");
+    if (best || !made || data.nouns->topic(meaning) != Topic::artifact || !data.by_synset.contains(*made)) return best;
+    return NounReading{data.by_synset.at(*made), meaning, *made, above_meaning.back().steps};
 }
 
 // 1 for a meaning that nothing is a kind of, 0 for what everything is.

@@ -26,6 +26,7 @@ const Taxonomy& small_taxonomy() {
              "friction_dynamic": [0.1, 0.2, 0.3], "friction_rolling": 0, "restitution": [0, 0.1, 0.2], "source": "s"},
             {"name": "wood", "words": ["oak"], "density": [400, 600, 800], "friction_static": [0.1, 0.2, 0.3],
              "friction_dynamic": [0.1, 0.2, 0.3], "friction_rolling": 0, "restitution": [0, 0.1, 0.2], "source": "s"}]})";
+        std::ofstream(folder / "material_pairs.json") << R"({"families": [], "pairs": []})";
         const auto entry = [](const std::string& name, const std::string& synset, const std::string& words, double low,
                               double high) {
             const std::string size = std::to_string(std::sqrt(low * high));

@@ -64,7 +64,7 @@ public:
     [[nodiscard]] std::span<const SynsetIndex> hypernyms(SynsetIndex synset) const;
     /// How many synsets are this or of this kind, itself included: small where the meaning is specific.
     [[nodiscard]] std::uint32_t count_of_kind(SynsetIndex synset) const;
-    [[nodiscard]] bool is_physical(SynsetIndex synset) const;  ///< a kind of physical_entity.n.01
+    [[nodiscard]] bool is_physical(SynsetIndex synset) const;  ///< a kind of physical_entity.n.01, or made
     [[nodiscard]] bool is_instance(SynsetIndex synset) const;  ///< a named individual
     [[nodiscard]] Topic topic(SynsetIndex synset) const;
 

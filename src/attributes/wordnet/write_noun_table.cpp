@@ -46,7 +46,8 @@ std::vector<NounDatabase::Lemma> with_plain_spellings(const std::vector<NounData
     return all;
 }
 
-// All kinds of each synset counted once, also where two ways lead to it; and what is a kind of physical_entity.
+// All kinds of each synset counted once, also where two ways lead to it; and what is a kind of physical_entity. Some
+// made things are not, since WordNet sees a place or a sign in them: bleachers, a buoy.
 struct Kinds {
     Numbers counts;
     std::vector<bool> is_physical;
@@ -59,6 +60,8 @@ Kinds count_kinds(const NounDatabase& nouns) {
     for (std::size_t start = 0; start < count; ++start) {
         above.assign(1, static_cast<std::uint32_t>(start));
         seen[start] = start;
+        constexpr std::uint8_t artifact_file = 6;
+        if (nouns.synsets[start].lexicographer_file == artifact_file) kinds.is_physical[start] = true;
         while (!above.empty()) {
             const std::uint32_t current = above.back();
             above.pop_back();

@@ -135,6 +135,7 @@ TEST(NounTable, HypernymsLeadUp) {
     EXPECT_EQ(nouns().name(nouns().hypernyms(*tureen)[0]), "serving_dish.n.01");
     EXPECT_TRUE(nouns().is_physical(*tureen));
     EXPECT_FALSE(nouns().is_physical(*nouns().find_synset("idea.n.01")));
+    EXPECT_TRUE(nouns().is_physical(*nouns().find_synset("bleachers.n.01")));  // under room.n.02, which is abstract
     EXPECT_EQ(nouns().count_of_kind(*nouns().find_synset("entity.n.01")), nouns().synset_count());
     EXPECT_EQ(nouns().count_of_kind(*tureen), 1u);
     const auto tower = nouns().find_synset("eiffel_tower.n.01");

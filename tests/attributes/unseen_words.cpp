@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// How well words do that the taxonomy does not have: every entry is hidden in turn, and its first word has to find its
+// way through WordNet to what is left. No measured masses are needed: the entry's own is the truth.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "attributes/classify.h"
+#include "attributes/form.h"
+#include "attributes/noun_reading.h"
+#include "attributes/sample_facts.h"
+#include "attributes/taxonomy_data.h"
+
+namespace embody::attributes {
+namespace {
+
+// The taxonomy without one entry; with `family` also without its category and all subcategories of that.
+Taxonomy::Data without(const Taxonomy::Data& data, std::size_t entry, bool family) {
+    const auto head = [&](std::size_t i) {
+        const CategoryData& category = data.categories[i];
+        return category.parent.empty() ? category.name : category.parent;
+    };
+    const auto hidden = [&](std::size_t i) { return i == entry || (family && head(i) == head(entry)); };
+    Taxonomy::Data rest = data;
+    std::erase_if(rest.category_phrases, [&](const auto& item) { return hidden(item.second.entry); });
+    std::erase_if(rest.by_synset, [&](const auto& item) { return hidden(item.second); });
+    std::erase_if(rest.by_catalogue, [&](const auto& item) { return hidden(item.second); });
+    return rest;
+}
+
+// Mass that the category's law gives a thing of this size.
+double mass_at(const CategoryData& category, Vec3 size) {
+    const auto extent = [&](Vec3 s) {
+        const Form form = form_of({.size = s}, s);
+        return category.scaling == MassScaling::area ? form.face_area : form.box_volume;
+    };
+    return category.mass.typical * std::pow(extent(size) / extent(category.at_size), category.exponent);
+}
+
+bool is_general(const CategoryData& category) { return category.domain == "general"; }
+
+struct Score {
+    int words = 0, right = 0, judged = 0, covered = 0;
+    double error = 0, confidence = 0;
+
+    void add(const Taxonomy::Data& rest, const CategoryData& hidden, const Classification& what) {
+        ++words;
+        const double miss = std::log(mass_at(*what.category, hidden.at_size) / hidden.mass.typical);
+        error += std::fabs(miss);
+        const Interval& mass = what.category->mass;
+        const double low = std::log(mass.typical / mass.low), high = std::log(mass.high / mass.typical);
+        const double more = 1.2816 * spread_of_steps(what.steps);
+        covered += miss < 0 ? -miss <= std::hypot(high, more) : miss <= std::hypot(low, more);
+
+        // Right is a meaning that is the entry's own or its kin, or a category above it.
+        const auto meant = rest.nouns->find_synset(hidden.synset);
+        const auto read = rest.nouns->find_synset(what.synset);
+        const auto above = rest.nouns->find_synset(what.category->synset);
+        if (!meant || !read || !above) return;
+        ++judged;
+        confidence += what.confidence;
+        right += is_kind_of(*rest.nouns, *meant, *above) || common_content(*rest.nouns, *meant, *read) > 0.45;
+    }
+};
+
+// Of all entries whose word only WordNet can tell once they are hidden.
+Score score_of_hidden_entries(bool family) {
+    const Taxonomy::Data& data = shipped_taxonomy().data();
+    Score score;
+    for (std::size_t i = 0; i < data.categories.size(); ++i) {
+        const CategoryData& hidden = data.categories[i];
+        if (hidden.words.empty() || is_general(hidden)) continue;
+        const Taxonomy::Data rest = without(data, i, family);
+        const Classification what = classify(rest, named(hidden.words.front(), hidden.at_size));
+        const bool by_wordnet = what.source.find("→") != std::string::npos;
+        if (by_wordnet || what.level == AttributeLevel::standard) score.add(rest, hidden, what);
+    }
+    const double words = score.words, judged = score.judged;
+    std::printf("%d words, mean |ln mass ratio| %.3f, in the interval %.0f %%; right %.0f %%, confidence %.0f %%\n",
+                score.words, score.error / words, 100 * score.covered / words, 100 * score.right / judged,
+                100 * score.confidence / judged);
+    return score;
+}
+
+void expect_good(const Score& score) {
+    EXPECT_GT(score.words, 400);
+    EXPECT_LT(score.error / score.words, 0.8);
+    // The interval holds 80 % of things; here the truth is the middle of a category, so somewhat more.
+    EXPECT_GT(score.covered, 0.75 * score.words);
+    EXPECT_LT(score.covered, 0.92 * score.words);
+    // The confidence is a probability, told rather too low than too high.
+    EXPECT_GT(score.right, score.confidence);
+    EXPECT_LT(score.right, score.confidence + 0.25 * score.judged);
+}
+
+TEST(UnseenWords, FindTheirMassWithinAFactorOfTwoOnAverage) { expect_good(score_of_hidden_entries(false)); }
+TEST(UnseenWords, AlsoWhereTheirWholeFamilyIsUnseen) { expect_good(score_of_hidden_entries(true)); }
+
+TEST(UnseenWords, ClassifyingIsFreeOfLuck) {
+    // The same words, asked twice and in another taxonomy object, get the same answer to the last bit.
+    const Taxonomy::Data& data = shipped_taxonomy().data();
+    const Taxonomy::Data copy = data;
+    for (const char* name :
+         {"samovar", "sextant", "soup tureen", "crane", "bassoon", "mandolin with case", "hourglass"}) {
+        const Classification a = classify(data, named(name)), b = classify(copy, named(name));
+        EXPECT_EQ(a.source, b.source);
+        EXPECT_EQ(a.confidence, b.confidence);
+        EXPECT_EQ(a.category->name, b.category->name);
+    }
+}
+
+TEST(GeneralEntries, HoldWhatLiesBelowThem) {
+    // An inner node with ten entries below it gives most of them a mass within its interval, and the middle is no
+    // more than a factor 2 off.
+    const Taxonomy::Data& data = shipped_taxonomy().data();
+    int checked = 0;
+    for (const CategoryData& general : data.categories) {
+        const auto node = data.nouns->find_synset(general.synset);
+        if (!is_general(general) || !node) continue;
+        int below = 0, inside = 0;
+        double bias = 0;
+        for (const CategoryData& entry : data.categories) {
+            const auto meaning = data.nouns->find_synset(entry.synset);
+            if (is_general(entry) || !meaning || !is_kind_of(*data.nouns, *meaning, *node)) continue;
+            const double miss = std::log(entry.mass.typical / mass_at(general, entry.at_size));
+            ++below;
+            bias += miss;
+            inside += miss < 0 ? -miss <= std::log(general.mass.typical / general.mass.low)
+                               : miss <= std::log(general.mass.high / general.mass.typical);
+        }
+        if (below < 10) continue;
+        ++checked;
+        EXPECT_LT(std::fabs(bias / below), std::log(2)) << general.name << ": " << below << " entries below it";
+        EXPECT_GT(inside, 0.6 * below) << general.name << ": " << below << " entries below it";
+    }
+    EXPECT_GT(checked, 10);
+}
+
+}  // namespace
+}  // namespace embody::attributes
