@@ -31,6 +31,8 @@ constexpr double a_step = 0.93;              // each hypernym
 constexpr double own_word = 3;               // the taxonomy's reading of a word before WordNet's others
 constexpr double overruled = 0.5;            // what stands in the name, but is not what it is about
 constexpr double nothing_known = 0.05;
+constexpr std::size_t long_name = 8;     // words: a sales text, whose last noun says less than a tag
+constexpr double trust_in_long = 0.65;   // of what a short name is trusted
 constexpr double close_runner_up = 0.6;  // of the winner's confidence
 
 AttributeLevel level_of(const CategoryData& category) {
@@ -207,6 +209,13 @@ std::vector<Candidate> ask_name(const Taxonomy::Data& data, std::string_view nam
     return found;
 }
 
+void doubt_long_name(std::vector<Candidate>& found) {
+    for (Candidate& candidate : found) {
+        candidate.confidence *= trust_in_long;
+        candidate.reckoning += "; the name is long, a sales text perhaps";
+    }
+}
+
 void ask_text(const Taxonomy::Data& data, const Trust& trust, std::string_view text, const Surroundings& surroundings,
               std::vector<Candidate>& found) {
     if (const auto phrase = match_phrase(data.category_phrases, data.longest_phrase, text)) {
@@ -300,6 +309,7 @@ Classification classify(const Taxonomy::Data& data, const ModelFacts& facts) {
     const Surroundings surroundings(data, facts);
     std::vector<Candidate> found = ask_name(data, facts.name, surroundings);
     if (found.empty()) found = ask_name(data, with_compounds_split(data, tokens_of(facts.name)), surroundings);
+    if (tokens_of(facts.name).size() >= long_name) doubt_long_name(found);
 
     // What stands elsewhere is asked where the name leaves doubt.
     if (found.empty() || found.front().confidence < name_trust.phrase) {

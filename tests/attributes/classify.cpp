@@ -155,6 +155,16 @@ TEST(Classify, ATagMakesAGeneralAnswerMoreExactAndOverrulesWhatSharesNothingWith
     EXPECT_EQ(taken(facts).category->name, "instrument");
 }
 
+TEST(Classify, ASalesTextIsTrustedLessThanATag) {
+    ModelFacts facts = named("Shiny blue dish");
+    facts.tags = {"seat"};
+    EXPECT_EQ(taken(facts).category->name, "dish");
+    facts.name = "Shiny large blue extra strong washable kitchen family dish";
+    EXPECT_EQ(taken(facts).category->name, "seat");
+    facts.tags.clear();
+    EXPECT_EQ(taken(facts).category->name, "dish");
+}
+
 TEST(Classify, StepsWidenTheMassAndLowerTheConfidence) {
     const auto ratio = [](const AttributeSet& set) {
         const AttributeEntry* mass = set.find("mass");
@@ -162,11 +172,13 @@ TEST(Classify, StepsWidenTheMassAndLowerTheConfidence) {
     };
     const AttributeSet near = resolve(small_taxonomy(), named("dish"));
     const AttributeSet far = resolve(small_taxonomy(), named("tureen"));
-    EXPECT_NEAR(ratio(near), 3, 1e-9);
-    // Two independent spreads add like errors do; the entry's own is lopsided: [1, 2, 3] around 2.
-    const double more = 1.2816 * spread_of_steps(2);
-    const double expected = std::hypot(std::log(2), more) + std::hypot(std::log(1.5), more);
-    EXPECT_NEAR(std::log(ratio(far)), expected, 1e-9);
+    // Independent spreads add like errors do; the entry's own is lopsided: [1, 2, 3] around 2, and the taxonomy's is
+    // 0.27.
+    const auto expected = [](double spread) {
+        return std::hypot(std::log(2), 1.2816 * spread) + std::hypot(std::log(1.5), 1.2816 * spread);
+    };
+    EXPECT_NEAR(std::log(ratio(near)), expected(0.27), 1e-9);
+    EXPECT_NEAR(std::log(ratio(far)), expected(std::hypot(0.27, spread_of_steps(2))), 1e-9);
     EXPECT_EQ(far.number("mass", 0), resolve(small_taxonomy(), named("dish")).number("mass", 1));
     EXPECT_EQ(far.word("synset", ""), "tureen.n.01");
     EXPECT_LT(far.number("category_confidence", 1), near.number("category_confidence", 0));
