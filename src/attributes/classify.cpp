@@ -52,6 +52,7 @@ Candidate candidate_of(const Taxonomy::Data& data, const Trust& trust, const Phr
     const CategoryData& category = data.categories[match.entry];
     return {.category = &category,
             .confidence = trust.phrase,
+            .where = trust.where,
             .source = because(trust.where, match),
             .phrase = match.phrase,
             .synset = category.synset,
@@ -86,6 +87,7 @@ Candidate candidate_of(const Taxonomy::Data& data, const Trust& trust, const Rea
                               (0.5 + 0.5 * reading.share) * (0.6 + 0.4 * std::min(1.0, 2 * read.noun.physical));
     return {.category = &category,
             .confidence = choice == 0 ? confidence : confidence * reading.share,
+            .where = trust.where,
             .source = std::string(trust.where) + " says \"" + read.text + "\" → " + path_text(*data.nouns, reading),
             .phrase = read.text,
             .synset = data.nouns->name(reading.meaning),
@@ -231,6 +233,7 @@ void ask_catalogue(const Taxonomy::Data& data, const std::string& name, std::vec
     const CategoryData& category = data.categories[usual->second];
     found.push_back({.category = &category,
                      .confidence = usual_of_catalogue,
+                     .where = category_trust.where,
                      .source = "the catalogue files it under \"" + name + "\"",
                      .synset = category.synset,
                      .reckoning = "only the catalogue's own category tells",
@@ -261,19 +264,26 @@ std::string with_compounds_split(const Taxonomy::Data& data, const std::vector<T
     return any ? text : std::string();
 }
 
-// What else speaks for a general answer being right: a more specific one of another source that is a kind of it.
+// Whether one answer says more exactly what the other says: a subcategory of it, or a kind of what it means.
+bool is_more_exact(const Taxonomy::Data& data, const Candidate& a, const Candidate& b) {
+    if (a.category == b.category) return false;
+    if (!a.category->parent.empty() && a.category->parent == b.category->name) return true;
+    const auto exact = data.nouns->find_synset(a.category->synset);
+    const auto general = data.nouns->find_synset(b.category->synset);
+    return exact && general && is_kind_of(*data.nouns, *exact, *general);
+}
+
+// Sources that agree, one saying more exactly what the other says: the more exact answer is believed at least as much.
 void support_each_other(const Taxonomy::Data& data, std::vector<Candidate>& found) {
-    if (found.empty()) return;
-    const auto meaning_of = [&](const Candidate& c) { return data.nouns->find_synset(c.category->synset); };
-    const auto general = meaning_of(found.front());
-    if (!general || found.front().steps < 2) return;
-    for (Candidate& other : found) {
-        const auto specific = meaning_of(other);
-        if (other.category == found.front().category || !specific || !is_kind_of(*data.nouns, *specific, *general))
-            continue;
-        if (other.source.starts_with(name_trust.where)) continue;
-        other.confidence = std::max(other.confidence, found.front().confidence * 1.02);
-        other.source += ", which " + found.front().source + " agrees with";
+    constexpr double a_little_more = 1.02;
+    for (Candidate& exact : found) {
+        for (const Candidate& general : found) {
+            const double supported = a_little_more * general.confidence;
+            if (exact.where == general.where && exact.where == name_trust.where) continue;
+            if (supported <= exact.confidence || supported > 1 || !is_more_exact(data, exact, general)) continue;
+            exact.confidence = supported;
+            exact.reckoning += "; " + general.where + " agrees (" + general.category->name + ")";
+        }
     }
 }
 

@@ -14,6 +14,7 @@ namespace embody::attributes {
 struct Candidate {
     const CategoryData* category = nullptr;  ///< never null
     double confidence = 0;  ///< 0 to 1: how likely the category, or what is above it, is what the thing is
+    std::string where;      ///< what was asked: "name", "tag", "folder", "catalogue category"; empty: nothing
     std::string source;     ///< "name says "tureen" → tureen.n.01 → bowl.n.01 (1 step up)"
     std::string phrase;     ///< the words that decided; empty where none did
     std::string synset;     ///< what these words mean in WordNet; empty where unknown

@@ -146,7 +146,7 @@ TEST(Classify, ATagMakesAGeneralAnswerMoreExactAndOverrulesWhatSharesNothingWith
     ModelFacts facts = unsized("sarcophagus");
     facts.tags = {"dish"};
     EXPECT_EQ(taken(facts).category->name, "dish");
-    EXPECT_NE(taken(facts).source.find("agrees with"), std::string::npos);
+    EXPECT_NE(taken(facts).reckoning.find("name agrees (container)"), std::string::npos);
     // A name may be a brand: "Trombone", filed under seats, is a seat; filed under instruments it is what it says.
     facts.name = "Trombone";
     facts.tags = {"seat"};
