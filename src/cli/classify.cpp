@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "attributes/phrase_match.h"
 #include "cli/commands.h"
 #include "cli/locations.h"
 #include "cli/output.h"
@@ -31,6 +32,26 @@ attributes::ModelFacts facts_of(const ClassifyArguments& arguments) {
     return facts;
 }
 
+// What the name can mean in WordNet, the usual first, each with the three hypernyms above it: "crane.n.04 >
+// lifting_device .n.01 > …". Empty where WordNet does not have it.
+std::vector<std::string> senses_of(const attributes::Taxonomy::Data& data, std::string_view name) {
+    std::string words = attributes::stems_of(name);
+    std::ranges::replace(words, ' ', '_');
+    const auto lemma = data.nouns->find_inflected(words);
+    std::vector<std::string> senses;
+    if (!lemma) return senses;
+    for (const attributes::wordnet::NounSense& sense : data.nouns->senses(*lemma)) {
+        std::string text = data.nouns->name(sense.synset);
+        auto current = sense.synset;
+        for (int up = 0; up < 3 && !data.nouns->hypernyms(current).empty(); ++up) {
+            current = data.nouns->hypernyms(current).front();
+            text += " > " + data.nouns->name(current);
+        }
+        senses.push_back(std::move(text));
+    }
+    return senses;
+}
+
 nlohmann::json to_json(const Candidate& candidate) {
     nlohmann::json row = {{"category", candidate.category->name},
                           {"confidence", candidate.confidence},
@@ -42,7 +63,7 @@ nlohmann::json to_json(const Candidate& candidate) {
     return row;
 }
 
-void print(const Classification& what, const AttributeSet& set) {
+void print(const Classification& what, const AttributeSet& set, const std::vector<std::string>& senses) {
     const auto line = [](const char* label, const std::string& text) {
         if (!text.empty()) fmt::print("  {} {}\n", padded(label, 11), text);
     };
@@ -53,12 +74,12 @@ void print(const Classification& what, const AttributeSet& set) {
     line("meaning", what.synset);
     line("kind", set.word("kind", "") + ", " + set.word("surface_material", ""));
     if (const AttributeEntry* mass = set.find("mass"); mass != nullptr && mass->low && mass->high) {
-        line("mass", fmt::format("{} kg [{} … {}]", short_number(set.number("mass", 0)), short_number(*mass->low),
-                                 short_number(*mass->high)));
+        line("mass", fmt::format("{:.3g} kg [{:.3g} … {:.3g}]", set.number("mass", 0), *mass->low, *mass->high));
     }
     for (const Candidate& other : what.others) {
         line("or", fmt::format("{} ({:.2f}): {}", other.category->name, other.confidence, other.source));
     }
+    for (const std::string& sense : senses) line("sense", sense);
 }
 
 }  // namespace
@@ -69,8 +90,9 @@ int run_classify(const ClassifyArguments& arguments) {
     const attributes::ModelFacts facts = facts_of(arguments);
     const Classification what = attributes::classify((*taxonomy)->data(), facts);
     const AttributeSet set = attributes::resolve(**taxonomy, facts);
+    const std::vector<std::string> senses = senses_of((*taxonomy)->data(), arguments.name);
     if (!arguments.json) {
-        print(what, set);
+        print(what, set, senses);
         return exit_ok;
     }
     nlohmann::json answer = to_json(what);
@@ -80,6 +102,7 @@ int run_classify(const ClassifyArguments& arguments) {
     if (const AttributeEntry* mass = set.find("mass"); mass != nullptr && mass->low && mass->high) {
         answer["mass_kg"] = {{"value", set.number("mass", 0)}, {"low", *mass->low}, {"high", *mass->high}};
     }
+    answer["senses"] = senses;
     answer["candidates"] = nlohmann::json::array();
     for (const Candidate& other : what.others) answer["candidates"].push_back(to_json(other));
     print_json(answer);
