@@ -66,7 +66,7 @@ constexpr Expected real_names[] = {
     {"Coffee cup", "cup", "", "rigid"},
     {"Coffee mug", "cup", "mug", "rigid"},
     {"Table tennis", "table", "tennis table", "rigid"},  // a phrase, not a table called tennis
-    {"Table tennis bat", "sports equipment", "", "rigid"},
+    {"Table tennis bat", "racket", "table tennis bat", "rigid"},
     {"Football table", "table", "football table", "articulated"},
     {"Soccer ball", "ball", "football", "rigid"},
     {"Sofa 2 seats", "sofa", "", "rigid"},  // a number ends the noun
@@ -93,11 +93,11 @@ constexpr Expected real_names[] = {
     {"Curtain", "curtain", "", "cloth"},
     {"Towel", "towel", "", "cloth"},
     {"Apple iPhone", "phone", "smartphone", "rigid"},  // not fruit
-    {"Glasses", "glasses", "", "rigid"},               // not the plural of glass
+    {"Glasses", "glasses", "", "articulated"},         // not the plural of glass
     {"Glass", "glass", "", "rigid"},
     {"White light source", "lamp", "light source", "visual"},
     {"Sitting boy", "person", "child", "articulated"},
-    {"Car model", "toy", "", "rigid"},
+    {"Car model", "toy", "toy car", "rigid"},
     {"Ford Focus", "car", "", "articulated"},
     {"Shopping basket", "box", "basket", "rigid"},
     {"bedsideTable", "table", "bedside table", "rigid"},
