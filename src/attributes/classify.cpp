@@ -26,6 +26,7 @@ constexpr Trust name_trust{"name", 0.95, 0.9};
 constexpr Trust tag_trust{"tag", 0.65, 0.55};
 constexpr Trust folder_trust{"folder", 0.5, 0.4};
 constexpr Trust category_trust{"catalogue category", 0.3, 0.15};
+constexpr Trust part_trust{"part material", 0.25, 0.15};
 constexpr double usual_of_catalogue = 0.35;  // "Lights" → lamp
 constexpr double a_step = 0.93;              // each hypernym
 constexpr double own_word = 3;               // the taxonomy's reading of a word before WordNet's others
@@ -227,6 +228,17 @@ void ask_text(const Taxonomy::Data& data, const Trust& trust, std::string_view t
     }
 }
 
+// Names of the parts' materials tell what they are made of, and now and then what they are parts of: "lamp_shade".
+void ask_parts(const Taxonomy::Data& data, const ModelFacts& facts, const Surroundings& surroundings,
+               std::vector<Candidate>& found) {
+    constexpr std::size_t parts_asked = 6;
+    for (std::size_t i = 0; i < facts.material_names.size() && i < parts_asked; ++i) {
+        const std::string& name = facts.material_names[i];
+        if (match_phrase(data.material_phrases, data.longest_phrase, name)) continue;
+        ask_text(data, part_trust, name, surroundings, found);
+    }
+}
+
 void ask_catalogue(const Taxonomy::Data& data, const std::string& name, std::vector<Candidate>& found) {
     const auto usual = data.by_catalogue.find(stems_of(name));
     if (usual == data.by_catalogue.end()) return;
@@ -327,6 +339,7 @@ Classification classify(const Taxonomy::Data& data, const ModelFacts& facts) {
         ask_text(data, folder_trust, facts.folder, surroundings, found);
         ask_catalogue(data, facts.catalogue_category, found);
         ask_text(data, category_trust, facts.catalogue_category, surroundings, found);
+        if (found.empty()) ask_parts(data, facts, surroundings, found);
         support_each_other(data, found);
     }
     if (found.empty())

@@ -155,6 +155,17 @@ TEST(Classify, ATagMakesAGeneralAnswerMoreExactAndOverrulesWhatSharesNothingWith
     EXPECT_EQ(taken(facts).category->name, "instrument");
 }
 
+TEST(Classify, PartsAreAskedLast) {
+    ModelFacts facts = unsized("qwzx 17");
+    facts.material_names = {"Oak", "Oak tureen"};
+    EXPECT_EQ(taken(facts).category->name, "object");  // what says a material says no thing
+    facts.material_names = {"Oak", "tureen_2"};
+    EXPECT_EQ(taken(facts).category->name, "dish");
+    EXPECT_LT(taken(facts).confidence, 0.3);
+    facts.folder = "music/trombones";
+    EXPECT_EQ(taken(facts).category->name, "instrument");
+}
+
 TEST(Classify, ASalesTextIsTrustedLessThanATag) {
     ModelFacts facts = named("Shiny blue dish");
     facts.tags = {"seat"};
