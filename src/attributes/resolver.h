@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "attributes/attribute.h"
 #include "attributes/model_facts.h"
@@ -25,13 +26,17 @@ public:
 
     struct Data;
     [[nodiscard]] const Data& data() const { return *data_; }
+    /// A copy that does not know this category, its subcategories and their words, for asking how well it does with words
+    /// that it has never seen.
+    [[nodiscard]] std::unique_ptr<Taxonomy> without(std::string_view category) const;
+
     /// Friction and restitution by pair of materials.
     [[nodiscard]] const Surfaces& surfaces() const { return *surfaces_; }
 
 private:
     Taxonomy();
     std::unique_ptr<Data> data_;
-    std::unique_ptr<const Surfaces> surfaces_;
+    std::shared_ptr<const Surfaces> surfaces_;
 };
 
 /// All attributes of a model from what is known of it, each with source and level: category → kind → attribute set,

@@ -258,12 +258,27 @@ const CategoryData* Taxonomy::Data::category(std::string_view name) const {
 Taxonomy::Taxonomy() : data_(std::make_unique<Data>()) {}
 Taxonomy::~Taxonomy() = default;
 
+std::unique_ptr<Taxonomy> Taxonomy::without(std::string_view category) const {
+    std::unique_ptr<Taxonomy> rest(new Taxonomy);
+    *rest->data_ = *data_;
+    rest->surfaces_ = surfaces_;
+    // The entries keep their places; nothing leads to the hidden ones any more.
+    const auto hidden = [&](std::size_t entry) {
+        const CategoryData& held = data_->categories[entry];
+        return held.name == category || held.parent == category;
+    };
+    std::erase_if(rest->data_->category_phrases, [&](const auto& item) { return hidden(item.second.entry); });
+    std::erase_if(rest->data_->by_catalogue, [&](const auto& item) { return hidden(item.second); });
+    std::erase_if(rest->data_->by_synset, [&](const auto& item) { return hidden(item.second); });
+    return rest;
+}
+
 Result<std::unique_ptr<Taxonomy>> Taxonomy::load(const std::filesystem::path& folder) {
     std::unique_ptr<Taxonomy> taxonomy(new Taxonomy);
     if (auto loaded = load_materials(*taxonomy->data_, folder / "materials.json"); !loaded) return loaded.error();
     auto surfaces = Surfaces::load(folder / "material_pairs.json", taxonomy->data_->materials);
     if (!surfaces) return surfaces.error();
-    taxonomy->surfaces_ = std::make_unique<Surfaces>(std::move(*surfaces));
+    taxonomy->surfaces_ = std::make_shared<const Surfaces>(std::move(*surfaces));
     if (auto loaded = load_nouns(*taxonomy->data_, folder); !loaded) return loaded.error();
     if (auto loaded = load_categories_of(*taxonomy->data_, folder / "categories"); !loaded) {
         return loaded.error();

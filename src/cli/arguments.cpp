@@ -191,6 +191,8 @@ private:
                          "What the predictor is told beside the size: everything, name, category")
             ->capture_default_str()
             ->check(CLI::IsMember({"everything", "name", "category"}).description(""));
+        mass->add_flag("--unseen", c.into->unseen,
+                       "Hide the category of each object, as if its words were never seen: what WordNet makes of them");
         mass->add_option("--worst", c.into->worst, "List so many of the worst predictions")
             ->capture_default_str()
             ->check(CLI::NonNegativeNumber);

@@ -77,6 +77,7 @@ struct EvaluateArguments {
     std::filesystem::path truth;      ///< table of measured objects
     std::filesystem::path kinds;      ///< table of labelled words; empty: none
     std::string told = "everything";  ///< or "name", "category"
+    bool unseen = false;              ///< hide each object's category from the taxonomy
     int worst = 20;                   ///< objects to list
     bool json = false;
 };

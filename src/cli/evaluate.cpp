@@ -131,7 +131,8 @@ int evaluate_masses(const EvaluateArguments& arguments, const attributes::Taxono
     const evaluation::Told told = arguments.told == "name"       ? evaluation::Told::name
                                   : arguments.told == "category" ? evaluation::Told::category
                                                                  : evaluation::Told::everything;
-    const MassEvaluation result = evaluation::evaluate_mass(taxonomy, *objects, told);
+    const auto words = arguments.unseen ? evaluation::Words::unseen : evaluation::Words::known;
+    const MassEvaluation result = evaluation::evaluate_mass(taxonomy, *objects, told, words);
     if (arguments.json)
         print_json(mass_to_json(result));
     else

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <random>
 
 #include "evaluation/found_category.h"
@@ -61,15 +62,33 @@ std::map<std::string, MassFigures> figures_by(const std::vector<MassPrediction>&
     return figures;
 }
 
+// Taxonomies without a category, made when first asked for.
+class Rest {
+public:
+    explicit Rest(const attributes::Taxonomy& taxonomy) : taxonomy_(taxonomy) {}
+    const attributes::Taxonomy& without(const std::string& category) {
+        auto& rest = made_[category];
+        if (!rest) rest = taxonomy_.without(category);
+        return *rest;
+    }
+
+private:
+    const attributes::Taxonomy& taxonomy_;
+    std::map<std::string, std::unique_ptr<attributes::Taxonomy>> made_;
+};
+
 }  // namespace
 
 double MassPrediction::log_error() const { return std::log(mass / object.mass); }
 
 MassEvaluation evaluate_mass(const attributes::Taxonomy& taxonomy, const std::vector<MeasuredObject>& objects,
-                             Told told) {
+                             Told told, Words words) {
     MassEvaluation evaluation;
+    Rest rest(taxonomy);
     for (const MeasuredObject& object : objects) {
-        const AttributeSet set = resolve(taxonomy, facts_of(object, told));
+        const attributes::ModelFacts facts = facts_of(object, told);
+        AttributeSet set = resolve(taxonomy, facts);
+        if (words == Words::unseen) set = resolve(rest.without(set.word("category", "")), facts);
         const AttributeEntry* mass = set.find("mass");
         if (mass == nullptr) {
             evaluation.without_mass.push_back(object.id);

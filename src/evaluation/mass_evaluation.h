@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -41,8 +42,13 @@ struct MassEvaluation {
     std::vector<std::string> without_mass;  ///< ids of objects taken for something that has none (a liquid, a picture)
 };
 
+/// Whether the taxonomy may know what an object is, or its word counts as never seen: then the category that was found,
+/// with its subcategories and all their words, is hidden, and the mass is predicted by what is left (other words of the
+/// name, WordNet's hypernyms).
+enum class Words : std::uint8_t { known, unseen };
+
 /// Predicts each object's mass from what `told` allows and compares. Deterministic.
 MassEvaluation evaluate_mass(const attributes::Taxonomy& taxonomy, const std::vector<MeasuredObject>& objects,
-                             Told told);
+                             Told told, Words words = Words::known);
 
 }  // namespace embody::evaluation

@@ -96,5 +96,18 @@ TEST(MassEvaluation, ThePredictorNeverSeesTheMass) {
     EXPECT_EQ(evaluation.predictions[0].mass, evaluation.predictions[1].mass);
 }
 
+TEST(MassEvaluation, AnUnseenWordFindsAnotherCategory) {
+    const auto known = taxonomy();
+    const MeasuredObject apple{"a:1", "apple", "apple", {0.08, 0.08, 0.08}, {}, 0.2};
+    const MassEvaluation seen = evaluate_mass(*known, {apple}, Told::everything);
+    const MassEvaluation unseen = evaluate_mass(*known, {apple}, Told::everything, Words::unseen);
+    EXPECT_EQ(seen.predictions.front().category, "apple");
+    EXPECT_NE(unseen.predictions.front().category, "apple");
+    EXPECT_GT(unseen.predictions.front().high / unseen.predictions.front().low,
+              seen.predictions.front().high / seen.predictions.front().low);
+    EXPECT_EQ(evaluate_mass(*known, {apple}, Told::everything).predictions.front().category, "apple")
+        << "the taxonomy itself forgets nothing";
+}
+
 }  // namespace
 }  // namespace embody::evaluation
