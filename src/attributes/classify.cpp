@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "attributes/as_model.h"
 #include "attributes/form.h"
 #include "attributes/noun_reading.h"
 #include "attributes/phrase_match.h"
@@ -347,7 +348,7 @@ Classification classify(const Taxonomy::Data& data, const ModelFacts& facts) {
                          .confidence = nothing_known,
                          .source = "no word of its name, tags or folder is known",
                          .reckoning = "nothing tells"});
-    return decide(std::move(found));
+    return as_model(data, facts, decide(std::move(found)));
 }
 
 double spread_of_steps(std::size_t steps) { return 0.25 * std::sqrt(static_cast<double>(steps)); }

@@ -31,7 +31,7 @@ struct Classification : Candidate {
 
 /// From the name, else the tags, the folder, the catalogue's category, the names of the parts' materials; of each the
 /// taxonomy's own phrases first, then the nearest category above a noun that WordNet knows. The source names a
-/// runner-up that is close.
+/// runner-up that is close. A model of a substance is often something else (of beer, its bottle): see as_model.h.
 Classification classify(const Taxonomy::Data& data, const ModelFacts& facts);
 
 /// By how much hypernyms widen what is known of a category: standard deviation of ln(mass) that comes on top.

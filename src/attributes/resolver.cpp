@@ -28,7 +28,7 @@ void put_identity(AttributeSet& set, const ModelFacts& facts, const Classificati
     };
     word("category", is_sub ? category.parent : category.name, what.source, what.level);
     if (is_sub) word("subcategory", category.name, what.source, what.level);
-    const std::string named = what.steps > 0 ? "\"" + what.phrase + "\"" : category.name;
+    const std::string named = what.synset == category.synset ? category.name : "\"" + what.phrase + "\"";
     if (!what.synset.empty()) word("synset", what.synset, "meaning of " + named, what.level);
     set.put({"category_confidence", what.confidence, {}, {}, what.reckoning, what.level});
     word("placement", category.placement, "usual for " + category.name, what.level);

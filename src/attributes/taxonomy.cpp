@@ -65,6 +65,8 @@ void read_attributes(FieldReader& reader, const std::string& where, CategoryData
     }
 }
 
+bool is_substance(const CategoryData& category) { return category.kind == "fluid" || category.kind == "granular"; }
+
 Result<CategoryData> read_category(const json& object, const std::string& where, const CategoryData* parent) {
     // A subcategory starts as its category; words are its own, and numbers that it changes need a source of their own.
     CategoryData category = parent != nullptr ? *parent : CategoryData{};
@@ -72,6 +74,7 @@ Result<CategoryData> read_category(const json& object, const std::string& where,
     category.words.clear();
     category.catalogue.clear();
     category.synset.clear();
+    category.modelled_as.clear();
     if (!top) category.parent = parent->name;
 
     FieldReader reader(object, where);
@@ -82,6 +85,7 @@ Result<CategoryData> read_category(const json& object, const std::string& where,
     reader.word("synset", category.synset, false);
     reader.words("words", category.words, true);
     reader.words("catalogue", category.catalogue, false);
+    reader.word("modelled_as", category.modelled_as, false);
     reader.word("kind", category.kind, top);
     reader.word("placement", category.placement, top);
     reader.truth("movable", category.movable, top);
@@ -100,6 +104,9 @@ Result<CategoryData> read_category(const json& object, const std::string& where,
     check_choice(reader, "placement", category.placement);
     if (category.kind == "static")
         reader.fail("kind", "must say what it is when it moves; static is \"movable\": false");
+    if (!category.modelled_as.empty() && !is_substance(category)) {
+        reader.fail("modelled_as", "is for the kinds fluid and granular; this is " + category.kind);
+    }
     if (scaling != "volume" && scaling != "area") reader.fail("mass_grows_with", "must be volume or area");
     category.scaling = scaling == "area" ? MassScaling::area : MassScaling::volume;
     // Those of a parent of another kind say nothing of this one.
@@ -221,6 +228,25 @@ Result<void> load_categories(Taxonomy::Data& data, const std::filesystem::path& 
     return {};
 }
 
+// The entry that a model of a substance is may stand in any file: only now are all known.
+Result<void> find_model_entries(Taxonomy::Data& data) {
+    for (CategoryData& substance : data.categories) {
+        if (substance.modelled_as.empty()) continue;
+        const std::string where = substance.domain + ".json: \"" + substance.name + "\".modelled_as";
+        const CategoryData* model = data.category(substance.modelled_as);
+        if (model == nullptr) {
+            return Error{where, "there is no entry \"" + substance.modelled_as + "\"",
+                         "give the name of a category or subcategory"};
+        }
+        if (is_substance(*model)) {
+            return Error{where, "\"" + substance.modelled_as + "\" is a substance itself",
+                         "name what holds it or one piece of it, such as a bottle, or leave modelled_as out"};
+        }
+        substance.model_entry = static_cast<std::size_t>(model - data.categories.data());
+    }
+    return {};
+}
+
 // All files of the folder, in the order of their names.
 Result<void> load_categories_of(Taxonomy::Data& data, const std::filesystem::path& folder) {
     std::error_code failure;
@@ -236,7 +262,7 @@ Result<void> load_categories_of(Taxonomy::Data& data, const std::filesystem::pat
     const CategoryData* unknown = data.category("object");
     if (unknown == nullptr) return Error{folder.string(), "has no category \"object\" for what nothing tells"};
     data.unknown = static_cast<std::size_t>(unknown - data.categories.data());
-    return {};
+    return find_model_entries(data);
 }
 
 }  // namespace

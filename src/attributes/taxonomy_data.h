@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -61,6 +62,8 @@ struct CategoryData {
     std::string material;
     std::string source;                         ///< of the numbers above
     std::vector<CategoryAttribute> attributes;  ///< what else is usual, such as the stiffness of a cushion
+    std::string modelled_as;  ///< of a substance: the entry that a model of it is, "beer bottle"; empty: the substance
+    std::optional<std::size_t> model_entry;  ///< index of that entry
 };
 
 /// A phrase that names an entry, e.g. "coffee table".

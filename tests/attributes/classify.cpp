@@ -45,7 +45,10 @@ const Taxonomy& small_taxonomy() {
                    entry("machine", "device.n.01", "", 3, 60) + "," + entry("pig", "swine.n.01", R"("pig")", 0.5, 2) +
                    "," + entry("rodent", "rodent.n.01", "", 0.05, 0.5) + "," +
                    entry("seat", "seat.n.03", R"("seat", "sofa")", 0.3, 3) + "," +
-                   entry("object", "object.n.01", "", 0.01, 30) + "]}";
+                   entry("object", "object.n.01", "", 0.01, 30) +
+                   R"(, {"name": "beer", "synset": "beer.n.01", "words": ["beer"], "kind": "fluid", "placement": "free",
+                         "movable": true, "mass": [0.9, 1, 1.1], "at_size": [0.1, 0.1, 0.1], "usual_size": [0.01, 5],
+                         "material": "generic", "modelled_as": "container", "source": "s"}]})";
         auto loaded = Taxonomy::load(folder);
         std::filesystem::remove_all(folder);
         EXPECT_TRUE(loaded.ok()) << loaded.error().message();
@@ -202,6 +205,35 @@ TEST(Classify, AccentsAndOtherLanguagesWordsOfTheTaxonomyAreFound) {
     EXPECT_EQ(classify(data, unsized("Po\xC3\xAAle")).category->name,
               classify(data, unsized("frying pan")).category->name);
     EXPECT_NE(classify(data, unsized("Cuill\xC3\xA8re")).level, AttributeLevel::standard);
+}
+
+TEST(Classify, AWordOfASubstanceIsTheSubstanceAndAModelOfItWhatItComesIn) {
+    const auto found = [](const ModelFacts& facts) { return classify(small_taxonomy().data(), facts); };
+    const auto model = [](const std::string& name, Vec3 size) {
+        ModelFacts facts = unsized(name);
+        facts.geometry.size = size;
+        return facts;
+    };
+    constexpr Vec3 of_a_bottle{0.07, 0.25, 0.07};
+    EXPECT_EQ(found(unsized("beer")).category->name, "beer");
+    EXPECT_EQ(resolve(small_taxonomy(), unsized("beer")).word("kind", ""), "fluid");
+
+    const Classification as_model = found(model("beer", of_a_bottle));
+    EXPECT_EQ(as_model.category->name, "container");
+    EXPECT_EQ(as_model.source, "name says \"beer\"; a model of beer is usually \"container\"");
+    EXPECT_EQ(resolve(small_taxonomy(), model("beer", of_a_bottle)).word("kind", ""), "rigid");
+    // Over WordNet too; and the word keeps its own meaning.
+    EXPECT_EQ(found(unsized("lager")).category->name, "beer");
+    EXPECT_EQ(found(model("lager", of_a_bottle)).category->name, "container");
+    EXPECT_EQ(found(model("lager", of_a_bottle)).synset, "lager.n.02");
+
+    // In bulk it stays what it is: by its name, or by a stated size that no bottle has.
+    for (const char* name : {"spilled beer", "beer, poured"})
+        EXPECT_EQ(found(model(name, of_a_bottle)).category->name, "beer") << name;
+    ModelFacts lake = model("beer", {9, 0.2, 9});
+    EXPECT_EQ(found(lake).category->name, "container");  // 9 mm?
+    lake.size_is_stated = true;
+    EXPECT_EQ(found(lake).category->name, "beer");
 }
 
 TEST(NounReading, KinshipIsThatOfMeanings) {

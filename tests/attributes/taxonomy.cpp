@@ -119,6 +119,22 @@ TEST(TaxonomyLoad, OfTwoEntriesWithOneMeaningTheMoreGeneralIsFound) {
     EXPECT_EQ(data.categories[found->second].domain, "a");
 }
 
+TEST(TaxonomyLoad, OnlyASubstanceIsModelledAsSomethingElseThatIsThere) {
+    const auto substance = [](const std::string& kind, const std::string& modelled_as) {
+        std::string entry = category("beer", R"(["beer"])", R"(, "modelled_as": ")" + modelled_as + "\"");
+        return load_error(entry.replace(entry.find("\"rigid\""), 7, "\"" + kind + "\"") + ", " +
+                          category("bottle", R"(["bottle"])"));
+    };
+    EXPECT_EQ(substance("fluid", "bottle"), "");
+    EXPECT_EQ(substance("granular", "bottle"), "");
+    EXPECT_EQ(substance("soft", "bottle"),
+              "things.json: categories[1].modelled_as: is for the kinds fluid and granular; this is soft");
+    EXPECT_EQ(
+        substance("fluid", "jug"),
+        "things.json: \"beer\".modelled_as: there is no entry \"jug\" (give the name of a category or subcategory)");
+    EXPECT_NE(substance("fluid", "beer").find("\"beer\" is a substance itself"), std::string::npos);
+}
+
 TEST(TaxonomyLoad, NumbersNeedASource) {
     const std::string sub =
         R"(, "subcategories": [{"name": "b", "words": [], "mass": [1, 2, 3], "at_size": [1, 1, 1]}])";
