@@ -32,6 +32,8 @@ constexpr double usual_of_catalogue = 0.35;  // "Lights" → lamp
 constexpr double a_step = 0.93;              // each hypernym
 constexpr double own_word = 3;               // the taxonomy's reading of a word before WordNet's others
 constexpr double overruled = 0.5;            // what stands in the name, but is not what it is about
+constexpr double trust_in_compound = 0.9;    // "deskchair"
+constexpr double trust_in_ending = 0.65;     // "Kaffeetisch"
 constexpr double nothing_known = 0.05;
 constexpr std::size_t long_name = 8;     // words: a sales text, whose last noun says less than a tag
 constexpr double trust_in_long = 0.65;   // of what a short name is trusted
@@ -253,11 +255,18 @@ void ask_catalogue(const Taxonomy::Data& data, const std::string& name, std::vec
                      .level = level_of(category)});
 }
 
-// "deskchair" → "desk chair": an unknown word as two known ones, the second as long as possible. Empty where no word
-// can be split.
-std::string with_compounds_split(const Taxonomy::Data& data, const std::vector<Token>& tokens) {
+// "deskchair" → "desk chair": an unknown word as two known ones, the second as long as possible; or, where only its end
+// need be known, as whatever and one of our own words, as German builds them: "Kaffeetisch" → "kaffee tisch". Empty
+// where no word can be split.
+std::string with_compounds_split(const Taxonomy::Data& data, const std::vector<Token>& tokens, bool only_end) {
+    const auto is_ours = [&](const std::string& word) { return data.category_phrases.contains(singular_of(word)); };
     const auto is_known = [&](const std::string& word) {
-        return data.category_phrases.contains(singular_of(word)) || data.nouns->find_inflected(word).has_value();
+        return is_ours(word) || data.nouns->find_inflected(word).has_value();
+    };
+    const auto can_split = [&](const std::string& begin, const std::string& end) {
+        if (only_end) return end.size() >= 4 && is_ours(end);
+        // Three letters are a word by chance, unless it is one of ours: "katana" is no "kat ana".
+        return is_known(begin) && is_known(end) && (end.size() >= 4 || is_ours(end));
     };
     std::string text;
     bool any = false;
@@ -265,16 +274,28 @@ std::string with_compounds_split(const Taxonomy::Data& data, const std::vector<T
         text += (text.empty() ? "" : " ") + token.text;
         if (token.text.size() < 6 || is_known(token.text)) continue;
         for (std::size_t cut = 3; cut + 3 <= token.text.size(); ++cut) {
-            const std::string end = token.text.substr(cut);
-            // Three letters are a word by chance, unless it is one of ours: "katana" is no "kat ana".
-            if (end.size() < 4 && !data.category_phrases.contains(end)) continue;
-            if (!is_known(token.text.substr(0, cut)) || !is_known(end)) continue;
+            if (!can_split(token.text.substr(0, cut), token.text.substr(cut))) continue;
             text.insert(text.size() - token.text.size() + cut, " ");
             any = true;
             break;
         }
     }
     return any ? text : std::string();
+}
+
+// The name, else the name with its compounds taken apart, believed less the more that is a guess.
+std::vector<Candidate> ask_name_and_compounds(const Taxonomy::Data& data, const std::string& name,
+                                              const Surroundings& surroundings) {
+    std::vector<Candidate> found = ask_name(data, name, surroundings);
+    for (const bool only_end : {false, true}) {
+        if (!found.empty()) break;
+        found = ask_name(data, with_compounds_split(data, tokens_of(name), only_end), surroundings);
+        for (Candidate& candidate : found) {
+            candidate.confidence *= only_end ? trust_in_ending : trust_in_compound;
+            candidate.reckoning += only_end ? "; the end of an unknown word" : "; a word taken apart";
+        }
+    }
+    return found;
 }
 
 // Whether one answer says more exactly what the other says: a subcategory of it, or a kind of what it means.
@@ -317,11 +338,16 @@ Classification decide(std::vector<Candidate> found) {
     return result;
 }
 
+bool is_said_to_be_made_of(const std::vector<Token>& tokens, std::size_t material) {
+    return material > 0 && (tokens[material - 1].text == "aus" || tokens[material - 1].text == "en");
+}
+
 bool material_by_words(const Taxonomy::Data& data, const std::string& where, std::string_view text,
                        MaterialChoice& result) {
-    // A "door with panes" is not made of glass: only the first part of a name says what it is made of.
+    // A "door with panes" is not made of glass: only the first part of a name says what it is made of, or what follows
+    // a word that says so: "Tisch aus Holz".
     const auto match = match_phrase(data.material_phrases, data.longest_phrase, text);
-    if (!match || match->segment > 0) return false;
+    if (!match || (match->segment > 0 && !is_said_to_be_made_of(tokens_of(text), match->first))) return false;
     result = {&data.materials[match->entry], where + " says \"" + match->phrase + "\"", AttributeLevel::model};
     return true;
 }
@@ -330,8 +356,7 @@ bool material_by_words(const Taxonomy::Data& data, const std::string& where, std
 
 Classification classify(const Taxonomy::Data& data, const ModelFacts& facts) {
     const Surroundings surroundings(data, facts);
-    std::vector<Candidate> found = ask_name(data, facts.name, surroundings);
-    if (found.empty()) found = ask_name(data, with_compounds_split(data, tokens_of(facts.name)), surroundings);
+    std::vector<Candidate> found = ask_name_and_compounds(data, facts.name, surroundings);
     if (tokens_of(facts.name).size() >= long_name) doubt_long_name(found);
 
     // What stands elsewhere is asked where the name leaves doubt.

@@ -26,8 +26,8 @@ public:
 
     struct Data;
     [[nodiscard]] const Data& data() const { return *data_; }
-    /// A copy that does not know this category, its subcategories and their words, for asking how well it does with words
-    /// that it has never seen.
+    /// A copy that does not know this category, its subcategories and their words, for asking how well it does with
+    /// words that it has never seen.
     [[nodiscard]] std::unique_ptr<Taxonomy> without(std::string_view category) const;
 
     /// Friction and restitution by pair of materials.

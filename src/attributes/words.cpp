@@ -8,8 +8,11 @@
 namespace embody::attributes {
 namespace {
 
-constexpr std::array<std::string_view, 15> separators{"with", "and", "for", "of",   "in", "on",      "by",  "under",
-                                                      "from", "to",  "at",  "over", "or", "without", "plus"};
+// English, then what stands for the same in German, French, Spanish and Italian and is no English noun.
+constexpr auto separators = std::to_array<std::string_view>(
+    {"with", "and",     "for",  "of",  "in",  "on",   "by",   "under", "from", "to",   "at", "over",
+     "or",   "without", "plus", "mit", "und", "aus",  "ohne", "avec",  "sans", "et",   "en", "au",
+     "de",   "des",     "du",   "con", "sin", "para", "del",  "di",    "da",   "della"});
 
 bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
 bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }
@@ -24,13 +27,23 @@ char plain_letter(std::uint8_t second) {
     return index < plain.size() && plain[index] != ' ' ? plain[index] : '\0';
 }
 
+// Whether what is written so far ends in a single d or l.
+bool is_elided(std::string_view text) {
+    if (text.empty()) return false;
+    const bool is_alone = text.size() == 1 || (text.size() > 1 && !is_letter(text[text.size() - 2]));
+    return is_alone && std::string_view("dDlL").find(text.back()) != std::string_view::npos;
+}
+
 // ASCII text of the same words; other scripts become spaces.
 std::string without_accents(std::string_view text) {
     std::string plain;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const auto byte = static_cast<std::uint8_t>(text[i]);
         if (byte < 0x80) {
-            // An apostrophe joins: "captain's" is one word.
+            // An apostrophe joins, "captain's" is one word; but not an article or "de" that lost its vowel: "table
+            // d'angle".
+            if (text[i] == '\'' && is_elided(plain))
+                plain.back() = plain.back() == 'd' || plain.back() == 'D' ? ',' : ' ';
             if (text[i] != '\'') plain += text[i];
         } else if (byte == 0xC3 && i + 1 < text.size()) {
             const char letter = plain_letter(static_cast<std::uint8_t>(text[++i]));

@@ -202,9 +202,18 @@ TEST(Classify, StepsWidenTheMassAndLowerTheConfidence) {
 
 TEST(Classify, AccentsAndOtherLanguagesWordsOfTheTaxonomyAreFound) {
     const Taxonomy::Data& data = shipped_taxonomy().data();
-    EXPECT_EQ(classify(data, unsized("Po\xC3\xAAle")).category->name,
-              classify(data, unsized("frying pan")).category->name);
+    const auto category = [&](const char* name) { return classify(data, unsized(name)).category->name; };
+    EXPECT_EQ(category("Po\xC3\xAAle"), category("frying pan"));
     EXPECT_NE(classify(data, unsized("Cuill\xC3\xA8re")).level, AttributeLevel::standard);
+    EXPECT_EQ(category("Stuhl"), category("chair"));
+    // What the thing is stands before the preposition, and at the end of a compound.
+    EXPECT_EQ(category("Table en verre"), category("table"));
+    EXPECT_EQ(category("Chaise d'angle"), category("chair"));
+    EXPECT_EQ(category("Tisch mit Lampe"), category("table"));
+    EXPECT_EQ(category("Kaffeetisch"), category("table"));
+    EXPECT_LT(classify(data, unsized("Kaffeetisch")).confidence, classify(data, unsized("Tisch")).confidence);
+    // What it is made of is said after "aus" and "en".
+    EXPECT_EQ(resolve(shipped_taxonomy(), named("Table en verre")).word("surface_material", ""), "glass");
 }
 
 TEST(Classify, AWordOfASubstanceIsTheSubstanceAndAModelOfItWhatItComesIn) {
