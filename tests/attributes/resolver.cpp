@@ -76,9 +76,9 @@ constexpr Expected real_names[] = {
     {"Christmas tree", "sculpture", "christmas tree", "rigid"},
     {"Palm tree", "tree", "palm", "static"},
     {"Pine under snow", "tree", "conifer", "static"},
-    {"Hot dog", "prepared dish", "hot dog", "soft"},  // not a dog
+    {"Hot dog", "prepared dish", "hot dog", "rigid"},  // not a dog
     {"Bulldog", "pet", "dog", "articulated"},
-    {"Roasted chicken", "meat", "roast chicken", "soft"},
+    {"Roasted chicken", "meat", "roast chicken", "rigid"},
     {"Chicken", "bird", "chicken", "articulated"},
     {"Plate, glass and cutlery", "plate", "", "rigid"},
     {"Bowl with fruits", "bowl", "full bowl", "rigid"},
