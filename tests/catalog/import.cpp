@@ -47,7 +47,7 @@ TEST_F(ImportTest, FailsWhereNoWorkerCanBeStarted) {
 }
 
 TEST_F(ImportTest, FullDiskIsToldAndWhatWasStoredStays) {
-    for (int i = 0; i < 200; ++i) write_model("m" + std::to_string(i) + ".obj", std::string(200 + i, 'x'));
+    for (int i = 0; i < 200; ++i) write_model("q" + std::to_string(i) + ".obj", std::string(200 + i, 'x'));
     auto taxonomy = attributes::Taxonomy::load(taxonomy_folder);
     auto connection = database::open_model_database(database());
     ASSERT_TRUE(taxonomy && connection);
@@ -119,7 +119,7 @@ TEST_F(ImportTest, AgainPreparesWhatIsUnchanged) {
 }
 
 TEST_F(ImportTest, StopsWhenAskedAndGoesOnNextTime) {
-    for (int i = 0; i < 10; ++i) write_model("m" + std::to_string(i) + ".obj", std::string(10 + i, 'x'));
+    for (int i = 0; i < 10; ++i) write_model("q" + std::to_string(i) + ".obj", std::string(10 + i, 'x'));
     std::size_t calls = 0;
     const auto stopped = import({models()}, {.progress = [&](const ImportProgress& progress) {
                                     ++calls;
@@ -137,7 +137,7 @@ TEST_F(ImportTest, StopsWhenAskedAndGoesOnNextTime) {
 }
 
 TEST_F(ImportTest, AKillLosesNothingThatWasDone) {
-    for (int i = 0; i < 40; ++i) write_model("m" + std::to_string(i) + ".obj", std::string(10 + i, 'x'));
+    for (int i = 0; i < 40; ++i) write_model("q" + std::to_string(i) + ".obj", std::string(10 + i, 'x'));
     std::int64_t stored = 0;
     for (const std::size_t last : {7u, 21u}) {
         const pid_t child = fork();
@@ -171,7 +171,7 @@ TEST_F(ImportTest, AKillLosesNothingThatWasDone) {
 }
 
 TEST_F(ImportTest, AKillAtAnyMomentLeavesAWholeDatabase) {
-    for (int i = 0; i < 60; ++i) write_model("m" + std::to_string(i) + ".obj", std::string(10 + i, 'x'));
+    for (int i = 0; i < 60; ++i) write_model("q" + std::to_string(i) + ".obj", std::string(10 + i, 'x'));
     for (int round = 0; round < 12; ++round) {
         const pid_t child = fork();
         ASSERT_GE(child, 0);
