@@ -204,7 +204,13 @@ private:
             ->add_option("--kinds", c.into->kinds,
                          "CSV with the columns words and kinds (parts separated by ;) to compare physical kinds with")
             ->check(CLI::ExistingFile);
-        for (CLI::App* one : {mass, catalogue}) {
+        CLI::App* behaviour = c.app->add_subcommand(
+            "behaviour", "What models of the database do in small simulations beside what their attributes say");
+        behaviour->add_option("--database", c.into->database, "Model database")->capture_default_str();
+        behaviour->add_option("--limit", c.into->limit, "At most so many models (0: all)")
+            ->capture_default_str()
+            ->check(CLI::NonNegativeNumber);
+        for (CLI::App* one : {mass, catalogue, behaviour}) {
             one->add_flag("--json", c.into->json, "Print JSON, for programs");
             one->callback([into = c.into, one] { into->what = one->get_name(); });
         }

@@ -72,13 +72,14 @@ struct ClassifyArguments {
     bool json = false;
 };
 struct EvaluateArguments {
-    std::string what;  ///< "mass" or "catalogue"
+    std::string what;  ///< "mass", "catalogue" or "behaviour"
     std::filesystem::path database;
     std::filesystem::path truth;      ///< table of measured objects
     std::filesystem::path kinds;      ///< table of labelled words; empty: none
     std::string told = "everything";  ///< or "name", "category"
     bool unseen = false;              ///< hide each object's category from the taxonomy
     int worst = 20;                   ///< objects to list
+    int limit = 0;                    ///< models to simulate; 0: all
     bool json = false;
 };
 struct SceneArguments {

@@ -2,12 +2,14 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/commands.h"
 #include "cli/locations.h"
 #include "cli/output.h"
+#include "evaluation/behaviour_evaluation.h"
 #include "evaluation/catalogue_evaluation.h"
 #include "evaluation/kind_evaluation.h"
 #include "evaluation/mass_evaluation.h"
@@ -15,6 +17,7 @@
 namespace embody::cli {
 namespace {
 
+using evaluation::BehaviourEvaluation;
 using evaluation::CatalogueEvaluation;
 using evaluation::KindEvaluation;
 using evaluation::MassEvaluation;
@@ -188,9 +191,68 @@ int evaluate_models(const EvaluateArguments& arguments, const attributes::Taxono
     return exit_ok;
 }
 
+nlohmann::json verdict_to_json(const BehaviourEvaluation::Verdict& verdict) {
+    nlohmann::json wrong = nlohmann::json::array();
+    for (const evaluation::Behaviour* model : verdict.wrong) wrong.push_back(model->key);
+    return {{"judged", verdict.judged}, {"wrong", std::move(wrong)}};
+}
+
+void print_verdict(const char* what, const BehaviourEvaluation::Verdict& verdict,
+                   const std::function<std::string(const evaluation::Behaviour&)>& say) {
+    fmt::print("{}: {} of {}\n", what, verdict.judged - verdict.wrong.size(), verdict.judged);
+    for (const evaluation::Behaviour* model : verdict.wrong)
+        fmt::print("  {} {} {}\n", padded(model->name, 32), padded(model->category, 22), say(*model));
+}
+
+std::string compared_text(const evaluation::Compared& compared) {
+    return fmt::format("{:.4g}, expected {:.4g}", compared.measured, compared.expected);
+}
+
+void print_behaviour(const BehaviourEvaluation& evaluation) {
+    using evaluation::Behaviour;
+    print_verdict("mass is the attribute's", evaluation.masses(),
+                  [](const Behaviour& m) { return compared_text(m.mass) + " kg"; });
+    print_verdict("at rest after 5 s", evaluation.resting(),
+                  [](const Behaviour& m) { return fmt::format("{:.3g} m/s", m.speed); });
+    print_verdict("furniture that does not tip by itself", evaluation.furniture(),
+                  [](const Behaviour& m) { return fmt::format("leans {:.0f} degrees", m.tilt); });
+    print_verdict("stopping distance follows from friction", evaluation.slides(),
+                  [](const Behaviour& m) { return compared_text(*m.slide) + " m"; });
+    print_verdict("rebound follows from restitution", evaluation.rebounds(),
+                  [](const Behaviour& m) { return compared_text(*m.rebound); });
+    fmt::print("could not be simulated: {}\n", evaluation.failures.size());
+    for (const auto& [key, error] : evaluation.failures) fmt::print("  {}: {}\n", key, error.message());
+}
+
+int evaluate_behaviours(const EvaluateArguments& arguments) {
+    const auto catalog = open_catalog(arguments.database);
+    if (!catalog) return report(catalog.error());
+    ProgressBar bar("Simulating");
+    const auto result =
+        evaluation::evaluate_behaviour(**catalog, static_cast<std::size_t>(arguments.limit),
+                                       [&](std::size_t done, std::size_t total) { bar.show(done, total, ""); });
+    bar.finish();
+    if (!result) return report(result.error());
+    if (!arguments.json) {
+        print_behaviour(*result);
+        return exit_ok;
+    }
+    nlohmann::json failures = nlohmann::json::array();
+    for (const auto& [key, error] : result->failures) failures.push_back({{"key", key}, {"error", error.message()}});
+    print_json({{"models", result->models.size()},
+                {"mass", verdict_to_json(result->masses())},
+                {"at_rest", verdict_to_json(result->resting())},
+                {"furniture_stands", verdict_to_json(result->furniture())},
+                {"slide", verdict_to_json(result->slides())},
+                {"rebound", verdict_to_json(result->rebounds())},
+                {"failures", std::move(failures)}});
+    return exit_ok;
+}
+
 }  // namespace
 
 int run_evaluate(const EvaluateArguments& arguments) {
+    if (arguments.what == "behaviour") return evaluate_behaviours(arguments);
     const auto taxonomy = attributes::Taxonomy::load(data_folder() / "taxonomy");
     if (!taxonomy) return report(taxonomy.error());
     return arguments.what == "mass" ? evaluate_masses(arguments, **taxonomy) : evaluate_models(arguments, **taxonomy);
