@@ -10,22 +10,6 @@
 namespace embody::attributes {
 namespace {
 
-// Letter of a physical kind in AttributeDescription::applies_to.
-char letter_of(std::string_view physical_kind) {
-    constexpr std::array<std::pair<std::string_view, char>, 8> letters{{{"static", 'S'},
-                                                                        {"rigid", 'R'},
-                                                                        {"articulated", 'A'},
-                                                                        {"soft", 'V'},
-                                                                        {"cloth", 'C'},
-                                                                        {"rope", 'P'},
-                                                                        {"fluid", 'F'},
-                                                                        {"granular", 'G'}}};
-    for (const auto& [kind, letter] : letters) {
-        if (kind == physical_kind) return letter;
-    }
-    return '\0';
-}
-
 double within(const char* name, double value) {
     const AttributeDescription& description = *describe(name);
     if (description.low) value = std::max(value, *description.low);
@@ -42,7 +26,7 @@ void put_number(AttributeSet& set, const char* name, double value, std::string s
 bool applies_to(std::string_view attribute, std::string_view physical_kind) {
     const AttributeDescription* description = describe(attribute);
     if (description == nullptr) return false;
-    const char letter = letter_of(physical_kind);
+    const char letter = letter_of_kind(physical_kind);
     if (letter == '\0') return description->kind == "identity";
     return description->applies_to.find(letter) != std::string::npos;
 }

@@ -2,6 +2,7 @@
 #include "attributes/registry.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +13,15 @@
 
 namespace embody::attributes {
 namespace {
+
+constexpr std::array<std::pair<std::string_view, char>, every_kind.size()> kind_letters{{{"static", 'S'},
+                                                                                         {"rigid", 'R'},
+                                                                                         {"articulated", 'A'},
+                                                                                         {"soft", 'V'},
+                                                                                         {"cloth", 'C'},
+                                                                                         {"rope", 'P'},
+                                                                                         {"fluid", 'F'},
+                                                                                         {"granular", 'G'}}};
 
 constexpr const char* type_words[] = {"a number", "a word", "true or false", "three numbers", "a symmetric 3x3 tensor"};
 
@@ -171,6 +181,20 @@ std::optional<AttributeValue> read_value(ValueType type, std::string_view text) 
 const std::vector<AttributeDescription>& registry() {
     static const std::vector<AttributeDescription> rows = make_registry_table();
     return rows;
+}
+
+char letter_of_kind(std::string_view physical_kind) {
+    for (const auto& [kind, letter] : kind_letters) {
+        if (kind == physical_kind) return letter;
+    }
+    return '\0';
+}
+
+std::string_view kind_of_letter(char wanted) {
+    for (const auto& [kind, letter] : kind_letters) {
+        if (letter == wanted) return kind;
+    }
+    return {};
 }
 
 const AttributeDescription* describe(std::string_view name) {

@@ -30,6 +30,13 @@ struct AttributeDescription {
     std::string help;                  ///< one sentence
 };
 
+/// Letters of all physical kinds, as in AttributeDescription::applies_to.
+inline constexpr std::string_view every_kind = "SRAVCPFG";
+/// 'R' for "rigid"; '\0' for "visual" and for what is no kind.
+char letter_of_kind(std::string_view physical_kind);
+/// "rigid" for 'R'; empty for what is no such letter.
+std::string_view kind_of_letter(char letter);
+
 /// All attributes in the order in which they are shown.
 const std::vector<AttributeDescription>& registry();
 const AttributeDescription* describe(std::string_view name);

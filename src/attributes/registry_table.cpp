@@ -11,7 +11,7 @@ namespace embody::attributes {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr const char* all_kinds = "SRAVCPFG";
+constexpr const char* all_kinds = every_kind.data();
 
 using Rows = std::vector<AttributeDescription>;
 

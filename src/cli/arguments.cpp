@@ -46,6 +46,7 @@ public:
         add_simulate();
         add_check();
         add_classify();
+        add_attributes();
         add_evaluate();
         add_scene();
         add_bench();
@@ -175,6 +176,13 @@ private:
         c.app->add_option("--category", c.into->category, "The catalogue's own category");
         c.app->add_option("--folder", c.into->folder, "Folder of its file");
         c.app->add_option("--size", c.into->size, "Extents of its box, m")->expected(3)->check(between(1e-6, 1e6));
+        add_json(c);
+    }
+    void add_attributes() {
+        auto c = add<AttributesArguments>("attributes", "List the physical attributes: unit, default, range, meaning",
+                                          "embody attributes friction_dynamic");
+        c.app->add_option("name", c.into->name, "One attribute; none: all");
+        c.app->add_flag("--markdown", c.into->markdown, "Print the tables of docs/attributes.md");
         add_json(c);
     }
     void add_evaluate() {

@@ -71,6 +71,11 @@ struct ClassifyArguments {
     std::vector<double> size;      ///< extents, m; empty: unknown
     bool json = false;
 };
+struct AttributesArguments {
+    std::string name;  ///< empty: all
+    bool markdown = false;
+    bool json = false;
+};
 struct EvaluateArguments {
     std::string what;  ///< "mass", "catalogue" or "behaviour"
     std::filesystem::path database;
@@ -97,8 +102,8 @@ struct BenchArguments {
 };
 
 using Arguments = std::variant<ServeArguments, ImportArguments, SearchArguments, ShowArguments, SetArguments,
-                               ResetArguments, SimulateArguments, CheckArguments, ClassifyArguments, EvaluateArguments,
-                               SceneArguments, BenchArguments>;
+                               ResetArguments, SimulateArguments, CheckArguments, ClassifyArguments,
+                               AttributesArguments, EvaluateArguments, SceneArguments, BenchArguments>;
 
 /// Exit codes of the program.
 enum ExitCode : int { exit_ok = 0, exit_failed = 1, exit_usage = 2, exit_partly = 3 };

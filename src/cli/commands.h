@@ -16,6 +16,7 @@ int run_reset(const ResetArguments& arguments);
 int run_simulate(const SimulateArguments& arguments);
 int run_check(const CheckArguments& arguments);
 int run_classify(const ClassifyArguments& arguments);
+int run_attributes(const AttributesArguments& arguments);
 int run_evaluate(const EvaluateArguments& arguments);
 int run_scene(const SceneArguments& arguments);
 int run_bench(const BenchArguments& arguments);

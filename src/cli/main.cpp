@@ -14,6 +14,7 @@ struct Runner {
     int operator()(const SimulateArguments& arguments) const { return run_simulate(arguments); }
     int operator()(const CheckArguments& arguments) const { return run_check(arguments); }
     int operator()(const ClassifyArguments& arguments) const { return run_classify(arguments); }
+    int operator()(const AttributesArguments& arguments) const { return run_attributes(arguments); }
     int operator()(const EvaluateArguments& arguments) const { return run_evaluate(arguments); }
     int operator()(const SceneArguments& arguments) const { return run_scene(arguments); }
     int operator()(const BenchArguments& arguments) const { return run_bench(arguments); }
