@@ -96,7 +96,7 @@ void add_identity(Rows& rows) {
 void add_mass(Rows& rows) {
     const Group group{rows, "mass"};
     group.number({"mass", "SRAVCPG", "Mass", "Mass of the whole thing; of a static one, what it would weigh if freed."},
-                 "kg", 1, 1e-5, 1e6);
+                 "kg", 1, 1e-6, 1e9);
     group.number({"density", "SRAVFG", "Material density", "Density of the material itself, without hollows."}, "kg/m³",
                  1000, 0.1, 22600);
     // The lower ends of these two leave room for models that are kilometres long by mistake.
@@ -111,7 +111,7 @@ void add_mass(Rows& rows) {
         {"center_of_mass", "SRAV", "Centre of mass", "In the model's frame: origin at the centre of its base, Y up."},
         "m", -1e4, 1e4);
     group.tensor({"inertia", "SRAV", "Moments of inertia", "About the centre of mass, in the model's axes."}, "kg m²",
-                 -1e15, 1e15);
+                 -1e18, 1e18);
 }
 
 void add_shape(Rows& rows) {

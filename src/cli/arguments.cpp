@@ -172,7 +172,7 @@ private:
                                         "could be",
                                         "embody classify tureen --category Kitchen --size 0.3 0.25 0.2");
         c.app->add_option("name", c.into->name, "Name of a model")->required();
-        c.app->add_option("--tag", c.into->tags, "A tag of it; may be given again")->expected(1);
+        c.app->add_option("--tag", c.into->tags, "A tag of it; may be given again")->allow_extra_args(false);
         c.app->add_option("--category", c.into->category, "The catalogue's own category");
         c.app->add_option("--folder", c.into->folder, "Folder of its file");
         c.app->add_option("--size", c.into->size, "Extents of its box, m")->expected(3)->check(between(1e-6, 1e6));

@@ -30,7 +30,7 @@ TEST(Validate, NameThatResemblesNothingGetsNoGuess) {
 
 TEST(Validate, SaysTheRange) {
     EXPECT_EQ(validate("friction_static", 2.5).error().why, "must be 0 to 2, got 2.5");
-    EXPECT_EQ(validate("mass", -2.0).error().why, "must be 1e-05 to 1e+06 kg, got -2");
+    EXPECT_EQ(validate("mass", -2.0).error().why, "must be 1e-06 to 1e+09 kg, got -2");
     EXPECT_EQ(validate("break_impulse", -1.0).error().why, "must be at least 0 N s, got -1");
 }
 
