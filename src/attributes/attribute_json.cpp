@@ -138,6 +138,7 @@ json geometry_json(const GeometryFacts& g) {
             {"center_of_volume", vector_json(g.center_of_volume)},
             {"unit_inertia", columns_json(g.unit_inertia)},
             {"hull_volume", g.hull_volume},
+            {"hull_concavity", g.hull_concavity},
             {"surface_area", g.surface_area},
             {"fitted_shape", g.fitted_shape},
             {"fitted_dimensions", vector_json(g.fitted_dimensions)},
@@ -156,6 +157,7 @@ std::optional<Error> read_geometry(const json& document, GeometryFacts& g) {
     reader.read("center_of_volume", g.center_of_volume);
     reader.read("unit_inertia", g.unit_inertia);
     reader.read("hull_volume", g.hull_volume);
+    reader.read("hull_concavity", g.hull_concavity);
     reader.read("surface_area", g.surface_area);
     reader.read("fitted_shape", g.fitted_shape);
     reader.read("fitted_dimensions", g.fitted_dimensions);

@@ -84,11 +84,18 @@ CenterAndInertia center_and_inertia(const GeometryFacts& facts, const Form& form
 ShapeChoice choose_collision_shape(const GeometryFacts& facts, bool is_static) {
     if (is_static) return {"trimesh", "static things collide with their own triangles", AttributeLevel::kind};
 
+    // Whatever fits the hull would close the hollow.
+    if (facts.hull_concavity > negligible_concavity(facts.size)) {
+        return {"decomposition",
+                "the convex hull would fill hollows up to " + short_number(facts.hull_concavity * 1000) + " mm deep",
+                AttributeLevel::measured};
+    }
+
     // A primitive may stand off the hull by 2 % of the diagonal: less than one sees.
     const bool is_primitive = validate("collision_shape", facts.fitted_shape).ok() &&
                               facts.fitted_shape != "convex_hull" && facts.fitted_shape != "trimesh" &&
                               facts.fitted_shape != "decomposition";
-    const double allowed = 0.02 * length(facts.size);
+    const double allowed = unseen_share * length(facts.size);
     if (is_primitive && facts.fitted_error >= 0 && facts.fitted_error <= allowed) {
         return {facts.fitted_shape, "fits the convex hull within " + short_number(facts.fitted_error * 1000) + " mm",
                 AttributeLevel::measured};

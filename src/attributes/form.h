@@ -45,7 +45,8 @@ struct ShapeChoice {
     AttributeLevel level = AttributeLevel::standard;
 };
 
-/// Triangles for static things, the fitted primitive where it lies close to the hull, else the hull.
+/// Triangles for static things, a decomposition where hollows are deep, else the fitted primitive where it lies close
+/// to the hull, else the hull.
 ShapeChoice choose_collision_shape(const GeometryFacts& facts, bool is_static);
 
 /// A number for people: three digits.

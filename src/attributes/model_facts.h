@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,14 @@
 #include "math/transform.h"
 
 namespace embody::attributes {
+
+/// Standard of the attribute hull_error, m.
+inline constexpr double usual_hull_error = 0.01;
+/// Of a thing's diagonal: what a collision shape may stand off without being seen.
+inline constexpr double unseen_share = 0.02;
+/// A convex hull with hollows no deeper than this (m) stands for a thing of this size; below the usual error a
+/// decomposition would be no better.
+inline double negligible_concavity(Vec3 size) { return std::max(usual_hull_error, unseen_share * length(size)); }
 
 /// What is known of a model's form. Lengths in metres, in the model's frame (Y up, origin at the centre of the base of
 /// its bounds).
@@ -21,6 +30,7 @@ struct GeometryFacts {
     Vec3 center_of_volume;
     Mat3 unit_inertia = Mat3::zero();  ///< of the enclosed volume at density 1 about its centre, kg m²
     double hull_volume = 0;            ///< of the convex hull, m³
+    double hull_concavity = 0;         ///< m, largest distance from a reachable place in the hull to the surface
     double surface_area = 0;           ///< m²
 
     /// Primitive that fits, or "convex_hull".

@@ -4,6 +4,8 @@
 // granular. Things that are only drawn have the identity attributes.
 #include "attributes/registry_table.h"
 
+#include "attributes/model_facts.h"
+
 #include <limits>
 #include <utility>
 
@@ -116,14 +118,16 @@ void add_mass(Rows& rows) {
 
 void add_shape(Rows& rows) {
     const Group group{rows, "shape"};
-    group.word({"collision_shape", "SRAVCPFG", "Collision shape",
-                "What collides: a primitive that fits, the convex hull, or the triangles of a static thing."},
-               "convex_hull", {"box", "sphere", "capsule", "cylinder", "convex_hull", "decomposition", "trimesh"});
-    const Group later{rows, "shape", false};
-    later.number({"max_hulls", "SRA", "Convex parts at most", "Limit on the parts of a decomposition."}, "1", 16, 1,
+    group.word(
+        {"collision_shape", "SRAVCPFG", "Collision shape",
+         "What collides: a primitive that fits, the convex hull, several hulls for a hollow thing (decomposition), or "
+         "the triangles of a static thing."},
+        "convex_hull", {"box", "sphere", "capsule", "cylinder", "convex_hull", "decomposition", "trimesh"});
+    group.number({"max_hulls", "SRA", "Convex parts at most", "Limit on the hulls of a decomposition."}, "1", 16, 1,
                  256);
-    later.number({"hull_error", "SRA", "Decomposition error", "Concavity that a decomposition may leave."}, "m", 0.01,
-                 1e-4, 1);
+    group.number({"hull_error", "SRA", "Decomposition error",
+                  "Depth of hollows that the hulls of a decomposition may fill, where the limit on them allows."},
+                 "m", usual_hull_error, 1e-4, 1);
 }
 
 void add_surface(Rows& rows) {

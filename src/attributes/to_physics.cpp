@@ -113,6 +113,18 @@ Result<physics::ShapeDefinition> hull_shape(const GeometryFacts& facts, ModelGeo
     return physics::ShapeDefinition{physics::HullShape{std::move(*points)}};
 }
 
+// One hull for each convex part, all in the model's frame.
+Result<physics::ShapeDefinition> decomposed_shape(const AttributeSet& attributes, const GeometryFacts& facts,
+                                                  ModelGeometry& geometry) {
+    const int max_hulls = static_cast<int>(number_or_standard(attributes, "max_hulls"));
+    auto parts = geometry.convex_parts(max_hulls, number_or_standard(attributes, "hull_error"));
+    if (!parts) return parts.error();
+    if (parts->size() < 2) return hull_shape(facts, geometry);
+    physics::CompoundShape compound;
+    for (std::vector<Vec3>& points : *parts) compound.children.push_back({physics::HullShape{std::move(points)}, {}});
+    return physics::ShapeDefinition{std::move(compound)};
+}
+
 }  // namespace
 
 Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attributes, const Taxonomy* taxonomy) {
@@ -149,8 +161,8 @@ Result<physics::ShapeDefinition> shape_from_attributes(const AttributeSet& attri
         if (!mesh) return mesh.error();
         return physics::ShapeDefinition{std::move(*mesh)};
     }
-    // A decomposition is not there yet: its hull stands in.
-    if (shape == "convex_hull" || shape == "decomposition") return hull_shape(facts, geometry);
+    if (shape == "convex_hull") return hull_shape(facts, geometry);
+    if (shape == "decomposition") return decomposed_shape(attributes, facts, geometry);
     if (auto valid = validate("collision_shape", shape); !valid) return valid.error();
     return primitive_shape(shape, facts);
 }

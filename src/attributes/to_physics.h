@@ -17,6 +17,8 @@ public:
     /// Vertices of the convex hull, at most physics::max_hull_vertices.
     virtual Result<std::vector<Vec3>> hull_points() = 0;
     virtual Result<physics::MeshShape> mesh() = 0;
+    /// Vertices of each hull of the convex decomposition: at most `max_hulls`, hollows up to `hull_error` (m) filled.
+    virtual Result<std::vector<std::vector<Vec3>>> convex_parts(int max_hulls, double hull_error) = 0;
 };
 
 /// A body's definition without pose, velocity and shape handle: kind, mass, material, damping … from the attributes.

@@ -14,8 +14,10 @@
 #include "catalog/knowledge_json.h"
 #include "catalog/prepare/confined_pool.h"
 #include "catalog/primitives.h"
+#include "catalog/stored_parts.h"
 #include "database/model_schema.h"
 #include "database/transaction.h"
+#include "geometry/decomposition/decomposition.h"
 #include "interchange/compact/compact_geometry.h"
 
 namespace embody::catalog {
@@ -215,7 +217,8 @@ Result<void> Catalog::set_attribute(std::int64_t id, std::string_view name, cons
     database::ManualAttribute entry{std::string(name), to_json(value), current_person()};
     if (auto put = state_->manual.put(row->key, entry); !put) return put;
     if (auto classified = state_->classify_again(id); !classified) return classified;
-    return transaction->commit();
+    if (auto committed = transaction->commit(); !committed) return committed;
+    return prepare_shape(id, name);
 }
 
 Result<void> Catalog::reset_attribute(std::int64_t id, std::string_view name) {
@@ -226,7 +229,19 @@ Result<void> Catalog::reset_attribute(std::int64_t id, std::string_view name) {
     if (!row) return row.error();
     if (auto erased = state_->manual.erase(row->key, name); !erased) return erased;
     if (auto classified = state_->classify_again(id); !classified) return classified;
-    return transaction->commit();
+    if (auto committed = transaction->commit(); !committed) return committed;
+    return prepare_shape(id, name);
+}
+
+Result<void> Catalog::prepare_shape(std::int64_t id, std::string_view changed) const {
+    if (changed != "collision_shape" && changed != "max_hulls" && changed != "hull_error") return {};
+    const auto set = attributes(id);
+    if (!set) return set.error();
+    if (set->word("collision_shape", "") != "decomposition") return {};
+    const geometry::DecompositionParameters usual;
+    const auto parts = convex_parts(id, static_cast<int>(set->number("max_hulls", usual.max_hulls)),
+                                    set->number("hull_error", usual.hull_error));
+    return parts ? Result<void>() : Result<void>(parts.error());
 }
 
 Result<void> Catalog::State::classify_again(std::int64_t id) {
@@ -309,6 +324,23 @@ Result<geometry::TriangleMesh> Catalog::mesh(std::int64_t id) const {
     const auto compact = state_->models.geometry(id);
     if (!compact) return compact.error();
     return interchange::decode_mesh(*compact);
+}
+
+Result<ConvexParts> Catalog::convex_parts(std::int64_t id, int max_hulls, double hull_error) const {
+    database::DecompositionTable table(*state_->connection);
+    const double error = std::max(hull_error, geometry::least_hull_error);
+    const auto stored = table.find(id, max_hulls, micrometres(error));
+    if (!stored) return stored.error();
+    if (*stored) {
+        // What can't be read is made again.
+        if (auto parts = parts_from(**stored)) return parts;
+    }
+    const auto model = mesh(id);
+    if (!model) return model.error();
+    auto parts = make_convex_parts(*model, max_hulls, error);
+    if (!parts) return parts.error();
+    if (auto kept = table.put(id, stored_form(*parts)); !kept) return kept.error();
+    return parts;
 }
 
 Result<ImportReport> Catalog::import(const std::vector<std::filesystem::path>& paths, const ImportOptions& options) {

@@ -14,6 +14,7 @@
 #include "attributes/model_facts.h"
 #include "attributes/resolver.h"
 #include "catalog/geometry_kind.h"
+#include "catalog/prepare/convex_parts.h"
 #include "foundation/result.h"
 #include "geometry/triangle_mesh.h"
 
@@ -103,6 +104,9 @@ public:
         std::int64_t id) const;                                    ///< with materials and textures, for drawing
     Result<std::vector<Vec3>> hull_points(std::int64_t id) const;  ///< model frame
     Result<geometry::TriangleMesh> mesh(std::int64_t id) const;    ///< model frame, all parts
+    /// The convex decomposition with these limits (1 … 256 hulls; hull_error in m, at least 1e-4): as the import made
+    /// it, or made now (some tenths of a second) and kept for the next time.
+    Result<ConvexParts> convex_parts(std::int64_t id, int max_hulls, double hull_error) const;
 
     /// Imports files, folders and catalogues (.sh3f, the Sweet Home 3D jar). Fails only if nothing can be imported at
     /// all; what is wrong with single files is in the report.
@@ -111,6 +115,8 @@ public:
 
 private:
     Catalog();
+    /// Makes the decomposition that a change by hand of the attribute `changed` asks for, so that no one waits later.
+    Result<void> prepare_shape(std::int64_t id, std::string_view changed) const;
     struct State;
     std::unique_ptr<State> state_;
 };

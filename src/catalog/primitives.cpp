@@ -164,7 +164,7 @@ Result<Primitive> make_primitive(const std::string& word, const std::string& nam
                                .double_sided = false});
     finish_surfaces(scene);
 
-    const GeometryMeasurement measured = measure_geometry(scene);
+    const GeometryMeasurement measured = measure_geometry(scene, Decompose::no);
     auto compact = interchange::encode(scene);
     if (!compact) return compact.error();
     PreparedModel& model = primitive.model;

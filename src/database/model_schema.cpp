@@ -102,7 +102,20 @@ CREATE TRIGGER model_words_update AFTER UPDATE OF name, tags, category, subcateg
 END;
 )sql";
 
-constexpr std::array<Migration, 1> migrations{{{1, first_version}}};
+// Convex decompositions, by what they were made with. The error in whole micrometres, to be found by equality.
+constexpr const char* with_decompositions = R"sql(
+CREATE TABLE model_decomposition (
+    model          INTEGER NOT NULL REFERENCES model (id) ON DELETE CASCADE,
+    max_hulls      INTEGER NOT NULL,
+    hull_error_um  INTEGER NOT NULL,
+    concavity      REAL    NOT NULL,               -- m, of the deepest hull
+    hull_concavity REAL    NOT NULL,               -- m, of the single hull
+    hulls          BLOB    NOT NULL,               -- count; for each hull: count, x y z as little-endian floats, m
+    PRIMARY KEY (model, max_hulls, hull_error_um)
+) STRICT;
+)sql";
+
+constexpr std::array<Migration, 2> migrations{{{1, first_version}, {2, with_decompositions}}};
 
 }  // namespace
 

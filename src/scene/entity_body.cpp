@@ -44,6 +44,7 @@ ModelFacts scaled(ModelFacts facts, double s) {
     geometry.center_of_volume *= s;
     geometry.unit_inertia = geometry.unit_inertia * std::pow(s, 5);
     geometry.hull_volume *= s * s * s;
+    geometry.hull_concavity *= s;
     geometry.surface_area *= s * s;
     geometry.fitted_dimensions *= s;
     geometry.fitted_pose.position *= s;
@@ -57,8 +58,8 @@ AttributeSet scaled(const AttributeSet& set, double s) {
         const char* name;
         int power;
     };
-    constexpr Power powers[] = {{"mass", 3},    {"volume", 3},         {"center_of_mass", 1},
-                                {"inertia", 5}, {"wall_thickness", 1}, {"drag_area", 2}};
+    constexpr Power powers[] = {{"mass", 3},           {"volume", 3},    {"center_of_mass", 1}, {"inertia", 5},
+                                {"wall_thickness", 1}, {"drag_area", 2}, {"hull_error", 1}};
     AttributeSet out = set;
     for (const Power& row : powers) {
         const AttributeEntry* held = set.find(row.name);
@@ -135,6 +136,17 @@ public:
             shape.positions.push_back(to_vec3f(to_vec3(position) * scale_));
         shape.triangles = read.value().triangles;
         return shape;
+    }
+
+    Result<std::vector<std::vector<Vec3>>> convex_parts(int max_hulls, double hull_error) override {
+        Result<catalog::ConvexParts> parts = catalog_.convex_parts(id_, max_hulls, hull_error / scale_);
+        if (!parts.ok()) return parts.error();
+        std::vector<std::vector<Vec3>> scaled;
+        for (const std::vector<Vec3f>& hull : parts.value().hulls) {
+            scaled.emplace_back();
+            for (const Vec3f& point : hull) scaled.back().push_back(to_vec3(point) * scale_);
+        }
+        return scaled;
     }
 
 private:
@@ -285,8 +297,14 @@ Result<physics::ShapeDefinition> EntityBodies::shape(const Entity& entity, const
 }
 
 std::string EntityBodies::shape_key(const Entity& entity, const AttributeSet& attributes) {
-    if (const auto* model = std::get_if<ModelReference>(&entity.geometry))
-        return model->key + '\n' + attributes.word("collision_shape", "") + '\n' + nlohmann::json(entity.scale).dump();
+    if (const auto* model = std::get_if<ModelReference>(&entity.geometry)) {
+        const std::string shape = attributes.word("collision_shape", "");
+        std::string key = model->key + '\n' + shape + '\n' + nlohmann::json(entity.scale).dump();
+        if (shape != "decomposition") return key;
+        for (const char* limit : {"max_hulls", "hull_error"})
+            key += '\n' + nlohmann::json(attributes.number(limit, 0)).dump();
+        return key;
+    }
     return short_text(std::get<physics::ShapeDefinition>(entity.geometry));
 }
 

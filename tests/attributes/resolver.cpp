@@ -187,6 +187,22 @@ TEST(Resolve, PrimitiveThatFitsBadlyIsNotTaken) {
     EXPECT_EQ(resolved(facts).word("collision_shape", ""), "convex_hull");
 }
 
+TEST(Resolve, HollowThingsAreDecomposedAlsoWhereAPrimitiveFitsTheirHull) {
+    ModelFacts table = closed_box("Table", {1.4, 0.75, 0.8});
+    EXPECT_EQ(resolved(table).word("collision_shape", ""), "box");
+    table.geometry.hull_concavity = 0.35;
+    EXPECT_EQ(resolved(table).word("collision_shape", ""), "decomposition");
+    EXPECT_NE(resolved(table).find("collision_shape")->source.find("350 mm"), std::string::npos);
+    // A groove that one does not see is none.
+    table.geometry.hull_concavity = 0.03;
+    EXPECT_EQ(resolved(table).word("collision_shape", ""), "box");
+    table.geometry.hull_concavity = 0.35;
+    table.movable = false;
+    EXPECT_EQ(resolved(table).word("collision_shape", ""), "trimesh");
+    EXPECT_EQ(negligible_concavity({0.1, 0.1, 0.1}), usual_hull_error);
+    EXPECT_EQ(std::get<double>(describe("hull_error")->standard), usual_hull_error);
+}
+
 TEST(Resolve, CataloguesMovableFlagWinsOverTheCategory) {
     ModelFacts facts = named("Radiator");
     EXPECT_EQ(resolved(facts).word("kind", ""), "static");

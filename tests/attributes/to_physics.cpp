@@ -17,6 +17,20 @@ public:
         if (broken) return Error{"model", "is gone"};
         return std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     }
+    // The box [0, 1]³ in as many slices as are allowed.
+    Result<std::vector<std::vector<Vec3>>> convex_parts(int max_hulls, double hull_error) override {
+        if (broken) return Error{"model", "is gone"};
+        asked_error = hull_error;
+        std::vector<std::vector<Vec3>> parts(static_cast<std::size_t>(max_hulls));
+        for (int k = 0; k < max_hulls; ++k) {
+            for (int i = 0; i < 8; ++i) {
+                parts[static_cast<std::size_t>(k)].push_back(
+                    {(k + (i & 1 ? 1.0 : 0.0)) / max_hulls, i & 2 ? 1.0 : 0.0, i & 4 ? 1.0 : 0.0});
+            }
+        }
+        return parts;
+    }
+    double asked_error = 0;
     Result<physics::MeshShape> mesh() override {
         if (broken) return Error{"model", "is gone"};
         return physics::MeshShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
@@ -97,6 +111,29 @@ TEST(ToPhysics, PrimitiveThatWasNotFittedSurroundsTheBox) {
         EXPECT_TRUE(physics::validate(*made).ok()) << shape;
         EXPECT_EQ(std::get<physics::CompoundShape>(*made).children[0].local.position, (Vec3{0, 0.5, 0})) << shape;
     }
+}
+
+TEST(ToPhysics, ADecompositionIsACompoundOfHullsWithinItsLimits) {
+    SampleGeometry geometry;
+    const ModelFacts facts = named("Table");
+    AttributeSet set = with_word(facts, "collision_shape", "decomposition");
+    set.put({"max_hulls", 5.0, {}, {}, "test", AttributeLevel::manual});
+    set.put({"hull_error", 0.02, {}, {}, "test", AttributeLevel::manual});
+    const auto shape = shape_from_attributes(set, facts.geometry, geometry);
+    ASSERT_TRUE(shape.ok()) << shape.error().message();
+    const auto& compound = std::get<physics::CompoundShape>(*shape);
+    ASSERT_EQ(compound.children.size(), 5u);
+    EXPECT_EQ(std::get<physics::HullShape>(compound.children[4].shape).points.back(), (Vec3{1, 1, 1}));
+    EXPECT_TRUE(physics::validate(*shape).ok());
+    EXPECT_EQ(geometry.asked_error, 0.02);
+
+    // One part is the hull of all.
+    set.put({"max_hulls", 1.0, {}, {}, "test", AttributeLevel::manual});
+    const auto one = shape_from_attributes(set, facts.geometry, geometry);
+    ASSERT_TRUE(one.ok());
+    EXPECT_TRUE(std::holds_alternative<physics::HullShape>(*one));
+    geometry.broken = true;
+    EXPECT_FALSE(shape_from_attributes(set, facts.geometry, geometry).ok());
 }
 
 TEST(ToPhysics, FlatThingsBecomeThinBoxes) {

@@ -10,6 +10,7 @@
 
 #include "catalog/describe_model.h"
 #include "catalog/knowledge_json.h"
+#include "catalog/stored_parts.h"
 #include "database/transaction.h"
 #include "foundation/state_hash.h"
 
@@ -19,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raise when preparing gives another result from the same file: the next import prepares all models again.
-constexpr std::uint64_t preparation_revision = 1;
+constexpr std::uint64_t preparation_revision = 2;
 
 void add_text(StateHash& hash, const std::string& text) {
     hash.add(std::uint64_t{text.size()});
@@ -413,12 +414,21 @@ Result<Importer::Stored> Importer::store(const ImportItem& item, const PreparedM
     const auto id = models_.put(row, knowledge, {prepared.geometry, hull, prepared.thumbnail});
     if (!id) return id.error();
     source.model = *id;
+    if (auto stored = store_convex_parts(*id, prepared.convex_parts); !stored) return stored.error();
     if (auto forgotten = imports_.forget_other_preparations(*id, source.prepare_hash); !forgotten) {
         return forgotten.error();
     }
     if (auto noted = imports_.put(source); !noted) return noted.error();
     if (auto committed = transaction->commit(); !committed) return committed.error();
     return before->has_value() ? Stored::updated : Stored::added;
+}
+
+Result<void> Importer::store_convex_parts(std::int64_t id, const ConvexParts& parts) {
+    // Those of another geometry, or asked for by hand, are made again when they are needed.
+    database::DecompositionTable table(connection_);
+    if (auto forgotten = table.forget(id); !forgotten) return forgotten;
+    if (parts.hulls.empty()) return {};
+    return table.put(id, stored_form(parts));
 }
 
 bool Importer::tell_progress(const ImportOptions& options, const std::string& name) {

@@ -53,6 +53,7 @@ private:
     Result<bool> is_stored(std::int64_t model, const database::ImportSource& source);
     Result<void> prepare_planned(const std::vector<Planned>& planned, const ImportOptions& options);
     Result<void> take(const Planned& planned, Result<PreparedModel> prepared);
+    Result<void> store_convex_parts(std::int64_t id, const ConvexParts& parts);
     void name_in_report(const std::string& key);
     bool needs_other_unit(const Planned& planned, const PreparedModel& prepared);
     bool tell_progress(const ImportOptions& options, const std::string& name);

@@ -2,8 +2,10 @@
 #include "catalog/prepare/geometry_measurement.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "geometry/convex_hull.h"
+#include "geometry/decomposition/decomposition.h"
 #include "geometry/fit.h"
 #include "geometry/topology.h"
 
@@ -61,9 +63,20 @@ void add_fit(const geometry::ConvexHull& hull, attributes::GeometryFacts& facts)
     facts.fitted_error = fit->deviation;
 }
 
+/// How hollow the hull is; and the parts of a hollow thing. What cannot be decomposed stays one hull.
+void add_parts(const geometry::TriangleMesh& mesh, Decompose decompose, GeometryMeasurement& measured) {
+    const geometry::DecompositionParameters usual;
+    const double kept = decompose == Decompose::no ? std::numeric_limits<double>::infinity()
+                                                   : attributes::negligible_concavity(measured.facts.size);
+    auto parts = make_convex_parts(mesh, usual.max_hulls, usual.hull_error, kept);
+    if (!parts) return;
+    measured.facts.hull_concavity = parts->hull_concavity;
+    if (parts->hulls.size() > 1) measured.convex_parts = std::move(*parts);
+}
+
 }  // namespace
 
-GeometryMeasurement measure_geometry(const interchange::RawScene& scene) {
+GeometryMeasurement measure_geometry(const interchange::RawScene& scene, Decompose decompose) {
     const geometry::TriangleMesh raw = joined(scene);
     const Bounds bounds = geometry::bounds(raw);
     const Vec3 size = bounds.size();
@@ -97,6 +110,7 @@ GeometryMeasurement measure_geometry(const interchange::RawScene& scene) {
         for (const Vec3 p : hull->vertices) measured.hull_points.push_back(to_vec3f(p));
         facts.hull_volume = geometry::integrate_hull(*hull).volume;
         add_fit(*hull, facts);
+        add_parts(mesh, decompose, measured);
     }
     return measured;
 }

@@ -44,9 +44,11 @@ Result<PreparedModel> prepare_from(const interchange::FileSource& source, const 
     model.content_hash = hash_of(*bytes);
     model.facts = stated_facts(item);
     model.facts.material_names = material_names_by_area(*scene);
-    const GeometryMeasurement measured = measure_geometry(*scene);
+    const bool is_fixed = item.door_or_window || item.movable == false;
+    const GeometryMeasurement measured = measure_geometry(*scene, is_fixed ? Decompose::no : Decompose::where_hollow);
     model.facts.geometry = measured.facts;
     model.hull_points = measured.hull_points;
+    model.convex_parts = measured.convex_parts;
     model.quality = grade_quality(measured);
 
     const auto compact = interchange::encode(*scene);

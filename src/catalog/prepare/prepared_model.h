@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "attributes/model_facts.h"
+#include "catalog/prepare/convex_parts.h"
 #include "foundation/result.h"
 
 namespace embody::catalog {
@@ -32,6 +33,7 @@ struct PreparedModel {
     std::vector<std::uint8_t> geometry;   ///< compact geometry, versioned; see interchange/compact/compact_geometry.h
     std::vector<std::uint8_t> thumbnail;  ///< PNG, 256 × 256
     std::vector<Vec3f> hull_points;       ///< at most 256, model frame
+    ConvexParts convex_parts;             ///< no hulls where the hull of all is enough, or nothing moves it
     attributes::ModelFacts facts;
     std::uint64_t content_hash = 0;  ///< of the model file's bytes
     std::uint32_t vertices = 0, triangles = 0, parts = 0, materials = 0, images = 0;

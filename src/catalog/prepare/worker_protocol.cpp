@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t magic = 0x57424D45;  // "EMBW"
 constexpr std::size_t longest_text = 64 << 10, longest_list = 4096, most_hull_points = 256;
-constexpr std::size_t largest_thumbnail = 4 << 20;
+constexpr std::size_t largest_thumbnail = 4 << 20, largest_packed_hulls = 1 << 20;
 const Error broken{"import worker", "sent something that is not its protocol"};
 
 std::uint64_t hash_of(std::span<const std::uint8_t> bytes) {
@@ -73,6 +73,7 @@ void put(ByteWriter& out, const attributes::GeometryFacts& facts) {
     put(out, facts.center_of_volume);
     for (int c = 0; c < 3; ++c) put(out, facts.unit_inertia.column(c));
     out.number(facts.hull_volume);
+    out.number(facts.hull_concavity);
     out.number(facts.surface_area);
     out.text(facts.fitted_shape);
     put(out, facts.fitted_dimensions);
@@ -92,6 +93,7 @@ attributes::GeometryFacts take_geometry_facts(ByteReader& in) {
     facts.center_of_volume = take_vector(in);
     for (int c = 0; c < 3; ++c) facts.unit_inertia.column(c) = take_vector(in);
     facts.hull_volume = take_measure(in);
+    facts.hull_concavity = take_measure(in);
     facts.surface_area = take_measure(in);
     facts.fitted_shape = in.text(longest_text);
     const auto& shape = facts.fitted_shape;
@@ -207,6 +209,11 @@ std::vector<std::uint8_t> to_bytes(const PreparedModel& model) {
     for (const Vec3f p : model.hull_points) {
         for (const float part : {p.x, p.y, p.z}) out.number(part);
     }
+    out.number(static_cast<std::int32_t>(model.convex_parts.max_hulls));
+    out.number(model.convex_parts.hull_error);
+    out.number(model.convex_parts.concavity);
+    out.number(model.convex_parts.hull_concavity);
+    out.block(pack_hulls(model.convex_parts.hulls));
     put(out, model.facts);
     out.number(model.content_hash);
     for (const std::uint32_t count : {model.vertices, model.triangles, model.parts, model.materials, model.images}) {
@@ -231,6 +238,13 @@ Result<PreparedModel> model_from_bytes(std::span<const std::uint8_t> payload) {
             if (!std::isfinite(*part)) in.fail();
         }
     }
+    model.convex_parts.max_hulls = in.number<std::int32_t>();
+    model.convex_parts.hull_error = take_measure(in);
+    model.convex_parts.concavity = take_measure(in);
+    model.convex_parts.hull_concavity = take_measure(in);
+    auto hulls = unpack_hulls(in.block(largest_packed_hulls));
+    if (!hulls || model.convex_parts.max_hulls < 0) return broken;
+    model.convex_parts.hulls = std::move(*hulls);
     model.facts = take_model_facts(in);
     model.content_hash = in.number<std::uint64_t>();
     for (std::uint32_t* count : {&model.vertices, &model.triangles, &model.parts, &model.materials, &model.images}) {

@@ -15,7 +15,7 @@ namespace embody::catalog {
 /// `failed`.
 enum class FrameKind : std::uint32_t { ready = 1, item = 2, prepared = 3, failed = 4 };
 
-inline constexpr std::uint32_t protocol_version = 1;
+inline constexpr std::uint32_t protocol_version = 2;
 inline constexpr std::size_t frame_header_size = 16;
 inline constexpr std::size_t frame_hash_size = 8;
 inline constexpr std::size_t largest_payload = std::size_t{256} << 20;  ///< bytes; more is refused on both ends
@@ -36,7 +36,8 @@ std::vector<std::uint8_t> to_bytes(const PreparedModel& model);
 std::vector<std::uint8_t> to_bytes(const Error& error);
 
 /// The way back. The other end may have been taken over by a hostile file, so every count, length and number is
-/// checked: lists and texts bounded, numbers finite, choices known, hull points at most 256.
+/// checked: lists and texts bounded, numbers finite, choices known, hull points at most 256, convex parts at most 256
+/// of 64 vertices each.
 Result<ImportItem> item_from_bytes(std::span<const std::uint8_t> payload);
 Result<PreparedModel> model_from_bytes(std::span<const std::uint8_t> payload);
 /// What the other end reports, or that it reports nothing readable.

@@ -8,6 +8,8 @@
 #include "catalog/prepare/placement.h"
 #include "catalog/prepare/surface_finish.h"
 #include "catalog/prepare/thumbnail.h"
+#include "geometry/decomposition/decomposition.h"
+#include "geometry/furniture_meshes.h"
 #include "interchange/compact/compact_geometry.h"
 #include "interchange/image/image_codec.h"
 #include "interchange/scratch_files.h"
@@ -144,6 +146,48 @@ TEST(Prepare, MeasuresACubeExactly) {
     const Bounds bounds = geometry::bounds(*mesh);
     EXPECT_LT(distance(bounds.lower, {-1, 0, -2}), 1e-4);
     EXPECT_LT(distance(bounds.upper, {1, 3, 2}), 1e-4);
+}
+
+std::string obj_text(const geometry::TriangleMesh& mesh) {
+    std::string text;
+    for (const Vec3f& p : mesh.positions) {
+        text += "v " + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + "\n";
+    }
+    for (const auto& t : mesh.triangles) {
+        text += "f";
+        for (const std::uint32_t corner : t) text += " " + std::to_string(corner + 1);
+        text += "\n";
+    }
+    return text;
+}
+
+TEST(Prepare, HollowThingsThatMoveAreDecomposed) {
+    const ScratchFolder scratch;
+    Preparation preparation;
+    ImportItem item{.path = scratch.write("chair.obj", obj_text(geometry::make_chair())).string()};
+    const auto chair = preparation.prepare(item);
+    ASSERT_TRUE(chair) << chair.error().message();
+    EXPECT_EQ(chair->convex_parts.hulls.size(), 6u);
+    EXPECT_EQ(chair->convex_parts.max_hulls, 16);
+    EXPECT_EQ(chair->convex_parts.hull_error, attributes::usual_hull_error);
+    EXPECT_GT(chair->facts.geometry.hull_concavity, 0.15);
+
+    // What stays where it is collides with its triangles; how hollow it is, is known all the same.
+    item.movable = false;
+    const auto fixed = preparation.prepare(item);
+    ASSERT_TRUE(fixed);
+    EXPECT_TRUE(fixed->convex_parts.hulls.empty());
+    EXPECT_EQ(fixed->facts.geometry.hull_concavity, chair->facts.geometry.hull_concavity);
+
+    const auto cube = preparation.prepare({.path = scratch.write("cube.obj", cube_obj()).string()});
+    ASSERT_TRUE(cube);
+    EXPECT_TRUE(cube->convex_parts.hulls.empty());
+    EXPECT_EQ(cube->facts.geometry.hull_concavity, 0);
+}
+
+TEST(Prepare, LimitsOfADecompositionAreThoseOfTheAttributes) {
+    const geometry::DecompositionParameters usual;
+    EXPECT_EQ(usual.hull_error, attributes::usual_hull_error);
 }
 
 TEST(Prepare, FlatModelsGetAThinBox) {

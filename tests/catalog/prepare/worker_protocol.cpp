@@ -33,6 +33,7 @@ PreparedModel a_model() {
     model.geometry = {1, 2, 3};
     model.thumbnail = {4, 5};
     model.hull_points = {{1, 2, 3}, {4, 5, 6}};
+    model.convex_parts = {16, 0.01, 0.002, 0.3, {{{1, 2, 3}, {4, 5, 6}}, {{7, 8, 9}}}};
     model.facts.name = "Chair";
     model.facts.material_names = {"oak"};
     model.facts.movable = true;
@@ -90,6 +91,11 @@ TEST(WorkerProtocol, RefusesModelsThatCannotBe) {
     EXPECT_TRUE(refuses([](PreparedModel& m) { m.facts.geometry.fitted_pose.rotation = {2, 0, 0, 0}; }));
     EXPECT_TRUE(refuses([](PreparedModel& m) { m.hull_points[0].x = std::numeric_limits<float>::infinity(); }));
     EXPECT_TRUE(refuses([](PreparedModel& m) { m.hull_points.resize(257); }));
+    EXPECT_TRUE(refuses([](PreparedModel& m) { m.convex_parts.max_hulls = -1; }));
+    EXPECT_TRUE(refuses([](PreparedModel& m) { m.convex_parts.concavity = nan; }));
+    EXPECT_TRUE(refuses([](PreparedModel& m) { m.convex_parts.hulls.resize(257); }));
+    EXPECT_TRUE(refuses([](PreparedModel& m) { m.convex_parts.hulls[0].resize(65); }));
+    EXPECT_TRUE(refuses([](PreparedModel& m) { m.convex_parts.hulls[0][0].y = std::nanf(""); }));
     EXPECT_TRUE(refuses([](PreparedModel& m) { m.quality = 4; }));
     EXPECT_TRUE(refuses([](PreparedModel& m) { m.geometry.clear(); }));
     EXPECT_TRUE(refuses([](PreparedModel& m) { m.thumbnail.resize(5 << 20); }));
@@ -120,6 +126,7 @@ TEST(WorkerProtocol, CarriesEverything) {
     ASSERT_TRUE(model);
     EXPECT_EQ(to_bytes(*model), to_bytes(a_model()));
     EXPECT_EQ(model->hull_points[1], (Vec3f{4, 5, 6}));
+    EXPECT_EQ(model->convex_parts.hulls, a_model().convex_parts.hulls);
     EXPECT_EQ(model->content_hash, 42u);
     const Error error = error_from_bytes(to_bytes(Error{"where", "why", "remedy"}));
     EXPECT_EQ(error.message(), "where: why (remedy)");
