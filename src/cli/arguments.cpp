@@ -238,10 +238,12 @@ private:
         c.app
             ->add_option("suite", c.into->suite,
                          "table1; stability: do structures stand, tight and quiet; simbenchmark: accuracy beside "
-                         "published figures; scaling: cost of 1,000 to 100,000 bodies")
+                         "published figures; scaling: cost of 1,000 to 100,000 bodies; decomposition: convex parts of "
+                         "models of the database")
             ->capture_default_str()
-            ->check(CLI::IsMember({"table1", "stability", "simbenchmark", "scaling"}).description(""));
-        c.app->add_option("--scene", c.into->scene, "Only this scene");
+            ->check(CLI::IsMember({"table1", "stability", "simbenchmark", "scaling", "decomposition"}).description(""));
+        c.app->add_option("--scene", c.into->scene, "Only this scene, or this model");
+        add_database(c);
         c.app->add_option("--bodies", c.into->bodies, "Most bodies of a scene of scaling")
             ->capture_default_str()
             ->check(CLI::Range(1'000, 1'000'000));

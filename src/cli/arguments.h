@@ -93,7 +93,8 @@ struct SceneArguments {
     bool json = false;
 };
 struct BenchArguments {
-    std::string suite = "table1";         ///< or "stability", "simbenchmark", "scaling", "race"
+    std::string suite = "table1";         ///< or "stability", "simbenchmark", "scaling", "decomposition", "race"
+    std::filesystem::path database;       ///< decomposition takes its models from it
     std::vector<std::string> race_words;  ///< for the race's own program
     std::string scene;                    ///< only this one
     int steps = 0;                        ///< 0: as many as the scene says

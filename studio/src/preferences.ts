@@ -9,6 +9,8 @@ export interface PreferenceValues {
   quality: Quality;
   tint: boolean;
   grid: boolean;
+  /** What collides is drawn over what is selected. */
+  collision: boolean;
   snap: boolean;
   /** Metres and degrees. */
   snapLength: number;
@@ -25,6 +27,7 @@ const DEFAULTS: PreferenceValues = {
   quality: "high",
   tint: true,
   grid: true,
+  collision: false,
   snap: false,
   snapLength: 0.1,
   snapAngle: 15,

@@ -3,6 +3,7 @@ import { Box3, Vector3 } from "three";
 import { CommandRefused, Connection, NotConnected } from "./connection/connection";
 import type { Commands, DocumentEvent, ServerError, ServerEvent, Simulation, Statistics } from "./connection/messages";
 import { Motion } from "./document/motion";
+import type { Shape } from "./document/scene_types";
 import { positionOf, SceneDocument } from "./document/scene_document";
 import { Selection } from "./document/selection";
 import { Preferences } from "./preferences";
@@ -10,6 +11,9 @@ import { Signal } from "./signal";
 import { EntityView } from "./view/entity_view";
 import { ModelStore } from "./view/model_store";
 import { View } from "./view/view";
+
+/** Of a large selection only the first are asked for. */
+const MOST_COLLISION_SHAPES = 64;
 
 export interface Notice {
   level: "info" | "warning" | "error";
@@ -36,6 +40,7 @@ export class Studio {
   readonly connectionChanged = new Signal<void>();
   /** For the user's eyes. */
   readonly notice = new Signal<Notice>();
+  private collisionAsked = 0;
   /** The document is here; false until the first answer to hello. */
   ready = false;
 
@@ -75,10 +80,12 @@ export class Studio {
       this.entities.apply(changed);
       this.selection.set(this.selection.indices.filter((index) => this.document.entity(index)));
       this.view.outline.show(this.selection.indices);
+      void this.showCollision();
       this.view.invalidate();
     });
     this.selection.changed.on(() => {
       this.view.outline.show(this.selection.indices);
+      void this.showCollision();
       this.view.invalidate();
     });
     this.entities.loaded.on(() => this.view.outline.show(this.selection.indices));
@@ -86,6 +93,21 @@ export class Studio {
       const entity = this.document.entity(index);
       this.notice.emit({ level: "warning", text: `“${entity?.name ?? index}” cannot be drawn: ${reason}` });
     });
+  }
+
+  /** Asks what collides of what is selected, and draws it. */
+  private async showCollision(): Promise<void> {
+    const wanted = ++this.collisionAsked;
+    const indices = this.preferences.get("collision") ? this.selection.indices.slice(0, MOST_COLLISION_SHAPES) : [];
+    const shown: { index: number; shape: Shape }[] = [];
+    for (const index of indices) {
+      const told = await this.command("entity.collision_shape", { index });
+      // What is selected, or the document, may have changed while the answer was on its way.
+      if (wanted !== this.collisionAsked) return;
+      if (told?.shape) shown.push({ index, shape: told.shape });
+    }
+    this.view.collision.show(shown);
+    this.view.invalidate();
   }
 
   private followConnection(): void {
@@ -123,6 +145,7 @@ export class Studio {
       if (name === "quality") view.setQuality(preferences.get("quality"));
       if (name === "grid") view.environment.showGrid(preferences.get("grid"));
       if (name === "tint") this.retint();
+      if (name === "collision") void this.showCollision();
       view.invalidate();
     });
   }

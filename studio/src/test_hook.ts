@@ -19,6 +19,8 @@ export interface TestHook {
   seenAt(index: number): { x: number; y: number } | null;
   /** Red, green, blue and amount of the state colour an entity is drawn with. */
   tintOf(index: number): number[];
+  /** Parts of collision shapes that are drawn over the selection. */
+  collisionParts(): number;
   pick(x: number, y: number): number | null;
   /** Stops drawing, for screenshots; resume() goes on. */
   halt(): void;
@@ -53,6 +55,7 @@ export function offerTestHook(studio: Studio): void {
       return { x, y };
     },
     tintOf: (index) => studio.entities.tintOf(index),
+    collisionParts: () => studio.view.collision.parts,
     pick: (x, y) => studio.view.pick(x, y)?.index ?? null,
     halt: () => studio.view.halt(),
     resume: () => studio.view.resume(),

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""`embody bench simbenchmark` and `embody bench scaling` as a person or a program meets them.
+"""`embody bench simbenchmark`, `scaling` and `decomposition` as a person or a program meets them.
 
 Usage: test_suites.py EMBODY
 """
@@ -8,6 +8,7 @@ import json
 import math
 import subprocess
 import sys
+import tempfile
 import unittest
 
 EMBODY = ""
@@ -45,6 +46,20 @@ class Suites(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         (row,) = [line.split() for line in result.stdout.splitlines() if line.startswith("columns_asleep")]
         self.assertEqual((row[1], row[2], row[-1]), ("1000", "0", "right"))
+
+    def test_decomposition_measures_a_model_of_the_database(self):
+        with tempfile.TemporaryDirectory() as folder:
+            database = ("decomposition", "--database", folder + "/models.sqlite", "--json")
+            empty = bench(*database)
+            self.assertEqual(empty.returncode, 1)
+            self.assertIn("embody import", empty.stderr)
+            self.assertEqual(bench(*database, "--scene", "no_such_model").returncode, 1)
+            result = bench(*database, "--scene", "primitive:box")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            (row,) = json.loads(result.stdout)["models"]
+            self.assertEqual(row["hulls"], 1)
+            self.assertLess(row["added_m"], 1e-3)
+            self.assertLess(row["left_out_m"], 1e-3)
 
 
 if __name__ == "__main__":

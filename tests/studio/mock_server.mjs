@@ -172,6 +172,15 @@ export class MockServer {
     },
     "entity.reset_attribute": ({ indices, name }) => this.edit(`reset ${name}`, () => indices.forEach((index) => delete this.entity(index).attributes?.[name])),
     "entity.attributes": ({ index }) => ({ attributes: this.attributes(index) }),
+    "entity.collision_shape": () => ({
+      shape: {
+        type: "compound",
+        children: [0, 1, 2].map((x) => ({
+          type: "hull",
+          points: [[x, 0, 0], [x + 0.5, 0, 0], [x, 1, 0], [x, 0, 1]],
+        })),
+      },
+    }),
     "action.trigger": () => ({ started: 1 }),
     "edit.undo": () => this.travel(this.past, this.future),
     "edit.redo": () => this.travel(this.future, this.past),

@@ -182,6 +182,17 @@ describe("the Studio's panels", { timeout: 300000 }, () => {
     assert.deepEqual(await page.evaluate(() => window.embody.selection()), [CRATE, 3]);
   });
 
+  it("draws what collides over the selection, each convex part by itself", async () => {
+    await choose(CRATE);
+    assert.equal(await page.evaluate(() => window.embody.collisionParts()), 0);
+    await page.getByTestId("canvas").hover();
+    await page.keyboard.press("c");
+    await page.waitForFunction(() => window.embody.collisionParts() === 3);
+    assert.deepEqual(sent("entity.collision_shape"), [{ index: CRATE }]);
+    await page.keyboard.press("c");
+    await page.waitForFunction(() => window.embody.collisionParts() === 0);
+  });
+
   it("finds commands by words in the palette", async () => {
     await page.keyboard.press("Control+k");
     await page.getByTestId("palette-input").fill("light th");

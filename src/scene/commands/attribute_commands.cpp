@@ -112,9 +112,29 @@ Result<json> list_attributes(SessionState& state, const json& params) {
     return json{{"attributes", attribute_rows(acting.value(), automatic.value(), own)}};
 }
 
+// The triangles of static things are those that are drawn, and may be many: they are not told.
+Result<json> tell_collision_shape(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    EntityIndex index = 0;
+    need_index(reader, "index", index);
+    if (!reader.finish()) return *error;
+    const Entity* entity = state.simulation->definition(index);
+    if (!entity) entity = state.document.find(index);
+    if (!entity) return state.entity(index, "index").error();
+    Result<AttributeSet> acting = state.simulation->attributes(index);
+    if (!acting.ok()) acting = state.bodies.attributes(*entity);
+    if (!acting.ok()) return acting.error();
+    if (acting.value().word("kind", "rigid") == "visual") return json{{"shape", nullptr}};
+    const Result<physics::ShapeDefinition> shape = state.bodies.shape(*entity, acting.value());
+    if (!shape.ok()) return shape.error();
+    return json{{"shape", physics::is_static_only(shape.value()) ? json(nullptr) : shape_to_json(shape.value())}};
+}
+
 constexpr Command commands[] = {{"entity.set_attribute", set_attribute},
                                 {"entity.reset_attribute", reset_attribute},
-                                {"entity.attributes", list_attributes}};
+                                {"entity.attributes", list_attributes},
+                                {"entity.collision_shape", tell_collision_shape}};
 
 }  // namespace
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The commands and events of docs/protocol.md as types. SI units, Y up, rotations x y z w.
-import type { Action, Entity, Joint, Scene, SceneSettings, Vector, Quaternion } from "../document/scene_types";
+import type { Action, Entity, Joint, Scene, SceneSettings, Shape, Vector, Quaternion } from "../document/scene_types";
 
 export interface ModelSummary {
   id: number;
@@ -127,6 +127,7 @@ export interface Commands {
   "entity.duplicate": [{ indices: number[]; offset?: Vector }, { indices: number[] }];
   "entity.drop_to_floor": [{ indices: number[] }, unknown];
   "entity.attributes": [{ index: number }, { attributes: AttributeEntry[] }];
+  "entity.collision_shape": [{ index: number }, { shape: Shape | null }];
   "edit.undo": [Record<string, never>, { undone: string | null }];
   "edit.redo": [Record<string, never>, { redone: string | null }];
   "simulation.play": [Record<string, never>, unknown];

@@ -28,6 +28,7 @@ export function openOptions(studio: Studio, actions: readonly UserAction[]): voi
       { class: "options" },
       flip("view.tint"),
       flip("view.grid"),
+      flip("view.collision"),
       flip("view.theme"),
       flip("view.quality"),
       flip("tool.snap"),

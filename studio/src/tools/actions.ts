@@ -154,11 +154,12 @@ async function keepPoses(studio: Studio): Promise<void> {
 
 function viewActions(studio: Studio, open: Openers): UserAction[] {
   const { preferences, view } = studio;
-  const flip = <Name extends "tint" | "grid">(name: Name) => preferences.set(name, !preferences.get(name));
+  const flip = <Name extends "tint" | "grid" | "collision">(name: Name) => preferences.set(name, !preferences.get(name));
   return [
     { id: "view.focus", label: "Focus on the selection", group: "View", keys: ["F"], run: () => focus(studio) },
     { id: "view.tint", label: "Colour by state", group: "View", keys: ["T"], icon: "tint", on: () => preferences.get("tint"), run: () => flip("tint") },
     { id: "view.grid", label: "Grid", group: "View", keys: ["G"], on: () => preferences.get("grid"), run: () => flip("grid") },
+    { id: "view.collision", label: "Collision shapes of the selection", group: "View", keys: ["C"], on: () => preferences.get("collision"), run: () => flip("collision") },
     {
       id: "view.theme",
       label: "Light theme",

@@ -4,6 +4,7 @@ import type { Motion } from "../document/motion";
 import { Signal } from "../signal";
 import type { Batch } from "./batch";
 import { CameraRig } from "./camera_rig";
+import { CollisionOverlay } from "./collision_overlay";
 import type { EntityView } from "./entity_view";
 import { Environment, type Theme } from "./environment";
 import { Outline } from "./outline";
@@ -30,6 +31,7 @@ export class View {
   readonly renderer: WebGLRenderer;
   readonly environment: Environment;
   readonly outline: Outline;
+  readonly collision: CollisionOverlay;
   /** Just before a picture is drawn, with the page's clock in milliseconds. */
   readonly beforeFrame = new Signal<number>();
   /** Motion is not fluent here, for the last SLOW_PICTURES pictures; said once. */
@@ -56,7 +58,8 @@ export class View {
     this.renderer.shadowMap.autoUpdate = false;
     this.environment = new Environment(this.scene, this.renderer);
     this.outline = new Outline(entities);
-    this.scene.add(entities.group, this.outline.group);
+    this.collision = new CollisionOverlay(entities);
+    this.scene.add(entities.group, this.outline.group, this.collision.group);
     this.rig.changed.on(() => this.invalidate());
     entities.loaded.on(() => this.invalidate());
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
@@ -160,6 +163,7 @@ export class View {
     const moving = this.motion.advance(now);
     this.beforeFrame.emit(now);
     this.entities.update(now);
+    this.collision.update(now);
     this.outline.update(now, this.renderer.getDrawingBufferSize(this.size));
     const sunMoved = this.environment.follow(this.rig.target, this.rig.distance);
     if (sunMoved || this.entities.shadowsAreOld) this.renderer.shadowMap.needsUpdate = true;
