@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Reads data/taxonomy. Of this layer only this file, field_reader and attribute_json see the JSON library.
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <utility>
 
 #include "attributes/assemble.h"
@@ -65,7 +67,11 @@ void read_attributes(FieldReader& reader, const std::string& where, CategoryData
     }
 }
 
-bool is_substance(const CategoryData& category) { return category.kind == "fluid" || category.kind == "granular"; }
+// What has no form of its own, so that a model shows it in a container, on a roll, as one piece.
+bool is_stuff(const CategoryData& category) {
+    constexpr std::array<std::string_view, 4> kinds{"fluid", "granular", "cloth", "rope"};
+    return std::ranges::find(kinds, category.kind) != kinds.end();
+}
 
 Result<CategoryData> read_category(const json& object, const std::string& where, const CategoryData* parent) {
     // A subcategory starts as its category; words are its own, and numbers that it changes need a source of their own.
@@ -104,8 +110,8 @@ Result<CategoryData> read_category(const json& object, const std::string& where,
     check_choice(reader, "placement", category.placement);
     if (category.kind == "static")
         reader.fail("kind", "must say what it is when it moves; static is \"movable\": false");
-    if (!category.modelled_as.empty() && !is_substance(category)) {
-        reader.fail("modelled_as", "is for the kinds fluid and granular; this is " + category.kind);
+    if (!category.modelled_as.empty() && !is_stuff(category)) {
+        reader.fail("modelled_as", "is for the kinds fluid, granular, cloth and rope; this is " + category.kind);
     }
     if (scaling != "volume" && scaling != "area") reader.fail("mass_grows_with", "must be volume or area");
     category.scaling = scaling == "area" ? MassScaling::area : MassScaling::volume;
@@ -238,9 +244,9 @@ Result<void> find_model_entries(Taxonomy::Data& data) {
             return Error{where, "there is no entry \"" + substance.modelled_as + "\"",
                          "give the name of a category or subcategory"};
         }
-        if (is_substance(*model)) {
-            return Error{where, "\"" + substance.modelled_as + "\" is a substance itself",
-                         "name what holds it or one piece of it, such as a bottle, or leave modelled_as out"};
+        if (is_stuff(*model)) {
+            return Error{where, "\"" + substance.modelled_as + "\" has no form of its own either",
+                         "name what holds it, such as a bottle or a roll, or leave modelled_as out"};
         }
         substance.model_entry = static_cast<std::size_t>(model - data.categories.data());
     }

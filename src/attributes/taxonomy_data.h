@@ -62,7 +62,7 @@ struct CategoryData {
     std::string material;
     std::string source;                         ///< of the numbers above
     std::vector<CategoryAttribute> attributes;  ///< what else is usual, such as the stiffness of a cushion
-    std::string modelled_as;  ///< of a substance: the entry that a model of it is, "beer bottle"; empty: the substance
+    std::string modelled_as;                 ///< of beer the entry that a model of it is, "beer bottle"; empty: itself
     std::optional<std::size_t> model_entry;  ///< index of that entry
 };
 

@@ -127,12 +127,13 @@ TEST(TaxonomyLoad, OnlyASubstanceIsModelledAsSomethingElseThatIsThere) {
     };
     EXPECT_EQ(substance("fluid", "bottle"), "");
     EXPECT_EQ(substance("granular", "bottle"), "");
+    EXPECT_EQ(substance("cloth", "bottle"), "");
     EXPECT_EQ(substance("soft", "bottle"),
-              "things.json: categories[1].modelled_as: is for the kinds fluid and granular; this is soft");
+              "things.json: categories[1].modelled_as: is for the kinds fluid, granular, cloth and rope; this is soft");
     EXPECT_EQ(
         substance("fluid", "jug"),
         "things.json: \"beer\".modelled_as: there is no entry \"jug\" (give the name of a category or subcategory)");
-    EXPECT_NE(substance("fluid", "beer").find("\"beer\" is a substance itself"), std::string::npos);
+    EXPECT_NE(substance("fluid", "beer").find("\"beer\" has no form of its own either"), std::string::npos);
 }
 
 TEST(TaxonomyLoad, NumbersNeedASource) {
