@@ -2,6 +2,7 @@
 #include "attributes/classify.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -35,8 +36,8 @@ constexpr double overruled = 0.5;            // what stands in the name, but is 
 constexpr double trust_in_compound = 0.9;    // "deskchair"
 constexpr double trust_in_ending = 0.65;     // "Kaffeetisch"
 constexpr double nothing_known = 0.05;
-constexpr std::size_t long_name = 8;     // words: a sales text, whose last noun says less than a tag
-constexpr double trust_in_long = 0.65;   // of what a short name is trusted
+constexpr std::size_t long_name = 6;     // words: a sales text, whose last noun says less than a tag
+constexpr double trust_in_long = 0.55;   // of what a short name is trusted
 constexpr double close_runner_up = 0.6;  // of the winner's confidence
 
 AttributeLevel level_of(const CategoryData& category) {
@@ -215,6 +216,33 @@ std::vector<Candidate> ask_name(const Taxonomy::Data& data, std::string_view nam
     return found;
 }
 
+// Words that make of a thing something else of its form.
+constexpr std::array<std::string_view, 6> imitations{"toy", "artificial", "fake", "dummy", "miniature", "imitation"};
+
+bool is_imitation(const std::string& phrase) {
+    return std::ranges::any_of(imitations, [&](std::string_view word) {
+        return phrase.starts_with(word) && phrase.size() > word.size() && phrase[word.size()] == ' ';
+    });
+}
+
+// A tag that has the name's own phrase with more before it ("toy cup" beside the name "cup"), or that says that the
+// thing only looks like what it is named after ("toy fruit" beside "banana"), says more exactly what the name means.
+void ask_more_exact_tags(const Taxonomy::Data& data, const ModelFacts& facts, std::vector<Candidate>& found) {
+    if (found.empty() || found.front().phrase.empty()) return;
+    const Candidate named = found.front();
+    for (const std::string& tag : facts.tags) {
+        const auto match = match_phrase(data.category_phrases, data.longest_phrase, tag);
+        if (!match || &data.categories[match->entry] == named.category) continue;
+        const bool has_more = match->phrase.ends_with(" " + named.phrase);
+        if (!has_more && !(is_imitation(match->phrase) && !is_imitation(named.phrase))) continue;
+        Candidate exact = candidate_of(data, tag_trust, *match);
+        exact.confidence = named.confidence;
+        exact.source += ", more exactly than the name's \"" + named.phrase + "\"";
+        found.insert(found.begin(), std::move(exact));
+        return;
+    }
+}
+
 void doubt_long_name(std::vector<Candidate>& found) {
     for (Candidate& candidate : found) {
         candidate.confidence *= trust_in_long;
@@ -358,6 +386,8 @@ Classification classify(const Taxonomy::Data& data, const ModelFacts& facts) {
     const Surroundings surroundings(data, facts);
     std::vector<Candidate> found = ask_name_and_compounds(data, facts.name, surroundings);
     if (tokens_of(facts.name).size() >= long_name) doubt_long_name(found);
+
+    ask_more_exact_tags(data, facts, found);
 
     // What stands elsewhere is asked where the name leaves doubt.
     if (found.empty() || found.front().confidence < name_trust.phrase) {

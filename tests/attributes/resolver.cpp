@@ -138,6 +138,27 @@ TEST(Resolve, MassesAreThoseOfRealThings) {
     }
 }
 
+TEST(Resolve, FoldedClothFillsItsBox) {
+    const auto mass = [](Vec3 size) { return resolve(shipped_taxonomy(), named("Curtain", size)).number("mass", 0); };
+    EXPECT_NEAR(mass({0.3, 0.04, 0.25}), 180 * 0.3 * 0.04 * 0.25, 1e-9);
+    EXPECT_LT(mass({0.6, 0.6, 0.1}), 1) << "a small one that hangs";
+    EXPECT_GT(mass({1.4, 2.35, 0.12}), 1);
+}
+
+TEST(Resolve, ATagThatSaysMoreThanTheNameDecides) {
+    ModelFacts facts = named("Cup");
+    facts.tags = {"toy cup"};
+    EXPECT_EQ(resolve(shipped_taxonomy(), facts).word("subcategory", ""), "plastic cup");
+    facts = named("Banana");
+    facts.tags = {"fruit"};
+    EXPECT_EQ(resolve(shipped_taxonomy(), facts).word("subcategory", ""), "banana");
+    facts.tags = {"toy fruit"};
+    EXPECT_EQ(resolve(shipped_taxonomy(), facts).word("subcategory", ""), "toy fruit");
+    facts = named("Table lamp");
+    facts.tags = {"table"};
+    EXPECT_EQ(resolve(shipped_taxonomy(), facts).word("category", ""), "lamp");
+}
+
 TEST(Resolve, MassGrowsWithSizeAndIntervalHoldsIt) {
     const AttributeSet small = resolved(named("Table", {0.8, 0.7, 0.8}));
     const AttributeSet large = resolved(named("Table", {2.4, 0.75, 1.0}));
