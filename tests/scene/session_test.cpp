@@ -358,6 +358,19 @@ TEST_F(SessionTest, ShowsAttributesWithTheirOrigin) {
     EXPECT_TRUE(session_->document().find(box)->attributes.empty());
 }
 
+TEST_F(SessionTest, TellsWhatCollides) {
+    EXPECT_NE(error_of("entity.collision_shape", {{"index", 99}}).find("99"), std::string::npos);
+    EXPECT_NE(error_of("entity.collision_shape").find("index"), std::string::npos);
+    const EntityIndex box = add_box({0, 1, 0});
+    const json shape = run("entity.collision_shape", {{"index", box}})["shape"];
+    EXPECT_EQ(shape["type"], "box");
+    EXPECT_EQ(shape["half_extents"], json({0.25, 0.25, 0.25}));
+    const EntityIndex plane = run("entity.add", {{"entity", {{"shape", {{"type", "plane"}}}}}})["index"];
+    EXPECT_TRUE(run("entity.collision_shape", {{"index", plane}})["shape"].is_null());
+    run("entity.set_attribute", {{"indices", {box}}, {"name", "kind"}, {"value", "visual"}});
+    EXPECT_TRUE(run("entity.collision_shape", {{"index", box}})["shape"].is_null());
+}
+
 TEST_F(SessionTest, ActionsTellWhatTheyDid) {
     const EntityIndex box = add_box({0, 1, 0});
     run("entity.update", {{"index", box}, {"entity", {{"enabled", false}}}});
