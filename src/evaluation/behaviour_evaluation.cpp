@@ -146,7 +146,7 @@ Result<Behaviour> behaviour_of(catalog::Catalog& catalog, const catalog::ModelSu
     if (!pushed) return pushed.error();
     behaviour.slide = slide_of(*pushed, extent, expected.friction);
     // A bottom that is not flat meets the floor before it stands: then the height of its bounce says little.
-    if (std::abs(standing->center().y - placed) > 1e-3) return behaviour;
+    if (std::abs(standing->center().y - placed) > 2e-4 || standing->tilt() > 0.05) return behaviour;
     const auto dropped = stage_of(catalog, model.key, drop_height, {});
     if (!dropped) return dropped.error();
     behaviour.rebound = rebound_of(*dropped, extent, standing->center().y, expected.restitution);
