@@ -7,11 +7,13 @@
 #include <bit>
 #include <charconv>
 #include <cstdlib>
+#include <limits>
 
 #include "attributes/registry.h"
 #include "catalog/describe_model.h"
 #include "catalog/import/importer.h"
 #include "catalog/knowledge_json.h"
+#include "catalog/manual_changes.h"
 #include "catalog/prepare/confined_pool.h"
 #include "catalog/primitives.h"
 #include "catalog/stored_parts.h"
@@ -58,12 +60,18 @@ std::string current_person() {
 
 struct Catalog::State {
     State(std::unique_ptr<database::Connection> opened, std::unique_ptr<attributes::Taxonomy> loaded)
-        : connection(std::move(opened)), taxonomy(std::move(loaded)), models(*connection), manual(*connection) {}
+        : connection(std::move(opened)),
+          taxonomy(std::move(loaded)),
+          models(*connection),
+          manual(*connection),
+          changes(*connection, [this](std::int64_t id) { return classify_again(id); }) {}
 
     std::unique_ptr<database::Connection> connection;
     std::unique_ptr<attributes::Taxonomy> taxonomy;
     database::ModelTable models;
     database::ManualAttributeTable manual;
+    ManualChanges changes;
+    Author author{current_person(), {}};
 
     // What is known of one model, read from the database.
     struct Known {
@@ -208,28 +216,31 @@ Result<attributes::AttributeSet> Catalog::attributes(std::int64_t id) const {
     return attributes::with_manual(known->automatic, known->manual, known->facts);
 }
 
+namespace {
+
+// A change of one model either happens or is an error.
+Result<void> need_done(const Result<ChangeReport>& report) {
+    if (!report) return report.error();
+    if (report->refused.empty()) return {};
+    const RefusedChange& refused = report->refused.front();
+    return Error{refused.attribute, refused.why + ", as " + refused.name + " is"};
+}
+
+std::string in_words(const SearchQuery& query) {
+    std::string asked = query.words.empty() ? "all models" : "models found by \"" + valid_utf8(query.words) + "\"";
+    if (!query.category.empty()) asked += " of the category " + valid_utf8(query.category);
+    return asked;
+}
+
+}  // namespace
+
 Result<void> Catalog::set_attribute(std::int64_t id, std::string_view name, const attributes::AttributeValue& value) {
-    if (auto valid = attributes::validate(name, value); !valid) return valid;
-    auto transaction = database::Transaction::begin(*state_->connection);
-    if (!transaction) return transaction.error();
-    const auto row = state_->row(id);
-    if (!row) return row.error();
-    database::ManualAttribute entry{std::string(name), to_json(value), current_person()};
-    if (auto put = state_->manual.put(row->key, entry); !put) return put;
-    if (auto classified = state_->classify_again(id); !classified) return classified;
-    if (auto committed = transaction->commit(); !committed) return committed;
+    if (auto set = need_done(change_attributes(std::vector{id}, {{std::string(name), value}})); !set) return set;
     return prepare_shape(id, name);
 }
 
 Result<void> Catalog::reset_attribute(std::int64_t id, std::string_view name) {
-    if (!attributes::describe(name)) return attributes::parse_value(name, "").error();
-    auto transaction = database::Transaction::begin(*state_->connection);
-    if (!transaction) return transaction.error();
-    const auto row = state_->row(id);
-    if (!row) return row.error();
-    if (auto erased = state_->manual.erase(row->key, name); !erased) return erased;
-    if (auto classified = state_->classify_again(id); !classified) return classified;
-    if (auto committed = transaction->commit(); !committed) return committed;
+    if (auto reset = need_done(change_attributes(std::vector{id}, {{std::string(name)}})); !reset) return reset;
     return prepare_shape(id, name);
 }
 
@@ -243,6 +254,39 @@ Result<void> Catalog::prepare_shape(std::int64_t id, std::string_view changed) c
                                     set->number("hull_error", usual.hull_error));
     return parts ? Result<void>() : Result<void>(parts.error());
 }
+
+Result<ChangeReport> Catalog::change_attributes(const ModelChoice& models, const std::vector<AttributeChange>& changes,
+                                                const ChangeOptions& options) {
+    const auto find_all = [&](database::ModelTable& table) -> Result<std::vector<database::ModelRow>> {
+        if (const auto* query = std::get_if<SearchQuery>(&models)) {
+            auto found = table.search({.words = query->words,
+                                       .category = query->category,
+                                       .limit = std::numeric_limits<int>::max(),
+                                       .offset = 0});
+            if (!found) return found.error();
+            return std::move(found->models);
+        }
+        std::vector<database::ModelRow> rows;
+        for (const std::int64_t id : std::get<std::vector<std::int64_t>>(models)) {
+            auto row = state_->row(id);
+            if (!row) return row.error();
+            rows.push_back(std::move(*row));
+        }
+        return rows;
+    };
+    const auto* query = std::get_if<SearchQuery>(&models);
+    return state_->changes.change(find_all, changes, options, state_->author, query ? in_words(*query) : "");
+}
+
+Result<ChangeReport> Catalog::undo_changes(std::int64_t batch, const ChangeOptions& options) {
+    return state_->changes.undo(batch, options, state_->author);
+}
+
+Result<std::vector<ChangeRecord>> Catalog::history(const HistoryQuery& query) const {
+    return state_->changes.history(query);
+}
+
+void Catalog::set_session(std::string session) { state_->author.session = valid_utf8(session); }
 
 Result<void> Catalog::State::classify_again(std::int64_t id) {
     // A person may have changed the category or the kind, by which the model is listed.

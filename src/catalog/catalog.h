@@ -8,12 +8,14 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "attributes/attribute.h"
 #include "attributes/model_facts.h"
 #include "attributes/resolver.h"
 #include "catalog/geometry_kind.h"
+#include "catalog/manual_change.h"
 #include "catalog/prepare/convex_parts.h"
 #include "foundation/result.h"
 #include "geometry/triangle_mesh.h"
@@ -95,9 +97,24 @@ public:
     Result<attributes::AttributeSet> attributes(std::int64_t id) const;
     /// Without the manual ones: what reset goes back to.
     Result<attributes::AttributeSet> automatic_attributes(std::int64_t id) const;
-    /// A manual change by a person; survives re-import.
+    /// A manual change by a person; survives re-import. Refused where the attribute does not concern the model's kind.
     Result<void> set_attribute(std::int64_t id, std::string_view name, const attributes::AttributeValue& value);
     Result<void> reset_attribute(std::int64_t id, std::string_view name);
+
+    /// Which models a change is for: these, or all that the query finds, whatever its limit and offset.
+    using ModelChoice = std::variant<std::vector<std::int64_t>, SearchQuery>;
+    /// Manual changes of many models, all or nothing. Where models refuse and options do not skip them, the report
+    /// names them and its batch is 0. Errors: a wrong name or value, a model that is not there, stopped.
+    Result<ChangeReport> change_attributes(const ModelChoice& models, const std::vector<AttributeChange>& changes,
+                                           const ChangeOptions& options = {});
+    /// Restores the manual values from before a batch of changes; of an undo: does again what it took back. 0: the last
+    /// batch of this person. Where values were changed since, the report names them and nothing is done. Errors: no
+    /// such batch, undone already.
+    Result<ChangeReport> undo_changes(std::int64_t batch, const ChangeOptions& options = {});
+    /// Who changed what when, newest first.
+    Result<std::vector<ChangeRecord>> history(const HistoryQuery& query) const;
+    /// Through what the person acts from now on, for the history: "Studio client 2".
+    void set_session(std::string session);
 
     Result<std::vector<std::uint8_t>> thumbnail(std::int64_t id) const;  ///< PNG
     Result<std::vector<std::uint8_t>> geometry_glb(

@@ -43,6 +43,8 @@ public:
         add_show();
         add_set();
         add_reset();
+        add_history();
+        add_undo();
         add_simulate();
         add_check();
         add_classify();
@@ -127,19 +129,55 @@ private:
         c.app->add_option("model", c.into->model, "Key, id or unique name of a model")->required();
         add_json(c);
     }
+    template <class T>
+    static void add_many(const Command<T>& command) {
+        ManyArguments& many = command.into->many;
+        command.app->add_option("--query", many.query, "In place of a model: all that these words find");
+        command.app->add_option("--category", many.category, "In place of a model: all of this category");
+        command.app->add_flag("--all", many.all, "In place of a model: every model");
+        command.app->add_flag("--dry-run", many.dry_run, "Say how many and which would be changed, and change nothing");
+        command.app->add_flag("--skip", many.skip,
+                              "Leave out models that an attribute does not concern (else one of them stops it all)");
+    }
     void add_set() {
-        auto c = add<SetArguments>("set", "Change attributes of a model by hand; survives re-import",
-                                   "embody set 17 mass=12.5 friction_dynamic=0.6");
+        auto c = add<SetArguments>("set", "Change attributes of a model, or of many, by hand; survives re-import",
+                                   "embody set 17 mass=12.5 friction_dynamic=0.6\n"
+                                   "  embody set --query \"office chair\" --category chair surface_material=oak");
         add_database(c);
-        c.app->add_option("model", c.into->model, "Key, id or unique name of a model")->required();
-        c.app->add_option("assignments", c.into->assignments, "name=value …")->required();
+        c.app->add_option("words", c.into->words, "Key, id or unique name of a model, then name=value …")->required();
+        add_many(c);
         add_json(c);
     }
     void add_reset() {
-        auto c = add<ResetArguments>("reset", "Go back to the automatic value of attributes", "embody reset 17 mass");
+        auto c = add<ResetArguments>("reset", "Go back to the automatic value of attributes",
+                                     "embody reset 17 mass\n  embody reset --category chair mass");
         add_database(c);
-        c.app->add_option("model", c.into->model, "Key, id or unique name of a model")->required();
-        c.app->add_option("names", c.into->names, "Attributes; none: all that were changed by hand");
+        c.app->add_option("words", c.into->words,
+                          "Key, id or unique name of a model, then attributes; none: all that were changed by hand");
+        add_many(c);
+        add_json(c);
+    }
+    void add_history() {
+        auto c = add<HistoryArguments>("history", "Tell who changed what by hand, and when",
+                                       "embody history --since 7d\n  embody history \"office chair\"");
+        add_database(c);
+        c.app->add_option("model", c.into->model, "Key, id or unique name of a model (default: all)");
+        c.app->add_option("--since", c.into->since,
+                          "Only since then: 2026-11-22, 2026-11-22T14:30 (UTC), 7d (days ago) or 2h");
+        c.app->add_option("--batch", c.into->batch, "Only what was changed at once under this number")
+            ->check(CLI::PositiveNumber);
+        c.app->add_option("--limit", c.into->limit, "At most so many values")
+            ->capture_default_str()
+            ->check(CLI::Range(1, 1'000'000));
+        add_json(c);
+    }
+    void add_undo() {
+        auto c = add<UndoArguments>("undo", "Take back what was changed by hand at once; of an undo: do it again",
+                                    "embody undo\n  embody undo 12");
+        add_database(c);
+        c.app->add_option("batch", c.into->batch, "Number that `embody history` tells (default: your last)")
+            ->check(CLI::PositiveNumber);
+        c.app->add_flag("--dry-run", c.into->dry_run, "Say how many and which would be changed, and change nothing");
         add_json(c);
     }
     void add_simulate() {

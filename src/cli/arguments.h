@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -38,16 +39,39 @@ struct ShowArguments {
     std::string model;
     bool json = false;
 };
+/// Models chosen by what they are, in place of one that is named.
+struct ManyArguments {
+    std::string query, category;
+    bool all = false;
+    bool dry_run = false;  ///< say what would be changed; for one model too
+    bool skip = false;     ///< change the others where some refuse
+
+    [[nodiscard]] bool are_chosen() const { return all || !query.empty() || !category.empty(); }
+};
 struct SetArguments {
     std::filesystem::path database;
-    std::string model;
-    std::vector<std::string> assignments;  ///< "name=value"
+    std::vector<std::string> words;  ///< the model unless many are chosen, then "name=value" …
+    ManyArguments many;
     bool json = false;
 };
 struct ResetArguments {
     std::filesystem::path database;
-    std::string model;
-    std::vector<std::string> names;
+    std::vector<std::string> words;  ///< the model unless many are chosen, then names of attributes
+    ManyArguments many;
+    bool json = false;
+};
+struct HistoryArguments {
+    std::filesystem::path database;
+    std::string model;       ///< key, id or name; empty: all
+    std::string since;       ///< as typed
+    std::int64_t batch = 0;  ///< 0: all
+    int limit = 100;
+    bool json = false;
+};
+struct UndoArguments {
+    std::filesystem::path database;
+    std::int64_t batch = 0;  ///< 0: this person's last
+    bool dry_run = false;
     bool json = false;
 };
 struct SimulateArguments {
@@ -102,9 +126,10 @@ struct BenchArguments {
     bool json = false;
 };
 
-using Arguments = std::variant<ServeArguments, ImportArguments, SearchArguments, ShowArguments, SetArguments,
-                               ResetArguments, SimulateArguments, CheckArguments, ClassifyArguments,
-                               AttributesArguments, EvaluateArguments, SceneArguments, BenchArguments>;
+using Arguments =
+    std::variant<ServeArguments, ImportArguments, SearchArguments, ShowArguments, SetArguments, ResetArguments,
+                 HistoryArguments, UndoArguments, SimulateArguments, CheckArguments, ClassifyArguments,
+                 AttributesArguments, EvaluateArguments, SceneArguments, BenchArguments>;
 
 /// Exit codes of the program.
 enum ExitCode : int { exit_ok = 0, exit_failed = 1, exit_usage = 2, exit_partly = 3 };

@@ -13,6 +13,8 @@ int run_search(const SearchArguments& arguments);
 int run_show(const ShowArguments& arguments);
 int run_set(const SetArguments& arguments);
 int run_reset(const ResetArguments& arguments);
+int run_history(const HistoryArguments& arguments);
+int run_undo(const UndoArguments& arguments);
 int run_simulate(const SimulateArguments& arguments);
 int run_check(const CheckArguments& arguments);
 int run_classify(const ClassifyArguments& arguments);

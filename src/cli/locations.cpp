@@ -20,7 +20,9 @@ fs::path studio_folder() { return from_environment("EMBODY_STUDIO", fs::path(EMB
 fs::path saved_scenes_folder() { return catalog::Catalog::default_file().parent_path() / "scenes"; }
 
 Result<std::unique_ptr<catalog::Catalog>> open_catalog(const fs::path& database) {
-    return catalog::Catalog::open(database, data_folder() / "taxonomy");
+    auto catalog = catalog::Catalog::open(database, data_folder() / "taxonomy");
+    if (catalog) (*catalog)->set_session("command line");
+    return catalog;
 }
 
 }  // namespace embody::cli

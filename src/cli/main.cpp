@@ -11,6 +11,8 @@ struct Runner {
     int operator()(const ShowArguments& arguments) const { return run_show(arguments); }
     int operator()(const SetArguments& arguments) const { return run_set(arguments); }
     int operator()(const ResetArguments& arguments) const { return run_reset(arguments); }
+    int operator()(const HistoryArguments& arguments) const { return run_history(arguments); }
+    int operator()(const UndoArguments& arguments) const { return run_undo(arguments); }
     int operator()(const SimulateArguments& arguments) const { return run_simulate(arguments); }
     int operator()(const CheckArguments& arguments) const { return run_check(arguments); }
     int operator()(const ClassifyArguments& arguments) const { return run_classify(arguments); }

@@ -24,6 +24,25 @@ Result<void> ManualAttributeTable::put(std::string_view model_key, const ManualA
     return statement->bind(model_key).bind(attribute.name).bind(attribute.value).bind(attribute.set_by).run();
 }
 
+Result<std::optional<ManualAttribute>> ManualAttributeTable::find(std::string_view model_key, std::string_view name) {
+    auto statement = connection_.prepare(
+        "SELECT name, value, set_by, set_at FROM manual_attribute WHERE model_key = ? AND name = ?");
+    if (!statement) return statement.error();
+    const auto row = statement->bind(model_key).bind(name).step();
+    if (!row) return row.error();
+    if (!*row) return std::optional<ManualAttribute>();
+    return std::optional<ManualAttribute>(
+        {statement->text(0), statement->text(1), statement->text(2), statement->integer(3)});
+}
+
+Result<void> ManualAttributeTable::restore(std::string_view model_key, const ManualAttribute& attribute) {
+    auto statement = connection_.prepare(
+        "REPLACE INTO manual_attribute (model_key, name, value, set_by, set_at) VALUES (?,?,?,?,?)");
+    if (!statement) return statement.error();
+    statement->bind(model_key).bind(attribute.name).bind(attribute.value).bind(attribute.set_by).bind(attribute.set_at);
+    return statement->run();
+}
+
 Result<void> ManualAttributeTable::erase(std::string_view model_key, std::string_view name) {
     auto statement = connection_.prepare("DELETE FROM manual_attribute WHERE model_key = ? AND name = ?");
     if (!statement) return statement.error();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,7 +23,11 @@ public:
     explicit ManualAttributeTable(Connection& connection) : connection_(connection) {}
 
     Result<std::vector<ManualAttribute>> of(std::string_view model_key);
+    Result<std::optional<ManualAttribute>> find(std::string_view model_key, std::string_view name);
+    /// With the present time.
     Result<void> put(std::string_view model_key, const ManualAttribute& attribute);
+    /// With the time that `attribute` has.
+    Result<void> restore(std::string_view model_key, const ManualAttribute& attribute);
     Result<void> erase(std::string_view model_key, std::string_view name);
 
 private:

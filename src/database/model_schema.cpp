@@ -115,7 +115,35 @@ CREATE TABLE model_decomposition (
 ) STRICT;
 )sql";
 
-constexpr std::array<Migration, 2> migrations{{{1, first_version}, {2, with_decompositions}}};
+// Who changed what by hand, when: an act is a batch, each value that it changed is a row. By key and without a
+// reference to the model, as manual_attribute.
+constexpr const char* audit_of_manual_changes = R"sql(
+CREATE TABLE manual_batch (
+    id        INTEGER PRIMARY KEY AUTOINCREMENT,
+    made_at   INTEGER NOT NULL,
+    person    TEXT    NOT NULL,
+    session   TEXT    NOT NULL,                  -- the program or client through which the person acted
+    command   TEXT    NOT NULL,
+    asked     TEXT    NOT NULL,                  -- which models were meant, in words
+    undoes    INTEGER REFERENCES manual_batch (id),  -- of an undo or redo: the batch that it takes back or does again
+    undone_by INTEGER REFERENCES manual_batch (id)   -- the undo that is in force
+) STRICT;
+CREATE TABLE manual_change (
+    id        INTEGER PRIMARY KEY,
+    batch     INTEGER NOT NULL REFERENCES manual_batch (id),
+    model_key TEXT    NOT NULL,
+    name      TEXT    NOT NULL,
+    old_value TEXT    CHECK (old_value IS NULL OR json_valid(old_value)),  -- null: there was no manual value
+    old_by    TEXT,
+    old_at    INTEGER,
+    new_value TEXT    CHECK (new_value IS NULL OR json_valid(new_value))   -- null: the automatic value acts again
+) STRICT;
+CREATE INDEX manual_change_by_model ON manual_change (model_key, name, id);
+CREATE INDEX manual_change_by_batch ON manual_change (batch);
+)sql";
+
+constexpr std::array<Migration, 3> migrations{
+    {{1, first_version}, {2, with_decompositions}, {3, audit_of_manual_changes}}};
 
 }  // namespace
 

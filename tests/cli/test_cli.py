@@ -19,7 +19,7 @@ import urllib.request
 
 EMBODY = ""
 SOURCE = pathlib.Path(__file__).resolve().parent.parent.parent
-COMMANDS = ("serve", "import", "search", "show", "set", "reset", "simulate", "check", "classify", "scene", "bench")
+COMMANDS = ("serve", "import", "search", "show", "set", "reset", "history", "undo", "simulate", "check", "classify", "scene", "bench")
 
 # A tetrahedron of 1 m, closed and outward.
 TETRAHEDRON = """v 0 0 0
@@ -145,6 +145,60 @@ class Database(unittest.TestCase):
 
         reset = json.loads(run("reset", "--database", self.database, "--json", model, "mass").stdout)
         self.assertEqual({a["name"]: a for a in reset["attributes"]}["mass"]["value"], before["mass"]["value"])
+
+    def call(self, *words: str, code: int = 0, **environment: str) -> dict:
+        result = run(words[0], "--database", self.database, *words[1:], "--json", **environment)
+        self.assertEqual(result.returncode, code, result.stderr)
+        return json.loads(result.stdout) if result.stdout else {}
+
+    def test_many_models_are_changed_at_once_and_undone(self):
+        for name in ("oak chair", "red chair", "garden chair"):
+            (self.path / "models" / f"{name}.obj").write_text(TETRAHEDRON + f"# {name}\n")
+        self.call("import", str(self.path / "models"))
+        chairs = {m["key"] for m in self.call("search", "chair")["models"]}
+        self.assertEqual(len(chairs), 4)
+
+        planned = self.call("set", "--query", "chair", "--dry-run", "mass=7")
+        self.assertEqual({m["key"] for m in planned["models"]}, chairs)
+        self.assertIsNone(planned["batch"])
+        self.assertEqual(self.call("history")["changes"], [])
+
+        # An attribute of soft things: nothing is done, and every model that refuses is named.
+        refused = self.call("set", "--all", "mass=7", "youngs_modulus=1e5", code=1)
+        self.assertIn("oak chair", [r["name"] for r in refused["refused"]])
+        self.assertEqual(self.call("history")["changes"], [])
+
+        one = self.call("set", "red chair", "mass=3", USER="eva")
+        self.assertEqual({a["name"]: a for a in one["attributes"]}["mass"]["value"], 3)
+        done = self.call("set", "--query", "chair", "--category", "chair", "mass=7", USER="ada")
+        self.assertEqual((done["changed"], done["command"]), (4, "set many"))
+        history = self.call("history", "red chair")["changes"]
+        self.assertEqual([(c["person"], c["before"], c["after"]) for c in history], [("ada", 3, 7), ("eva", None, 3)])
+        self.assertIn("chair", history[0]["asked"])
+        self.assertEqual(len(self.call("history", "--since", "1h")["changes"]), 5)
+        self.assertEqual(self.call("history", "--since", "2200-01-01")["changes"], [])
+        self.assertEqual(run("history", "--database", self.database, "--since", "soon").returncode, 1)
+
+        # Hers is older and was changed since; the last of ada's goes back to it.
+        self.assertEqual(self.call("undo", str(history[1]["batch"]), code=1)["refused"][0]["name"], "red chair")
+        self.assertEqual(self.call("undo", USER="ada")["changed"], 4)
+        shown = self.call("show", "red chair")
+        mass = {a["name"]: a for a in shown["attributes"]}["mass"]
+        self.assertEqual(mass["value"], 3)
+        self.assertIn("eva", mass["source"])
+        self.assertIn("nothing by ada", run("undo", "--database", self.database, USER="ada").stderr)
+
+        again = self.call("reset", "--all", USER="ada")
+        self.assertEqual((again["changed"], again["command"]), (1, "reset many"))
+        told = run("history", "--database", self.database)
+        self.assertIn("3 → automatic", told.stdout)
+
+    def test_a_choice_of_models_must_make_sense(self):
+        for words in (("set", "mass=2"), ("set", "--all", "--query", "chair", "mass=2"), ("set", "--all", "mas=2"),
+                      ("set", "--all", "mass=1", "mass=2"), ("reset",), ("undo",), ("undo", "77")):
+            result = run(words[0], "--database", self.database, *words[1:])
+            self.assertEqual(result.returncode, 1, words)
+            self.assertTrue(result.stderr.startswith("embody: "), result.stderr)
 
     def test_an_unknown_model_is_named(self):
         result = run("show", "--database", self.database, "no such thing")

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "cli/change_report.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/arguments.h"
+#include "cli/interrupt.h"
+#include "cli/output.h"
+
+namespace embody::cli {
+namespace {
+
+using catalog::ChangedModel;
+using catalog::ChangeReport;
+using catalog::RefusedChange;
+
+constexpr std::size_t most_listed = 100;
+
+nlohmann::json to_json(const ChangeReport& report, bool dry_run) {
+    nlohmann::json models = nlohmann::json::array();
+    for (const ChangedModel& model : report.models) models.push_back({{"key", model.key}, {"name", model.name}});
+    nlohmann::json refused = nlohmann::json::array();
+    for (const RefusedChange& one : report.refused)
+        refused.push_back({{"key", one.key}, {"name", one.name}, {"attribute", one.attribute}, {"why", one.why}});
+    return {{"batch", report.batch != 0 ? nlohmann::json(report.batch) : nlohmann::json(nullptr)},
+            {"command", report.command},
+            {"dry_run", dry_run},
+            {"chosen", report.chosen},
+            {"changed", report.models.size()},
+            {"values", report.values},
+            {"unchanged", report.unchanged},
+            {"models", std::move(models)},
+            {"refused", std::move(refused)}};
+}
+
+void print_refused(const ChangeReport& report) {
+    for (std::size_t i = 0; i < report.refused.size() && i < most_listed; ++i) {
+        const RefusedChange& one = report.refused[i];
+        fmt::print(stderr, "embody: {} ({}): {} {}\n", one.name, one.key, one.attribute, one.why);
+    }
+    if (report.refused.size() > most_listed)
+        fmt::print(stderr, "embody: and {} more\n", report.refused.size() - most_listed);
+}
+
+void print_text(const ChangeReport& report, bool dry_run) {
+    if (dry_run) {
+        for (std::size_t i = 0; i < report.models.size() && i < most_listed; ++i)
+            fmt::print("  {}  {}\n", padded(report.models[i].name, 36), report.models[i].key);
+        if (report.models.size() > most_listed)
+            fmt::print("  and {} more; --json lists all\n", report.models.size() - most_listed);
+    }
+    fmt::print("{}{}: {} of {} models, {} values", dry_run ? "Would " : "", report.command, report.models.size(),
+               report.chosen, report.values);
+    if (report.unchanged > 0) fmt::print("; {} are so already", report.unchanged);
+    if (!report.refused.empty()) fmt::print("; {} refused", report.refused.size());
+    if (report.batch != 0) fmt::print("; batch {}, take it back with: embody undo {}", report.batch, report.batch);
+    fmt::print("\n");
+}
+
+}  // namespace
+
+catalog::ChangeOptions watched_change(const char* title) {
+    watch_interrupts();
+    catalog::ChangeOptions options;
+    options.progress = [bar = std::make_shared<ProgressBar>(title)](std::size_t done, std::size_t total) {
+        // One model is done before anybody reads it.
+        if (total > 1) bar->show(done, total, "");
+        if (done == total) bar->finish();
+        return !interrupted();
+    };
+    return options;
+}
+
+int print_changes(const Result<catalog::ChangeReport>& result, bool dry_run, bool json) {
+    if (!result) return report(result.error());
+    print_refused(*result);
+    if (json) print_json(to_json(*result, dry_run));
+    // Without a batch nothing was done: either it was a question, or all were so already, or some refused.
+    const bool stopped = !result->refused.empty() && result->models.empty();
+    if (stopped) {
+        fmt::print(stderr, "embody: nothing was changed: {} of {} models refuse\n", result->refused.size(),
+                   result->chosen);
+        return exit_failed;
+    }
+    if (!json) print_text(*result, dry_run);
+    return result->refused.empty() ? exit_ok : exit_partly;
+}
+
+}  // namespace embody::cli
