@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "attributes/registry.h"
+#include "catalog/describe_many.h"
 #include "catalog/describe_model.h"
 #include "catalog/import/importer.h"
 #include "catalog/knowledge_json.h"
@@ -26,6 +27,7 @@ namespace embody::catalog {
 namespace {
 
 constexpr const char* taxonomy_setting = "taxonomy_hash";
+constexpr const char* refresh_setting = "taxonomy_refresh";  // how far the change to another taxonomy is
 constexpr const char* primitives_setting = "primitives_revision";
 
 ModelSummary summary_of(database::ModelRow row) {
@@ -72,6 +74,7 @@ struct Catalog::State {
     database::ManualAttributeTable manual;
     ManualChanges changes;
     Author author{current_person(), {}};
+    TaskPool workers{TaskPool::workers_that_pay()};  ///< no threads before the first use
 
     // What is known of one model, read from the database.
     struct Known {
@@ -82,7 +85,9 @@ struct Catalog::State {
     };
     Result<database::ModelRow> row(std::int64_t id);
     Result<Known> known(std::int64_t id);
-    Result<void> refresh_attributes(const std::string& hash);
+    Result<Description> description(std::int64_t id);
+    Result<void> refresh_attributes(const std::string& hash, const OpenOptions& options);
+    Result<bool> refresh_batch(const std::string& hash, const std::vector<std::int64_t>& ids, std::size_t& done);
     Result<void> store_primitives();
     Result<void> classify_again(std::int64_t id);
 };
@@ -93,7 +98,8 @@ Catalog::~Catalog() = default;
 const attributes::Taxonomy& Catalog::taxonomy() const { return *state_->taxonomy; }
 
 Result<std::unique_ptr<Catalog>> Catalog::open(const std::filesystem::path& file,
-                                               const std::filesystem::path& taxonomy_folder) {
+                                               const std::filesystem::path& taxonomy_folder,
+                                               const OpenOptions& options) {
     auto taxonomy = attributes::Taxonomy::load(taxonomy_folder);
     if (!taxonomy) return taxonomy.error();
     auto connection = database::open_model_database(file);
@@ -107,7 +113,7 @@ Result<std::unique_ptr<Catalog>> Catalog::open(const std::filesystem::path& file
     const auto stored_hash = database::SettingTable(*catalog->state_->connection).get(taxonomy_setting);
     if (!stored_hash) return stored_hash.error();
     if (*stored_hash != hash) {
-        if (auto refreshed = catalog->state_->refresh_attributes(hash); !refreshed) return refreshed.error();
+        if (auto refreshed = catalog->state_->refresh_attributes(hash, options); !refreshed) return refreshed.error();
     }
     if (auto stored = catalog->state_->store_primitives(); !stored) return stored.error();
     return catalog;
@@ -298,24 +304,98 @@ Result<void> Catalog::State::classify_again(std::int64_t id) {
     return models.describe(model->row, *knowledge);
 }
 
-Result<void> Catalog::State::refresh_attributes(const std::string& hash) {
-    auto transaction = database::Transaction::begin(*connection);
-    if (!transaction) return transaction.error();
+Result<Description> Catalog::State::description(std::int64_t id) {
+    Description description;
+    auto model = row(id);
+    if (!model) return model.error();
+    auto knowledge = models.knowledge(id);
+    if (!knowledge) return knowledge.error();
+    const auto stored = manual.of(model->key);
+    if (!stored) return stored.error();
+    description.row = std::move(*model);
+    description.knowledge = std::move(*knowledge);
+    description.manual = manual_entries(*stored);
+    return description;
+}
+
+Result<void> Catalog::State::refresh_attributes(const std::string& hash, const OpenOptions& options) {
     const auto ids = models.ids();
     if (!ids) return ids.error();
-    for (const std::int64_t id : *ids) {
-        auto model = row(id);
-        if (!model) return model.error();
-        const auto knowledge = models.knowledge(id);
-        if (!knowledge) return knowledge.error();
-        const auto facts = facts_from_json(knowledge->facts);
-        if (!facts) return facts.error();
-        const auto stored = manual.of(model->key);
-        if (!stored) return stored.error();
-        const database::ModelKnowledge described = describe(*model, *facts, *taxonomy, manual_entries(*stored));
-        if (auto put = models.describe(*model, described); !put) return put;
+    for (std::size_t done = 0;;) {
+        const auto more = refresh_batch(hash, *ids, done);
+        if (!more) return more.error();
+        if (!*more) return {};
+        if (options.progress && !options.progress(done, ids->size())) {
+            return Error{connection->file().string(),
+                         "resolving all models by the changed taxonomy was stopped at " + std::to_string(done) +
+                             " of " + std::to_string(ids->size()),
+                         "the next start goes on from there"};
+        }
     }
-    if (auto noted = database::SettingTable(*connection).put(taxonomy_setting, hash); !noted) return noted;
+}
+
+Result<bool> Catalog::State::refresh_batch(const std::string& hash, const std::vector<std::int64_t>& ids,
+                                           std::size_t& done) {
+    // How far it is stands in the database, and changes with the models: neither a kill nor another process that does
+    // the same makes a difference. Until all is done, the database counts as of no taxonomy.
+    constexpr std::size_t batch = 512;
+    auto transaction = database::Transaction::begin(*connection);
+    if (!transaction) return transaction.error();
+    database::SettingTable settings(*connection);
+    const auto whole = settings.get(taxonomy_setting);
+    if (!whole) return whole.error();
+    if (*whole == hash) return false;
+    const auto part = settings.get(refresh_setting);
+    if (!part) return part.error();
+    const std::string mark = hash + " up to model ";
+    const std::int64_t last = part->starts_with(mark) ? std::atoll(part->c_str() + mark.size()) : 0;
+    const auto first = std::upper_bound(ids.begin(), ids.end(), last);
+    const auto end = first + std::min<std::ptrdiff_t>(batch, ids.end() - first);
+    done = static_cast<std::size_t>(end - ids.begin());
+
+    // What another process has removed meanwhile is left out.
+    std::vector<Description> descriptions;
+    for (auto id = first; id != end; ++id) {
+        const auto there = models.find(*id);
+        if (!there) return there.error();
+        if (!*there) continue;
+        auto one = description(*id);
+        if (!one) return one.error();
+        descriptions.push_back(std::move(*one));
+    }
+    describe_all(descriptions, *taxonomy, workers);
+    for (const Description& one : descriptions) {
+        if (one.problem) return Error{one.row.key, one.problem->message(), "import the model again"};
+        const auto put =
+            one.row_is_new ? models.describe(one.row, one.knowledge) : models.put_knowledge(one.row.id, one.knowledge);
+        if (!put) return put.error();
+    }
+
+    const bool more = end != ids.end();
+    if (auto noted = settings.put(taxonomy_setting, more ? std::string() : hash); !noted) return noted.error();
+    if (auto noted = settings.put(refresh_setting, more ? mark + std::to_string(*(end - 1)) : std::string()); !noted)
+        return noted.error();
+    if (auto committed = transaction->commit(); !committed) return committed.error();
+    return more;
+}
+
+Result<void> Catalog::add_variants(const std::vector<ModelVariant>& variants) {
+    auto transaction = database::Transaction::begin(*state_->connection);
+    if (!transaction) return transaction.error();
+    std::vector<Description> descriptions;
+    descriptions.reserve(variants.size());
+    for (const ModelVariant& variant : variants) {
+        auto one = state_->description(variant.like);
+        if (!one) return one.error();
+        one->variant = &variant;
+        descriptions.push_back(std::move(*one));
+    }
+    describe_all(descriptions, *state_->taxonomy, state_->workers);
+    for (const Description& one : descriptions) {
+        if (one.problem) return Error{one.row.key, one.problem->message(), "import the model again"};
+        const auto put = state_->models.put_like(one.variant->like, one.row, one.knowledge);
+        if (!put) return put.error();
+    }
     return transaction->commit();
 }
 

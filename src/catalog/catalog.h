@@ -72,13 +72,29 @@ struct ImportOptions {
     std::function<bool(const ImportProgress&)> progress = {};  ///< returns false to stop; may be empty
 };
 
+struct OpenOptions {
+    /// Told again and again while all models are resolved anew, because the taxonomy has changed; false ends that with
+    /// an error, and the next opening goes on from there. May be empty.
+    std::function<bool(std::size_t done, std::size_t total)> progress = {};
+};
+
+/// Another model with the form and the picture of one that is there: for large catalogues to measure with.
+struct ModelVariant {
+    std::int64_t like = 0;  ///< id of the model that it is like
+    std::string key, name;
+    std::vector<std::string> tags, material_names;  ///< no material names: those of `like`
+    double scale = 1;                               ///< of the size and of all that attributes are resolved from
+};
+
 /// The model database: what exists, what it looks like, what it is made of. One instance a thread; any number of
 /// processes may have the same file open.
 class Catalog {
 public:
-    /// Opens or creates the file (and its folder); migrates an older schema; refuses a newer one by name.
+    /// Opens or creates the file (and its folder); migrates an older schema; refuses a newer one by name. Where the
+    /// taxonomy is not that of last time, resolves all models anew: 60,000 take some tens of seconds.
     static Result<std::unique_ptr<Catalog>> open(const std::filesystem::path& file,
-                                                 const std::filesystem::path& taxonomy_folder);
+                                                 const std::filesystem::path& taxonomy_folder,
+                                                 const OpenOptions& options = {});
     /// $XDG_DATA_HOME/embody/models.sqlite, or ~/.local/share/embody/models.sqlite.
     static std::filesystem::path default_file();
     ~Catalog();
@@ -129,6 +145,8 @@ public:
     /// all; what is wrong with single files is in the report.
     Result<ImportReport> import(const std::vector<std::filesystem::path>& paths, const ImportOptions& options);
     Result<void> remove(std::int64_t id);
+    /// All of them or none. The geometry is shared, so its size is not the variant's.
+    Result<void> add_variants(const std::vector<ModelVariant>& variants);
 
 private:
     Catalog();

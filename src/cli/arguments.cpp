@@ -277,14 +277,20 @@ private:
             ->add_option("suite", c.into->suite,
                          "table1; stability: do structures stand, tight and quiet; simbenchmark: accuracy beside "
                          "published figures; scaling: cost of 1,000 to 100,000 bodies; decomposition: convex parts of "
-                         "models of the database")
+                         "models of the database; catalogue: search in the database, filled with variants")
             ->capture_default_str()
-            ->check(CLI::IsMember({"table1", "stability", "simbenchmark", "scaling", "decomposition"}).description(""));
+            ->check(CLI::IsMember({"table1", "stability", "simbenchmark", "scaling", "decomposition", "catalogue"})
+                        .description(""));
         c.app->add_option("--scene", c.into->scene, "Only this scene, or this model");
         add_database(c);
         c.app->add_option("--bodies", c.into->bodies, "Most bodies of a scene of scaling")
             ->capture_default_str()
             ->check(CLI::Range(1'000, 1'000'000));
+        c.app
+            ->add_option(
+                "--models", c.into->models,
+                "Fill the database of catalogue with variants of its models up to this many; not the default one")
+            ->check(CLI::Range(0, 10'000'000));
         c.app->add_option("--steps", c.into->steps, "Steps of each scene of table1 (default: its own number)")
             ->check(CLI::Range(0, 10'000'000));
         add_json(c);

@@ -117,12 +117,13 @@ struct SceneArguments {
     bool json = false;
 };
 struct BenchArguments {
-    std::string suite = "table1";         ///< or "stability", "simbenchmark", "scaling", "decomposition", "race"
-    std::filesystem::path database;       ///< decomposition takes its models from it
+    std::string suite = "table1";  ///< or "stability", "simbenchmark", "scaling", "decomposition", "catalogue", "race"
+    std::filesystem::path database;       ///< of decomposition and catalogue
     std::vector<std::string> race_words;  ///< for the race's own program
     std::string scene;                    ///< only this one
     int steps = 0;                        ///< 0: as many as the scene says
     int bodies = 100'000;                 ///< scaling stops at this many
+    int models = 0;                       ///< that catalogue fills the database up to
     bool json = false;
 };
 

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/bench_catalogue.h"
 #include "cli/bench_decomposition.h"
 #include "cli/bench_race.h"
 #include "cli/bench_scaling.h"
@@ -49,6 +50,7 @@ int run_bench(const BenchArguments& arguments) {
     if (arguments.suite == "simbenchmark") return run_simbenchmark(arguments);
     if (arguments.suite == "scaling") return run_scaling(arguments);
     if (arguments.suite == "decomposition") return run_decomposition(arguments);
+    if (arguments.suite == "catalogue") return run_catalogue_bench(arguments);
     if (!arguments.scene.empty() && scenes::find_scene_builder(arguments.scene) == nullptr)
         return report({"--scene " + arguments.scene, "there is no such scene", "embody scene lists them"});
     if (!arguments.json) {

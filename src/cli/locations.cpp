@@ -3,6 +3,8 @@
 
 #include <cstdlib>
 
+#include "cli/output.h"
+
 namespace embody::cli {
 namespace {
 
@@ -20,7 +22,15 @@ fs::path studio_folder() { return from_environment("EMBODY_STUDIO", fs::path(EMB
 fs::path saved_scenes_folder() { return catalog::Catalog::default_file().parent_path() / "scenes"; }
 
 Result<std::unique_ptr<catalog::Catalog>> open_catalog(const fs::path& database) {
-    auto catalog = catalog::Catalog::open(database, data_folder() / "taxonomy");
+    // Ctrl+C ends the program as always: what is resolved stays.
+    ProgressBar bar("Resolving attributes by the changed taxonomy");
+    catalog::OpenOptions options;
+    options.progress = [&bar](std::size_t done, std::size_t total) {
+        bar.show(done, total, {});
+        return true;
+    };
+    auto catalog = catalog::Catalog::open(database, data_folder() / "taxonomy", options);
+    bar.finish();
     if (catalog) (*catalog)->set_session("command line");
     return catalog;
 }

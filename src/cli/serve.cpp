@@ -37,6 +37,8 @@ int run_serve(const ServeArguments& arguments) {
     options.scene.session.saved_scenes = saved_scenes_folder();
     options.scene.session.demo_scenes = data_folder() / "scenes";
     options.scene.open_scene = arguments.scene.value_or("furnished_room");
+    // The server opens it again; this shows how long it takes where the taxonomy has changed.
+    if (auto catalog = open_catalog(arguments.database); !catalog) return report(catalog.error());
     auto server = server::Server::start(options);
     if (!server && !arguments.scene) {
         // The scene that opens by itself needs models; without them an empty one is better than no Studio.

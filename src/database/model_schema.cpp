@@ -142,8 +142,70 @@ CREATE INDEX manual_change_by_model ON manual_change (model_key, name, id);
 CREATE INDEX manual_change_by_batch ON manual_change (batch);
 )sql";
 
-constexpr std::array<Migration, 3> migrations{
-    {{1, first_version}, {2, with_decompositions}, {3, audit_of_manual_changes}}};
+// Geometry and pictures apart from the models that have them: what is the same for many is stored once, and goes with
+// the last of them. `hash` only finds candidates; 0 where it was not computed. `model_words` follows changes of words
+// only.
+constexpr const char* shared_contents = R"sql(
+CREATE TABLE stored_geometry (
+    id          INTEGER PRIMARY KEY,
+    hash        INTEGER NOT NULL,
+    compact     BLOB    NOT NULL,                -- versioned in its own header
+    hull_points BLOB    NOT NULL                 -- x y z as little-endian floats, m
+) STRICT;
+CREATE TABLE stored_picture (
+    id   INTEGER PRIMARY KEY,
+    hash INTEGER NOT NULL,
+    png  BLOB    NOT NULL
+) STRICT;
+INSERT INTO stored_geometry SELECT model, 0, compact, hull_points FROM model_geometry;
+INSERT INTO stored_picture SELECT model, 0, png FROM model_thumbnail;
+DROP TABLE model_geometry;
+DROP TABLE model_thumbnail;
+CREATE TABLE model_geometry (
+    model    INTEGER PRIMARY KEY REFERENCES model (id) ON DELETE CASCADE,
+    geometry INTEGER NOT NULL REFERENCES stored_geometry (id)
+) STRICT;
+CREATE TABLE model_thumbnail (
+    model   INTEGER PRIMARY KEY REFERENCES model (id) ON DELETE CASCADE,
+    picture INTEGER NOT NULL REFERENCES stored_picture (id)
+) STRICT;
+INSERT INTO model_geometry SELECT id, id FROM stored_geometry;
+INSERT INTO model_thumbnail SELECT id, id FROM stored_picture;
+CREATE INDEX stored_geometry_by_hash    ON stored_geometry (hash);
+CREATE INDEX stored_picture_by_hash     ON stored_picture (hash);
+CREATE INDEX model_geometry_by_geometry ON model_geometry (geometry);
+CREATE INDEX model_thumbnail_by_picture ON model_thumbnail (picture);
+
+CREATE TRIGGER model_geometry_delete AFTER DELETE ON model_geometry
+WHEN NOT EXISTS (SELECT 1 FROM model_geometry WHERE geometry = old.geometry) BEGIN
+    DELETE FROM stored_geometry WHERE id = old.geometry;
+END;
+CREATE TRIGGER model_geometry_update AFTER UPDATE OF geometry ON model_geometry
+WHEN NOT EXISTS (SELECT 1 FROM model_geometry WHERE geometry = old.geometry) BEGIN
+    DELETE FROM stored_geometry WHERE id = old.geometry;
+END;
+CREATE TRIGGER model_thumbnail_delete AFTER DELETE ON model_thumbnail
+WHEN NOT EXISTS (SELECT 1 FROM model_thumbnail WHERE picture = old.picture) BEGIN
+    DELETE FROM stored_picture WHERE id = old.picture;
+END;
+CREATE TRIGGER model_thumbnail_update AFTER UPDATE OF picture ON model_thumbnail
+WHEN NOT EXISTS (SELECT 1 FROM model_thumbnail WHERE picture = old.picture) BEGIN
+    DELETE FROM stored_picture WHERE id = old.picture;
+END;
+
+DROP TRIGGER model_words_update;
+CREATE TRIGGER model_words_update AFTER UPDATE OF name, tags, category, subcategory, source ON model
+WHEN (new.name, new.tags, new.category, new.subcategory, new.source)
+     IS NOT (old.name, old.tags, old.category, old.subcategory, old.source) BEGIN
+    INSERT INTO model_words (model_words, rowid, name, tags, category, subcategory, source)
+    VALUES ('delete', old.id, old.name, old.tags, old.category, old.subcategory, old.source);
+    INSERT INTO model_words (rowid, name, tags, category, subcategory, source)
+    VALUES (new.id, new.name, new.tags, new.category, new.subcategory, new.source);
+END;
+)sql";
+
+constexpr std::array<Migration, 4> migrations{
+    {{1, first_version}, {2, with_decompositions}, {3, audit_of_manual_changes}, {4, shared_contents}}};
 
 }  // namespace
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "database/model_table.h"
 
+#include "foundation/state_hash.h"
+
 namespace embody::database {
 namespace {
 
@@ -27,7 +29,7 @@ void bind_geometry(Statement& statement, const ModelRow& model) {
 
 }  // namespace
 
-Result<std::int64_t> ModelTable::put(const ModelRow& model, const ModelKnowledge& knowledge, const ModelBlobs& blobs) {
+Result<std::int64_t> ModelTable::put_row(const ModelRow& model) {
     // An upsert keeps the id, so that what refers to the model goes on to do so.
     auto row = connection_.prepare(
         "INSERT INTO model (key, name, source, licence, author, category, subcategory, physical_kind, tags,"
@@ -49,16 +51,77 @@ Result<std::int64_t> ModelTable::put(const ModelRow& model, const ModelKnowledge
     if (const auto stored = row->step(); !stored) return stored.error();
     const std::int64_t id = row->integer(0);
     if (const auto ended = row->step(); !ended) return ended.error();
-
-    if (auto known = put_knowledge(id, knowledge); !known) return known.error();
-    auto geometry = connection_.prepare("REPLACE INTO model_geometry (model, compact, hull_points) VALUES (?,?,?)");
-    if (!geometry) return geometry.error();
-    if (auto stored = geometry->bind(id).bind(blobs.geometry).bind(blobs.hull_points).run(); !stored)
-        return stored.error();
-    auto thumbnail = connection_.prepare("REPLACE INTO model_thumbnail (model, png) VALUES (?,?)");
-    if (!thumbnail) return thumbnail.error();
-    if (auto stored = thumbnail->bind(id).bind(blobs.thumbnail).run(); !stored) return stored.error();
     return id;
+}
+
+Result<std::int64_t> ModelTable::put(const ModelRow& model, const ModelKnowledge& knowledge, const ModelBlobs& blobs) {
+    const auto row = put_row(model);
+    if (!row) return row;
+    const std::int64_t id = *row;
+    if (auto known = put_knowledge(id, knowledge); !known) return known.error();
+    const auto geometry = store_geometry(blobs, model.geometry_hash);
+    if (!geometry) return geometry.error();
+    const auto picture = store_picture(blobs.thumbnail);
+    if (!picture) return picture.error();
+    if (auto linked = link(id, *geometry, *picture); !linked) return linked.error();
+    return id;
+}
+
+Result<std::int64_t> ModelTable::put_like(std::int64_t like, const ModelRow& model, const ModelKnowledge& knowledge) {
+    const auto id = put_row(model);
+    if (!id) return id;
+    if (auto known = put_knowledge(*id, knowledge); !known) return known.error();
+    auto contents = connection_.prepare(
+        "SELECT geometry, picture FROM model_geometry AS g JOIN model_thumbnail AS t ON t.model = g.model"
+        " WHERE g.model = ?");
+    if (!contents) return contents.error();
+    const auto row = contents->bind(like).step();
+    if (!row) return row.error();
+    if (!*row) return no_such_model(like);
+    if (auto linked = link(*id, contents->integer(0), contents->integer(1)); !linked) return linked.error();
+    return *id;
+}
+
+Result<void> ModelTable::link(std::int64_t id, std::int64_t geometry, std::int64_t picture) {
+    // Upserts, since what REPLACE deletes calls no trigger.
+    auto row = connection_.prepare(
+        "INSERT INTO model_geometry (model, geometry) VALUES (?,?)"
+        " ON CONFLICT (model) DO UPDATE SET geometry = excluded.geometry");
+    if (!row) return row.error();
+    if (auto stored = row->bind(id).bind(geometry).run(); !stored) return stored;
+    auto thumbnail = connection_.prepare(
+        "INSERT INTO model_thumbnail (model, picture) VALUES (?,?)"
+        " ON CONFLICT (model) DO UPDATE SET picture = excluded.picture");
+    if (!thumbnail) return thumbnail.error();
+    return thumbnail->bind(id).bind(picture).run();
+}
+
+Result<std::int64_t> ModelTable::store_geometry(const ModelBlobs& blobs, std::uint64_t hash) {
+    auto same = connection_.prepare(
+        "SELECT id FROM stored_geometry WHERE hash = ? AND compact = ? AND hull_points = ? LIMIT 1");
+    if (!same) return same.error();
+    const auto found = same->bind(hash).bind(blobs.geometry).bind(blobs.hull_points).step();
+    if (!found) return found.error();
+    if (*found) return same->integer(0);
+    auto row = connection_.prepare("INSERT INTO stored_geometry (hash, compact, hull_points) VALUES (?,?,?)");
+    if (!row) return row.error();
+    if (auto stored = row->bind(hash).bind(blobs.geometry).bind(blobs.hull_points).run(); !stored)
+        return stored.error();
+    return connection_.last_row_id();
+}
+
+Result<std::int64_t> ModelTable::store_picture(std::span<const std::uint8_t> png) {
+    StateHash hash;
+    hash.add_bytes(png.data(), png.size());
+    auto same = connection_.prepare("SELECT id FROM stored_picture WHERE hash = ? AND png = ? LIMIT 1");
+    if (!same) return same.error();
+    const auto found = same->bind(hash.value()).bind(png).step();
+    if (!found) return found.error();
+    if (*found) return same->integer(0);
+    auto row = connection_.prepare("INSERT INTO stored_picture (hash, png) VALUES (?,?)");
+    if (!row) return row.error();
+    if (auto stored = row->bind(hash.value()).bind(png).run(); !stored) return stored.error();
+    return connection_.last_row_id();
 }
 
 Result<void> ModelTable::describe(const ModelRow& model, const ModelKnowledge& knowledge) {
@@ -110,15 +173,19 @@ Result<ModelKnowledge> ModelTable::knowledge(std::int64_t id) {
 }
 
 Result<std::vector<std::uint8_t>> ModelTable::geometry(std::int64_t id) {
-    return blob("SELECT compact FROM model_geometry WHERE model = ?", id);
+    return blob(
+        "SELECT compact FROM model_geometry AS m JOIN stored_geometry AS s ON s.id = m.geometry WHERE m.model = ?", id);
 }
 
 Result<std::vector<std::uint8_t>> ModelTable::hull_points(std::int64_t id) {
-    return blob("SELECT hull_points FROM model_geometry WHERE model = ?", id);
+    return blob(
+        "SELECT hull_points FROM model_geometry AS m JOIN stored_geometry AS s ON s.id = m.geometry WHERE m.model = ?",
+        id);
 }
 
 Result<std::vector<std::uint8_t>> ModelTable::thumbnail(std::int64_t id) {
-    return blob("SELECT png FROM model_thumbnail WHERE model = ?", id);
+    return blob("SELECT png FROM model_thumbnail AS m JOIN stored_picture AS s ON s.id = m.picture WHERE m.model = ?",
+                id);
 }
 
 Result<std::vector<std::uint8_t>> ModelTable::blob(std::string_view command, std::int64_t id) {

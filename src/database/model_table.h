@@ -41,9 +41,11 @@ struct ModelSearch {
     int limit = 50, offset = 0;
 };
 struct ModelMatches {
-    std::vector<ModelRow> models;  ///< best first; by name without words
+    std::vector<ModelRow> models;  ///< best first; by name without words and among very many
     std::int64_t total = 0;        ///< of all pages
 };
+
+struct MatchExpressions;
 
 /// The tables about models. Writers are to be called inside a Transaction.
 class ModelTable {
@@ -52,8 +54,11 @@ public:
 
     /// Adds the model, or replaces the one of the same key, whose id stays.
     Result<std::int64_t> put(const ModelRow& model, const ModelKnowledge& knowledge, const ModelBlobs& blobs);
+    /// As `put`, with the geometry and picture of the model `like`, which are not stored again.
+    Result<std::int64_t> put_like(std::int64_t like, const ModelRow& model, const ModelKnowledge& knowledge);
     /// Replaces what is known of a model; its geometry and pictures stay.
     Result<void> describe(const ModelRow& model, const ModelKnowledge& knowledge);
+    Result<void> put_knowledge(std::int64_t id, const ModelKnowledge& knowledge);
     Result<void> remove(std::int64_t id);
 
     Result<std::optional<ModelRow>> find(std::int64_t id);
@@ -78,7 +83,18 @@ public:
     Result<std::vector<std::uint8_t>> thumbnail(std::int64_t id);
 
 private:
-    Result<void> put_knowledge(std::int64_t id, const ModelKnowledge& knowledge);
+    Result<std::int64_t> put_row(const ModelRow& model);
+    // The id of these bytes, which are stored unless they are there.
+    Result<std::int64_t> store_geometry(const ModelBlobs& blobs, std::uint64_t hash);
+    Result<std::int64_t> store_picture(std::span<const std::uint8_t> png);
+    Result<void> link(std::int64_t id, std::int64_t geometry, std::int64_t picture);
+    Result<ModelMatches> search_without_words(const ModelSearch& search);
+    /// Ascending.
+    Result<std::vector<std::int64_t>> ids_that_match(std::string_view expression);
+    Result<std::vector<std::int64_t>> ids_in_category(const std::vector<std::int64_t>& ids, std::string_view category);
+    Result<std::vector<std::int64_t>> ranked_page(std::string_view expression, const ModelSearch& search);
+    Result<std::vector<std::int64_t>> broad_page(const MatchExpressions& expressions, std::vector<std::int64_t> ids,
+                                                 const ModelSearch& search);
     Result<std::vector<ModelRow>> rows(Statement& statement);
     Result<std::optional<ModelRow>> first(Result<Statement> statement);
     Result<std::vector<std::uint8_t>> blob(std::string_view command, std::int64_t id);

@@ -65,15 +65,23 @@ std::vector<std::string> split_words(std::string_view typed) {
 
 }  // namespace
 
-std::string match_expression(std::string_view typed) {
+MatchExpressions match_expressions(std::string_view typed) {
     // In double quotes nothing is an operator, and no quote is part of a word. A whole word matches both sides of its
     // OR, so "chair" puts a chair before a chairlift.
-    std::string expression;
+    MatchExpressions expressions;
+    std::string whole;
     for (const std::string& word : split_words(typed)) {
-        if (!expression.empty()) expression += " AND ";
-        expression.append("(\"").append(word).append("\" OR \"").append(word).append("\" *)");
+        for (std::string* expression : {&expressions.ranked, &expressions.anywhere, &whole}) {
+            if (!expression->empty()) *expression += " AND ";
+        }
+        expressions.ranked.append("(\"").append(word).append("\" OR \"").append(word).append("\" *)");
+        expressions.anywhere.append("\"").append(word).append("\" *");
+        whole.append("\"").append(word).append("\"");
     }
-    return expression;
+    if (whole.empty()) return expressions;
+    expressions.in_name = "name : (" + whole + ")";
+    expressions.beginnings_in_name = "name : (" + expressions.anywhere + ")";
+    return expressions;
 }
 
 }  // namespace embody::database

@@ -148,6 +148,53 @@ TEST_F(CatalogTest, AChangedTaxonomyResolvesAllModelsAgain) {
     EXPECT_EQ(mass(**changed, id), 17.5);
 }
 
+TEST_F(CatalogTest, ResolvingAnewGoesOnWhereItWasStopped) {
+    {
+        const auto catalog = open();
+        std::vector<ModelVariant> variants;
+        for (int i = 0; i < 1500; ++i) {
+            variants.push_back({.like = catalog->model("office chair")->id,
+                                .key = "variant:" + std::to_string(i),
+                                .name = "oak chair",
+                                .tags = {"oak"},
+                                .material_names = {"oak"},
+                                .scale = 0.5});
+        }
+        ASSERT_TRUE(catalog->add_variants(variants));
+        EXPECT_FALSE(catalog->add_variants({{.like = 100'000, .key = "variant:none"}}));
+        const std::int64_t first = catalog->model("variant:0")->id;
+        EXPECT_DOUBLE_EQ(catalog->facts(first)->geometry.size.x,
+                         0.5 * catalog->facts(catalog->model("office chair")->id)->geometry.size.x);
+        EXPECT_EQ(*catalog->geometry_glb(first), *catalog->geometry_glb(catalog->model("office chair")->id));
+    }
+    const std::filesystem::path own = folder_ / "taxonomy";
+    std::filesystem::copy(taxonomy_folder, own, std::filesystem::copy_options::recursive);
+    std::ofstream(own / "categories" / "furniture.json", std::ios::app) << "\n\n";
+    auto connection = database::open_model_database(database());
+    ASSERT_TRUE(connection);
+    ASSERT_TRUE((*connection)->execute("UPDATE model_knowledge SET automatic = '[]'"));
+    const auto unresolved = [&] {
+        return *(*connection)->query_integer("SELECT count(*) FROM model_knowledge WHERE automatic = '[]'");
+    };
+    const std::int64_t all = unresolved();
+
+    // Stopped after the first batch: that is kept, and the rest follows, though the taxonomy may go back and forth.
+    const auto stopped = Catalog::open(database(), own, {.progress = [](std::size_t, std::size_t) { return false; }});
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(unresolved(), all - 512);
+    std::vector<std::size_t> told;
+    ASSERT_TRUE(Catalog::open(database(), own, {.progress = [&](std::size_t done, std::size_t) {
+                                  told.push_back(done);
+                                  return true;
+                              }}));
+    EXPECT_EQ(told.front(), 1024u);
+    EXPECT_EQ(unresolved(), 0);
+    ASSERT_TRUE((*connection)->execute("UPDATE model_knowledge SET automatic = '[]'"));
+    EXPECT_FALSE(Catalog::open(database(), taxonomy_folder, {.progress = [](auto, auto) { return false; }}));
+    ASSERT_TRUE(Catalog::open(database(), own));
+    EXPECT_EQ(unresolved(), 0);
+}
+
 TEST_F(CatalogTest, ANameOfTwoModelsIsNoName) {
     write_model("other/office_chair.obj", std::string(85, 'x'));
     ASSERT_TRUE(import());

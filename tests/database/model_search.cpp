@@ -135,6 +135,75 @@ TEST_F(ModelSearchTest, PagesJoinToTheWholeInOrder) {
     EXPECT_TRUE(models_->search({.limit = 2, .offset = 100})->models.empty());
 }
 
+TEST_F(ModelSearchTest, AmongVeryManyTheNameThatFitsBestComesFirst) {
+    // Enough to be ordered by name: 2,000 that only the tag finds, and five whose names fit the more, the later added.
+    auto transaction = Transaction::begin(*connection_);
+    ASSERT_TRUE(transaction);
+    const std::vector<std::uint8_t> bytes{1};
+    const auto put = [&](const std::string& key, const std::string& name, const std::string& category) {
+        ModelRow row;
+        row.key = key;
+        row.name = name;
+        row.category = category;
+        row.tags = {"wardrobes"};
+        EXPECT_TRUE(models_->put(row, {"{}", "[]"}, {bytes, bytes, bytes}));
+    };
+    for (int i = 0; i < 2000; ++i) put("k" + std::to_string(i), "thing " + std::to_string(1000 + i), "even");
+    put("v", "Wardrobelike B", "odd");
+    put("w", "wardrobelike a", "odd");
+    put("x", "Old wardrobe", "odd");
+    put("y", "Large wardrobe", "even");
+    put("z", "Wardrobe", "even");
+    ASSERT_TRUE(transaction->commit());
+
+    const auto keys = [&](const ModelSearch& search, std::int64_t total) {
+        const auto found = models_->search(search);
+        if (!found) return found.error().message();
+        EXPECT_EQ(found->total, total);
+        std::string joined;
+        for (const ModelRow& row : found->models) joined += row.key + " ";
+        return joined;
+    };
+    EXPECT_EQ(keys({.words = " wardrobe ", .limit = 7}, 2005), "z y x w v k0 k1 ");
+    EXPECT_EQ(keys({.words = "wardrobe", .limit = 3, .offset = 1}, 2005), "y x w ");
+    EXPECT_EQ(keys({.words = "wardrobe", .limit = 3, .offset = 2003}, 2005), "k1998 k1999 ");
+    EXPECT_EQ(keys({.words = "wardrobe", .limit = 3, .offset = 2005}, 2005), "");
+    EXPECT_EQ(keys({.words = "wardrobe", .category = "even", .limit = 4}, 2002), "z y k0 k1 ");
+    EXPECT_EQ(keys({.words = "wardrobe", .category = "odd", .limit = 4}, 3), "x w v ");
+    EXPECT_EQ(keys({.words = "w", .limit = 4}, 2008), "f y x z ");  // "with"; wood and wheels come later
+}
+
+TEST_F(ModelSearchTest, TheSameBytesAreStoredOnceAndGoWithTheLastModel) {
+    const auto stored = [&](const char* table) {
+        return *connection_->query_integer(std::string("SELECT count(*) FROM ") + table);
+    };
+    EXPECT_EQ(stored("stored_geometry"), 1);  // of six models
+    EXPECT_EQ(stored("stored_picture"), 1);
+    ModelRow row;
+    row.key = "a";
+    const std::vector<std::uint8_t> same{1, 2, 3}, other{4, 5};
+    const auto armchair = models_->put(row, {"{}", "[]"}, {other, same, same});
+    ASSERT_TRUE(armchair);
+    EXPECT_EQ(stored("stored_geometry"), 2);
+    EXPECT_EQ(stored("stored_picture"), 1);
+    EXPECT_EQ(*models_->geometry(*armchair), other);
+
+    // A model like another one keeps the bytes when the other one goes.
+    row.key = "like a";
+    {
+        auto undone = Transaction::begin(*connection_);
+        EXPECT_FALSE(models_->put_like(1000, row, {"{}", "[]"}));
+    }
+    const auto like = models_->put_like(*armchair, row, {"{}", "[]"});
+    ASSERT_TRUE(like);
+    EXPECT_EQ(stored("stored_geometry"), 2);
+    ASSERT_TRUE(models_->remove(*armchair));
+    EXPECT_EQ(*models_->geometry(*like), other);
+    ASSERT_TRUE(models_->remove(*like));
+    EXPECT_EQ(stored("stored_geometry"), 1);
+    EXPECT_TRUE(connection_->check_integrity());
+}
+
 TEST_F(ModelSearchTest, TheIndexFollowsChangesAndRemoval) {
     const std::int64_t id = add("b", "Stool", "seating", {});
     EXPECT_EQ(find("office"), "");
@@ -154,14 +223,14 @@ TEST_F(ModelSearchTest, AModelKeepsItsIdWhenItIsReplaced) {
 }
 
 TEST(SearchWords, AreQuotedAndLimited) {
-    EXPECT_EQ(match_expression(""), "");
-    EXPECT_EQ(match_expression("\"*()"), "");
-    EXPECT_EQ(match_expression("oak"), "(\"oak\" OR \"oak\" *)");
-    EXPECT_EQ(match_expression("oak, oak"), match_expression("oak"));
-    EXPECT_LT(match_expression(std::string(100'000, 'x')).size(), 200u);
+    EXPECT_EQ(match_expressions("").ranked, "");
+    EXPECT_EQ(match_expressions("\"*()").ranked, "");
+    EXPECT_EQ(match_expressions("oak").ranked, "(\"oak\" OR \"oak\" *)");
+    EXPECT_EQ(match_expressions("oak, oak").ranked, match_expressions("oak").ranked);
+    EXPECT_LT(match_expressions(std::string(100'000, 'x')).ranked.size(), 200u);
     std::string many;
     for (int i = 0; i < 1000; ++i) many += std::to_string(i) + " ";
-    EXPECT_LT(match_expression(many).size(), 1000u);
+    EXPECT_LT(match_expressions(many).ranked.size(), 1000u);
 }
 
 }  // namespace
