@@ -411,6 +411,9 @@ double spread_of_steps(std::size_t steps) { return 0.25 * std::sqrt(static_cast<
 MaterialChoice choose_material(const Taxonomy::Data& data, const ModelFacts& facts, const Classification& what) {
     const MaterialData* usual = data.material(what.category->material);
     MaterialChoice result{usual, "usual for " + what.category->name, what.level};
+    const auto& said_by = what.category->said_by;
+    if (const auto file = said_by.find("material"); file != said_by.end())
+        result.source += ", says your " + file->second;
     // The words that name the thing say nothing of its material: a "paper towel holder" is not made of paper.
     if (material_by_words(data, "name", without_phrase(facts.name, what.phrase), result)) return result;
     for (const std::string& part : facts.material_names) {

@@ -8,6 +8,7 @@
 #include "attributes/assemble.h"
 #include "attributes/classify.h"
 #include "attributes/form.h"
+#include "attributes/phrase_match.h"
 #include "attributes/registry.h"
 
 namespace embody::attributes {
@@ -18,6 +19,12 @@ constexpr double heaviest_density = 22600;  // osmium, kg/m³
 // Size in metres as people write it.
 std::string size_text(Vec3 size) {
     return short_number(size.x) + " x " + short_number(size.y) + " x " + short_number(size.z) + " m";
+}
+
+// "usual for chair", with the user's file where it says so.
+std::string usual_for(const CategoryData& category, const char* field) {
+    const auto file = category.said_by.find(field);
+    return "usual for " + category.name + (file != category.said_by.end() ? ", says your " + file->second : "");
 }
 
 void put_identity(AttributeSet& set, const ModelFacts& facts, const Classification& what) {
@@ -31,7 +38,7 @@ void put_identity(AttributeSet& set, const ModelFacts& facts, const Classificati
     const std::string named = what.synset == category.synset ? category.name : "\"" + what.phrase + "\"";
     if (!what.synset.empty()) word("synset", what.synset, "meaning of " + named, what.level);
     set.put({"category_confidence", what.confidence, {}, {}, what.reckoning, what.level});
-    word("placement", category.placement, "usual for " + category.name, what.level);
+    word("placement", category.placement, usual_for(category, "placement"), what.level);
 
     // Who says whether it moves: the catalogue's flags before the category.
     if (facts.door_or_window) {
@@ -43,7 +50,8 @@ void put_identity(AttributeSet& set, const ModelFacts& facts, const Classificati
              verdict + (agrees ? ", as usual for " : ", unlike what is usual for ") + category.name,
              AttributeLevel::model);
     } else {
-        word("kind", category.movable ? category.kind : "static", "usual for " + category.name, what.level);
+        word("kind", category.movable ? category.kind : "static",
+             usual_for(category, category.said_by.contains("movable") ? "movable" : "kind"), what.level);
     }
 }
 
@@ -205,7 +213,10 @@ std::optional<double> suggested_scale(const Taxonomy& taxonomy, const ModelFacts
 AttributeSet resolve(const Taxonomy& taxonomy, const ModelFacts& facts) {
     // Words tell what it is and what it is made of.
     const Taxonomy::Data& data = taxonomy.data();
-    const Classification what = classify(data, facts);
+    Classification what = classify(data, facts);
+    if (const auto file = data.user_words.find(stems_of(what.phrase)); file != data.user_words.end()) {
+        what.source += ", a word of your " + file->second;
+    }
     const MaterialChoice surface = choose_material(data, facts, what);
     AttributeSet set;
     put_identity(set, facts, what);

@@ -20,8 +20,10 @@ class Surfaces;
 class Taxonomy {
 public:
     /// `folder` holds materials.json, material_pairs.json and categories/*.json; WordNet's nouns are read from its
-    /// wordnet-nouns.table, or from the one that the build wrote. The error names file, entry, field and remedy.
-    static Result<std::unique_ptr<Taxonomy>> load(const std::filesystem::path& folder);
+    /// wordnet-nouns.table, or from the one that the build wrote. `user_folder`: categories of the
+    /// user's own, laid over these; empty: none. The error names file, entry, field and remedy.
+    static Result<std::unique_ptr<Taxonomy>> load(const std::filesystem::path& folder,
+                                                  const std::filesystem::path& user_folder = {});
     ~Taxonomy();
 
     struct Data;

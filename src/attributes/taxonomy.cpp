@@ -2,6 +2,7 @@
 // Reads data/taxonomy. Of this layer only this file, field_reader and attribute_json see the JSON library.
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "attributes/registry.h"
 #include "attributes/surfaces.h"
 #include "attributes/taxonomy_data.h"
+#include "attributes/taxonomy_overlay.h"
 
 namespace embody::attributes {
 namespace {
@@ -203,33 +205,29 @@ Result<void> load_materials(Taxonomy::Data& data, const std::filesystem::path& f
     return {};
 }
 
-Result<void> load_category_tree(Taxonomy::Data& data, const json& object, const std::string& where) {
-    auto category = read_category(object, where, nullptr);
-    if (!category) return category.error();
-    category->domain = where.substr(0, where.find(".json"));
-    if (auto added = add_category(data, *category, where); !added) return added;
-    if (!object.contains("subcategories")) return {};
-    const json& list = object["subcategories"];
-    for (std::size_t i = 0; i < list.size(); ++i) {
-        const std::string inner = where + ".subcategories[" + std::to_string(i) + "]";
-        auto subcategory = read_category(list[i], inner, &*category);
-        if (!subcategory) return subcategory.error();
-        if (auto added = add_category(data, std::move(*subcategory), inner); !added) return added;
+// Which values are the user's: his own, and those inherited from a category that he changed.
+void note_users(CategoryData& category, const TaxonomyEntry& entry) {
+    for (const auto& [field, value] : (*entry.object).items()) {
+        const auto file = entry.users.find(field);
+        if (file != entry.users.end()) {
+            category.said_by[field] = file->second;
+        } else {
+            category.said_by.erase(field);
+        }
     }
-    return {};
 }
 
-Result<void> load_categories(Taxonomy::Data& data, const std::filesystem::path& file) {
-    const auto document = read_json(file);
-    if (!document) return document.error();
-    FieldReader reader(*document, file.filename().string());
-    std::string description;
-    reader.word("description", description, false);
-    const json* list = reader.list("categories", true);
-    if (auto error = reader.finish()) return *error;
-    for (std::size_t i = 0; i < list->size(); ++i) {
-        const std::string where = file.filename().string() + ": categories[" + std::to_string(i) + "]";
-        if (auto loaded = load_category_tree(data, (*list)[i], where); !loaded) return loaded;
+Result<void> load_category_tree(Taxonomy::Data& data, const TaxonomyEntry& entry) {
+    auto category = read_category((*entry.object), entry.where, nullptr);
+    if (!category) return category.error();
+    category->domain = entry.domain;
+    note_users(*category, entry);
+    if (auto added = add_category(data, *category, entry.where); !added) return added;
+    for (const TaxonomyEntry& inner : entry.subcategories) {
+        auto subcategory = read_category((*inner.object), inner.where, &*category);
+        if (!subcategory) return subcategory.error();
+        note_users(*subcategory, inner);
+        if (auto added = add_category(data, std::move(*subcategory), inner.where); !added) return added;
     }
     return {};
 }
@@ -254,7 +252,8 @@ Result<void> find_model_entries(Taxonomy::Data& data) {
 }
 
 // All files of the folder, in the order of their names.
-Result<void> load_categories_of(Taxonomy::Data& data, const std::filesystem::path& folder) {
+Result<void> load_categories_of(Taxonomy::Data& data, const std::filesystem::path& folder,
+                                const std::filesystem::path& user_folder) {
     std::error_code failure;
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder, failure)) {
@@ -262,8 +261,17 @@ Result<void> load_categories_of(Taxonomy::Data& data, const std::filesystem::pat
     }
     if (failure) return Error{folder.string(), failure.message()};
     std::ranges::sort(files);
+    std::vector<TaxonomyEntry> entries;
     for (const std::filesystem::path& file : files) {
-        if (auto loaded = load_categories(data, file); !loaded) return loaded;
+        auto read = read_entries(file, file.filename().string());
+        if (!read) return read.error();
+        std::ranges::move(*read, std::back_inserter(entries));
+    }
+    if (!user_folder.empty()) {
+        if (auto laid = lay_over(entries, user_folder, data.user_words); !laid) return laid;
+    }
+    for (const TaxonomyEntry& entry : entries) {
+        if (auto loaded = load_category_tree(data, entry); !loaded) return loaded;
     }
     const CategoryData* unknown = data.category("object");
     if (unknown == nullptr) return Error{folder.string(), "has no category \"object\" for what nothing tells"};
@@ -305,14 +313,15 @@ std::unique_ptr<Taxonomy> Taxonomy::without(std::string_view category) const {
     return rest;
 }
 
-Result<std::unique_ptr<Taxonomy>> Taxonomy::load(const std::filesystem::path& folder) {
+Result<std::unique_ptr<Taxonomy>> Taxonomy::load(const std::filesystem::path& folder,
+                                                 const std::filesystem::path& user_folder) {
     std::unique_ptr<Taxonomy> taxonomy(new Taxonomy);
     if (auto loaded = load_materials(*taxonomy->data_, folder / "materials.json"); !loaded) return loaded.error();
     auto surfaces = Surfaces::load(folder / "material_pairs.json", taxonomy->data_->materials);
     if (!surfaces) return surfaces.error();
     taxonomy->surfaces_ = std::make_shared<const Surfaces>(std::move(*surfaces));
     if (auto loaded = load_nouns(*taxonomy->data_, folder); !loaded) return loaded.error();
-    if (auto loaded = load_categories_of(*taxonomy->data_, folder / "categories"); !loaded) {
+    if (auto loaded = load_categories_of(*taxonomy->data_, folder / "categories", user_folder); !loaded) {
         return loaded.error();
     }
     return taxonomy;

@@ -60,7 +60,8 @@ struct CategoryData {
     bool solid = false;                    ///< the closed surface is filled to fill_fraction with the material
     Interval fill_fraction;                ///< used where solid
     std::string material;
-    std::string source;                         ///< of the numbers above
+    std::string source;                                       ///< of the numbers above
+    std::map<std::string, std::string, std::less<>> said_by;  ///< field → the user's file, where it is not ours
     std::vector<CategoryAttribute> attributes;  ///< what else is usual, such as the stiffness of a cushion
     std::string modelled_as;                 ///< of beer the entry that a model of it is, "beer bottle"; empty: itself
     std::optional<std::size_t> model_entry;  ///< index of that entry
@@ -82,6 +83,7 @@ struct Taxonomy::Data {
     PhraseIndex category_phrases, material_phrases;
     std::map<std::string, std::size_t, std::less<>> by_catalogue;  ///< stems of the catalogue's category → index
     std::size_t unknown = 0;                                       ///< index of the category "object"
+    std::map<std::string, std::string, std::less<>> user_words;    ///< stems → the user's file that gave the word
     std::size_t longest_phrase = 1;
     std::shared_ptr<const wordnet::NounTable> nouns;                  ///< never null once loaded
     std::unordered_map<wordnet::SynsetIndex, std::size_t> by_synset;  ///< index of the entry that has this meaning

@@ -98,9 +98,9 @@ Catalog::~Catalog() = default;
 const attributes::Taxonomy& Catalog::taxonomy() const { return *state_->taxonomy; }
 
 Result<std::unique_ptr<Catalog>> Catalog::open(const std::filesystem::path& file,
-                                               const std::filesystem::path& taxonomy_folder,
-                                               const OpenOptions& options) {
-    auto taxonomy = attributes::Taxonomy::load(taxonomy_folder);
+                                               const std::filesystem::path& taxonomy_folder, const OpenOptions& options,
+                                               const std::filesystem::path& user_taxonomy) {
+    auto taxonomy = attributes::Taxonomy::load(taxonomy_folder, user_taxonomy);
     if (!taxonomy) return taxonomy.error();
     auto connection = database::open_model_database(file);
     if (!connection) return connection.error();
@@ -109,7 +109,7 @@ Result<std::unique_ptr<Catalog>> Catalog::open(const std::filesystem::path& file
     catalog->state_ = std::make_unique<State>(std::move(*connection), std::move(*taxonomy));
 
     // Another taxonomy than the one that the stored attributes come from: resolve them all again.
-    const std::string hash = taxonomy_hash(taxonomy_folder);
+    const std::string hash = taxonomy_hash(taxonomy_folder, user_taxonomy);
     const auto stored_hash = database::SettingTable(*catalog->state_->connection).get(taxonomy_setting);
     if (!stored_hash) return stored_hash.error();
     if (*stored_hash != hash) {
@@ -126,6 +126,18 @@ std::filesystem::path Catalog::default_file() {
     std::filesystem::path folder = data ? data : "";
     if (!folder.is_absolute()) folder = std::filesystem::path(home ? home : ".") / ".local" / "share";
     return folder / "embody" / "models.sqlite";
+}
+
+std::filesystem::path Catalog::user_taxonomy_folder() {
+    const char* named = std::getenv("EMBODY_TAXONOMY");
+    if (named != nullptr && *named != '\0') return named;
+    const char* config = std::getenv("XDG_CONFIG_HOME");
+    const char* home = std::getenv("HOME");
+    std::filesystem::path folder = config ? config : "";
+    if (!folder.is_absolute()) folder = std::filesystem::path(home ? home : ".") / ".config";
+    folder = folder / "embody" / "taxonomy";
+    std::error_code ignored;
+    return std::filesystem::is_directory(folder, ignored) ? folder : std::filesystem::path();
 }
 
 Result<SearchPage> Catalog::search(const SearchQuery& query) const {

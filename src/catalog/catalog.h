@@ -94,9 +94,13 @@ public:
     /// taxonomy is not that of last time, resolves all models anew: 60,000 take some tens of seconds.
     static Result<std::unique_ptr<Catalog>> open(const std::filesystem::path& file,
                                                  const std::filesystem::path& taxonomy_folder,
-                                                 const OpenOptions& options = {});
+                                                 const OpenOptions& options = {},
+                                                 const std::filesystem::path& user_taxonomy = user_taxonomy_folder());
     /// $XDG_DATA_HOME/embody/models.sqlite, or ~/.local/share/embody/models.sqlite.
     static std::filesystem::path default_file();
+    /// Where the user's own categories are: $EMBODY_TAXONOMY, else $XDG_CONFIG_HOME/embody/taxonomy or
+    /// ~/.config/embody/taxonomy where that folder exists, else empty.
+    static std::filesystem::path user_taxonomy_folder();
     ~Catalog();
 
     /// What it resolves attributes by.

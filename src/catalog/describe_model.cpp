@@ -95,7 +95,7 @@ database::ModelKnowledge describe(database::ModelRow& row, const attributes::Mod
     return {to_json(facts), to_json(automatic)};
 }
 
-std::string taxonomy_hash(const std::filesystem::path& taxonomy_folder) {
+std::string taxonomy_hash(const std::filesystem::path& taxonomy_folder, const std::filesystem::path& user_folder) {
     // In the order of names, so that the folder's own order does not matter.
     std::error_code failure;
     std::vector<std::filesystem::path> files;
@@ -103,6 +103,14 @@ std::string taxonomy_hash(const std::filesystem::path& taxonomy_folder) {
         if (entry.path().extension() == ".json") files.push_back(entry.path());
     }
     std::sort(files.begin(), files.end());
+    std::vector<std::filesystem::path> of_user;
+    if (!user_folder.empty()) {
+        for (const auto& entry : std::filesystem::directory_iterator(user_folder, failure)) {
+            if (entry.path().extension() == ".json") of_user.push_back(entry.path());
+        }
+    }
+    std::sort(of_user.begin(), of_user.end());
+    files.insert(files.end(), of_user.begin(), of_user.end());
 
     StateHash hash;
     hash.add(resolver_revision);
@@ -112,6 +120,11 @@ std::string taxonomy_hash(const std::filesystem::path& taxonomy_folder) {
         const std::string bytes = std::move(text).str();
         hash.add(std::uint64_t{bytes.size()});
         hash.add_bytes(bytes.data(), bytes.size());
+    }
+    // Their names stand in the sources of values.
+    for (const std::filesystem::path& file : of_user) {
+        const std::string name = file.filename().string();
+        hash.add_bytes(name.data(), name.size());
     }
     return std::to_string(hash.value());
 }

@@ -30,6 +30,6 @@ void classify(database::ModelRow& row, const attributes::ModelFacts& facts, cons
               const std::vector<attributes::AttributeEntry>& manual);
 
 /// Hash of all files that attributes are resolved with; another hash: all models are to be resolved again.
-std::string taxonomy_hash(const std::filesystem::path& taxonomy_folder);
+std::string taxonomy_hash(const std::filesystem::path& taxonomy_folder, const std::filesystem::path& user_folder = {});
 
 }  // namespace embody::catalog

@@ -4,6 +4,7 @@
 #include "cli/arguments.h"
 
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <memory>
 
 #include "catalog/catalog.h"
@@ -74,10 +75,17 @@ private:
         command.app->callback([this, into = command.into] { chosen_ = *into; });
         return command;
     }
+    /// Read where the environment says it too, by every part and process of this command.
+    static void add_taxonomy(CLI::App* app) {
+        const auto name = [](const std::string& folder) { setenv("EMBODY_TAXONOMY", folder.c_str(), 1); };
+        app->add_option_function<std::string>("--taxonomy", name, "Folder of your own categories, laid over ours")
+            ->check(CLI::ExistingDirectory);
+    }
     template <class T>
     static void add_database(const Command<T>& command) {
         command.into->database = catalog::Catalog::default_file();
         command.app->add_option("--database", command.into->database, "Model database")->capture_default_str();
+        add_taxonomy(command.app);
     }
     template <class T>
     static void add_json(const Command<T>& command) {
@@ -209,6 +217,7 @@ private:
                                         "Say what a thing of this name is taken for, why, and what else it "
                                         "could be",
                                         "embody classify tureen --category Kitchen --size 0.3 0.25 0.2");
+        add_taxonomy(c.app);
         c.app->add_option("name", c.into->name, "Name of a model")->required();
         c.app->add_option("--tag", c.into->tags, "A tag of it; may be given again")->allow_extra_args(false);
         c.app->add_option("--category", c.into->category, "The catalogue's own category");

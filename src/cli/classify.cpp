@@ -85,7 +85,8 @@ void print(const Classification& what, const AttributeSet& set, const std::vecto
 }  // namespace
 
 int run_classify(const ClassifyArguments& arguments) {
-    const auto taxonomy = attributes::Taxonomy::load(data_folder() / "taxonomy");
+    const auto taxonomy =
+        attributes::Taxonomy::load(data_folder() / "taxonomy", catalog::Catalog::user_taxonomy_folder());
     if (!taxonomy) return report(taxonomy.error());
     const attributes::ModelFacts facts = facts_of(arguments);
     const Classification what = attributes::classify((*taxonomy)->data(), facts);
