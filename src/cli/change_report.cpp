@@ -52,8 +52,10 @@ void print_text(const ChangeReport& report, bool dry_run) {
         if (report.models.size() > most_listed)
             fmt::print("  and {} more; --json lists all\n", report.models.size() - most_listed);
     }
-    fmt::print("{}{}: {} of {} models, {} values", dry_run ? "Would " : "", report.command, report.models.size(),
-               report.chosen, report.values);
+    // "set many" and "set" are one to the reader.
+    const std::string act = report.command.substr(0, report.command.find(' '));
+    fmt::print("{}{}: {} of {} models, {} values", dry_run ? "Would " : "", act, report.models.size(), report.chosen,
+               report.values);
     if (report.unchanged > 0) fmt::print("; {} are so already", report.unchanged);
     if (!report.refused.empty()) fmt::print("; {} refused", report.refused.size());
     if (report.batch != 0) fmt::print("; batch {}, take it back with: embody undo {}", report.batch, report.batch);
