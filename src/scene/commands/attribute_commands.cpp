@@ -91,6 +91,22 @@ Result<json> reset_attribute(SessionState& state, const json& params) {
     return change_attribute(state, indices, name, std::nullopt, {});
 }
 
+struct ActingEntity {
+    const Entity* entity;
+    AttributeSet attributes;
+};
+
+// As it acts in the running world, spawned things too; else as the document says.
+Result<ActingEntity> acting_entity(SessionState& state, EntityIndex index) {
+    const Entity* entity = state.simulation->definition(index);
+    if (!entity) entity = state.document.find(index);
+    if (!entity) return state.entity(index, "index").error();
+    Result<AttributeSet> acting = state.simulation->attributes(index);
+    if (!acting.ok()) acting = state.bodies.attributes(*entity);
+    if (!acting.ok()) return acting.error();
+    return ActingEntity{entity, std::move(acting).value()};
+}
+
 Result<json> list_attributes(SessionState& state, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);
@@ -98,18 +114,14 @@ Result<json> list_attributes(SessionState& state, const json& params) {
     need_index(reader, "index", index);
     if (!reader.finish()) return *error;
 
-    // As they act in the running world, spawned things too; else as the document says.
-    const Entity* entity = state.simulation->definition(index);
-    if (!entity) entity = state.document.find(index);
-    if (!entity) return state.entity(index, "index").error();
-    Result<AttributeSet> acting = state.simulation->attributes(index);
-    if (!acting.ok()) acting = state.bodies.attributes(*entity);
-    if (!acting.ok()) return acting.error();
+    const Result<ActingEntity> found = acting_entity(state, index);
+    if (!found.ok()) return found.error();
+    const auto& [entity, acting] = found.value();
     Result<AttributeSet> automatic = state.bodies.automatic_attributes(*entity);
     if (!automatic.ok()) return automatic.error();
     std::vector<std::string> own;
     for (const auto& [name, value] : entity->attributes) own.push_back(name);
-    return json{{"attributes", attribute_rows(acting.value(), automatic.value(), own)}};
+    return json{{"attributes", attribute_rows(acting, automatic.value(), own)}};
 }
 
 // The triangles of static things are those that are drawn, and may be many: they are not told.
@@ -119,14 +131,11 @@ Result<json> tell_collision_shape(SessionState& state, const json& params) {
     EntityIndex index = 0;
     need_index(reader, "index", index);
     if (!reader.finish()) return *error;
-    const Entity* entity = state.simulation->definition(index);
-    if (!entity) entity = state.document.find(index);
-    if (!entity) return state.entity(index, "index").error();
-    Result<AttributeSet> acting = state.simulation->attributes(index);
-    if (!acting.ok()) acting = state.bodies.attributes(*entity);
-    if (!acting.ok()) return acting.error();
-    if (acting.value().word("kind", "rigid") == "visual") return json{{"shape", nullptr}};
-    const Result<physics::ShapeDefinition> shape = state.bodies.shape(*entity, acting.value());
+    const Result<ActingEntity> found = acting_entity(state, index);
+    if (!found.ok()) return found.error();
+    const auto& [entity, acting] = found.value();
+    if (acting.word("kind", "rigid") == "visual") return json{{"shape", nullptr}};
+    const Result<physics::ShapeDefinition> shape = state.bodies.shape(*entity, acting);
     if (!shape.ok()) return shape.error();
     return json{{"shape", physics::is_static_only(shape.value()) ? json(nullptr) : shape_to_json(shape.value())}};
 }
