@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstdlib>
 #include <limits>
+#include <set>
 
 #include "attributes/registry.h"
 #include "catalog/describe_many.h"
@@ -74,6 +75,9 @@ struct Catalog::State {
     database::ManualAttributeTable manual;
     ManualChanges changes;
     Author author{current_person(), {}};
+    // How far changes_of_others() has looked, and what need not be told.
+    std::int64_t seen_version = -1, seen_batch = 0;
+    std::set<std::int64_t> own_batches;
     TaskPool workers{TaskPool::workers_that_pay()};  ///< no threads before the first use
 
     // What is known of one model, read from the database.
@@ -116,6 +120,9 @@ Result<std::unique_ptr<Catalog>> Catalog::open(const std::filesystem::path& file
         if (auto refreshed = catalog->state_->refresh_attributes(hash, options); !refreshed) return refreshed.error();
     }
     if (auto stored = catalog->state_->store_primitives(); !stored) return stored.error();
+    const auto newest = catalog->state_->changes.newest_batch();
+    if (!newest) return newest.error();
+    catalog->state_->seen_batch = *newest;
     return catalog;
 }
 
@@ -253,24 +260,26 @@ std::string in_words(const SearchQuery& query) {
 }  // namespace
 
 Result<void> Catalog::set_attribute(std::int64_t id, std::string_view name, const attributes::AttributeValue& value) {
-    if (auto set = need_done(change_attributes(std::vector{id}, {{std::string(name), value}})); !set) return set;
-    return prepare_shape(id, name);
+    return need_done(change_attributes(std::vector{id}, {{std::string(name), value}}));
 }
 
 Result<void> Catalog::reset_attribute(std::int64_t id, std::string_view name) {
-    if (auto reset = need_done(change_attributes(std::vector{id}, {{std::string(name)}})); !reset) return reset;
-    return prepare_shape(id, name);
+    return need_done(change_attributes(std::vector{id}, {{std::string(name)}}));
 }
 
-Result<void> Catalog::prepare_shape(std::int64_t id, std::string_view changed) const {
-    if (changed != "collision_shape" && changed != "max_hulls" && changed != "hull_error") return {};
-    const auto set = attributes(id);
-    if (!set) return set.error();
-    if (set->word("collision_shape", "") != "decomposition") return {};
+void Catalog::prepare_shape(const ChangeReport& report) const {
+    const auto is_of_shape = [](const std::string& name) {
+        return name == "collision_shape" || name == "max_hulls" || name == "hull_error";
+    };
+    if (report.batch == 0 || report.models.size() != 1 || report.models.front().id == 0 ||
+        std::none_of(report.attributes.begin(), report.attributes.end(), is_of_shape))
+        return;
+    const auto set = attributes(report.models.front().id);
+    if (!set || set->word("collision_shape", "") != "decomposition") return;
+    // What fails here fails again where the shape is needed, and is told there.
     const geometry::DecompositionParameters usual;
-    const auto parts = convex_parts(id, static_cast<int>(set->number("max_hulls", usual.max_hulls)),
-                                    set->number("hull_error", usual.hull_error));
-    return parts ? Result<void>() : Result<void>(parts.error());
+    (void)convex_parts(report.models.front().id, static_cast<int>(set->number("max_hulls", usual.max_hulls)),
+                       set->number("hull_error", usual.hull_error));
 }
 
 Result<ChangeReport> Catalog::change_attributes(const ModelChoice& models, const std::vector<AttributeChange>& changes,
@@ -293,15 +302,46 @@ Result<ChangeReport> Catalog::change_attributes(const ModelChoice& models, const
         return rows;
     };
     const auto* query = std::get_if<SearchQuery>(&models);
-    return state_->changes.change(find_all, changes, options, state_->author, query ? in_words(*query) : "");
+    auto report = state_->changes.change(find_all, changes, options, state_->author, query ? in_words(*query) : "");
+    if (report) after_change(*report);
+    return report;
 }
 
 Result<ChangeReport> Catalog::undo_changes(std::int64_t batch, const ChangeOptions& options) {
-    return state_->changes.undo(batch, options, state_->author);
+    auto report = state_->changes.undo(batch, options, state_->author);
+    if (report) after_change(*report);
+    return report;
+}
+
+void Catalog::after_change(const ChangeReport& report) {
+    if (report.batch != 0) state_->own_batches.insert(report.batch);
+    prepare_shape(report);
 }
 
 Result<std::vector<ChangeRecord>> Catalog::history(const HistoryQuery& query) const {
     return state_->changes.history(query);
+}
+
+Result<std::vector<ChangeBatchRecord>> Catalog::history_batches(const BatchQuery& query) const {
+    return state_->changes.batches(query);
+}
+
+Result<std::vector<ChangeBatchRecord>> Catalog::changes_of_others() {
+    State& state = *state_;
+    // SQLite's count of what other connections committed: asking costs no reading.
+    const auto version = state.connection->query_integer("PRAGMA data_version");
+    if (!version) return version.error();
+    if (*version == state.seen_version) return std::vector<ChangeBatchRecord>();
+    auto batches = state.changes.batches({.after = state.seen_batch, .limit = 1000, .changes = 1000});
+    if (!batches) return batches;
+    state.seen_version = *version;
+    if (!batches->empty()) state.seen_batch = batches->front().changes.front().batch;
+    std::erase_if(*batches, [&](const ChangeBatchRecord& batch) {
+        return state.own_batches.contains(batch.changes.front().batch);
+    });
+    std::erase_if(state.own_batches, [&](std::int64_t batch) { return batch <= state.seen_batch; });
+    std::reverse(batches->begin(), batches->end());
+    return batches;
 }
 
 void Catalog::set_session(std::string session) { state_->author.session = valid_utf8(session); }

@@ -124,7 +124,8 @@ public:
     /// Which models a change is for: these, or all that the query finds, whatever its limit and offset.
     using ModelChoice = std::variant<std::vector<std::int64_t>, SearchQuery>;
     /// Manual changes of many models, all or nothing. Where models refuse and options do not skip them, the report
-    /// names them and its batch is 0. Errors: a wrong name or value, a model that is not there, stopped.
+    /// names them and its batch is 0. Where one model was changed, the decomposition that it then needs is made at
+    /// once. Errors: a wrong name or value, a model that is not there, stopped.
     Result<ChangeReport> change_attributes(const ModelChoice& models, const std::vector<AttributeChange>& changes,
                                            const ChangeOptions& options = {});
     /// Restores the manual values from before a batch of changes; of an undo: does again what it took back. 0: the last
@@ -133,6 +134,11 @@ public:
     Result<ChangeReport> undo_changes(std::int64_t batch, const ChangeOptions& options = {});
     /// Who changed what when, newest first.
     Result<std::vector<ChangeRecord>> history(const HistoryQuery& query) const;
+    /// The same by acts, newest first.
+    Result<std::vector<ChangeBatchRecord>> history_batches(const BatchQuery& query) const;
+    /// What others (another instance or process) changed by hand in this file since the last call, oldest first. Costs
+    /// little where nobody wrote.
+    Result<std::vector<ChangeBatchRecord>> changes_of_others();
     /// Through what the person acts from now on, for the history: "Studio client 2".
     void set_session(std::string session);
 
@@ -154,8 +160,9 @@ public:
 
 private:
     Catalog();
-    /// Makes the decomposition that a change by hand of the attribute `changed` asks for, so that no one waits later.
-    Result<void> prepare_shape(std::int64_t id, std::string_view changed) const;
+    /// Makes the decomposition that a change of one model asks for, so that no one waits later.
+    void prepare_shape(const ChangeReport& report) const;
+    void after_change(const ChangeReport& report);
     struct State;
     std::unique_ptr<State> state_;
 };

@@ -50,7 +50,8 @@ struct ChangeReport {
     std::vector<ChangedModel> models;
     std::vector<RefusedChange> refused;  ///< unless skip_refused: one of them and nothing is changed
 
-    std::size_t unchanged = 0;  ///< models that have these values already
+    std::size_t unchanged = 0;            ///< models that have these values already
+    std::vector<std::string> attributes;  ///< names of what was changed, each once
 };
 
 struct HistoryQuery {
@@ -58,6 +59,16 @@ struct HistoryQuery {
     std::int64_t since = 0;      ///< seconds since 1970, UTC
     std::int64_t batch = 0;      ///< 0: all
     int limit = 100;
+};
+
+/// Which acts are listed.
+struct BatchQuery {
+    std::string model_key = {};  ///< that they changed; empty: all models
+    std::int64_t since = 0;      ///< seconds since 1970, UTC
+    std::int64_t after = 0;      ///< only batches with a number above this
+    std::int64_t before = 0;     ///< only batches with a number below this; 0: all
+    int limit = 50;
+    int changes = 10;  ///< values that are told of each
 };
 
 /// One value that a person changed.
@@ -72,6 +83,12 @@ struct ChangeRecord {
     std::string model_key, model_name;
     std::string attribute;
     std::optional<attributes::AttributeValue> before, after;  ///< none: the automatic value acted
+};
+
+/// An act: how much it changed, and the first of its values, which say who, when and what.
+struct ChangeBatchRecord {
+    std::size_t values = 0, models = 0;
+    std::vector<ChangeRecord> changes;  ///< at least one, those of the model that was asked for
 };
 
 }  // namespace embody::catalog

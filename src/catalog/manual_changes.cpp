@@ -151,6 +151,8 @@ Result<void> ManualChanges::carry_out(std::vector<Step>& steps, const database::
     report.values = steps.size();
     for (const Step& step : steps) {
         if (report.models.empty() || report.models.back().key != step.model.key) report.models.push_back(step.model);
+        if (std::find(report.attributes.begin(), report.attributes.end(), step.name) == report.attributes.end())
+            report.attributes.push_back(step.name);
     }
     if (options.dry_run || steps.empty()) return {};
 
@@ -294,6 +296,23 @@ Result<std::vector<ChangeRecord>> ManualChanges::history(const HistoryQuery& que
         records.push_back(std::move(record));
     }
     return records;
+}
+
+Result<std::vector<ChangeBatchRecord>> ManualChanges::batches(const BatchQuery& query) {
+    const auto found = audit_.batches({.model_key = query.model_key,
+                                       .since = query.since,
+                                       .after = query.after,
+                                       .before = query.before,
+                                       .limit = std::clamp(query.limit, 1, 1'000'000)});
+    if (!found) return found.error();
+    std::vector<ChangeBatchRecord> batches;
+    for (const database::CountedBatch& row : *found) {
+        auto first = history({.model_key = query.model_key, .batch = row.batch.id, .limit = query.changes});
+        if (!first) return first.error();
+        batches.push_back(
+            {static_cast<std::size_t>(row.values), static_cast<std::size_t>(row.models), std::move(*first)});
+    }
+    return batches;
 }
 
 }  // namespace embody::catalog

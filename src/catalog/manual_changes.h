@@ -24,6 +24,9 @@ public:
     Result<ChangeReport> undo(std::int64_t batch, const ChangeOptions& options, const Author& author);
     /// Newest first.
     Result<std::vector<ChangeRecord>> history(const HistoryQuery& query);
+    Result<std::vector<ChangeBatchRecord>> batches(const BatchQuery& query);
+    /// The number of the newest batch; 0: none.
+    Result<std::int64_t> newest_batch() { return audit_.newest_batch(); }
 
 private:
     struct Step;

@@ -129,4 +129,26 @@ Result<std::vector<RecordedChange>> ChangeTable::search(const ChangeSearch& sear
     }
 }
 
+Result<std::vector<CountedBatch>> ChangeTable::batches(const BatchSearch& search) {
+    auto statement = connection_.prepare(
+        "SELECT " EMBODY_BATCH_COLUMNS
+        ", (SELECT count(*) FROM manual_change AS c WHERE c.batch = b.id)"
+        ", (SELECT count(DISTINCT c.model_key) FROM manual_change AS c WHERE c.batch = b.id)"
+        " FROM manual_batch AS b WHERE b.id > ?1 AND (?2 = 0 OR b.id < ?2) AND b.made_at >= ?3 AND (?4 = '' OR EXISTS"
+        " (SELECT 1 FROM manual_change AS c WHERE c.batch = b.id AND c.model_key = ?4)) ORDER BY b.id DESC LIMIT ?5");
+    if (!statement) return statement.error();
+    statement->bind(search.after).bind(search.before).bind(search.since).bind(search.model_key).bind(search.limit);
+    std::vector<CountedBatch> found;
+    while (true) {
+        const auto row = statement->step();
+        if (!row) return row.error();
+        if (!*row) return found;
+        found.push_back({read_batch(*statement, 0), statement->integer(8), statement->integer(9)});
+    }
+}
+
+Result<std::int64_t> ChangeTable::newest_batch() {
+    return connection_.query_integer("SELECT ifnull(max(id), 0) FROM manual_batch");
+}
+
 }  // namespace embody::database

@@ -41,6 +41,20 @@ struct ChangeSearch {
     int limit = 100;
 };
 
+/// A batch and how much it changed.
+struct CountedBatch {
+    ChangeBatch batch;
+    std::int64_t values = 0, models = 0;
+};
+
+struct BatchSearch {
+    std::string model_key = {};  ///< that it changed; empty: all
+    std::int64_t since = 0;      ///< seconds since 1970, UTC
+    std::int64_t after = 0;      ///< only numbers above this
+    std::int64_t before = 0;     ///< only numbers below this; 0: all
+    int limit = 50;
+};
+
 /// The audit of manual changes. Writers are to be called inside a Transaction.
 class ChangeTable {
 public:
@@ -61,6 +75,10 @@ public:
     Result<std::optional<ChangeBatch>> changed_since(const ManualChange& change);
     /// Newest first.
     Result<std::vector<RecordedChange>> search(const ChangeSearch& search);
+    /// Newest first.
+    Result<std::vector<CountedBatch>> batches(const BatchSearch& search);
+    /// The number of the newest batch; 0: none.
+    Result<std::int64_t> newest_batch();
 
 private:
     Connection& connection_;

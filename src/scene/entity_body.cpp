@@ -52,23 +52,30 @@ ModelFacts scaled(ModelFacts facts, double s) {
     return facts;
 }
 
+// Attributes that grow with a power of the size; the others are the material's.
+struct Power {
+    const char* name;
+    int power;
+};
+constexpr Power powers[] = {{"mass", 3},           {"volume", 3},    {"center_of_mass", 1}, {"inertia", 5},
+                            {"wall_thickness", 1}, {"drag_area", 2}, {"hull_error", 1}};
+
+attributes::AttributeValue multiplied(attributes::AttributeValue value, double factor) {
+    if (auto* number = std::get_if<double>(&value)) *number *= factor;
+    if (auto* vector = std::get_if<Vec3>(&value)) *vector *= factor;
+    if (auto* tensor = std::get_if<Mat3>(&value)) *tensor = *tensor * factor;
+    return value;
+}
+
 // The same material in another size.
 AttributeSet scaled(const AttributeSet& set, double s) {
-    struct Power {
-        const char* name;
-        int power;
-    };
-    constexpr Power powers[] = {{"mass", 3},           {"volume", 3},    {"center_of_mass", 1}, {"inertia", 5},
-                                {"wall_thickness", 1}, {"drag_area", 2}, {"hull_error", 1}};
     AttributeSet out = set;
     for (const Power& row : powers) {
         const AttributeEntry* held = set.find(row.name);
         if (!held) continue;
         AttributeEntry entry = *held;
         const double factor = std::pow(s, row.power);
-        if (auto* number = std::get_if<double>(&entry.value)) *number *= factor;
-        if (auto* vector = std::get_if<Vec3>(&entry.value)) *vector *= factor;
-        if (auto* tensor = std::get_if<Mat3>(&entry.value)) *tensor = *tensor * factor;
+        entry.value = multiplied(std::move(entry.value), factor);
         if (entry.low) *entry.low *= factor;
         if (entry.high) *entry.high *= factor;
         entry.source += ", scaled";
@@ -156,6 +163,13 @@ private:
 };
 
 }  // namespace
+
+attributes::AttributeValue value_of_model(const std::string& name, const attributes::AttributeValue& value,
+                                          double scale) {
+    for (const Power& row : powers)
+        if (name == row.name) return multiplied(value, std::pow(scale, -row.power));
+    return value;
+}
 
 ModelFacts primitive_facts(const physics::ShapeDefinition& shape) {
     ModelFacts facts;

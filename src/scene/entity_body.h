@@ -58,6 +58,10 @@ private:
     attributes::ModelFacts last_primitive_;                     ///< of one without a short text
 };
 
+/// The value of an attribute of an entity that is drawn at `scale`, as the model itself has it.
+attributes::AttributeValue value_of_model(const std::string& name, const attributes::AttributeValue& value,
+                                          double scale);
+
 /// What the physics knows of a primitive's form; zero volume for planes, heightfields and meshes.
 attributes::ModelFacts primitive_facts(const physics::ShapeDefinition& shape);
 

@@ -118,32 +118,52 @@ bool History::merge(Edit& edit) {
 
 void History::add(Edit edit) {
     // What was undone can't be redone on another document; if it was on disk it is not any more.
-    if (saved_ > static_cast<std::ptrdiff_t>(done_.size())) saved_ = -1;
+    if (saved_ > document_edits_) saved_ = -1;
     undone_.clear();
     if (merge(edit)) return;
+    if (!edit.catalog) ++document_edits_;
     done_.push_back(std::move(edit));
     merging_ = true;
     if (done_.size() > most_edits) {
+        if (!done_.front().catalog) {
+            --document_edits_;
+            if (saved_ >= 0) --saved_;
+        }
         done_.erase(done_.begin());
-        if (saved_ >= 0) --saved_;
     }
 }
 
 void History::move_back() {
+    if (!done_.back().catalog) --document_edits_;
     undone_.push_back(std::move(done_.back()));
     done_.pop_back();
     merging_ = false;
 }
 
 void History::move_forward() {
+    if (!undone_.back().catalog) ++document_edits_;
     done_.push_back(std::move(undone_.back()));
     undone_.pop_back();
     merging_ = false;
 }
 
+void History::move_back(std::int64_t batch) {
+    done_.back().catalog->again = batch;
+    move_back();
+}
+
+void History::forget_batch(std::int64_t batch) {
+    const auto is_about = [batch](const Edit& edit) {
+        return edit.catalog && (edit.catalog->back == batch || edit.catalog->again == batch);
+    };
+    std::erase_if(done_, is_about);
+    std::erase_if(undone_, is_about);
+}
+
 void History::clear() {
     done_.clear();
     undone_.clear();
+    document_edits_ = 0;
     saved_ = 0;
     merging_ = false;
 }

@@ -41,12 +41,19 @@ struct HeadingChange {
 };
 using Change = std::variant<EntityChange, PoseChange, JointChange, ActionChange, HeadingChange>;
 
-/// One step of undo.
+/// What an act on the catalogue's models left in the audit of manual changes. They are no part of the document.
+struct CatalogStep {
+    std::int64_t back = 0;   ///< the batch that undo takes back
+    std::int64_t again = 0;  ///< once undone: the batch that redo takes back
+};
+
+/// One step of undo: changes of the document, or an act on the catalogue.
 struct Edit {
     std::string label;                            ///< for people: "Move chair"
     std::string merge;                            ///< edits in a row with the same one, not empty, are one step: a drag
     std::vector<Change> changes;                  ///< in order
     EntityIndex next_before = 0, next_after = 0;  ///< the document's next_index
+    std::optional<CatalogStep> catalog = {};      ///< then there are no changes
 };
 
 /// An edit that changes an entity's other fields but not its geometry.
@@ -70,12 +77,20 @@ public:
     void move_forward();
     void clear();
 
+    /// The edit was an act on the catalogue and has been undone by this batch.
+    void move_back(std::int64_t batch);
+    /// The edit that undo, or redo, would take next can't be carried out any more.
+    void drop_undoable() { done_.pop_back(); }
+    void drop_redoable() { undone_.pop_back(); }
+    /// An act on the catalogue was taken back, or done again, by another way.
+    void forget_batch(std::int64_t batch);
+
     /// The document is on disk as it is now.
     void mark_saved() {
-        saved_ = static_cast<std::ptrdiff_t>(done_.size());
+        saved_ = document_edits_;
         merging_ = false;
     }
-    [[nodiscard]] bool is_saved() const { return saved_ == static_cast<std::ptrdiff_t>(done_.size()); }
+    [[nodiscard]] bool is_saved() const { return saved_ == document_edits_; }
     /// The document is on no disk, whatever is undone.
     void mark_unsaved() { saved_ = -1; }
 
@@ -83,8 +98,9 @@ private:
     bool merge(Edit& edit);
 
     std::vector<Edit> done_, undone_;
-    std::ptrdiff_t saved_ = 0;  ///< number of edits done when it was saved; -1: never again
-    bool merging_ = false;      ///< the last thing that happened was an edit
+    std::ptrdiff_t document_edits_ = 0;  ///< of those done: acts on the catalogue leave the document as it is
+    std::ptrdiff_t saved_ = 0;           ///< their number when it was saved; -1: never again
+    bool merging_ = false;               ///< the last thing that happened was an edit
 };
 
 }  // namespace embody::scene

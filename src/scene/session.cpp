@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "scene/catalog_edit.h"
 #include "scene/commands/commands.h"
 #include "scene/scene_file.h"
 #include "scene/scene_folders.h"
@@ -20,8 +21,9 @@ namespace {
 const std::map<std::string, const Command*>& command_table() {
     static const std::map<std::string, const Command*> table = [] {
         std::map<std::string, const Command*> built;
-        for (const auto family : {catalog_commands(), scene_commands(), entity_commands(), placement_commands(),
-                                  attribute_commands(), joint_and_action_commands(), simulation_commands()})
+        for (const auto family :
+             {catalog_commands(), catalog_change_commands(), scene_commands(), entity_commands(), placement_commands(),
+              attribute_commands(), joint_and_action_commands(), simulation_commands()})
             for (const Command& command : family) built[command.name] = &command;
         return built;
     }();
@@ -53,13 +55,18 @@ Result<std::unique_ptr<Session>> Session::create(catalog::Catalog* catalog, cons
     return session;
 }
 
-Result<json> Session::execute(const std::string& command, const json& params) {
+Result<json> Session::execute(const std::string& command, const json& params, ClientId client) {
     const auto found = command_table().find(command);
     if (found == command_table().end()) return unknown_command(command);
     // A command without parameters may leave them out.
     static const json nothing = json::object();
+    state_->client = client;
     return found->second->execute(*state_, params.is_null() ? nothing : params);
 }
+
+void Session::forget_client(ClientId client) { state_->client_names.erase(client); }
+
+bool Session::follow_catalog() { return follow_changes_of_others(*state_); }
 
 Events Session::take_events() { return std::exchange(state_->events, {}); }
 

@@ -30,10 +30,15 @@ struct EntityState {
     std::uint8_t state = 3;  ///< 0 active, 1 wants to sleep, 2 asleep, 3 static or kinematic
 };
 
+/// Numbers a connection for as long as the program runs; 0: the program itself.
+using ClientId = std::uint64_t;
+
 struct SessionOptions {
     std::filesystem::path saved_scenes;      ///< folder of the user's scenes; autosaves go to its sub-folder "autosave"
     std::filesystem::path demo_scenes;       ///< folder of the scenes that come with Embody
     std::function<bool()> stop_wanted = {};  ///< asked between the steps of simulation.step; true ends it early
+    /// Told now and then how far the command in hand is; false ends it, and nothing is changed. May be empty.
+    std::function<bool(std::size_t done, std::size_t total)> progress = {};
 };
 
 /// One open scene: the document with undo, its running simulation, and every command of docs/protocol.md that is not
@@ -44,8 +49,12 @@ public:
     static Result<std::unique_ptr<Session>> create(catalog::Catalog* catalog, const SessionOptions& options);
     ~Session();
 
-    /// Carries out a command of docs/protocol.md; the value is its `result`.
-    Result<nlohmann::json> execute(const std::string& command, const nlohmann::json& params);
+    /// Carries out a command of docs/protocol.md for a client; the value is its `result`.
+    Result<nlohmann::json> execute(const std::string& command, const nlohmann::json& params, ClientId client = 0);
+    /// A client has left.
+    void forget_client(ClientId client);
+    /// Takes up what other programs changed in the catalogue, and tells whether there was any; for a timer.
+    bool follow_catalog();
     /// What happened since the last call.
     Events take_events();
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "scene/catalog_edit.h"
 #include "scene/json/parts.h"
 #include "scene/scene_file.h"
 
@@ -278,6 +279,7 @@ Result<void> SessionState::commit(Edit edit) {
 Result<std::string> SessionState::undo() {
     const Edit* edit = history.undoable();
     if (!edit) return std::string();
+    if (edit->catalog) return undo_on_catalog(*this);
     std::vector<Change> back;
     for (auto change = edit->changes.rbegin(); change != edit->changes.rend(); ++change)
         back.push_back(reversed(*change));
@@ -294,6 +296,7 @@ Result<std::string> SessionState::undo() {
 Result<std::string> SessionState::redo() {
     const Edit* edit = history.redoable();
     if (!edit) return std::string();
+    if (edit->catalog) return redo_on_catalog(*this);
     if (Result<void> done = insist_on_changes(edit->changes); !done.ok()) return done.error();
     document.next_index = edit->next_after;
     std::string label = edit->label;

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <deque>
+#include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -45,6 +46,9 @@ struct SessionState {
     std::set<std::string> told_problems;
 
     Events events;
+
+    ClientId client = 0;                           ///< whose command is in hand
+    std::map<ClientId, std::string> client_names;  ///< of those who told their name
 
     /// Does the edit to document and simulation and tells clients. On failure all is as before.
     Result<void> commit(Edit edit);

@@ -392,6 +392,21 @@ Result<void> Simulation::update(const Entity& entity, bool keep_motion) {
     return {};
 }
 
+Result<void> Simulation::renew_models(const std::set<std::string>& keys, bool keep_motion) {
+    std::vector<Entity> meant;
+    for (const auto& [index, entity] : state_->live) {
+        const auto* model = std::get_if<ModelReference>(&entity.definition.geometry);
+        if (model && keys.contains(model->key)) meant.push_back(entity.definition);
+    }
+    for (const std::string& key : keys) state_->bodies.forget(key);
+    Result<void> all;
+    for (const Entity& entity : meant) {
+        Result<void> updated = state_->update(entity, keep_motion);
+        if (!updated.ok() && all.ok()) all = std::move(updated);
+    }
+    return all;
+}
+
 Result<void> Simulation::remove(EntityIndex entity) {
     state_->templates.erase(entity);
     return state_->remove(entity);

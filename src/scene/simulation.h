@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,9 @@ public:
     Result<void> add(const Entity& entity);
     /// With `keep_motion` pose and velocities stay as they are now, else they become the entity's.
     Result<void> update(const Entity& entity, bool keep_motion);
+    /// The catalogue's models of these keys have other attributes: what is made of them takes these at once. All are
+    /// tried; the error is the first.
+    Result<void> renew_models(const std::set<std::string>& keys, bool keep_motion);
     Result<void> remove(EntityIndex entity);  ///< its joints go with it
     Result<void> add_joint(const SceneJoint& joint);
     Result<void> remove_joint(std::uint32_t joint);

@@ -23,6 +23,10 @@ using nlohmann::json;
 
 constexpr auto statistics_period = std::chrono::milliseconds(250);
 constexpr auto autosave_period = std::chrono::seconds(20);
+/// What other programs change in the database is seen after this time at most.
+constexpr auto catalog_period = std::chrono::seconds(1);
+/// Work that takes longer tells how far it is, as often.
+constexpr auto progress_period = std::chrono::milliseconds(150);
 /// A machine that cannot keep up runs the scene slower instead of falling ever further behind.
 constexpr double most_seconds_behind = 0.1;
 
@@ -33,11 +37,13 @@ json failed(const json& id, const Error& error) {
         {"id", id}, {"ok", false}, {"error", {{"where", error.where}, {"why", error.why}, {"remedy", error.remedy}}}};
 }
 
-/// A client's command, or the transport's wish for the document (then `scene` is set and the rest is not).
+/// A client's command, or that it has left, or the transport's wish for the document (then `scene` is set and the rest
+/// is not).
 struct Message {
     ClientId client = 0;
     std::string text;
     std::shared_ptr<std::promise<std::string>> scene;
+    bool left = false;
 };
 
 }  // namespace
@@ -57,8 +63,10 @@ struct SceneThread::State {
 
     std::thread thread;
     std::vector<scene::EntityState> scratch;
-    Clock::time_point statistics_due{}, autosave_due{}, statistics_since{};
-    double statistics_time = 0;  ///< simulated time at statistics_since
+    Clock::time_point statistics_due{}, autosave_due{}, catalog_due{}, statistics_since{};
+    ClientId served = 0;               ///< whose command is in hand
+    Clock::time_point progress_due{};  ///< when it tells next how far it is
+    double statistics_time = 0;        ///< simulated time at statistics_since
 
     Result<void> open_safely();
     Result<void> open();
@@ -66,6 +74,9 @@ struct SceneThread::State {
     void handle(const Message& message);
     json answer(const std::string& text);
     json execute(const json& request);
+    bool tell_progress(std::size_t done, std::size_t total);
+    [[nodiscard]] bool stop_is_asked();
+    void follow_catalog();
     void tell_events();
     void publish(bool all_changed);
     void tell_statistics(Clock::time_point now);
@@ -94,6 +105,9 @@ Result<std::unique_ptr<SceneThread>> SceneThread::start(const SceneThreadOptions
         const std::lock_guard lock(state.mutex);
         return state.stop;
     };
+    state.options.session.progress = [&state](std::size_t done, std::size_t total) {
+        return state.tell_progress(done, total);
+    };
     state.listener = std::move(listener);
     // The catalogue and the session are opened on the thread that uses them; its first result is whether that worked.
     std::promise<Result<void>> opened;
@@ -111,9 +125,14 @@ Result<std::unique_ptr<SceneThread>> SceneThread::start(const SceneThreadOptions
 void SceneThread::post(ClientId client, std::string message) {
     {
         const std::lock_guard lock(state_->mutex);
-        state_->messages.push_back({client, std::move(message), nullptr});
+        state_->messages.push_back({client, std::move(message), nullptr, false});
     }
     state_->changed.notify_all();
+}
+
+void SceneThread::forget(ClientId client) {
+    const std::lock_guard lock(state_->mutex);
+    state_->messages.push_back({client, {}, nullptr, true});
 }
 
 SceneThread::Frame SceneThread::frame_since(std::uint64_t seen) const {
@@ -132,7 +151,7 @@ std::string SceneThread::scene_json() const {
     {
         const std::lock_guard lock(state_->mutex);
         if (state_->stop) return "{}";
-        state_->messages.push_back({0, {}, std::move(wanted)});
+        state_->messages.push_back({0, {}, std::move(wanted), false});
     }
     state_->changed.notify_all();
     return scene.get();
@@ -179,7 +198,7 @@ void SceneThread::State::run() {
             if (session->playing())
                 changed.wait_until(lock, due, ready);
             else
-                changed.wait_until(lock, autosave_due, ready);
+                changed.wait_until(lock, std::min(autosave_due, catalog_due), ready);
             taken.swap(messages);
             if (stop && taken.empty()) break;
         }
@@ -188,6 +207,7 @@ void SceneThread::State::run() {
             play_until(due);
         else
             due = Clock::now();
+        if (Clock::now() >= catalog_due) follow_catalog();
         if (Clock::now() >= autosave_due) {
             autosave_due = Clock::now() + autosave_period;
             autosave();
@@ -195,6 +215,34 @@ void SceneThread::State::run() {
     }
     // Nothing is lost when the server ends.
     autosave();
+}
+
+void SceneThread::State::follow_catalog() {
+    catalog_due = Clock::now() + catalog_period;
+    try {
+        if (session->follow_catalog()) tell_events();
+    } catch (const std::exception& thrown) {
+        broadcast_message("warning", std::string("The database could not be followed: ") + thrown.what());
+    }
+}
+
+bool SceneThread::State::tell_progress(std::size_t done, std::size_t total) {
+    const Clock::time_point now = Clock::now();
+    if (now < progress_due) return true;
+    progress_due = now + progress_period;
+    listener.broadcast(dump({{"event", "progress"}, {"client", served}, {"done", done}, {"total", total}}));
+    return !stop_is_asked();
+}
+
+// By the server's end, or by the client's next command.
+bool SceneThread::State::stop_is_asked() {
+    const std::lock_guard lock(mutex);
+    return stop || std::any_of(messages.begin(), messages.end(), [this](const Message& message) {
+               if (message.client != served || message.scene) return false;
+               if (message.left || message.text.size() > 200) return message.left;
+               const json request = json::parse(message.text, nullptr, false);
+               return request.is_object() && request.value("command", json()) == "catalog.stop";
+           });
 }
 
 void SceneThread::State::autosave() {
@@ -246,7 +294,10 @@ void SceneThread::State::handle(const Message& message) {
         message.scene->set_value(document.dump(2, ' ', false, json::error_handler_t::replace));
         return;
     }
+    if (message.left) return session->forget_client(message.client);
     const bool was_playing = session->playing();
+    served = message.client;
+    progress_due = Clock::now() + progress_period;
     const json reply = answer(message.text);
     // Events first, so that a client that gets its reply has already heard what the command did.
     tell_events();
@@ -279,7 +330,7 @@ json SceneThread::State::execute(const json& request) {
     if (!command.is_string()) return failed(id, {"command", "must be a string", ""});
     const json params = request.value("params", json::object());
     if (!params.is_object()) return failed(id, {"params", "must be an object", ""});
-    auto result = session->execute(command.get<std::string>(), params);
+    auto result = session->execute(command.get<std::string>(), params, served);
     if (!result) return failed(id, result.error());
     return {{"id", id}, {"ok", true}, {"result", std::move(*result)}};
 }

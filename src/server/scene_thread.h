@@ -12,8 +12,7 @@
 
 namespace embody::server {
 
-/// Numbers a connection for as long as the server runs.
-using ClientId = std::uint64_t;
+using scene::ClientId;
 
 struct SceneThreadOptions {
     std::filesystem::path database;  ///< the thread opens a Catalog of its own
@@ -39,6 +38,9 @@ public:
 
     /// A text message of a client, as it came. Exactly one reply will follow.
     void post(ClientId client, std::string message);
+
+    /// A client has left: what it was called is forgotten.
+    void forget(ClientId client);
 
     /// Binary frame of what changed after version `seen`, and the version it brings the client to.
     struct Frame {

@@ -109,10 +109,13 @@ public:
     void close() {
         error_code ignored;
         beast::get_lowest_layer(stream_).socket().close(ignored);
-        shared_.clients.erase(id_);
+        leave();
     }
 
 private:
+    void leave() {
+        if (shared_.clients.erase(id_) > 0) shared_.scene->forget(id_);
+    }
     [[nodiscard]] bool has_enough_waiting() const {
         return waiting_commands_ >= most_waiting_commands || waiting_bytes_ >= most_waiting_bytes ||
                unsent_ >= most_unread_replies;
@@ -125,7 +128,7 @@ private:
         read_pauses_ = false;
         stream_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t size) {
             if (error) {
-                self->shared_.clients.erase(self->id_);
+                self->leave();
                 return;
             }
             self->shared_.scene->post(self->id_, beast::buffers_to_string(self->buffer_.data()));
@@ -159,7 +162,7 @@ private:
         stream_.async_write(asio::buffer(outgoing_), [self = shared_from_this()](error_code error, std::size_t) {
             self->writing_ = false;
             if (error) {
-                self->shared_.clients.erase(self->id_);
+                self->leave();
                 return;
             }
             self->write();

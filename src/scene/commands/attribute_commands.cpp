@@ -121,7 +121,14 @@ Result<json> list_attributes(SessionState& state, const json& params) {
     if (!automatic.ok()) return automatic.error();
     std::vector<std::string> own;
     for (const auto& [name, value] : entity->attributes) own.push_back(name);
-    return json{{"attributes", attribute_rows(acting, automatic.value(), own)}};
+    json rows = attribute_rows(acting, automatic.value(), own);
+    if (std::holds_alternative<ModelReference>(entity->geometry)) {
+        for (json& row : rows) {
+            const std::string name = row["name"];
+            row["of_model"] = attributes::to_json(value_of_model(name, acting.find(name)->value, entity->scale));
+        }
+    }
+    return json{{"attributes", std::move(rows)}};
 }
 
 // The triangles of static things are those that are drawn, and may be many: they are not told.

@@ -21,6 +21,7 @@ struct Command {
 
 // One list a family, one file each.
 std::span<const Command> catalog_commands();
+std::span<const Command> catalog_change_commands();
 std::span<const Command> scene_commands();
 std::span<const Command> entity_commands();
 std::span<const Command> placement_commands();
@@ -41,6 +42,11 @@ Result<nlohmann::json> done(const Result<void>& result);
 /// The rows of the properties panel: protocol's AttributeEntry. `own` tells whether a name is overridden.
 nlohmann::json attribute_rows(const attributes::AttributeSet& acting, const attributes::AttributeSet& automatic,
                               const std::vector<std::string>& own);
+
+/// The model database that is open, or an error that says how to open one.
+Result<catalog::Catalog*> open_catalog(const SessionState& state);
+/// The rows of a model of the catalogue.
+Result<nlohmann::json> model_attribute_rows(const catalog::Catalog& catalog, std::int64_t id);
 
 /// Where `entity` comes to lie when it is dropped where the ray meets the scene. It is not in the simulation.
 Result<Transform> place_on_ray(SessionState& state, const Entity& entity, Vec3 origin, Vec3 direction);

@@ -36,6 +36,7 @@ Result<json> hello(SessionState& state, const json& params) {
                 {"redo", label(state.history.redoable())},
                 {"unsaved", !state.history.is_saved()},
                 {"name", state.name},
+                {"client", state.client},
                 {"spawned", std::move(spawned)},
                 {"despawned", std::move(despawned)}};
 }
