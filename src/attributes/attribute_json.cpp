@@ -280,6 +280,7 @@ nlohmann::json to_json(const ModelFacts& facts) {
                   {"door_or_window", facts.door_or_window},
                   {"size_is_stated", facts.size_is_stated},
                   {"geometry", geometry_json(facts.geometry)}};
+    if (!facts.stated_thing.empty()) document["stated_thing"] = facts.stated_thing;
     if (facts.movable) document["movable"] = *facts.movable;
     return document;
 }
@@ -291,6 +292,7 @@ Result<ModelFacts> facts_from_json(const nlohmann::json& document) {
     reader.read("tags", facts.tags);
     reader.read("catalogue_category", facts.catalogue_category);
     reader.read("folder", facts.folder);
+    reader.read("stated_thing", facts.stated_thing);
     reader.read("material_names", facts.material_names);
     reader.read("door_or_window", facts.door_or_window);
     reader.read("size_is_stated", facts.size_is_stated);

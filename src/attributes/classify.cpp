@@ -25,6 +25,7 @@ struct Trust {
     double noun;
 };
 constexpr Trust name_trust{"name", 0.95, 0.9};
+constexpr Trust collection_trust{"collection", 0.97, 0.92};
 constexpr Trust tag_trust{"tag", 0.65, 0.55};
 constexpr Trust folder_trust{"folder", 0.5, 0.4};
 constexpr Trust category_trust{"catalogue category", 0.3, 0.15};
@@ -389,8 +390,11 @@ Classification classify(const Taxonomy::Data& data, const ModelFacts& facts) {
 
     ask_more_exact_tags(data, facts, found);
 
-    // What stands elsewhere is asked where the name leaves doubt.
-    if (found.empty() || found.front().confidence < name_trust.phrase) {
+    // Who described a collection knew what its names mean; the name may still say it more exactly.
+    if (!facts.stated_thing.empty()) {
+        ask_text(data, collection_trust, facts.stated_thing, surroundings, found);
+        support_each_other(data, found);
+    } else if (found.empty() || found.front().confidence < name_trust.phrase) {
         for (const std::string& tag : facts.tags) ask_text(data, tag_trust, tag, surroundings, found);
         ask_text(data, folder_trust, facts.folder, surroundings, found);
         ask_catalogue(data, facts.catalogue_category, found);

@@ -14,8 +14,8 @@ namespace embody::attributes {
 struct Candidate {
     const CategoryData* category = nullptr;  ///< never null
     double confidence = 0;  ///< 0 to 1: how likely the category, or what is above it, is what the thing is
-    std::string
-        where;  ///< what was asked: "name", "tag", "folder", "catalogue category", "part material"; empty: nothing
+    std::string where;      ///< what was asked: "collection", "name", "tag", "folder", "catalogue category", "part
+                            ///< material"; empty: nothing
     std::string source;     ///< "name says "tureen" → tureen.n.01 → bowl.n.01 (1 step up)"
     std::string phrase;     ///< the words that decided; empty where none did
     std::string synset;     ///< what these words mean in WordNet; empty where unknown
@@ -29,7 +29,8 @@ struct Classification : Candidate {
     std::vector<Candidate> others;  ///< what else it could be, the likeliest first
 };
 
-/// From the name, else the tags, the folder, the catalogue's category, the names of the parts' materials; of each the
+/// From what a collection's description says that it is, the name where that says it more exactly; without such, from
+/// the name, else the tags, the folder, the catalogue's category, the names of the parts' materials; of each the
 /// taxonomy's own phrases first, then the nearest category above a noun that WordNet knows. The source names a
 /// runner-up that is close. A model of a substance is often something else (of beer, its bottle): see as_model.h.
 Classification classify(const Taxonomy::Data& data, const ModelFacts& facts);

@@ -46,6 +46,7 @@ struct ModelFacts {
     std::vector<std::string> tags;
     std::string catalogue_category;           ///< as the source names it, e.g. "Bedroom"
     std::string folder;                       ///< last folders of the file's path
+    std::string stated_thing;                 ///< what the collection's description says that it is, e.g. "relay"
     std::vector<std::string> material_names;  ///< of the parts, largest area first
     std::optional<bool> movable;              ///< where the catalogue tells
     bool door_or_window = false;

@@ -14,6 +14,7 @@
 #include "attributes/attribute.h"
 #include "attributes/model_facts.h"
 #include "attributes/resolver.h"
+#include "catalog/collection.h"
 #include "catalog/geometry_kind.h"
 #include "catalog/manual_change.h"
 #include "catalog/prepare/convex_parts.h"
@@ -69,6 +70,7 @@ struct ImportOptions {
     int workers = 0;                                           ///< 0: one a core
     bool again = false;                                        ///< prepare also what is in the database unchanged
     std::filesystem::path worker_program = {};                 ///< empty: beside the running program
+    std::optional<Collection> collection = {};                 ///< what is known of the files; see catalog/collection.h
     std::function<bool(const ImportProgress&)> progress = {};  ///< returns false to stop; may be empty
 };
 
@@ -151,8 +153,9 @@ public:
     /// it, or made now (some tenths of a second) and kept for the next time.
     Result<ConvexParts> convex_parts(std::int64_t id, int max_hulls, double hull_error) const;
 
-    /// Imports files, folders and catalogues (.sh3f, the Sweet Home 3D jar). Fails only if nothing can be imported at
-    /// all; what is wrong with single files is in the report.
+    /// Imports files, folders and catalogues (.sh3f, the Sweet Home 3D jar); without paths, the folders of the
+    /// collection in the options. Fails only if nothing can be imported at all; what is wrong with single files is in
+    /// the report.
     Result<ImportReport> import(const std::vector<std::filesystem::path>& paths, const ImportOptions& options);
     Result<void> remove(std::int64_t id);
     /// All of them or none. The geometry is shared, so its size is not the variant's.

@@ -55,9 +55,10 @@ void apply_item(attributes::ModelFacts& facts, const ImportItem& item) {
     facts.tags = item.tags;
     for (std::string& tag : facts.tags) tag = valid_utf8(tag);
     facts.catalogue_category = valid_utf8(item.category);
+    facts.stated_thing = valid_utf8(item.stated_thing);
     facts.movable = item.movable;
     facts.door_or_window = item.door_or_window;
-    facts.size_is_stated = item.stated_size.has_value();
+    facts.size_is_stated = item.stated_size.has_value() || item.stated_unit.has_value();
 }
 
 void apply_item(database::ModelRow& row, const ImportItem& item) {

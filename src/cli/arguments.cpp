@@ -111,8 +111,12 @@ private:
             add<ImportArguments>("import", "Bring models into the database: files, folders, Sweet Home 3D catalogues",
                                  "embody import chair.glb ~/models /usr/share/sweethome3d/furniture/Scopia.sh3f");
         add_database(c);
-        c.app->add_option("paths", c.into->paths, "Files (.glb .gltf .obj .stl .ply .dae .sh3f .jar .zip) and folders")
-            ->required();
+        c.app->add_option("paths", c.into->paths,
+                          "Files (.glb .gltf .obj .stl .ply .dae .ac .sh3f .jar .zip) and folders");
+        c.app->add_option(
+            "--collection", c.into->collection,
+            "Take the files as those of a collection (its unit, axes, licence), or without paths all that "
+            "is installed of it: flightgear, kicad, or a description FILE.json");
         c.app->add_option("--workers", c.into->workers, "Processes that read models (default: one a core)")
             ->check(CLI::Range(0, 256));
         c.app->add_flag("--again", c.into->again, "Read also what is unchanged since the last import");

@@ -22,6 +22,7 @@ struct ServeArguments {
 struct ImportArguments {
     std::filesystem::path database;
     std::vector<std::filesystem::path> paths;
+    std::string collection;  ///< name, or file of a description; empty: none
     int workers = 0;
     bool again = false;
     bool json = false;

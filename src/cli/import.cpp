@@ -31,10 +31,17 @@ nlohmann::json to_json(const catalog::ImportReport& report) {
 }  // namespace
 
 int run_import(const ImportArguments& arguments) {
+    catalog::ImportOptions options;
+    if (!arguments.collection.empty()) {
+        auto collection = catalog::read_collection(data_folder() / "collections", arguments.collection);
+        if (!collection) return report(collection.error());
+        options.collection = std::move(*collection);
+    } else if (arguments.paths.empty()) {
+        return report({"import", "nothing is named", "name files or folders, or a collection with --collection"});
+    }
     auto catalog = open_catalog(arguments.database);
     if (!catalog) return report(catalog.error());
     ProgressBar bar("Importing");
-    catalog::ImportOptions options;
     options.workers = arguments.workers;
     options.again = arguments.again;
     options.progress = [&](const catalog::ImportProgress& progress) {

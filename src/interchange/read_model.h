@@ -10,7 +10,7 @@
 
 namespace embody::interchange {
 
-/// File name extensions of the formats that are read, lower case with the dot: .obj .stl .ply .dae .gltf .glb.
+/// File name extensions of the formats that are read, lower case with the dot: .obj .stl .ply .dae .gltf .glb .ac.
 const std::vector<std::string>& model_extensions();
 /// Whether the file's extension, in any case, is one of model_extensions().
 bool is_model_file(const std::filesystem::path& file);
@@ -18,7 +18,7 @@ bool is_model_file(const std::filesystem::path& file);
 /// Reads a model file and what it refers to in its own folder and below. Every position is finite, every index in
 /// range, every mesh has triangles and every image is PNG or JPEG; else an error with file and reason. What can be left
 /// out (a texture that is missing or lies outside the folder, points and lines) is left out with a warning. glTF is in
-/// metres and Y up; COLLADA is turned and scaled as its <asset> says; OBJ, STL and PLY are taken as they are.
+/// metres and Y up; COLLADA is turned and scaled as its <asset> says; OBJ, STL, PLY and AC3D are taken as they are.
 Result<RawScene> read_model(const std::filesystem::path& file);
 
 /// The same from any source, e.g. an archive; `path` is inside the source.

@@ -56,7 +56,7 @@ TEST(ReadModel, RefusesMissingFilesAndUnknownFormats) {
     EXPECT_FALSE(read_model(scratch.path() / "missing.obj"));
     const auto unknown = read_model(scratch.write("model.xyz", cube_obj()));
     ASSERT_FALSE(unknown);
-    EXPECT_NE(unknown.error().message().find("glTF, OBJ, STL, PLY or COLLADA"), std::string::npos);
+    EXPECT_NE(unknown.error().message().find("glTF, OBJ, STL, PLY, COLLADA or AC3D"), std::string::npos);
 }
 
 TEST(ReadModel, RefusesNumbersThatAreNoPositions) {
@@ -188,6 +188,42 @@ TEST(ReadModel, ScalesAndTurnsColladaAsItsAssetSays) {
     const auto read = read_model(scratch.write("triangle.dae", dae));
     ASSERT_TRUE(read) << read.error().message();
     expect_close(size_of(*read), {1, 2, 0});
+}
+
+/// A square of 2 m with a material, by AC3D's text form; `texture` may be empty.
+std::string square_ac(const std::string& texture) {
+    return "AC3Db\nMATERIAL \"red paint\" rgb 1 0 0 amb 0 0 0 emis 0 0 0 spec 0 0 0 shi 10 trans 0.25\n"
+           "OBJECT world\nkids 1\nOBJECT poly\nname \"square\"\nloc 0 1 0\n" +
+           (texture.empty() ? std::string() : "texture \"" + texture + "\"\n") +
+           "numvert 4\n-1 -1 0\n1 -1 0\n1 1 0\n-1 1 0\nnumsurf 1\nSURF 0x20\nmat 0\nrefs 4\n"
+           "0 0 0\n1 1 0\n2 1 1\n3 0 1\nkids 0\n";
+}
+
+TEST(ReadModel, ReadsAc3dInMetresWithMaterialsAndTextures) {
+    const ScratchFolder scratch;
+    const auto plain = read_model(scratch.write("plain.ac", square_ac("")));
+    ASSERT_TRUE(plain) << plain.error().message();
+    expect_close(size_of(*plain), {2, 2, 0});
+    EXPECT_EQ(triangles_of(*plain), 2u);
+    ASSERT_EQ(plain->materials.size(), 1u);
+    EXPECT_EQ(plain->materials[0].name, "red paint");
+    EXPECT_EQ(plain->materials[0].base_color, (std::array{1.0f, 0.0f, 0.0f, 0.75f}));
+
+    scratch.write("wall.png", tiny_png());
+    const auto textured = read_model(scratch.write("textured.ac", square_ac("wall.png")));
+    ASSERT_TRUE(textured) << textured.error().message();
+    EXPECT_EQ(textured->images.size(), 1u);
+}
+
+TEST(ReadModel, RefusesAnAc3dThatPromisesMoreThanItHolds) {
+    const ScratchFolder scratch;
+    for (const char* broken :
+         {"numvert 4000000000\n0 0 0\n", "numvert 3\n0 0 0\n1 0 0\n0 1 0\nnumsurf 4000000000\n",
+          "numvert 3\n0 0 0\n1 0 0\n0 1 0\nnumsurf 1\nSURF 0x20\nmat 0\nrefs 3\n0 0 0\n1 0 0\n9 0 0\n",
+          "kids 4000000000\n"}) {
+        const auto read = read_model(scratch.write("model.ac", std::string("AC3Db\nOBJECT poly\n") + broken));
+        EXPECT_FALSE(read && triangles_of(*read) > 1) << broken;
+    }
 }
 
 TEST(ReadModel, ReadsBinaryAndTextStl) {

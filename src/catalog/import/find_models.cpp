@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "catalog/import/find_models.h"
 
+#include <fnmatch.h>
+
 #include <algorithm>
 #include <array>
 #include <string_view>
 #include <system_error>
 
 #include "interchange/archive/archive.h"
+#include "interchange/read_model.h"
 #include "interchange/sweethome/sweethome_catalogue.h"
 
 namespace embody::catalog {
@@ -14,9 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 6> model_extensions{".obj", ".gltf", ".glb", ".stl", ".ply", ".dae"};
 constexpr std::array<std::string_view, 3> archive_extensions{".sh3f", ".jar", ".zip"};
-constexpr const char* readable = ".obj .gltf .glb .stl .ply .dae .sh3f .jar .zip";
 
 std::string lower_extension(const fs::path& path) {
     std::string extension = path.extension().string();
@@ -24,12 +25,17 @@ std::string lower_extension(const fs::path& path) {
     return extension;
 }
 
-bool is_model(const fs::path& path) {
-    return std::find(model_extensions.begin(), model_extensions.end(), lower_extension(path)) != model_extensions.end();
-}
 bool is_archive(const fs::path& path) {
     return std::find(archive_extensions.begin(), archive_extensions.end(), lower_extension(path)) !=
            archive_extensions.end();
+}
+
+/// "readable are .obj .stl … .zip"
+std::string what_is_readable() {
+    std::string list = "readable are";
+    for (const std::string& extension : interchange::model_extensions()) list += " " + extension;
+    for (const std::string_view extension : archive_extensions) list += " " + std::string(extension);
+    return list;
 }
 
 // "office_chair-2.obj" → "office chair 2".
@@ -40,9 +46,61 @@ std::string name_of(const fs::path& path) {
     return name;
 }
 
+bool fits(const std::string& pattern, const std::string& text) {
+    return fnmatch(pattern.c_str(), text.c_str(), FNM_CASEFOLD) == 0;
+}
+
+/// Whether `path` lies in `folder`; both canonical.
+bool lies_in(const fs::path& path, const fs::path& folder) {
+    return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
+
+/// What a collection says of all its files.
+void describe_by(const Collection& collection, ImportItem& item) {
+    item.source = collection.title;
+    item.licence = collection.licence;
+    item.author = collection.author;
+    item.stated_unit = collection.unit;
+    item.stated_rotation = collection.rotation;
+}
+
+/// The file's path below the collection's folder that it is in; empty where it is in none.
+fs::path place_in(const Collection& collection, const fs::path& file) {
+    for (const CollectionFolder& folder : collection.folders) {
+        std::error_code failure;
+        const fs::path root = fs::weakly_canonical(folder.path, failure);
+        if (!failure && lies_in(file, root)) return file.lexically_relative(root);
+    }
+    return {};
+}
+
+/// What that place says.
+void describe_by_place(const Collection& collection, const fs::path& place, ImportItem& item) {
+    const std::string inside = place.generic_string();
+    item.key = collection.name + ":" + inside;
+    if (place.has_parent_path()) item.category = name_of(*place.begin());
+    for (const CollectionThings& things : collection.things) {
+        if (!fits(things.files, inside)) continue;
+        item.stated_thing = things.are;
+        return;
+    }
+}
+
+bool is_left_out(const Collection& collection, const fs::path& place) {
+    return std::any_of(collection.leave_out.begin(), collection.leave_out.end(),
+                       [&](const std::string& pattern) { return fits(pattern, place.generic_string()); });
+}
+
 /// One walk's memory.
 struct Walk {
+    const std::optional<Collection>& collection;
     FoundModels found;
+
+    bool is_of_collection(const fs::path& file) const {
+        if (!collection) return false;
+        const auto& extensions = collection->extensions;
+        return std::find(extensions.begin(), extensions.end(), lower_extension(file)) != extensions.end();
+    }
 
     void fail(const fs::path& path, std::string why, std::string remedy = {}) {
         found.failures.push_back({path.string(), {path.string(), std::move(why), std::move(remedy)}});
@@ -55,6 +113,12 @@ struct Walk {
         model.item.path = file.string();
         model.item.name = name_of(file);
         model.item.source = file.parent_path().filename().string();
+        if (is_of_collection(file)) {
+            const fs::path place = place_in(*collection, file);
+            if (is_left_out(*collection, place)) return;
+            describe_by(*collection, model.item);
+            if (!place.empty()) describe_by_place(*collection, place, model.item);
+        }
         found.models.push_back(std::move(model));
     }
 
@@ -89,7 +153,7 @@ struct Walk {
     bool add_packed_files(const fs::path& file, const interchange::Archive& archive) {
         bool any = false;
         for (const interchange::ArchiveMember& member : archive.members()) {
-            if (!is_model(member.path)) continue;
+            if (!interchange::is_model_file(member.path)) continue;
             any = true;
             FoundModel model;
             model.file = file;
@@ -117,21 +181,37 @@ struct Walk {
         fail(file, "holds neither a furniture catalogue nor model files", {});
     }
 
+    /// All files below that are models or archives; of a collection, those that are its own.
     void add_folder(const fs::path& folder) {
+        const auto is_wanted = [this](const fs::path& file) {
+            return collection ? is_of_collection(file) : interchange::is_model_file(file) || is_archive(file);
+        };
         std::error_code failure;
         std::vector<fs::path> files;
         const auto options = fs::directory_options::skip_permission_denied;
         for (fs::recursive_directory_iterator at(folder, options, failure), end; !failure && at != end;
              at.increment(failure)) {
             std::error_code no_matter;
-            if (at->is_regular_file(no_matter) && (is_model(at->path()) || is_archive(at->path()))) {
-                files.push_back(at->path());
-            }
+            if (at->is_regular_file(no_matter) && is_wanted(at->path())) files.push_back(at->path());
         }
         if (failure) fail(folder, "cannot be read: " + failure.message());
-        if (files.empty() && !failure) fail(folder, "holds no model files", std::string("readable are ") + readable);
+        if (files.empty() && !failure) fail(folder, "holds no model files", what_is_readable());
         std::sort(files.begin(), files.end());
-        for (const fs::path& file : files) is_model(file) ? add_file(file) : add_archive(file, false);
+        for (const fs::path& file : files) {
+            interchange::is_model_file(file) ? add_file(file) : add_archive(file, false);
+        }
+    }
+
+    void add_collection() {
+        for (const CollectionFolder& folder : collection->folders) {
+            std::error_code failure;
+            const fs::path path = fs::weakly_canonical(folder.path, failure);
+            if (!failure && fs::is_directory(path, failure)) {
+                add_folder(path);
+            } else {
+                fail(folder.path, "does not exist", "install it with: apt-get install " + folder.package);
+            }
+        }
     }
 
     void add_path(const fs::path& typed) {
@@ -140,16 +220,17 @@ struct Walk {
         if (failure || !fs::exists(path, failure)) return fail(typed, "does not exist");
         if (fs::is_directory(path, failure)) return add_folder(path);
         if (!fs::is_regular_file(path, failure)) return fail(typed, "is neither a file nor a folder");
-        if (is_model(path)) return add_file(path);
+        if (interchange::is_model_file(path)) return add_file(path);
         if (is_archive(path)) return add_archive(path, true);
-        fail(typed, "is not a kind of file that can be imported", std::string("readable are ") + readable);
+        fail(typed, "is not a kind of file that can be imported", what_is_readable());
     }
 };
 
 }  // namespace
 
-FoundModels find_models(const std::vector<fs::path>& paths) {
-    Walk walk;
+FoundModels find_models(const std::vector<fs::path>& paths, const std::optional<Collection>& collection) {
+    Walk walk{collection, {}};
+    if (paths.empty() && collection) walk.add_collection();
     for (const fs::path& path : paths) walk.add_path(path);
     return std::move(walk.found);
 }

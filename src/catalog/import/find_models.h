@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,11 @@ struct FoundModels {
     std::vector<ImportFailure> failures;  ///< paths that hold nothing to import, and why
 };
 
-/// Walks files, folders and catalogues. Reads the lists of archives, but no model.
-FoundModels find_models(const std::vector<std::filesystem::path>& paths);
+/// Walks files, folders and catalogues; without paths, the folders of the collection. Reads the lists of archives, but
+/// no model. A file of the collection's extensions has its unit, axes, licence and author; below a folder of the
+/// collection also a key of its own, e.g. "kicad:Relay_THT.3dshapes/Relay_SPDT.wrl", the first folder's name as its
+/// category, and what the collection says that files in this place are. In folders other files are left alone then.
+FoundModels find_models(const std::vector<std::filesystem::path>& paths,
+                        const std::optional<Collection>& collection = {});
 
 }  // namespace embody::catalog

@@ -36,6 +36,7 @@ std::uint64_t hash_preparation(const ImportItem& item, std::uint64_t file_hash) 
     add_text(hash, item.icon_path);
     hash.add(std::uint64_t{item.stated_size.has_value()});
     for (const double length : item.stated_size.value_or(std::array<double, 3>{})) hash.add(length);
+    if (item.stated_unit) hash.add(*item.stated_unit);
     for (const double number : item.stated_rotation) hash.add(number);
     return hash.value();
 }
@@ -47,6 +48,7 @@ std::uint64_t hash_words(const ImportItem& item) {
         add_text(hash, *text);
     }
     for (const std::string& tag : item.tags) add_text(hash, tag);
+    if (!item.stated_thing.empty()) add_text(hash, item.stated_thing);
     hash.add(std::uint64_t{item.movable ? 1u + *item.movable : 0u});
     hash.add(std::uint64_t{item.door_or_window});
     return hash.value();
@@ -148,7 +150,7 @@ Result<ImportReport> Importer::run(const std::vector<fs::path>& paths, const Imp
     again_ = options.again;
 
     // What is there, and what of it is to be done.
-    FoundModels found = find_models(paths);
+    FoundModels found = find_models(paths, options.collection);
     report_.failures = std::move(found.failures);
     progress_.total = found.models.size();
     if (auto planned = plan(std::move(found.models)); !planned) return planned.error();
@@ -252,8 +254,8 @@ Result<bool> Importer::is_stored(std::int64_t model, const database::ImportSourc
 }
 
 Result<Importer::Identity> Importer::identify(const FoundModel& model, const database::ImportSource& source) {
-    // A catalogue names its models; a file in a plain archive is named by both.
-    if (!model.item.archive.empty()) {
+    // A catalogue or collection names its models; a file in a plain archive is named by both.
+    if (!model.item.archive.empty() || !model.item.key.empty()) {
         Identity named{model.item.key, {}};
         if (named.key.empty()) named.key = "archive:" + hexadecimal(source.file_hash) + "#" + model.item.path;
         auto there = models_.find_key(named.key);
@@ -347,7 +349,7 @@ Result<void> Importer::prepare_planned(const std::vector<Planned>& planned, cons
 bool Importer::needs_other_unit(const Planned& planned, const PreparedModel& prepared) {
     // A chair of 900 m is in millimetres. Files do not say their unit; what things of the category usually measure
     // does.
-    if (planned.item.stated_size || planned.unit_is_guessed) return false;
+    if (planned.item.stated_size || planned.item.stated_unit || planned.unit_is_guessed) return false;
     attributes::ModelFacts facts = prepared.facts;
     apply_item(facts, planned.item);
     const std::optional<double> scale = attributes::suggested_scale(taxonomy_, facts);

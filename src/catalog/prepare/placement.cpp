@@ -26,12 +26,15 @@ Mat3 matrix_of_rows(const std::array<double, 9>& m) {
     return {{m[0], m[3], m[6]}, {m[1], m[4], m[7]}, {m[2], m[5], m[8]}};
 }
 
-Vec3 scale_to(const Vec3& size, const std::optional<std::array<double, 3>>& stated) {
-    Vec3 factors{1, 1, 1};
-    if (!stated) return factors;
+Vec3 scale_to(const Vec3& size, const ImportItem& item) {
+    const double unit = item.stated_unit.value_or(1);
+    Vec3 factors{unit, unit, unit};
+    if (!item.stated_size) return factors;
     const double largest = std::max({size.x, size.y, size.z});
     for (int axis = 0; axis < 3; ++axis) {
-        if (size[axis] > flat * largest) factors[axis] = (*stated)[static_cast<std::size_t>(axis)] / size[axis];
+        if (size[axis] > flat * largest) {
+            factors[axis] = (*item.stated_size)[static_cast<std::size_t>(axis)] / size[axis];
+        }
     }
     return factors;
 }
@@ -41,7 +44,7 @@ Vec3 scale_to(const Vec3& size, const std::optional<std::array<double, 3>>& stat
 Result<void> place(interchange::RawScene& scene, const ImportItem& item) {
     const Mat3 rotation = matrix_of_rows(item.stated_rotation);
     const Bounds turned = bounds_of(scene, rotation);
-    const Vec3 factors = scale_to(turned.size(), item.stated_size);
+    const Vec3 factors = scale_to(turned.size(), item);
     const Mat3 linear = Mat3::diagonal(factors) * rotation;
     const Vec3 c = turned.center();
     const Vec3 base = scale(factors, {c.x, turned.lower.y, c.z});

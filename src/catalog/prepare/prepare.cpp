@@ -100,7 +100,7 @@ attributes::ModelFacts stated_facts(const ImportItem& item) {
     facts.folder = last_folders(item);
     facts.movable = item.movable;
     facts.door_or_window = item.door_or_window;
-    facts.size_is_stated = item.stated_size.has_value();
+    facts.size_is_stated = item.stated_size.has_value() || item.stated_unit.has_value();
     return facts;
 }
 

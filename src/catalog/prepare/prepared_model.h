@@ -21,7 +21,9 @@ struct ImportItem {
     std::string icon_path;  ///< of a ready thumbnail inside the archive; may be empty
     std::string name, source, licence, author, category;
     std::vector<std::string> tags;
+    std::string stated_thing;  ///< word of the taxonomy for what its collection says that it is; may be empty
     std::optional<std::array<double, 3>> stated_size;  ///< width X, height Y, depth Z, m
+    std::optional<double> stated_unit;                 ///< m a unit of the file, where its collection states it
     std::array<double, 9> stated_rotation{1, 0, 0, 0, 1,
                                           0, 0, 0, 1};  ///< rows; the catalogue's correction of the file's axes
     std::optional<bool> movable;

@@ -170,12 +170,14 @@ Result<std::span<const std::uint8_t>> payload_of(std::span<const std::uint8_t> w
 std::vector<std::uint8_t> to_bytes(const ImportItem& item) {
     ByteWriter out;
     for (const std::string* text : {&item.key, &item.archive, &item.path, &item.icon_path, &item.name, &item.source,
-                                    &item.licence, &item.author, &item.category}) {
+                                    &item.licence, &item.author, &item.category, &item.stated_thing}) {
         out.text(*text);
     }
     put(out, item.tags);
     out.number(std::uint8_t(item.stated_size.has_value()));
     for (const double length : item.stated_size.value_or(std::array<double, 3>{})) out.number(length);
+    out.number(std::uint8_t(item.stated_unit.has_value()));
+    out.number(item.stated_unit.value_or(0));
     for (const double part : item.stated_rotation) out.number(part);
     put(out, item.movable);
     out.number(std::uint8_t(item.door_or_window));
@@ -186,7 +188,7 @@ Result<ImportItem> item_from_bytes(std::span<const std::uint8_t> payload) {
     ByteReader in(payload);
     ImportItem item;
     for (std::string* text : {&item.key, &item.archive, &item.path, &item.icon_path, &item.name, &item.source,
-                              &item.licence, &item.author, &item.category}) {
+                              &item.licence, &item.author, &item.category, &item.stated_thing}) {
         *text = in.text(longest_text);
     }
     item.tags = take_texts(in);
@@ -194,6 +196,9 @@ Result<ImportItem> item_from_bytes(std::span<const std::uint8_t> payload) {
     std::array<double, 3> size{};
     for (double& length : size) length = take_measure(in);
     if (has_size) item.stated_size = size;
+    const bool has_unit = take_truth(in);
+    const double unit = take_measure(in);
+    if (has_unit) item.stated_unit = unit;
     for (double& part : item.stated_rotation) part = take_finite(in);
     item.movable = take_answer(in);
     item.door_or_window = take_truth(in);

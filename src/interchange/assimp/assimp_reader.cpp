@@ -140,6 +140,8 @@ Result<RawScene> read_by_assimp(const FileSource& source, const std::string& pat
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS |
                                                             aiComponent_CAMERAS | aiComponent_LIGHTS |
                                                             aiComponent_TANGENTS_AND_BITANGENTS);
+    // AC3D's subdivision grows fourfold a level, and the level is the file's: the surface is taken as it was drawn.
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_AC_EVAL_SUBDIVISION, false);
     const aiScene* read = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_RemoveComponent);
     if (read == nullptr || read->mRootNode == nullptr) {
         const std::string reason = importer.GetErrorString();
@@ -157,7 +159,7 @@ Result<RawScene> read_by_assimp(const FileSource& source, const std::string& pat
 }  // namespace
 
 const std::vector<std::string>& model_extensions() {
-    static const std::vector<std::string> extensions{".obj", ".stl", ".ply", ".dae", ".gltf", ".glb"};
+    static const std::vector<std::string> extensions{".obj", ".stl", ".ply", ".dae", ".gltf", ".glb", ".ac"};
     return extensions;
 }
 
@@ -169,7 +171,7 @@ bool is_model_file(const std::filesystem::path& file) {
 Result<RawScene> read_model(const FileSource& source, const std::string& path) {
     const std::string where = source.describe(path);
     if (!is_model_file(path))
-        return Error{where, "is of a format that is not read", "use glTF, OBJ, STL, PLY or COLLADA"};
+        return Error{where, "is of a format that is not read", "use glTF, OBJ, STL, PLY, COLLADA or AC3D"};
     const std::string found = source.find(path);
     if (found.empty()) return Error{where, "no such file"};
     try {

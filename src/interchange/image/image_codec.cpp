@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "interchange/image/sgi_image.h"
+
 // What is not wanted stays out; the libraries' own warnings are theirs.
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
@@ -46,11 +48,12 @@ void append_bytes(void* out, void* data, int size) {
 }  // namespace
 
 Result<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes) {
+    if (const auto sgi = read_sgi_header(bytes)) return *sgi;
     ImageHeader header{.format = format_of(bytes)};
     int channels = 0;
     if (!fits_int(bytes.size()) || stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &header.width,
                                                          &header.height, &channels) == 0) {
-        return Error{"image", "is no PNG, JPEG, BMP, TGA, GIF, PSD or PNM image"};
+        return Error{"image", "is no PNG, JPEG, BMP, TGA, GIF, PSD, PNM or SGI image"};
     }
     header.has_alpha = channels == 2 || channels == 4;
     return header;
@@ -63,6 +66,7 @@ Result<Image> decode_image(std::span<const std::uint8_t> bytes) {
         return Error{"image",
                      std::to_string(header->width) + " × " + std::to_string(header->height) + " pixels are too many"};
     }
+    if (read_sgi_header(bytes)) return decode_sgi(bytes);
     int width = 0, height = 0, channels = 0;
     stbi_uc* pixels =
         stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, STBI_rgb_alpha);
