@@ -21,11 +21,6 @@ bool says_bulk(std::string_view name) {
     });
 }
 
-double largest_extent(const ModelFacts& facts) {
-    const Vec3 size = facts.geometry.size;
-    return is_finite(size) ? std::max({size.x, size.y, size.z}) : 0;
-}
-
 bool is_model(const ModelFacts& facts) {
     return facts.size_is_stated || largest_extent(facts) > 0 || facts.geometry.volume > 0;
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "attributes/as_model.h"
 #include "attributes/form.h"
@@ -244,6 +245,22 @@ void ask_more_exact_tags(const Taxonomy::Data& data, const ModelFacts& facts, st
     }
 }
 
+// A stated size that no such thing has speaks against what the words say: a man of 7 cm, a swimming pool in a box. Up
+// to a factor 2 outside says nothing. Of the candidates from `first` on.
+void doubt_unusual_sizes(const Taxonomy::Data& data, const ModelFacts& facts, std::vector<Candidate>& found,
+                         std::size_t first) {
+    constexpr double tolerated = 0.7, strength = 1.5, least = 0.05;
+    const double largest = largest_extent(facts);
+    if (!facts.size_is_stated || largest <= 0) return;
+    for (Candidate& candidate : std::span(found).subspan(first)) {
+        const auto model = candidate.category->model_entry;
+        const double outside = outside_usual_size(model ? data.categories[*model] : *candidate.category, largest);
+        if (outside <= tolerated) continue;
+        candidate.confidence *= std::max(std::exp(-strength * (outside - tolerated)), least);
+        candidate.reckoning += "; such things have another size";
+    }
+}
+
 void doubt_long_name(std::vector<Candidate>& found) {
     for (Candidate& candidate : found) {
         candidate.confidence *= trust_in_long;
@@ -389,6 +406,8 @@ Classification classify(const Taxonomy::Data& data, const ModelFacts& facts) {
     if (tokens_of(facts.name).size() >= long_name) doubt_long_name(found);
 
     ask_more_exact_tags(data, facts, found);
+    const std::size_t from_name = found.size();
+    doubt_unusual_sizes(data, facts, found, 0);
 
     // Who described a collection knew what its names mean; the name may still say it more exactly.
     if (!facts.stated_thing.empty()) {
@@ -400,6 +419,7 @@ Classification classify(const Taxonomy::Data& data, const ModelFacts& facts) {
         ask_catalogue(data, facts.catalogue_category, found);
         ask_text(data, category_trust, facts.catalogue_category, surroundings, found);
         if (found.empty()) ask_parts(data, facts, surroundings, found);
+        doubt_unusual_sizes(data, facts, found, from_name);
         support_each_other(data, found);
     }
     if (found.empty())

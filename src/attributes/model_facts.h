@@ -54,4 +54,10 @@ struct ModelFacts {
     GeometryFacts geometry;
 };
 
+/// Largest extent of its bounds, m; 0 where that is not known.
+inline double largest_extent(const ModelFacts& facts) {
+    const Vec3 size = facts.geometry.size;
+    return is_finite(size) ? std::max({size.x, size.y, size.z}) : 0;
+}
+
 }  // namespace embody::attributes

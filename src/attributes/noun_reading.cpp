@@ -206,8 +206,7 @@ std::optional<double> Surroundings::kinship(SynsetIndex meaning) const {
 // 1 within the usual size of the category, falling with the factor by which the size lies outside.
 double Surroundings::size_fit(const CategoryData& category) const {
     if (largest_ <= 0) return 1;
-    const double outside =
-        std::max({std::log(largest_ / category.usual_high), std::log(category.usual_low / largest_), 0.0});
+    const double outside = outside_usual_size(category, largest_);
     // A size whose unit is only guessed says less.
     const double strength = size_is_stated_ ? 1.5 : 0.4;
     return std::max(std::exp(-strength * outside), 0.05);

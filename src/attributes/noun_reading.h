@@ -37,6 +37,8 @@ public:
 
     /// Factor, about 0.02 to 20, by which all this makes the meaning more or less likely.
     [[nodiscard]] double support(std::optional<wordnet::SynsetIndex> meaning, const CategoryData& category) const;
+    /// Factor, 0.05 to 1, by which the size makes the category less likely; 1 within its usual size.
+    [[nodiscard]] double size_fit(const CategoryData& category) const;
     /// Whether there is anything that could speak for one meaning or another.
     [[nodiscard]] bool tell() const { return !words_.empty() || !domains_.empty() || size_is_stated_; }
     /// How much the meaning shares with what one of the other words can mean, 0 (nothing) to 1 (it is that); nothing
@@ -45,7 +47,6 @@ public:
 
 private:
     void add_words(const std::vector<Token>& tokens, const NounOccurrence* without);
-    [[nodiscard]] double size_fit(const CategoryData& category) const;
 
     const Taxonomy::Data& data_;
     std::unordered_set<wordnet::SynsetIndex> words_;        ///< what the other words can mean

@@ -8,6 +8,7 @@
 #include "attributes/assemble.h"
 #include "attributes/classify.h"
 #include "attributes/form.h"
+#include "attributes/mass_estimate.h"
 #include "attributes/phrase_match.h"
 #include "attributes/registry.h"
 
@@ -15,11 +16,6 @@ namespace embody::attributes {
 namespace {
 
 constexpr double heaviest_density = 22600;  // osmium, kg/m³
-
-// Size in metres as people write it.
-std::string size_text(Vec3 size) {
-    return short_number(size.x) + " x " + short_number(size.y) + " x " + short_number(size.z) + " m";
-}
 
 // "usual for chair", with the user's file where it says so.
 std::string usual_for(const CategoryData& category, const char* field) {
@@ -72,81 +68,7 @@ void put_scale(AttributeSet& set, const ModelFacts& facts, const CategoryData& c
     set.put({"scale_to_m", 1.0, {}, {}, source, AttributeLevel::model});
 }
 
-struct MassEstimate {
-    Interval mass;
-    std::string source;
-    AttributeLevel level = AttributeLevel::standard;
-};
-
-// Density × filled share × volume of a closed surface, for things that are not hollow.
-MassEstimate mass_of_solid(const CategoryData& category, const MaterialData& material, const Form& form) {
-    const auto product = [&](double density, double fill) { return density * fill * form.volume; };
-    const Interval mass{product(material.density.low, category.fill_fraction.low),
-                        product(material.density.typical, category.fill_fraction.typical),
-                        product(material.density.high, category.fill_fraction.high)};
-    return {mass,
-            "density of " + material.name + " (" + material.source + ") x " +
-                short_number(category.fill_fraction.typical) + " filled x volume of the " + form.volume_source,
-            AttributeLevel::model};
-}
-
-// Cloth that lies folded or rolled: far smaller than such things are when they hang or lie open, and no sheet.
-bool is_folded(const CategoryData& category, const Form& form, const Form& usual) {
-    const auto largest = [](Vec3 s) { return std::max({s.x, s.y, s.z}); };
-    return category.kind == "cloth" && category.scaling == MassScaling::area && form.size_known &&
-           largest(form.size) < 0.2 * largest(usual.size) && std::min({form.size.x, form.size.y, form.size.z}) > 0.005;
-}
-
-// Then its box is full of cloth, layer on layer.
-MassEstimate mass_of_folded(const CategoryData& category, const Form& form, AttributeLevel level) {
-    constexpr Interval packed{90, 180, 300};  // kg/m³
-    return {{packed.low * form.box_volume, packed.typical * form.box_volume, packed.high * form.box_volume},
-            category.name + ", folded to this size: 180 kg per cubic metre of its box (loosely folded linen 90 to " +
-                "clothes pressed into bales 300)",
-            level};
-}
-
-// The category's mass, carried over to this box.
-MassEstimate mass_of_box(const CategoryData& category, const Form& form, AttributeLevel level) {
-    const Form usual = form_of({}, category.at_size);
-    if (is_folded(category, form, usual)) return mass_of_folded(category, form, level);
-    const bool by_area = category.scaling == MassScaling::area;
-    const double ratio = by_area ? form.face_area / usual.face_area : form.box_volume / usual.box_volume;
-    const double factor = std::pow(ratio, category.exponent);
-    const Interval mass{category.mass.low * factor, category.mass.typical * factor, category.mass.high * factor};
-    std::string source = category.name + " of " + size_text(category.at_size) + ": " +
-                         short_number(category.mass.typical) + " kg (" + category.source + ")";
-    if (form.size_known) {
-        source += ", x (" + short_number(ratio) + " times the " + (by_area ? "face" : "box") + ")^" +
-                  short_number(category.exponent);
-    }
-    return {mass, source, level};
-}
-
-// Standard deviation of ln(mass) between the things that a word means and the taxonomy's typical one of their size, on
-// top of the category's own interval: with it the 80 % intervals of measured objects hold about 80 %
-// (docs/attributes.md).
-constexpr double spread_of_taxonomy = 0.27;
-
-// The interval as wide as the doubt about the entry makes it; a category reached over hypernyms says less of the thing.
-void widen(MassEstimate& estimate, std::size_t steps) {
-    constexpr double within_80_percent = 1.2816;  // standard deviations of a normal distribution
-    const double more = within_80_percent * std::hypot(spread_of_taxonomy, spread_of_steps(steps));
-    Interval& mass = estimate.mass;
-    mass.low = mass.typical * std::exp(-std::hypot(std::log(mass.typical / mass.low), more));
-    mass.high = mass.typical * std::exp(std::hypot(std::log(mass.high / mass.typical), more));
-    if (steps == 0) return;
-    estimate.source += "; interval widened for " + std::to_string(steps) + (steps == 1 ? " step" : " steps") + " up";
-}
-
-void put_mass(AttributeSet& set, const ModelFacts& facts, const Classification& what, const MaterialChoice& surface,
-              const Form& form) {
-    const CategoryData& category = *what.category;
-    const bool by_volume = category.solid && facts.geometry.closed && form.volume_is_own;
-    MassEstimate estimate =
-        by_volume ? mass_of_solid(category, *surface.material, form) : mass_of_box(category, form, what.level);
-    widen(estimate, what.steps);
-
+void put_mass(AttributeSet& set, const MassEstimate& estimate, const MaterialChoice& surface, const Form& form) {
     // Into the registry's range, and never denser than the densest element.
     const AttributeDescription& range = *describe("mass");
     const double most = std::min(*range.high, heaviest_density * form.volume);
@@ -225,7 +147,7 @@ AttributeSet resolve(const Taxonomy& taxonomy, const ModelFacts& facts) {
     // Its form tells how much of that there is, and where.
     const Form form = form_of(facts.geometry, what.category->at_size);
     put_scale(set, facts, *what.category, form);
-    put_mass(set, facts, what, surface, form);
+    put_mass(set, estimate_mass(data, what, *surface.material, form, facts.geometry.closed), surface, form);
     put_mass_dependents(set, facts.geometry, form);
     put_form(set, facts, form);
     put_category_attributes(set, what);

@@ -2,6 +2,7 @@
 // Reads data/taxonomy. Of this layer only this file, field_reader and attribute_json see the JSON library.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -280,6 +281,12 @@ Result<void> load_categories_of(Taxonomy::Data& data, const std::filesystem::pat
 }
 
 }  // namespace
+
+double outside_usual_size(const CategoryData& category, double largest) {
+    const bool folds = category.kind == "cloth" || category.kind == "rope";
+    const double too_small = folds ? 0 : std::log(category.usual_low / largest);
+    return std::max({too_small, std::log(largest / category.usual_high), 0.0});
+}
 
 const MaterialData* Taxonomy::Data::material(std::string_view name) const {
     for (const MaterialData& entry : materials) {

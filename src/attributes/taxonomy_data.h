@@ -67,6 +67,10 @@ struct CategoryData {
     std::optional<std::size_t> model_entry;  ///< index of that entry
 };
 
+/// ln of the factor by which this largest extent (m, positive) lies outside the usual size; 0 within. Cloth and rope
+/// may lie folded, so that nothing is too small for them.
+double outside_usual_size(const CategoryData& category, double largest);
+
 /// A phrase that names an entry, e.g. "coffee table".
 struct Phrase {
     std::string text;        ///< its words as written, joined by one space

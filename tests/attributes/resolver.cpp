@@ -173,7 +173,30 @@ TEST(Resolve, MassGrowsWithSizeAndIntervalHoldsIt) {
 TEST(Resolve, SheetsGrowWithTheirArea) {
     const double thin = resolved(named("Rug", {1.5, 0.01, 2.2})).number("mass", 0);
     const double thick = resolved(named("Rug", {1.5, 0.03, 2.2})).number("mass", 0);
-    EXPECT_DOUBLE_EQ(thin, thick);
+    EXPECT_NEAR(thin, thick, 0.1 * thin);
+}
+
+TEST(Resolve, WhatHasAnUnusualSizeIsDrawnToWhatAnyThingOfThatSizeWeighs) {
+    const auto mass_of = [](const char* name, Vec3 size) { return *resolved(named(name, size)).find("mass"); };
+    const auto typical = [](const AttributeEntry& mass) { return std::get<double>(mass.value); };
+    const Vec3 usual{0.48, 0.88, 0.52}, tiny{0.048, 0.088, 0.052};
+    const AttributeEntry chair = mass_of("chair", usual), small = mass_of("chair", tiny), any = mass_of("xyzzy", tiny);
+    EXPECT_EQ(chair.source.find("drawn"), std::string::npos);
+    EXPECT_NE(small.source.find("any thing of this size, since its size is unusual"), std::string::npos);
+    // Between the category's law and that of any thing, and less certain.
+    const double by_law = typical(chair) * std::pow(0.001, 0.85);
+    EXPECT_GT(typical(small), std::min(by_law, typical(any)));
+    EXPECT_LT(typical(small), std::max(by_law, typical(any)));
+    EXPECT_GT(*small.high / *small.low, 1.5 * *chair.high / *chair.low);
+}
+
+TEST(Resolve, AStatedSizeThatNoSuchThingHasLetsATagDecide) {
+    ModelFacts facts = named("dragon man", {0.06, 0.09, 0.04});
+    facts.tags = {"action figure"};
+    facts.size_is_stated = false;
+    EXPECT_EQ(resolved(facts).word("category", ""), "person");
+    facts.size_is_stated = true;
+    EXPECT_EQ(resolved(facts).word("subcategory", ""), "action figure");
 }
 
 TEST(Resolve, SolidThingsWeighTheirVolume) {

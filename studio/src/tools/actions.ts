@@ -28,13 +28,12 @@ export interface Openers {
   palette(): void;
   search(): void;
   newScene(): void;
-  history(): void;
 }
 
 export function makeActions(studio: Studio, gizmo: Gizmo, open: Openers): UserAction[] {
   return [
     ...sceneActions(studio, open),
-    ...editActions(studio, open),
+    ...editActions(studio),
     ...toolActions(studio, gizmo),
     ...simulationActions(studio),
     ...viewActions(studio, open),
@@ -71,7 +70,7 @@ async function save(studio: Studio, open: Openers): Promise<void> {
   if (saved) studio.notice.emit({ level: "info", text: `Saved “${saved.name}”` });
 }
 
-function editActions(studio: Studio, open: Openers): UserAction[] {
+function editActions(studio: Studio): UserAction[] {
   const { selection, document } = studio;
   const some = () => selection.indices.length > 0;
   const chosen = () => ({ indices: [...selection.indices] });
@@ -81,8 +80,7 @@ function editActions(studio: Studio, open: Openers): UserAction[] {
     { id: "edit.delete", label: "Delete", group: "Edit", keys: ["Delete"], icon: "bin", possible: some, run: () => void studio.command("entity.remove", chosen()) },
     { id: "edit.duplicate", label: "Duplicate", group: "Edit", keys: ["Ctrl+D"], possible: some, run: () => void duplicate(studio) },
     { id: "edit.select_all", label: "Select all", group: "Edit", keys: ["Ctrl+A"], run: () => selection.set(document.entities.keys()) },
-    { id: "edit.select_none", label: "Select nothing", group: "Edit", keys: ["Escape"], run: () => (selection.clear(), studio.picked.set(null)) },
-    { id: "catalog.history", label: "History of catalogue changes…", group: "Models", keys: [], icon: "history", run: open.history },
+    { id: "edit.select_none", label: "Select nothing", group: "Edit", keys: ["Escape"], run: () => selection.clear() },
     { id: "edit.drop", label: "Drop to floor", group: "Edit", keys: ["End", "PageDown"], possible: some, run: () => void studio.command("entity.drop_to_floor", chosen()) },
   ];
 }

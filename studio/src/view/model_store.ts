@@ -19,10 +19,9 @@ export class ModelStore {
     this.summaries.set(model.key, Promise.resolve(model));
   }
 
-  /** These models were changed, or any (null), as where the database may be another one: they are asked for again. */
-  forgetSummaries(keys: readonly string[] | null = null): void {
-    if (keys === null) this.summaries.clear();
-    else for (const key of keys) this.summaries.delete(key);
+  /** The database may be another one: a key's number and content are asked for again. */
+  forgetSummaries(): void {
+    this.summaries.clear();
   }
 
   summary(key: string): Promise<ModelSummary> {

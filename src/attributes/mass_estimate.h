@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "attributes/classify.h"
+#include "attributes/form.h"
+#include "attributes/taxonomy_data.h"
+
+namespace embody::attributes {
+
+/// What a thing weighs, and what says so.
+struct MassEstimate {
+    Interval mass;  ///< kg
+    std::string source;
+    AttributeLevel level = AttributeLevel::standard;
+};
+
+/// The mass of a thing of this category, form and material: density × filled share × volume where the category is solid
+/// and `closed` says that the surface is; else the category's mass carried over to the box. The more doubtful the
+/// category is, or the less the size and the proportions are those of such things, the more the estimate is what any
+/// thing of this size weighs (the taxonomy's "object"), and the wider its interval.
+MassEstimate estimate_mass(const Taxonomy::Data& data, const Classification& what, const MaterialData& material,
+                           const Form& form, bool closed);
+
+}  // namespace embody::attributes
