@@ -9,8 +9,10 @@ import { element, show } from "./panels/element";
 import { EntityFields } from "./panels/entity_fields";
 import { FileDrop } from "./panels/file_drop";
 import { openHelp } from "./panels/help";
+import { openHistory } from "./panels/history";
 import { Hierarchy } from "./panels/hierarchy";
 import { ModelBrowser } from "./panels/model_browser";
+import { ModelFields } from "./panels/model_fields";
 import { openOptions } from "./panels/options_menu";
 import { Overlays } from "./panels/overlays";
 import { openPalette } from "./panels/palette";
@@ -51,6 +53,7 @@ function start(): void {
     scenes: () => void openScenes(studio),
     saveAs: () => saveAs(studio),
     newScene: () => void newScene(studio),
+    history: () => openHistory(studio),
     help: () => openHelp(studio, actions),
     palette: () => openPalette(studio, actions),
     search: () => {
@@ -70,13 +73,14 @@ function start(): void {
   app.append(
     toolbar.root,
     left.root,
-    element("aside", { class: "panel right", "aria-label": "Properties", "data-testid": "properties" }, new SceneFields(studio).root, entityFields.root, attributes.root),
+    element("aside", { class: "panel right", "aria-label": "Properties", "data-testid": "properties" }, new SceneFields(studio).root, new ModelFields(studio).root, entityFields.root, attributes.root),
     new StatusBar(studio).root,
   );
   scene.append(new Overlays(studio).root);
   document.body.append(new Toasts(studio).root);
 
   const setTheme = () => (document.documentElement.dataset["theme"] = studio.preferences.get("theme"));
+  studio.historyWanted.on(() => openHistory(studio));
   studio.preferences.changed.on(setTheme);
   setTheme();
   addEventListener("beforeunload", (event) => {

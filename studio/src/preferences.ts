@@ -17,6 +17,8 @@ export interface PreferenceValues {
   snapAngle: number;
   favourites: string[];
   recent: string[];
+  /** What the history of changes calls this browser's user; empty: a number. */
+  userName: string;
   /** Keys the user chose for actions, by the action's id. */
   keys: Record<string, string>;
 }
@@ -33,6 +35,7 @@ const DEFAULTS: PreferenceValues = {
   snapAngle: 15,
   favourites: [],
   recent: [],
+  userName: "",
   keys: {},
 };
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 import { Box3, Vector3 } from "three";
 import { CommandRefused, Connection, NotConnected } from "./connection/connection";
-import type { Commands, DocumentEvent, ServerError, ServerEvent, Simulation, Statistics } from "./connection/messages";
+import type { CatalogEvent, Commands, DocumentEvent, ModelChoice, Progress, ServerError, ServerEvent, Simulation, Statistics } from "./connection/messages";
 import { Motion } from "./document/motion";
 import type { Shape } from "./document/scene_types";
 import { positionOf, SceneDocument } from "./document/scene_document";
+import { PickedModel } from "./document/picked_model";
 import { Selection } from "./document/selection";
 import { Preferences } from "./preferences";
 import { Signal } from "./signal";
@@ -19,6 +20,15 @@ export interface Notice {
   level: "info" | "warning" | "error";
   text: string;
   remedy?: string;
+  /** A button of the message. */
+  action?: { label: string; run: () => void };
+}
+
+/** What the model browser shows. */
+export interface Found {
+  models: ModelChoice;
+  /** In words, such as “chair” in beds. */
+  text: string;
 }
 
 /** Everything that is one per page, and how news from the server reaches it. Panels and tools are built on this. */
@@ -27,6 +37,8 @@ export class Studio {
   readonly connection = new Connection();
   readonly document = new SceneDocument();
   readonly selection = new Selection();
+  readonly picked = new PickedModel();
+  found: Found = { models: { all: true }, text: "all models" };
   readonly motion = new Motion();
   readonly models = new ModelStore(this.connection);
   readonly entities = new EntityView(this.document, this.motion, this.models, this.preferences.get("quality"));
@@ -35,9 +47,17 @@ export class Studio {
   simulation: Simulation = { state: "stopped", time: 0, step: 0 };
   statistics: Statistics | null = null;
   version = "";
+  /** This page's number on the server. */
+  client = 0;
   readonly simulationChanged = new Signal<void>();
   readonly statisticsChanged = new Signal<void>();
   readonly connectionChanged = new Signal<void>();
+  /** Models were changed by hand, by whomever. */
+  readonly catalogChanged = new Signal<CatalogEvent>();
+  /** How far the command of this page is that is being carried out. */
+  readonly progress = new Signal<Progress>();
+  /** The user wants to see who changed what. */
+  readonly historyWanted = new Signal<void>();
   /** For the user's eyes. */
   readonly notice = new Signal<Notice>();
   private collisionAsked = 0;
@@ -83,7 +103,11 @@ export class Studio {
       void this.showCollision();
       this.view.invalidate();
     });
+    this.picked.changed.on(() => {
+      if (this.picked.model) this.selection.clear();
+    });
     this.selection.changed.on(() => {
+      if (this.selection.indices.length > 0) this.picked.set(null);
       this.view.outline.show(this.selection.indices);
       void this.showCollision();
       this.view.invalidate();
@@ -146,6 +170,7 @@ export class Studio {
       if (name === "grid") view.environment.showGrid(preferences.get("grid"));
       if (name === "tint") this.retint();
       if (name === "collision") void this.showCollision();
+      if (name === "userName") void this.tellName();
       view.invalidate();
     });
   }
@@ -155,6 +180,8 @@ export class Studio {
     const hello = await this.command("hello", {});
     if (!hello) return;
     this.version = hello.version;
+    this.client = hello.client;
+    if (this.preferences.get("userName")) void this.tellName();
     this.ready = true;
     this.simulation = hello.simulation;
     this.document.reset(hello);
@@ -162,6 +189,26 @@ export class Studio {
     this.retint();
     this.connectionChanged.emit();
     this.simulationChanged.emit();
+  }
+
+  private async tellName(): Promise<void> {
+    await this.command("client.set_name", { name: this.preferences.get("userName") });
+  }
+
+  /** Models were changed: what is known of them is old, and whoever did it may want it back. */
+  private takeCatalog(event: CatalogEvent): void {
+    this.models.forgetSummaries(event.keys);
+    void this.showCollision();
+    this.catalogChanged.emit(event);
+    if (event.client !== this.client) {
+      const who = event.session.replace(/^studio: /, "");
+      const action = { label: "History", run: () => this.historyWanted.emit() };
+      this.notice.emit({ level: "info", text: `${event.label}, by ${who}`, action });
+      return;
+    }
+    const undone = event.command === "undo";
+    const action = { label: undone ? "Redo" : "Undo", run: () => void this.command("catalog.undo", { batch: event.batch }) };
+    this.notice.emit({ level: "info", text: pastOf(event.label), action });
   }
 
   private take(event: ServerEvent): void {
@@ -186,6 +233,12 @@ export class Studio {
         break;
       case "message":
         this.notice.emit(event);
+        break;
+      case "catalog":
+        this.takeCatalog(event);
+        break;
+      case "progress":
+        if (event.client === this.client) this.progress.emit(event);
         break;
       case "action":
         break;
@@ -228,6 +281,11 @@ export class Studio {
     if (camera) this.view.rig.place(camera.position, camera.target);
     else this.view.rig.focus(this.wholeScene(), performance.now(), true);
   }
+}
+
+/** What was done, of what a step of undo is called. */
+function pastOf(label: string): string {
+  return label.replace(/^Take back /, "Took back ").replace(/^Set /, "Changed ");
 }
 
 function noticeOf(error: ServerError): Notice {

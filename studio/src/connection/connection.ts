@@ -18,6 +18,13 @@ export class NotConnected extends Error {
   }
 }
 
+/** Why something failed and what to do, in a line. */
+export function reasonText(error: Error): string {
+  if (!(error instanceof CommandRefused)) return error.message;
+  const { why, remedy } = error.error;
+  return remedy ? `${why}. ${remedy}` : why;
+}
+
 type Waiting = { resolve: (result: never) => void; reject: (error: Error) => void };
 
 /** The page's end of the socket worker: commands as promises, events and frames as signals, reconnecting for ever. */

@@ -41,6 +41,45 @@ export interface AttributeEntry {
   range: [number | null, number | null] | null;
   automatic: AttributeValue | null;
   overridden: boolean;
+  /** Of an entity of a model: the value without the entity's scale. */
+  of_model?: AttributeValue;
+}
+
+/** Which models a change is for. */
+export type ModelChoice = { keys: string[] } | { words?: string; category?: string } | { all: true };
+
+/** What a change of the catalogue did, or would do. */
+export interface ChangeSummary {
+  batch: number | null;
+  command: string;
+  label: string;
+  dry_run: boolean;
+  chosen: number;
+  changed: number;
+  values: number;
+  unchanged: number;
+  refused: number;
+  /** The first of those that change, and of those that refuse. */
+  models: { key: string; name: string }[];
+  refusals: { key: string; name: string; attribute: string; why: string }[];
+  /** Of the open scene: how many take the new value, and how many have one of their own. */
+  entities: { following: number; keeping: number };
+}
+
+/** An act of a person on the catalogue. */
+export interface ChangeBatch {
+  batch: number;
+  time: string;
+  person: string;
+  session: string;
+  command: string;
+  asked: string;
+  undoes: number | null;
+  undone_by: number | null;
+  values: number;
+  models: number;
+  /** The first of its values; null: the automatic one acted. */
+  changes: { key: string; name: string; attribute: string; label: string; unit: string; before: AttributeValue | null; after: AttributeValue | null }[];
 }
 
 export interface SceneListing {
@@ -102,6 +141,8 @@ export interface Hello {
   redo: string | null;
   unsaved: boolean;
   name: string;
+  /** This client's number. */
+  client: number;
   /** What actions have put into the running world, and which of the document's entities they have taken out. */
   spawned: Entity[];
   despawned: number[];
@@ -113,6 +154,16 @@ export interface Commands {
   "catalog.search": [{ words?: string; category?: string; limit?: number; offset?: number }, { models: ModelSummary[]; total: number }];
   "catalog.categories": [Record<string, never>, { categories: { category: string; models: number }[] }];
   "catalog.model": [{ key: string }, { model: ModelSummary; attributes: AttributeEntry[] }];
+  "catalog.change": [
+    { models: ModelChoice; attributes: { name: string; value: AttributeValue | null }[]; skip?: boolean; dry_run?: boolean },
+    ChangeSummary,
+  ];
+  "catalog.set_attribute": [{ key: string; name: string; value: AttributeValue }, { attributes: AttributeEntry[]; batch: number | null }];
+  "catalog.reset_attribute": [{ key: string; name: string }, { attributes: AttributeEntry[]; batch: number | null }];
+  "catalog.undo": [{ batch: number }, ChangeSummary];
+  "catalog.history": [{ key?: string; before?: number; limit?: number; changes?: number }, { batches: ChangeBatch[] }];
+  "catalog.stop": [Record<string, never>, unknown];
+  "client.set_name": [{ name: string }, { session: string }];
   "scene.new": [{ name?: string }, unknown];
   "scene.load": [{ name: string } | { scene: unknown }, unknown];
   "scene.save": [{ name?: string }, { name: string; path: string }];
@@ -162,11 +213,34 @@ export interface DocumentEvent {
   name: string;
 }
 
+/** Models were changed by hand. */
+export interface CatalogEvent {
+  event: "catalog";
+  batch: number;
+  command: string;
+  label: string;
+  models: number;
+  /** Null: too many to name. */
+  keys: string[] | null;
+  attributes: string[];
+  session: string;
+  /** Null: another program did it. */
+  client: number | null;
+}
+
+export interface Progress {
+  client: number;
+  done: number;
+  total: number;
+}
+
 export type ServerEvent =
   | DocumentEvent
   | ({ event: "simulation" } & Simulation)
   | { event: "spawned"; entity: Entity }
   | { event: "despawned"; index: number }
   | ({ event: "statistics" } & Statistics)
+  | CatalogEvent
+  | ({ event: "progress" } & Progress)
   | { event: "action"; name: string; id: number; sender: number; receiver: number }
   | { event: "message"; level: "info" | "warning" | "error"; text: string };

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-import { CommandRefused } from "../connection/connection";
+import { CommandRefused, reasonText } from "../connection/connection";
 import type { AttributeEntry, AttributeValue } from "../connection/messages";
 import type { Studio } from "../studio";
 import { type AttributeEdits, AttributeRow, type SharedAttribute } from "./attribute_row";
+import { type AttributeSubject, CatalogueModel, SelectedEntities } from "./attribute_subject";
+import { openApply } from "./apply_dialog";
 import { element, setText, show } from "./element";
 
-/** More selected entities than this are shown by the first of them: asking for all would take long. */
-const MOST_ASKED = 32;
 const REFRESH_DELAY_MS = 60;
 const KIND_TITLES: Record<string, string> = {
   identity: "What it is",
@@ -21,7 +21,7 @@ const KIND_TITLES: Record<string, string> = {
   grain: "Grains",
 };
 
-/** The physical attributes of what is selected, grouped by kind. */
+/** The physical attributes of what is selected, or of the model picked in the catalogue, grouped by kind. */
 export class AttributeList implements AttributeEdits {
   readonly root = element("section", { class: "attributes", "data-testid": "attributes", "aria-label": "Physical attributes" });
   private readonly note = element("p", { class: "note" });
@@ -36,34 +36,44 @@ export class AttributeList implements AttributeEdits {
   constructor(private readonly studio: Studio) {
     this.root.append(this.note, this.groups);
     studio.selection.changed.on(() => this.refresh());
+    studio.picked.changed.on(() => this.refresh());
     studio.document.changed.on(({ all, entities }) => {
       if (all || entities.some((index) => studio.selection.has(index))) this.refreshSoon();
     });
     studio.simulationChanged.on(() => this.refreshSoon());
+    studio.catalogChanged.on(() => this.refreshSoon());
   }
 
-  async set(name: string, value: AttributeValue): Promise<string | null> {
-    return this.edit(() => this.studio.connection.request("entity.set_attribute", { indices: this.indices(), name, value }));
+  set(name: string, value: AttributeValue): Promise<string | null> {
+    return this.edit((subject) => subject.set(name, value));
   }
 
-  async reset(name: string): Promise<string | null> {
-    return this.edit(() => this.studio.connection.request("entity.reset_attribute", { indices: this.indices(), name }));
+  reset(name: string): Promise<string | null> {
+    return this.edit((subject) => subject.reset(name));
   }
 
-  private indices(): number[] {
-    return [...this.studio.selection.indices];
+  apply(entry: AttributeEntry): void {
+    const models = this.subject()?.models() ?? [];
+    if (models.length > 0) void openApply(this.studio, entry, models);
+  }
+
+  private subject(): AttributeSubject | null {
+    const { picked, selection } = this.studio;
+    if (picked.model) return new CatalogueModel(this.studio, picked.model.key);
+    return selection.indices.length > 0 ? new SelectedEntities(this.studio) : null;
   }
 
   /** Carries out an edit; the reason where the server refuses it belongs beside the field. */
-  private async edit(request: () => Promise<unknown>): Promise<string | null> {
+  private async edit(request: (subject: AttributeSubject) => Promise<unknown>): Promise<string | null> {
+    const subject = this.subject();
+    if (!subject) return null;
     try {
-      await request();
+      await request(subject);
       this.refreshSoon();
       return null;
     } catch (error) {
       if (!(error instanceof CommandRefused)) this.studio.report(error as Error);
-      const { why, remedy } = error instanceof CommandRefused ? error.error : { why: (error as Error).message, remedy: "" };
-      return remedy ? `${why}. ${remedy}` : why;
+      return reasonText(error as Error);
     }
   }
 
@@ -74,34 +84,32 @@ export class AttributeList implements AttributeEdits {
 
   private async refresh(): Promise<void> {
     const generation = ++this.generation;
-    const indices = this.indices();
-    show(this.root, indices.length > 0);
-    if (indices.length === 0 || !this.studio.connection.isOpen) return;
-    const asked = indices.slice(0, MOST_ASKED);
-    const answers = await Promise.allSettled(asked.map((index) => this.studio.connection.request("entity.attributes", { index })));
+    const subject = this.subject();
+    show(this.root, subject !== null);
+    if (!subject || !this.studio.connection.isOpen) return;
+    const { sets, note } = await subject.load();
     if (generation !== this.generation) return;
-    const sets = answers.flatMap((answer) => (answer.status === "fulfilled" ? [answer.value.attributes] : []));
-    const failed = answers.find((answer) => answer.status === "rejected");
-    setText(this.note, noteText(indices.length, failed?.reason as Error | undefined));
-    show(this.note, this.note.textContent !== "");
-    this.fill(shareAttributes(sets));
+    setText(this.note, note);
+    show(this.note, note !== "");
+    this.fill(subject, shareAttributes(sets));
   }
 
   /** Rows stay while the same attributes are shown, so that the keyboard's place is not lost. */
-  private fill(shared: SharedAttribute[]): void {
-    const shape = `${this.studio.selection.indices.join()}:${shared.map(({ entry }) => `${entry.name}/${entry.type}`).join()}`;
+  private fill(subject: AttributeSubject, shared: SharedAttribute[]): void {
+    const canApply = subject.models().length > 0;
+    const shape = `${subject.id}:${canApply}:${shared.map(({ entry }) => `${entry.name}/${entry.type}`).join()}`;
     if (shape !== this.shape) {
       this.shape = shape;
-      this.build(shared);
+      this.build(shared, canApply);
     }
     for (const each of shared) this.rows.get(each.entry.name)?.show(each);
   }
 
-  private build(shared: SharedAttribute[]): void {
+  private build(shared: SharedAttribute[], canApply: boolean): void {
     this.rows = new Map();
     const groups = new Map<string, HTMLElement>();
     for (const { entry } of shared) {
-      const row = new AttributeRow(entry, this);
+      const row = new AttributeRow(entry, this, canApply);
       this.rows.set(entry.name, row);
       let group = groups.get(entry.kind);
       if (!group) {
@@ -119,11 +127,6 @@ export class AttributeList implements AttributeEdits {
     group.addEventListener("toggle", () => (group.open ? this.closed.delete(kind) : this.closed.add(kind)));
     return group;
   }
-}
-
-function noteText(selected: number, failure: Error | undefined): string {
-  if (failure) return failure.message;
-  return selected > MOST_ASKED ? `Values of the first ${MOST_ASKED} of ${selected} entities; an edit changes all of them.` : "";
 }
 
 /** The attributes that all have, with whether their values agree. */

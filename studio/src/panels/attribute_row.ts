@@ -27,6 +27,8 @@ const LEVELS: Record<string, string> = {
 export interface AttributeEdits {
   set(name: string, value: AttributeValue): Promise<string | null>;
   reset(name: string): Promise<string | null>;
+  /** The user wants this value for models of the catalogue. */
+  apply(entry: AttributeEntry): void;
 }
 
 /** A physical attribute: its value to edit, where that comes from and how sure it is, and the way back. */
@@ -36,11 +38,14 @@ export class AttributeRow {
   private readonly level = element("span", { class: "level" });
   private readonly source = element("span", { class: "source" });
   private readonly reset: HTMLButtonElement;
+  private shown: AttributeEntry;
 
   constructor(
     entry: AttributeEntry,
     private readonly edits: AttributeEdits,
+    canApply: boolean,
   ) {
+    this.shown = entry;
     this.field = fieldFor(entry, (value) => void this.commit(entry.name, value)) as Field<never>;
     this.reset = element(
       "button",
@@ -52,25 +57,41 @@ export class AttributeRow {
       },
       icon("undo"),
     );
+    const label = entry.label || entry.name;
+    const apply = element(
+      "button",
+      {
+        class: "apply-button",
+        title: `Apply ${label} to models of the catalogue…`,
+        "aria-label": `Apply ${label} to models of the catalogue`,
+        "data-testid": `apply-${entry.name}`,
+        onclick: () => this.edits.apply(this.shown),
+      },
+      icon("apply"),
+    );
     this.root = element(
       "div",
       { class: "attribute", "data-testid": `attribute-${entry.name}` },
-      element("span", { class: "attribute-label", title: `${entry.help}\n(${entry.name})` }, entry.label || entry.name),
+      element("span", { class: "attribute-label", title: `${entry.help}${rangeText(entry)}\n(${entry.name})` }, label),
       this.field.root,
+      canApply ? apply : null,
       this.reset,
       element("span", { class: "origin" }, this.level, this.source),
     );
   }
 
   show({ entry, same, overridden }: SharedAttribute): void {
+    this.shown = entry;
     this.field.set((same ? entry.value : null) as never);
     const level = same ? entry.level : "mixed";
     setText(this.level, level);
     this.level.dataset["level"] = level;
     this.level.title = LEVELS[level] ?? "";
     const interval = same ? intervalText(entry) : "";
-    // A source that only repeats its level says nothing.
-    const source = entry.source === entry.level ? "" : entry.source;
+    // A source that only repeats its level says nothing; what the level means does.
+    const told = entry.source === entry.level ? (LEVELS[level] ?? "") : entry.source;
+    // Set for the model, so that it is not this entity's to take back.
+    const source = level === "manual" && !overridden ? `in the catalogue, ${told}` : told;
     setText(this.source, same ? [interval, source].filter(Boolean).join(" · ") : "the selected entities differ");
     this.source.title = same ? `${entry.source}${interval ? `\n80 % interval ${interval}` : ""}` : "";
     show(this.reset, overridden);
@@ -86,7 +107,7 @@ export class AttributeRow {
   }
 }
 
-function fieldFor(entry: AttributeEntry, commit: (value: AttributeValue) => void): Field<never> {
+export function fieldFor(entry: AttributeEntry, commit: (value: AttributeValue) => void): Field<never> {
   const label = entry.label || entry.name;
   const made = (() => {
     switch (entry.type) {
@@ -135,7 +156,13 @@ function intervalText(entry: AttributeEntry): string {
   return `${text(entry.low)} … ${text(entry.high)}`;
 }
 
-function valueText(value: AttributeValue): string {
+function rangeText({ range, unit }: AttributeEntry): string {
+  if (!range) return "";
+  const [low, high] = range.map((bound) => (bound === null ? "…" : numberText(bound)));
+  return `\nFrom ${low} to ${high}${unit && unit !== "1" ? ` ${unit}` : ""}`;
+}
+
+export function valueText(value: AttributeValue): string {
   if (typeof value === "number") return numberText(value);
   if (Array.isArray(value)) return value.map(numberText).join(", ");
   return String(value);

@@ -7,6 +7,7 @@ import type { Studio } from "../studio";
 import { colorOf } from "../view/entity_view";
 import { element, show } from "./element";
 import { type Field, numberField, textField, truthField, vectorField } from "./fields";
+import { modelCard } from "./model_card";
 
 const DEGREE = Math.PI / 180;
 const LIVE_EVERY_MS = 200;
@@ -22,6 +23,7 @@ export class EntityFields {
   constructor(private readonly studio: Studio) {
     studio.selection.changed.on(() => this.rebuild());
     studio.document.changed.on(() => this.update());
+    studio.entities.loaded.on(() => this.update());
     studio.view.beforeFrame.on((now) => {
       if (now - this.lastLive < LIVE_EVERY_MS) return;
       this.lastLive = now;
@@ -172,21 +174,6 @@ export class EntityFields {
     const merge = `fields-${Date.now()}`;
     for (const index of this.studio.selection.indices) void this.studio.command("entity.update", { index, entity, merge });
   }
-}
-
-/** Which model of the database it is, by whom and under which licence. */
-function modelCard(studio: Studio, key: string): HTMLElement {
-  const card = element("div", { class: "model-card", "data-testid": "model-card" });
-  studio.models.summary(key).then((model) => {
-    const size = model.size.map((length) => length.toPrecision(3)).join(" × ");
-    const lines = [[model.category, model.subcategory].filter(Boolean).join(" / "), `${size} m, ${model.triangles.toLocaleString("en")} triangles`];
-    lines.push([model.author && `by ${model.author}`, model.licence].filter(Boolean).join(", "));
-    card.append(
-      element("img", { src: studio.models.thumbnail(model), alt: "" }),
-      element("div", {}, ...lines.filter(Boolean).map((line) => element("p", { class: "note", title: line }, line))),
-    );
-  }, () => card.append(element("p", { class: "note" }, `The model ${key} is not in the database`)));
-  return card;
 }
 
 function row(label: string, field: HTMLElement): HTMLElement {

@@ -27,6 +27,8 @@ const ICONS = {
   close: "M4 4l8 8M12 4l-8 8",
   headset: "M2 5h12v6.5h-3.5L8 9.5l-2.5 2H2z",
   bin: "M3 4.5h10M6 4.5V2.5h4v2M4.5 4.5l.5 9h6l.5-9M7 7v4M9 7v4",
+  apply: "M2 9V2.5h6.5M4.5 11.5V5h6.5M7 14V7.5h6.5V14z",
+  history: "M2.5 3v3.5H6M2.8 6.4A5.5 5.5 0 1 1 2.5 8.5M8 5.2V8.3l2.3 1.4",
   camera: "M2 5h3l1.2-2h3.6L11 5h3v8H2zM8 6.5a2.4 2.4 0 1 0 0 4.8 2.4 2.4 0 0 0 0-4.8z",
 } as const;
 

@@ -11,6 +11,7 @@ const SEARCH_DELAY_MS = 150;
 const ALL = "";
 const FAVOURITES = " favourites";
 const RECENT = " recent";
+const LISTED_BY = ["category", "subcategory", "kind"];
 
 /** The left side: what can be put into the scene. */
 export class ModelBrowser {
@@ -53,6 +54,12 @@ export class ModelBrowser {
     show(this.empty, false);
     studio.connectionChanged.on(() => {
       if (studio.connection.isOpen) this.refresh();
+    });
+    // Models are listed by these, so that they may be elsewhere now.
+    studio.catalogChanged.on(({ attributes }) => {
+      if (!attributes.some((name) => LISTED_BY.includes(name))) return;
+      void this.loadCategories();
+      this.grid.renew();
     });
   }
 
@@ -111,9 +118,21 @@ export class ModelBrowser {
 
   private search(): void {
     const category = this.category.value;
-    if (category === FAVOURITES) void this.grid.showKeys(this.studio.preferences.get("favourites"));
-    else if (category === RECENT) void this.grid.showKeys(this.studio.preferences.get("recent"));
-    else this.grid.showSearch({ words: this.words.value.trim(), category });
+    const { preferences } = this.studio;
+    const words = this.words.value.trim();
+    if (category === FAVOURITES) this.showKeys(preferences.get("favourites"), "your favourites");
+    else if (category === RECENT) this.showKeys(preferences.get("recent"), "recently used");
+    else {
+      const models = words || category ? { ...(words && { words }), ...(category && { category }) } : { all: true as const };
+      const text = [words && `“${words}”`, category && `in ${category}`].filter(Boolean).join(" ");
+      this.studio.found = { models, text: text || "all models" };
+      this.grid.showSearch({ words, category });
+    }
+  }
+
+  private showKeys(keys: string[], text: string): void {
+    this.studio.found = { models: { keys }, text };
+    void this.grid.showKeys(keys);
   }
 
   private showCount(total: number): void {

@@ -31,6 +31,8 @@ export class ModelGrid {
   private total = 0;
   private active = 0;
   private generation = 0;
+  /** Shown instead of a search. */
+  private keys: readonly string[] | null = null;
 
   constructor(
     private readonly studio: Studio,
@@ -51,16 +53,19 @@ export class ModelGrid {
       this.canvas,
     );
     new ResizeObserver(() => this.lay()).observe(this.root);
+    studio.picked.changed.on(() => this.markPicked());
   }
 
   showSearch(search: Search): void {
     this.search = search;
+    this.keys = null;
     this.restart();
     void this.loadPage(0);
   }
 
   /** Shows these models and no others; ones that are gone from the database are left out. */
   async showKeys(keys: readonly string[]): Promise<void> {
+    this.keys = keys;
     this.restart();
     const generation = this.generation;
     const answers = await Promise.allSettled(keys.map((key) => this.studio.models.summary(key)));
@@ -68,6 +73,15 @@ export class ModelGrid {
     const models = answers.flatMap((answer) => (answer.status === "fulfilled" ? [answer.value] : []));
     for (let page = 0; page * PAGE < models.length; ++page) this.pages.set(page, models.slice(page * PAGE, (page + 1) * PAGE));
     this.setTotal(models.length);
+  }
+
+  /** Asks again for what is in sight; its place stays. */
+  renew(): void {
+    if (this.keys) return void this.showKeys(this.keys);
+    ++this.generation;
+    this.pages = new Map();
+    void this.loadPage(Math.floor(this.active / PAGE));
+    this.lay();
   }
 
   focusFirst(): void {
@@ -169,6 +183,7 @@ export class ModelGrid {
       this.favouriteButton(model),
     );
     this.dragIn.from(tile, () => ({ entity: entityOf(model), model }));
+    tile.toggleAttribute("data-picked", this.studio.picked.model?.key === model.key);
     this.tiles.set(at, tile);
     this.canvas.append(tile);
     return tile;
@@ -201,6 +216,11 @@ export class ModelGrid {
     return page === "asked" ? undefined : page?.[at % PAGE];
   }
 
+  private markPicked(): void {
+    const key = this.studio.picked.model?.key;
+    for (const tile of this.tiles.values()) tile.toggleAttribute("data-picked", tile.dataset["key"] === key);
+  }
+
   private add(model: ModelSummary): void {
     this.used.emit(model);
     void addInFront(this.studio, entityOf(model));
@@ -218,7 +238,7 @@ export class ModelGrid {
     event.preventDefault();
   }
 
-  /** Makes one tile the one that Enter adds, and brings it into sight. */
+  /** Makes one tile the one that Enter adds, brings it into sight, and shows what its model is made of. */
   private activate(at: number): void {
     this.tiles.get(this.active)?.setAttribute("aria-selected", "false");
     this.active = at;
@@ -228,6 +248,8 @@ export class ModelGrid {
     this.lay();
     this.tiles.get(at)?.setAttribute("aria-selected", "true");
     this.root.setAttribute("aria-activedescendant", `tile-${at}`);
+    const model = this.modelAt(at);
+    if (model) this.studio.picked.set(model);
   }
 }
 

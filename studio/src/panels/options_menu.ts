@@ -4,6 +4,7 @@ import type { UserAction } from "../tools/actions";
 import { openDialog } from "./dialogs";
 import { element } from "./element";
 import { numberField } from "./fields";
+import { userNameField } from "./user_name";
 
 /** How the picture looks and how snapping works; kept in the browser. */
 export function openOptions(studio: Studio, actions: readonly UserAction[]): void {
@@ -34,6 +35,7 @@ export function openOptions(studio: Studio, actions: readonly UserAction[]): voi
       flip("tool.snap"),
       row("Snapping step when moving", step.root),
       row("Snapping step when rotating", angle.root),
+      row("Your name in the history of changes", userNameField(studio)),
     ),
   );
 }

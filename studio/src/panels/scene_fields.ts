@@ -32,10 +32,11 @@ export class SceneFields {
         row("Substeps", this.substeps.root, "Parts a step is solved in: more are stiffer and slower"),
         row("Sleeping", this.sleeping.root, "Bodies at rest cost nothing until they are touched"),
       ),
-      element("p", { class: "note" }, "Select an entity to see what it is made of. Drag models in from the left; they land on what is under the pointer."),
+      element("p", { class: "note" }, "Select an entity, or click on a model, to see what it is made of. Drag models in from the left; they land on what is under the pointer."),
     );
     studio.document.changed.on(() => this.update());
     studio.selection.changed.on(() => this.update());
+    studio.picked.changed.on(() => this.update());
     this.update();
   }
 
@@ -44,8 +45,8 @@ export class SceneFields {
   }
 
   private update(): void {
-    const { document: scene, selection } = this.studio;
-    show(this.root, selection.indices.length === 0);
+    const { document: scene, selection, picked } = this.studio;
+    show(this.root, selection.indices.length === 0 && !picked.model);
     this.title.set(scene.title);
     this.gravity.set(scene.settings.gravity);
     this.timeStep.set(scene.settings.time_step);

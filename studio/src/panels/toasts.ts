@@ -4,6 +4,8 @@ import { element } from "./element";
 import { icon } from "./icons";
 
 const SHOWN_MS = { info: 3500, warning: 8000, error: 12000 };
+/** A message with a button stays until its reader has decided. */
+const WITH_ACTION_MS = 12000;
 const MOST = 4;
 
 /** Short messages in the corner: what went wrong, why, and what to do. */
@@ -20,11 +22,14 @@ export class Toasts {
     const toast = element(
       "div",
       { class: `toast ${notice.level}`, "data-testid": `toast-${notice.level}`, "data-text": notice.text },
-      element("div", {}, element("p", {}, notice.text), notice.remedy ? element("p", { class: "remedy" }, notice.remedy) : null),
+      element("div", { class: "toast-text" }, element("p", {}, notice.text), notice.remedy ? element("p", { class: "remedy" }, notice.remedy) : null),
+      notice.action
+        ? element("button", { class: "text-button", "data-testid": "toast-action", onclick: () => (toast.remove(), notice.action!.run()) }, notice.action.label)
+        : null,
       element("button", { class: "plain", "aria-label": "Close message", onclick: () => toast.remove() }, icon("close")),
     );
     this.root.append(toast);
     while (this.root.children.length > MOST) this.root.firstElementChild!.remove();
-    setTimeout(() => toast.remove(), SHOWN_MS[notice.level]);
+    setTimeout(() => toast.remove(), notice.action ? WITH_ACTION_MS : SHOWN_MS[notice.level]);
   }
 }

@@ -13,7 +13,7 @@ const GROUPS = [
   ["tool.space", "tool.snap"],
   ["simulation.reset", "simulation.play", "simulation.step", "simulation.keep"],
 ];
-const GROUPS_RIGHT = [["view.tint", "view.options", "view.screenshot", "view.palette", "view.help"]];
+const GROUPS_RIGHT = [["catalog.history"], ["view.tint", "view.options", "view.screenshot", "view.palette", "view.help"]];
 
 /** The bar at the top: one button an action, and the scene's own buttons. */
 export class Toolbar {

@@ -28,12 +28,13 @@ export interface Openers {
   palette(): void;
   search(): void;
   newScene(): void;
+  history(): void;
 }
 
 export function makeActions(studio: Studio, gizmo: Gizmo, open: Openers): UserAction[] {
   return [
     ...sceneActions(studio, open),
-    ...editActions(studio),
+    ...editActions(studio, open),
     ...toolActions(studio, gizmo),
     ...simulationActions(studio),
     ...viewActions(studio, open),
@@ -70,7 +71,7 @@ async function save(studio: Studio, open: Openers): Promise<void> {
   if (saved) studio.notice.emit({ level: "info", text: `Saved “${saved.name}”` });
 }
 
-function editActions(studio: Studio): UserAction[] {
+function editActions(studio: Studio, open: Openers): UserAction[] {
   const { selection, document } = studio;
   const some = () => selection.indices.length > 0;
   const chosen = () => ({ indices: [...selection.indices] });
@@ -80,7 +81,8 @@ function editActions(studio: Studio): UserAction[] {
     { id: "edit.delete", label: "Delete", group: "Edit", keys: ["Delete"], icon: "bin", possible: some, run: () => void studio.command("entity.remove", chosen()) },
     { id: "edit.duplicate", label: "Duplicate", group: "Edit", keys: ["Ctrl+D"], possible: some, run: () => void duplicate(studio) },
     { id: "edit.select_all", label: "Select all", group: "Edit", keys: ["Ctrl+A"], run: () => selection.set(document.entities.keys()) },
-    { id: "edit.select_none", label: "Select nothing", group: "Edit", keys: ["Escape"], run: () => selection.clear() },
+    { id: "edit.select_none", label: "Select nothing", group: "Edit", keys: ["Escape"], run: () => (selection.clear(), studio.picked.set(null)) },
+    { id: "catalog.history", label: "History of catalogue changes…", group: "Models", keys: [], icon: "history", run: open.history },
     { id: "edit.drop", label: "Drop to floor", group: "Edit", keys: ["End", "PageDown"], possible: some, run: () => void studio.command("entity.drop_to_floor", chosen()) },
   ];
 }

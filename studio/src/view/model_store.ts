@@ -19,9 +19,10 @@ export class ModelStore {
     this.summaries.set(model.key, Promise.resolve(model));
   }
 
-  /** The database may be another one: a key's number and content are asked for again. */
-  forgetSummaries(): void {
-    this.summaries.clear();
+  /** These models were changed, or any (null), as where the database may be another one: they are asked for again. */
+  forgetSummaries(keys: readonly string[] | null = null): void {
+    if (keys === null) this.summaries.clear();
+    else for (const key of keys) this.summaries.delete(key);
   }
 
   summary(key: string): Promise<ModelSummary> {

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+import { reasonText } from "../connection/connection";
+import type { AttributeEntry, AttributeValue, ChangeSummary, ModelChoice } from "../connection/messages";
+import type { Studio } from "../studio";
+import { fieldFor } from "./attribute_row";
+import { openDialog } from "./dialogs";
+import { element, setText, show } from "./element";
+import { userNameField } from "./user_name";
+
+const NAMES_SHOWN = 8;
+const REFUSALS_SHOWN = 4;
+
+interface Scope {
+  id: string;
+  text: string;
+  models: ModelChoice;
+  total: number;
+}
+
+/** Gives a value to models of the catalogue: these, all that are found, or a whole category; says first what would happen. */
+export async function openApply(studio: Studio, entry: AttributeEntry, keys: string[]): Promise<void> {
+  const scopes = await scopesOf(studio, keys);
+  if (scopes.length > 0) new ApplyDialog(studio, entry, scopes);
+}
+
+class ApplyDialog {
+  private value: AttributeValue;
+  private scope: Scope;
+  private resets = false;
+  private skip = false;
+  private asked = 0;
+  private working = false;
+  private readonly field;
+  private readonly preview = element("div", { class: "apply-preview", role: "status", "data-testid": "apply-preview" });
+  private readonly problem = element("p", { class: "field-error", role: "alert" });
+  private readonly bar = element("progress", { "aria-label": "Models changed" });
+  private readonly confirm = element("button", { class: "primary", type: "submit", "data-testid": "apply-confirm" }, "Change");
+  private readonly cancel = element("button", { type: "button", "data-testid": "apply-cancel", onclick: () => this.leave() }, "Cancel");
+  private readonly choices: HTMLFieldSetElement;
+  private readonly dialog: HTMLDialogElement;
+
+  constructor(
+    private readonly studio: Studio,
+    private readonly entry: AttributeEntry,
+    scopes: Scope[],
+  ) {
+    // What a scaled entity weighs is not what its model does.
+    this.value = entry.of_model ?? entry.value;
+    this.scope = scopes[0]!;
+    this.field = fieldFor(entry, (value) => {
+      this.value = value;
+      void this.ask();
+    });
+    this.field.set(this.value as never);
+    this.choices = element("fieldset", { class: "apply-choices" }, this.valueChoice(), this.scopeChoice(scopes), this.nameChoice());
+    show(this.bar, false);
+    const form = element("form", { class: "apply", onsubmit: (event: Event) => (event.preventDefault(), void this.carryOut()) });
+    form.append(this.choices, this.preview, this.problem, this.bar, element("div", { class: "dialog-buttons" }, this.cancel, this.confirm));
+    this.dialog = openDialog(`Apply ${entry.label || entry.name} to models`, "apply-dialog", form);
+    const ended = studio.progress.on(({ done, total }) => this.showProgress(done, total));
+    this.dialog.addEventListener("close", ended);
+    this.dialog.addEventListener("cancel", (event) => this.working && event.preventDefault());
+    void this.ask();
+  }
+
+  private valueChoice(): HTMLElement {
+    const radio = (resets: boolean, testId: string) =>
+      element("input", { type: "radio", name: "value", checked: resets === this.resets, "data-testid": testId, onchange: () => ((this.resets = resets), void this.ask()) });
+    const scaled = this.entry.of_model !== undefined && JSON.stringify(this.entry.of_model) !== JSON.stringify(this.entry.value);
+    const set = element("div", { class: "apply-value" }, element("label", { class: "choice" }, radio(false, "apply-set"), "Set to"), this.field.root);
+    return element(
+      "div",
+      { role: "radiogroup", "aria-label": "Value" },
+      set,
+      scaled ? element("p", { class: "note indented" }, "The value without the entity's scale, as the model has it.") : null,
+      element("label", { class: "choice" }, radio(true, "apply-reset"), "Back to the automatic value of each model"),
+    );
+  }
+
+  private scopeChoice(scopes: Scope[]): HTMLElement {
+    const row = (scope: Scope) =>
+      element(
+        "label",
+        { class: "choice" },
+        element("input", { type: "radio", name: "scope", checked: scope === this.scope, "data-testid": `apply-scope-${scope.id}`, onchange: () => ((this.scope = scope), void this.ask()) }),
+        element("span", { class: "scope-text" }, scope.text),
+        element("span", { class: "note" }, scope.total === 1 ? "1 model" : `${scope.total.toLocaleString("en")} models`),
+      );
+    return element("div", { role: "radiogroup", "aria-label": "Models" }, element("h3", {}, "For"), ...scopes.map(row));
+  }
+
+  private nameChoice(): HTMLElement {
+    return element("label", { class: "apply-name" }, element("span", {}, "In the history as"), userNameField(this.studio));
+  }
+
+  private request(dry_run: boolean) {
+    const attributes = [{ name: this.entry.name, value: this.resets ? null : this.value }];
+    return this.studio.connection.request("catalog.change", { models: this.scope.models, attributes, skip: this.skip, dry_run });
+  }
+
+  /** Asks what would happen; of answers to what is no longer asked nothing is shown. */
+  private async ask(): Promise<void> {
+    const asked = ++this.asked;
+    this.confirm.disabled = true;
+    try {
+      const summary = await this.request(true);
+      if (asked === this.asked) this.showPreview(summary);
+    } catch (error) {
+      if (asked !== this.asked) return;
+      this.preview.replaceChildren(element("p", { class: "field-error", role: "alert" }, reasonText(error as Error)));
+    }
+  }
+
+  private showPreview(summary: ChangeSummary): void {
+    const { changed, unchanged, refused, chosen } = summary;
+    // Without the others' consent nothing is planned where some refuse.
+    const stopped = refused > 0 && !this.skip;
+    const others = chosen - refused;
+    const lines: (HTMLElement | null)[] = [];
+    if (!stopped) {
+      const already = unchanged > 0 ? `; ${count(unchanged, "has", "have")} ${this.resets ? "it" : "this value"} already` : "";
+      lines.push(element("p", { class: "apply-count" }, changed === 0 && unchanged > 0 ? "Nothing changes: all have it already." : `${count(changed, "model changes", "models change")}${already}.`));
+      lines.push(nameList(summary.models.map(({ name }) => name), changed, NAMES_SHOWN));
+      lines.push(this.sceneNote(summary));
+    }
+    if (refused > 0) {
+      const text = `${count(refused, "model cannot", "models cannot")} have it${stopped ? ", so nothing would be changed" : " and stay as they are"}:`;
+      const reasons = summary.refusals.slice(0, REFUSALS_SHOWN).map(({ name, why }) => element("li", {}, `${name}: ${why}`));
+      if (refused > reasons.length) reasons.push(element("li", {}, `and ${(refused - reasons.length).toLocaleString("en")} more`));
+      const box = element("input", { type: "checkbox", checked: this.skip, "data-testid": "apply-skip", onchange: () => ((this.skip = box.checked), void this.ask()) });
+      lines.push(element("p", { class: "apply-refused" }, text), element("ul", { class: "apply-reasons" }, ...reasons));
+      if (others > 0) lines.push(element("label", { class: "choice" }, box, `Change the other ${others.toLocaleString("en")}`));
+    }
+    this.preview.replaceChildren(...lines.filter((line) => line !== null));
+    this.confirm.disabled = stopped || changed === 0;
+    setText(this.confirm, stopped || changed === 0 ? "Change" : changed === 1 ? "Change 1 model" : `Change ${changed.toLocaleString("en")} models`);
+  }
+
+  /** What becomes of things that are there already. */
+  private sceneNote({ entities: { following, keeping } }: ChangeSummary): HTMLElement {
+    const parts = [];
+    if (following > 0) parts.push(`${count(following, "thing", "things")} in this scene ${following === 1 ? "follows" : "follow"} at once.`);
+    if (keeping > 0) parts.push(`${count(keeping, "thing has a value of its own and keeps", "things have values of their own and keep")} it.`);
+    parts.push("Other scenes follow when they are opened next; a value set for a single entity always stays.");
+    return element("p", { class: "note" }, parts.join(" "));
+  }
+
+  private async carryOut(): Promise<void> {
+    if (this.working || this.confirm.disabled) return;
+    this.working = true;
+    this.choices.disabled = this.confirm.disabled = true;
+    setText(this.cancel, "Stop");
+    setText(this.problem, "");
+    this.bar.removeAttribute("value");
+    show(this.bar, true);
+    try {
+      const summary = await this.request(false);
+      this.working = false;
+      // Models may have come since the preview: then it is asked anew.
+      if (summary.batch !== null || summary.refused === 0) return this.dialog.close();
+    } catch (error) {
+      setText(this.problem, reasonText(error as Error));
+    }
+    this.working = this.choices.disabled = false;
+    setText(this.cancel, "Cancel");
+    show(this.bar, false);
+    await this.ask();
+  }
+
+  private showProgress(done: number, total: number): void {
+    this.bar.max = total;
+    this.bar.value = done;
+    setText(this.confirm, `${done.toLocaleString("en")} of ${total.toLocaleString("en")}`);
+  }
+
+  private leave(): void {
+    if (this.working) void this.studio.command("catalog.stop", {});
+    else this.dialog.close();
+  }
+}
+
+/** What a change may be for: the models themselves, what the browser has found, their category. */
+async function scopesOf(studio: Studio, keys: string[]): Promise<Scope[]> {
+  const models = await Promise.allSettled(keys.map((key) => studio.models.summary(key)));
+  const known = models.flatMap((answer) => (answer.status === "fulfilled" ? [answer.value] : []));
+  if (known.length === 0) return [];
+  const own = known.length === 1 ? `This model: ${known[0]!.name}` : `The models of the selection`;
+  const scopes: Scope[] = [{ id: "model", text: own, models: { keys: known.map(({ key }) => key) }, total: known.length }];
+  const { found } = studio;
+  scopes.push({ id: "found", text: "all" in found.models ? "All models of the catalogue" : `All that the browser shows: ${found.text}`, models: found.models, total: await totalOf(studio, found.models) });
+  for (const category of new Set(known.map((model) => model.category)))
+    if (category) scopes.push({ id: "category", text: `All of the category “${category}”`, models: { category }, total: await totalOf(studio, { category }) });
+  return scopes.filter(({ total }) => total > 0);
+}
+
+async function totalOf(studio: Studio, models: ModelChoice): Promise<number> {
+  if ("keys" in models) return models.keys.length;
+  const answer = await studio.command("catalog.search", { ...("all" in models ? {} : models), limit: 1 });
+  return answer?.total ?? 0;
+}
+
+/** The first names, those that several models have only once. */
+function nameList(names: string[], total: number, most: number): HTMLElement {
+  const times = new Map<string, number>();
+  for (const name of names) times.set(name, (times.get(name) ?? 0) + 1);
+  const shown = [...times].slice(0, most);
+  const rest = total - shown.reduce((sum, [, many]) => sum + many, 0);
+  const items = shown.map(([name, many]) => element("li", {}, many > 1 ? `${name} × ${many}` : name));
+  if (rest > 0 && shown.length > 0) items.push(element("li", { class: "more" }, `and ${rest.toLocaleString("en")} more`));
+  return element("ul", { class: "apply-names", "data-testid": "apply-names" }, ...items);
+}
+
+function count(number: number, one: string, many: string): string {
+  return `${number.toLocaleString("en")} ${number === 1 ? one : many}`;
+}

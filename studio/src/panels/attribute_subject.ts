@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+import type { AttributeEntry, AttributeValue } from "../connection/messages";
+import type { Studio } from "../studio";
+
+/** More selected entities than this are shown by the first of them: asking for all would take long. */
+const MOST_ASKED = 32;
+
+/** Whose attributes are shown and edited. */
+export interface AttributeSubject {
+  /** Other rows are made for another. */
+  readonly id: string;
+  /** The attributes of each of them; what cannot be asked for is said in the note. */
+  load(): Promise<{ sets: AttributeEntry[][]; note: string }>;
+  set(name: string, value: AttributeValue): Promise<unknown>;
+  reset(name: string): Promise<unknown>;
+  /** Keys of the catalogue's models that they are; none where one of them is no model. */
+  models(): string[];
+}
+
+/** What is selected in the scene: edits are of these entities only. */
+export class SelectedEntities implements AttributeSubject {
+  readonly id: string;
+  private readonly indices: number[];
+
+  constructor(private readonly studio: Studio) {
+    this.indices = [...studio.selection.indices];
+    this.id = this.indices.join();
+  }
+
+  async load(): Promise<{ sets: AttributeEntry[][]; note: string }> {
+    const asked = this.indices.slice(0, MOST_ASKED);
+    const answers = await Promise.allSettled(asked.map((index) => this.studio.connection.request("entity.attributes", { index })));
+    const failed = answers.find((answer) => answer.status === "rejected");
+    const many = this.indices.length > MOST_ASKED ? `Values of the first ${MOST_ASKED} of ${this.indices.length} entities; an edit changes all of them.` : "";
+    return {
+      sets: answers.flatMap((answer) => (answer.status === "fulfilled" ? [answer.value.attributes] : [])),
+      note: failed ? (failed.reason as Error).message : many,
+    };
+  }
+
+  set(name: string, value: AttributeValue): Promise<unknown> {
+    return this.studio.connection.request("entity.set_attribute", { indices: this.indices, name, value });
+  }
+
+  reset(name: string): Promise<unknown> {
+    return this.studio.connection.request("entity.reset_attribute", { indices: this.indices, name });
+  }
+
+  models(): string[] {
+    const keys = this.indices.map((index) => this.studio.document.entity(index)?.model);
+    return keys.includes(undefined) ? [] : [...new Set(keys as string[])];
+  }
+}
+
+/** The model picked in the catalogue: edits are of the model itself, for every scene. */
+export class CatalogueModel implements AttributeSubject {
+  readonly id: string;
+
+  constructor(
+    private readonly studio: Studio,
+    private readonly key: string,
+  ) {
+    this.id = `model ${key}`;
+  }
+
+  async load(): Promise<{ sets: AttributeEntry[][]; note: string }> {
+    try {
+      return { sets: [(await this.studio.connection.request("catalog.model", { key: this.key })).attributes], note: "" };
+    } catch (error) {
+      return { sets: [], note: (error as Error).message };
+    }
+  }
+
+  set(name: string, value: AttributeValue): Promise<unknown> {
+    return this.studio.connection.request("catalog.set_attribute", { key: this.key, name, value });
+  }
+
+  reset(name: string): Promise<unknown> {
+    return this.studio.connection.request("catalog.reset_attribute", { key: this.key, name });
+  }
+
+  models(): string[] {
+    return [this.key];
+  }
+}

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+import { reasonText } from "../connection/connection";
+import type { ChangeBatch, ModelSummary } from "../connection/messages";
+import type { Studio } from "../studio";
+import { valueText } from "./attribute_row";
+import { openDialog } from "./dialogs";
+import { element, setText, show } from "./element";
+
+const PAGE = 30;
+const CHANGES_SHOWN = 12;
+/** Of an act that gave all the same, one line says it. */
+const CHANGES_OPEN = 1;
+
+/** Who changed what in the catalogue, when, newest first; each act can be taken back. Of one model, or of all. */
+export function openHistory(studio: Studio, model: ModelSummary | null = null): void {
+  const list = element("ol", { class: "history", "data-testid": "history" });
+  const none = element("p", { class: "note" }, model ? "Nobody has changed this model." : "Nobody has changed a model of the catalogue.");
+  const more = element("button", { class: "text-button", onclick: () => void load(oldest) }, "Show older changes");
+  const intro = "Acts of everybody who uses this database, in the Studio or on the command line. An act is taken back as a whole; that too can be taken back.";
+  const dialog = openDialog(model ? `Changes of ${model.name}` : "Changes of the catalogue", "history-dialog", element("p", { class: "note" }, intro), none, list, more);
+  let oldest = 0;
+  let shown = PAGE;
+  show(none, false);
+  show(more, false);
+
+  const load = async (before: number, limit = PAGE): Promise<void> => {
+    const answer = await studio.command("catalog.history", { limit, changes: CHANGES_SHOWN, ...(before && { before }), ...(model && { key: model.key }) });
+    if (!answer) return;
+    if (before === 0) list.replaceChildren();
+    else shown += PAGE;
+    list.append(...answer.batches.map((batch) => row(studio, batch, model !== null)));
+    oldest = answer.batches.at(-1)?.batch ?? 0;
+    show(more, answer.batches.length === limit);
+    show(none, list.children.length === 0);
+  };
+  void load(0);
+  const ended = studio.catalogChanged.on(() => void load(0, shown));
+  dialog.addEventListener("close", ended);
+}
+
+function row(studio: Studio, batch: ChangeBatch, ofOne: boolean): HTMLElement {
+  const isUndo = batch.command === "undo";
+  const undone = batch.undone_by !== null;
+  const problem = element("p", { class: "field-error", role: "alert" });
+  const undo = element("button", { "data-testid": `undo-${batch.batch}` }, isUndo ? "Redo" : "Undo");
+  // The list is asked for again once it is done; a refusal belongs beside the act.
+  undo.addEventListener("click", () => {
+    undo.disabled = true;
+    studio.connection.request("catalog.undo", { batch: batch.batch }).catch((error: Error) => {
+      undo.disabled = false;
+      setText(problem, reasonText(error));
+    });
+  });
+  const values = batch.changes.map((change) =>
+    element(
+      "li",
+      {},
+      element("span", { class: "history-model" }, ofOne ? change.label : `${change.name || change.key}: ${change.label}`),
+      element("span", {}, `${text(change.before, change.unit)} → ${text(change.after, change.unit)}`),
+    ),
+  );
+  if (batch.values > values.length && !ofOne) values.push(element("li", { class: "note" }, `and ${(batch.values - values.length).toLocaleString("en")} more values`));
+  const when = new Date(batch.time);
+  return element(
+    "li",
+    { class: undone ? "undone" : "", "data-testid": `batch-${batch.batch}` },
+    element(
+      "div",
+      { class: "history-head" },
+      element("span", { class: "history-what" }, title(batch)),
+      element("span", { class: "note", title: `${batch.person} (${batch.session}), batch ${batch.batch}` }, `${who(batch)} · ${when.toLocaleString([], { dateStyle: "medium", timeStyle: "short" })}`),
+    ),
+    // An undo that was itself done again, or an act that was taken back, has had its day.
+    undone ? element("span", { class: "note history-state" }, "undone") : batch.undoes !== null && !isUndo ? element("span", { class: "history-state" }) : undo,
+    element("details", { open: values.length <= CHANGES_OPEN }, element("summary", {}, ofOne || batch.models === 1 ? "Values" : `${batch.models.toLocaleString("en")} models`), element("ul", {}, ...values)),
+    problem,
+  );
+}
+
+function title(batch: ChangeBatch): string {
+  const labels = [...new Set(batch.changes.map(({ label }) => label))].join(", ");
+  const first = batch.changes[0]!;
+  const of = batch.models === 1 ? first.name || first.key : batch.asked || `${batch.models.toLocaleString("en")} models`;
+  if (batch.undoes !== null) return `${batch.command === "undo" ? "Took back" : "Did again"}: ${labels} of ${of}`;
+  if (batch.command.startsWith("reset")) return `Reset ${labels} of ${of}`;
+  const same = batch.changes.every(({ after, attribute }) => attribute === first.attribute && JSON.stringify(after) === JSON.stringify(first.after));
+  return `Set ${labels} of ${of}${same ? ` to ${text(first.after, first.unit)}` : ""}`;
+}
+
+/** The name that was given in the Studio; else the person's login name and the program. */
+function who({ person, session }: ChangeBatch): string {
+  if (session.startsWith("studio: ")) return session.slice("studio: ".length);
+  return session ? `${person} (${session})` : person;
+}
+
+function text(value: ChangeBatch["changes"][number]["before"], unit: string): string {
+  if (value === null) return "automatic";
+  return unit && unit !== "1" ? `${valueText(value)} ${unit}` : valueText(value);
+}

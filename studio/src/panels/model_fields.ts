@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+import type { Studio } from "../studio";
+import { addInFront } from "../tools/ghost";
+import { element, show } from "./element";
+import { openHistory } from "./history";
+import { modelCard } from "./model_card";
+import { entityOf } from "./model_browser";
+
+/** The model that was picked in the browser: what it is, and what can be done with it. */
+export class ModelFields {
+  readonly root = element("section", { class: "entity", "data-testid": "model-fields", "aria-label": "Model" });
+
+  constructor(private readonly studio: Studio) {
+    studio.picked.changed.on(() => this.update());
+    studio.catalogChanged.on(() => this.update());
+    this.update();
+  }
+
+  private update(): void {
+    const { picked } = this.studio;
+    const { model } = picked;
+    show(this.root, model !== null);
+    if (!model) return;
+    this.root.replaceChildren(
+      element("h2", { "data-testid": "model-name" }, model.name),
+      modelCard(this.studio, model.key),
+      element(
+        "div",
+        { class: "model-buttons" },
+        element("button", { "data-testid": "model-add", onclick: () => void addInFront(this.studio, entityOf(model)) }, "Add to the scene"),
+        element("button", { "data-testid": "model-history", onclick: () => openHistory(this.studio, model) }, "History…"),
+      ),
+      element("p", { class: "note" }, "A model of the catalogue: what is changed here holds in every scene."),
+    );
+  }
+}
