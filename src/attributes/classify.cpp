@@ -188,6 +188,27 @@ std::optional<ReadNoun> other_meaning(const Taxonomy::Data& data, const std::vec
     return read;
 }
 
+// A "toy lawn mower" is a toy, unless the taxonomy has a word for just that.
+std::optional<Candidate> ask_for_toy(const Taxonomy::Data& data, const std::vector<Token>& tokens,
+                                     const PhraseMatch& phrase) {
+    const CategoryData* toy = data.category("toy");
+    const CategoryData& category = data.categories[phrase.entry];
+    if (toy == nullptr || category.domain == toy->domain) return std::nullopt;
+    const auto before = std::span(tokens).first(phrase.first);
+    const bool says_toy = std::ranges::any_of(before, [&](const Token& token) {
+        return token.segment == phrase.segment && (token.stem == "toy" || token.stem == "pretend");
+    });
+    if (!says_toy || phrase.phrase.find("toy") != std::string::npos) return std::nullopt;
+    return Candidate{.category = toy,
+                     .confidence = name_trust.phrase,
+                     .where = name_trust.where,
+                     .source = "name says that it is a toy \"" + phrase.phrase + "\"",
+                     .phrase = "toy",
+                     .synset = toy->synset,
+                     .reckoning = "the word before says that it is a toy",
+                     .level = level_of(*toy)};
+}
+
 // What the name says: the taxonomy's phrase, or the noun that it does not have; the other one follows, less believed.
 std::vector<Candidate> ask_name(const Taxonomy::Data& data, std::string_view name, const Surroundings& surroundings) {
     const std::vector<Token> tokens = tokens_of(name);
@@ -195,6 +216,7 @@ std::vector<Candidate> ask_name(const Taxonomy::Data& data, std::string_view nam
     const auto read = read_noun(data, tokens, surroundings, true);
     std::vector<Candidate> found;
     if (phrase) {
+        if (auto toy = ask_for_toy(data, tokens, *phrase)) return {std::move(*toy)};
         found.push_back(candidate_of(data, name_trust, *phrase));
         if (const auto other = other_meaning(data, tokens, *phrase, surroundings)) {
             found.front().confidence *= overruled;

@@ -179,6 +179,16 @@ TEST(Classify, ASalesTextIsTrustedLessThanATag) {
     EXPECT_EQ(taken(facts).category->name, "dish");
 }
 
+TEST(Classify, AToyOfSomethingIsAToy) {
+    const auto name_of = [](const char* name) {
+        return classify(shipped_taxonomy().data(), named(name, {0.3, 0.4, 0.2})).category->name;
+    };
+    EXPECT_EQ(name_of("toy lawn mower"), "toy");
+    EXPECT_EQ(name_of("pretend vacuum cleaner"), "toy");
+    EXPECT_EQ(name_of("toy car"), "toy car");
+    EXPECT_EQ(name_of("lawn mower"), "lawn mower");
+}
+
 TEST(Classify, StepsWidenTheMassAndLowerTheConfidence) {
     const auto ratio = [](const AttributeSet& set) {
         const AttributeEntry* mass = set.find("mass");

@@ -14,6 +14,7 @@ COLUMNS = (
     "id name category dim_x_m dim_y_m dim_z_m mesh mesh_volume_m3 mass_kg mass_kind source licence note".split()
 )
 SIZES = ("dim_x_m", "dim_y_m", "dim_z_m")
+TABLES = (("held-out", 250, 6), ("market", 600, 2))  # name, least number of objects and of sources
 FITTED_SOURCES = {"abid", "ansur", "car", "fish", "fruit", "wands", "ycb"}
 LEAST_BULK_DENSITY, GREATEST_BULK_DENSITY = 1.0, 23000.0  # kg/m3; osmium has 22,600
 
@@ -48,36 +49,40 @@ def complaints_about(row, half):
         yield f"mass / box is {density:.4g} kg/m3"
 
 
+def rows_of(path, half, complaints):
+    with open(path, encoding="utf-8", newline="") as file:
+        reader = csv.DictReader(file)
+        if reader.fieldnames != COLUMNS:
+            complaints.append(f"{path.name}: columns are {reader.fieldnames}, wanted {COLUMNS}")
+            return
+        for row in reader:
+            if None in row or None in row.values():
+                complaints.append(f"{path.name}: line {reader.line_num} has not {len(COLUMNS)} fields")
+                continue
+            complaints += [f"{path.name}: {row['id']}: {text}" for text in complaints_about(row, half)]
+            yield row
+
+
 def main():
     folder = pathlib.Path(sys.argv[1])
-    complaints, rows = [], []
-    for half in ("dev", "sealed"):
-        path = folder / f"mass-held-out-{half}.csv"
-        with open(path, encoding="utf-8", newline="") as file:
-            reader = csv.DictReader(file)
-            if reader.fieldnames != COLUMNS:
-                complaints.append(f"{path.name}: columns are {reader.fieldnames}, wanted {COLUMNS}")
-                continue
-            for row in reader:
-                if None in row or None in row.values():
-                    complaints.append(f"{path.name}: line {reader.line_num} has not {len(COLUMNS)} fields")
-                    continue
-                complaints += [f"{path.name}: {row['id']}: {text}" for text in complaints_about(row, half)]
-                rows.append(row)
-
-    seen = {}
-    for row in rows:
-        if row["id"] in seen:
-            complaints.append(f"{row['id']} is there twice")
-        seen[row["id"]] = row
-    sources = {row["id"].split(":")[0] for row in rows}
-    if len(rows) < 250:
-        complaints.append(f"{len(rows)} objects, wanted 250 or more")
-    if len(sources) < 6:
-        complaints.append(f"{len(sources)} sources, wanted 6 or more")
+    complaints, seen = [], set()
+    for table, least_objects, least_sources in TABLES:
+        rows = []
+        for half in ("dev", "sealed"):
+            rows += rows_of(folder / f"mass-{table}-{half}.csv", half, complaints)
+        for row in rows:
+            if row["id"] in seen:
+                complaints.append(f"{row['id']} is there twice")
+            seen.add(row["id"])
+        sources = {row["id"].split(":")[0] for row in rows}
+        if len(rows) < least_objects:
+            complaints.append(f"{table}: {len(rows)} objects, wanted {least_objects} or more")
+        if len(sources) < least_sources:
+            complaints.append(f"{table}: {len(sources)} sources, wanted {least_sources} or more")
+        print(f"{table}: {len(rows)} objects of {len(sources)} sources")
     for complaint in complaints:
         print(complaint)
-    print(f"{len(rows)} objects of {len(sources)} sources, {len(complaints)} complaints")
+    print(f"{len(complaints)} complaints")
     return 1 if complaints else 0
 
 
