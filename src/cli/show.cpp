@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/locations.h"
 #include "cli/output.h"
+#include "geometry/decomposition/decomposition.h"
 #include "scene/model_json.h"
 
 namespace embody::cli {
@@ -40,6 +41,32 @@ void print_entry(const AttributeEntry& entry) {
                entry.source);
 }
 
+// The decomposition that collides; none where something else does. Where the import has not made it, it is made now.
+Result<std::optional<catalog::ConvexParts>> collision_parts(const catalog::Catalog& catalog, std::int64_t id,
+                                                            const attributes::AttributeSet& set) {
+    if (set.word("collision_shape", "") != "decomposition") return std::optional<catalog::ConvexParts>();
+    const geometry::DecompositionParameters usual;
+    auto parts = catalog.convex_parts(id, static_cast<int>(set.number("max_hulls", usual.max_hulls)),
+                                      set.number("hull_error", usual.hull_error));
+    if (!parts) return parts.error();
+    return std::optional<catalog::ConvexParts>(std::move(*parts));
+}
+
+void print_parts(const catalog::ConvexParts& parts) {
+    fmt::print(
+        "  collides  as {} convex part{}; the deepest hollow that they fill is {:.1f} mm, of one hull {:.1f} mm\n",
+        parts.hulls.size(), parts.hulls.size() == 1 ? "" : "s", 1e3 * parts.concavity, 1e3 * parts.hull_concavity);
+}
+
+nlohmann::json parts_json(const std::optional<catalog::ConvexParts>& parts) {
+    if (!parts) return nullptr;
+    return {{"parts", parts->hulls.size()},
+            {"concavity", parts->concavity},
+            {"hull_concavity", parts->hull_concavity},
+            {"max_hulls", parts->max_hulls},
+            {"hull_error", parts->hull_error}};
+}
+
 }  // namespace
 
 int run_show(const ShowArguments& arguments) {
@@ -49,11 +76,16 @@ int run_show(const ShowArguments& arguments) {
     if (!model) return report(model.error());
     const auto attributes = (*catalog)->attributes(model->id);
     if (!attributes) return report(attributes.error());
+    const auto parts = collision_parts(**catalog, model->id, *attributes);
+    if (!parts) return report(parts.error());
     if (arguments.json) {
-        print_json({{"model", scene::model_to_json(*model)}, {"attributes", attributes::to_json(*attributes)}});
+        print_json({{"model", scene::model_to_json(*model)},
+                    {"attributes", attributes::to_json(*attributes)},
+                    {"decomposition", parts_json(*parts)}});
         return exit_ok;
     }
     print_model(*model);
+    if (*parts) print_parts(**parts);
     print_line("");
     for (const AttributeEntry& entry : attributes->entries()) print_entry(entry);
     return exit_ok;

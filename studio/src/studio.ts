@@ -54,7 +54,7 @@ export class Studio {
   readonly connectionChanged = new Signal<void>();
   /** Models were changed by hand, by whomever. */
   readonly catalogChanged = new Signal<CatalogEvent>();
-  /** How far the command of this page is that is being carried out. */
+  /** How far the command is that is being carried out, this page's or another's; all others wait for it. */
   readonly progress = new Signal<Progress>();
   /** The user wants to see who changed what. */
   readonly historyWanted = new Signal<void>();
@@ -238,7 +238,7 @@ export class Studio {
         this.takeCatalog(event);
         break;
       case "progress":
-        if (event.client === this.client) this.progress.emit(event);
+        this.progress.emit(event);
         break;
       case "action":
         break;

@@ -148,6 +148,58 @@ TEST_F(CatalogTest, AChangedTaxonomyResolvesAllModelsAgain) {
     EXPECT_EQ(mass(**changed, id), 17.5);
 }
 
+// The user's own categories lie over ours: a file that comes, changes or goes is a change of the taxonomy.
+TEST_F(CatalogTest, AChangedOverlayResolvesAgainAndKeepsWhatPersonsSet) {
+    const std::filesystem::path own = folder_ / "own taxonomy";
+    const auto write = [&](const std::string& mass) {
+        write_file(own / "chairs.json", R"({"categories": [{"name": "office chair", "mass": )" + mass +
+                                            R"(, "at_size": [0.5, 0.9, 0.5], "source": "weighed in our stock"}]})");
+    };
+    const auto with_overlay = [&] { return std::move(*Catalog::open(database(), taxonomy_folder, {}, own)); };
+    const auto automatic_mass = [](const Catalog& catalog, const char* name) {
+        return catalog.automatic_attributes(catalog.model(name)->id)->number("mass", 0);
+    };
+    std::filesystem::create_directories(own);
+    double ours = 0;
+    {
+        const auto catalog = with_overlay();
+        ours = automatic_mass(*catalog, "office chair");
+        ASSERT_GT(ours, 0);
+        ASSERT_TRUE(catalog->set_attribute(catalog->model("office chair")->id, "friction_dynamic", 0.123));
+    }
+    write("[40, 50, 60]");
+    double heavy = 0;
+    {
+        const auto catalog = with_overlay();
+        const std::int64_t id = catalog->model("office chair")->id;
+        heavy = automatic_mass(*catalog, "office chair");
+        EXPECT_GT(heavy, 2 * ours);
+        EXPECT_NE(catalog->automatic_attributes(id)->find("mass")->source.find("your chairs.json"), std::string::npos)
+            << catalog->automatic_attributes(id)->find("mass")->source;
+        EXPECT_EQ(catalog->attributes(id)->number("friction_dynamic", 0), 0.123);
+        ASSERT_TRUE(catalog->set_attribute(id, "mass", 17.5));
+    }
+    write("[80, 100, 120]");
+    {
+        const auto catalog = with_overlay();
+        EXPECT_NEAR(automatic_mass(*catalog, "office chair"), 2 * heavy, 1e-6 * heavy);
+        EXPECT_EQ(mass(*catalog, catalog->model("office chair")->id), 17.5);
+        // What persons did stays on record, and can be taken back to the value of now.
+        ASSERT_EQ(catalog->history({})->size(), 2u);
+        ASSERT_TRUE(catalog->undo_changes(catalog->history({})->front().batch));
+        EXPECT_NEAR(mass(*catalog, catalog->model("office chair")->id), 2 * heavy, 1e-6 * heavy);
+    }
+    // A broken file is named and nothing is resolved; without the files all is as it was.
+    write("[3, 2, 1]");
+    const auto broken = Catalog::open(database(), taxonomy_folder, {}, own);
+    ASSERT_FALSE(broken);
+    EXPECT_NE(broken.error().message().find("chairs.json"), std::string::npos);
+    std::filesystem::remove_all(own);
+    const auto catalog = open();
+    EXPECT_DOUBLE_EQ(automatic_mass(*catalog, "office chair"), ours);
+    EXPECT_EQ(catalog->attributes(catalog->model("office chair")->id)->number("friction_dynamic", 0), 0.123);
+}
+
 TEST_F(CatalogTest, ResolvingAnewGoesOnWhereItWasStopped) {
     {
         const auto catalog = open();

@@ -146,6 +146,42 @@ class Database(unittest.TestCase):
         reset = json.loads(run("reset", "--database", self.database, "--json", model, "mass").stdout)
         self.assertEqual({a["name"]: a for a in reset["attributes"]}["mass"]["value"], before["mass"]["value"])
 
+    def test_show_tells_the_convex_parts_of_what_is_hollow(self):
+        # A table: a board on four legs, open below.
+        boxes = [((0, 0.7, 0), (1, 0.75, 1))]
+        boxes += [((x, 0, z), (x + 0.06, 0.7, z + 0.06)) for x in (0, 0.94) for z in (0, 0.94)]
+        faces = ((0, 2, 6, 4), (1, 5, 7, 3), (0, 4, 5, 1), (2, 3, 7, 6), (0, 1, 3, 2), (4, 6, 7, 5))
+        lines = []
+        for at, (low, high) in enumerate(boxes):
+            lines += [f"v {(low, high)[c & 1][0]} {(low, high)[c >> 1 & 1][1]} {(low, high)[c >> 2][2]}" for c in range(8)]
+            lines += ["f " + " ".join(str(8 * at + 1 + corner) for corner in face) for face in faces]
+        (self.path / "models" / "table.obj").write_text("\n".join(lines) + "\n")
+        self.call("import", str(self.path / "models"))
+        told = self.call("show", "table")
+        parts = told["decomposition"]
+        self.assertTrue(4 <= parts["parts"] <= parts["max_hulls"], parts)
+        self.assertLess(parts["concavity"], parts["hull_concavity"] / 5)
+        text = run("show", "--database", self.database, "table").stdout
+        self.assertIn(f"as {parts['parts']} convex parts; the deepest hollow that they fill is ", text)
+        self.assertIsNone(self.call("show", "wooden chair")["decomposition"])
+
+        # With fewer parts the error is larger.
+        few = self.call("set", "table", "max_hulls=2")["decomposition"]
+        self.assertEqual((few["parts"], few["max_hulls"]), (2, 2))
+        self.assertGreater(few["concavity"], parts["concavity"])
+
+    def test_the_users_own_categories_resolve_a_database_again(self):
+        own = self.path / "own"
+        own.mkdir()
+        self.call("import", str(self.path / "models"), EMBODY_TAXONOMY=str(own))
+        self.call("set", "wooden chair", "friction_dynamic=0.123", EMBODY_TAXONOMY=str(own))
+        (own / "chairs.json").write_text(json.dumps({"categories": [
+            {"name": "chair", "mass": [40, 50, 60], "at_size": [0.5, 0.9, 0.5], "source": "weighed in our stock"}]}))
+        shown = self.call("show", "wooden chair", EMBODY_TAXONOMY=str(own))
+        values = {a["name"]: a for a in shown["attributes"]}
+        self.assertIn("your chairs.json", values["mass"]["source"])
+        self.assertEqual((values["friction_dynamic"]["value"], values["friction_dynamic"]["level"]), (0.123, "manual"))
+
     def call(self, *words: str, code: int = 0, **environment: str) -> dict:
         result = run(words[0], "--database", self.database, *words[1:], "--json", **environment)
         self.assertEqual(result.returncode, code, result.stderr)

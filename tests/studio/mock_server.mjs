@@ -129,7 +129,7 @@ export class MockServer {
 
   // Commands by name; each returns its result and may edit the scene.
   commands = {
-    hello: () => ({ version: "0.0-mock", scene: this.scene, revision: 1, simulation: this.simulation, frame_version: 1, undo: null, redo: null, unsaved: false, name: "", spawned: [], despawned: [] }),
+    hello: () => ({ version: "0.0-mock", scene: this.scene, revision: 1, simulation: this.simulation, frame_version: 1, undo: null, redo: null, unsaved: false, name: "", client: 7, spawned: [], despawned: [] }),
     "catalog.categories": () => ({ categories: NOUNS.map((category) => ({ category, models: Math.ceil(this.models / NOUNS.length) })) }),
     "catalog.model": ({ key }) => ({ model: this.model(Number(key.split("/")[1])), attributes: [] }),
     "catalog.search": ({ words = "", category = "", limit = 50, offset = 0 }) => {
@@ -147,6 +147,7 @@ export class MockServer {
       this.tell([]);
       return { name: this.scene.title, path: "mock.json" };
     },
+    "catalog.stop": () => {},
     "scene.settings": (settings) => this.edit("change settings", () => Object.assign(this.scene.settings, settings), [{ op: "settings", settings }]),
     "entity.add": ({ entity, drop }) => {
       let added;

@@ -193,6 +193,20 @@ describe("the Studio's panels", { timeout: 300000 }, () => {
     await page.waitForFunction(() => window.embody.collisionParts() === 0);
   });
 
+  it("says how far long work is, and lets only who began it stop it", async () => {
+    const work = page.getByTestId("stat-work");
+    mock.broadcast({ event: "progress", client: 7, done: 1200, total: 60000 });
+    await work.getByText("Changing models: 1,200 of 60,000").waitFor();
+    await page.getByTestId("stop-work").click();
+    mock.broadcast({ event: "progress", client: 8, done: 1300, total: 60000 });
+    await work.getByText("1,300 of 60,000").waitFor();
+    assert.ok(!(await page.getByTestId("stop-work").isVisible()));
+    assert.equal(sent("catalog.stop").length, 1);
+    mock.broadcast({ event: "catalog", batch: 3, command: "set many", label: "Set Mass of 9 models", models: 9, keys: null, attributes: ["mass"], session: "studio: Eva", client: 8 });
+    await page.getByText("Set Mass of 9 models, by Eva").waitFor();
+    await work.waitFor({ state: "hidden" });
+  });
+
   it("finds commands by words in the palette", async () => {
     await page.keyboard.press("Control+k");
     await page.getByTestId("palette-input").fill("light th");

@@ -22,7 +22,7 @@ using nlohmann::json;
 namespace {
 
 constexpr std::size_t most_keys = 10'000;
-constexpr std::size_t most_name_bytes = 80;
+constexpr std::size_t most_name_bytes = 160;
 /// A preview names the first; whoever wants all asks the history.
 constexpr std::size_t most_listed = 20;
 

@@ -57,7 +57,7 @@ class ApplyDialog {
     const form = element("form", { class: "apply", onsubmit: (event: Event) => (event.preventDefault(), void this.carryOut()) });
     form.append(this.choices, this.preview, this.problem, this.bar, element("div", { class: "dialog-buttons" }, this.cancel, this.confirm));
     this.dialog = openDialog(`Apply ${entry.label || entry.name} to models`, "apply-dialog", form);
-    const ended = studio.progress.on(({ done, total }) => this.showProgress(done, total));
+    const ended = studio.progress.on(({ client, done, total }) => client === studio.client && this.showProgress(done, total));
     this.dialog.addEventListener("close", ended);
     this.dialog.addEventListener("cancel", (event) => this.working && event.preventDefault());
     void this.ask();

@@ -2,10 +2,16 @@
 import type { Studio } from "../studio";
 import { element, setText, show } from "./element";
 
+/** Nothing more heard of long work for so long: it is done. */
+const PROGRESS_SHOWN_MS = 1200;
+
 /** The line at the bottom: what the simulation does and costs, and whether the server is there. */
 export class StatusBar {
   readonly root: HTMLElement;
   private readonly connection = element("span", { class: "connection", role: "status", "data-testid": "connection" });
+  private readonly work = element("span", { class: "cell", role: "status", "data-testid": "stat-work" });
+  private readonly stop = element("button", { class: "text-button", "data-testid": "stop-work", onclick: () => void this.studio.command("catalog.stop", {}) }, "Stop");
+  private workTimer = 0;
   private readonly cells = new Map<string, HTMLElement>();
   private lastFrames = 0;
   private lastLook = performance.now();
@@ -31,13 +37,27 @@ export class StatusBar {
       cell("rate", "Simulated seconds in one second of yours"),
       cell("fps", "Pictures drawn in the last second; idle: nothing changes, so nothing is drawn"),
       element("span", { class: "spacer" }),
+      this.work,
+      this.stop,
       this.connection,
     );
+    this.showWork("", false);
+    studio.progress.on(({ client, done, total }) => this.showWork(`Changing models: ${done.toLocaleString("en")} of ${total.toLocaleString("en")}`, client === studio.client));
+    studio.catalogChanged.on(() => this.showWork("", false));
     studio.statisticsChanged.on(() => this.update());
     studio.simulationChanged.on(() => this.update());
     studio.connectionChanged.on(() => this.update());
     setInterval(() => this.countFrames(), 1000);
     this.update();
+  }
+
+  /** Long work on the server; whoever began it can stop it. */
+  private showWork(text: string, mayStop: boolean): void {
+    setText(this.work, text);
+    show(this.work, text !== "");
+    show(this.stop, mayStop);
+    clearTimeout(this.workTimer);
+    if (text) this.workTimer = window.setTimeout(() => this.showWork("", false), PROGRESS_SHOWN_MS);
   }
 
   private put(name: string, text: string): void {
