@@ -215,27 +215,25 @@ std::vector<Candidate> ask_name(const Taxonomy::Data& data, std::string_view nam
     const auto phrase = match_phrase(data.category_phrases, data.longest_phrase, name);
     const auto read = read_noun(data, tokens, surroundings, true);
     std::vector<Candidate> found;
-    if (phrase) {
-        if (auto toy = ask_for_toy(data, tokens, *phrase)) return {std::move(*toy)};
-        found.push_back(candidate_of(data, name_trust, *phrase));
-        if (const auto other = other_meaning(data, tokens, *phrase, surroundings)) {
-            found.front().confidence *= overruled;
-            found.front().reckoning += ", which what else is known speaks against";
-            found.push_back(candidate_of(data, name_trust, *other, 0));
-            return found;
-        }
-    }
-    if (!read) return found;
-
     if (!phrase) {
-        for (std::size_t i = 0; i < read->readings.size() && i < 4; ++i) {
+        for (std::size_t i = 0; read && i < read->readings.size() && i < 4; ++i) {
             found.push_back(candidate_of(data, name_trust, *read, i));
             found.back().confidence *= trust_beside(surroundings, read->readings[i]);
         }
-    } else if (noun_overrules(data, tokens, *phrase, *read)) {
+        return found;
+    }
+    if (auto toy = ask_for_toy(data, tokens, *phrase)) return {std::move(*toy)};
+
+    found.push_back(candidate_of(data, name_trust, *phrase));
+    const auto yield_to = [&](const ReadNoun& other, const char* why) {
         found.front().confidence *= overruled;
-        found.front().reckoning += ", which another noun of the name overrules";
-        found.push_back(candidate_of(data, name_trust, *read, 0));
+        found.front().reckoning += why;
+        found.push_back(candidate_of(data, name_trust, other, 0));
+    };
+    if (read && noun_overrules(data, tokens, *phrase, *read)) {
+        yield_to(*read, ", which another noun of the name overrules");
+    } else if (const auto other = other_meaning(data, tokens, *phrase, surroundings)) {
+        yield_to(*other, ", which what else is known speaks against");
     }
     return found;
 }
@@ -292,10 +290,14 @@ void doubt_long_name(std::vector<Candidate>& found) {
 
 void ask_text(const Taxonomy::Data& data, const Trust& trust, std::string_view text, const Surroundings& surroundings,
               std::vector<Candidate>& found) {
-    if (const auto phrase = match_phrase(data.category_phrases, data.longest_phrase, text)) {
-        found.push_back(candidate_of(data, trust, *phrase));
-    } else if (const auto read = read_noun(data, tokens_of(text), surroundings, false)) {
+    const std::vector<Token> tokens = tokens_of(text);
+    const auto phrase = match_phrase(data.category_phrases, data.longest_phrase, text);
+    const bool is_all = phrase && phrase->first == 0 && phrase->end == tokens.size();
+    const auto read = is_all ? std::nullopt : read_noun(data, tokens, surroundings, false);
+    if (read && (!phrase || noun_overrules(data, tokens, *phrase, *read))) {
         found.push_back(candidate_of(data, trust, *read, 0));
+    } else if (phrase) {
+        found.push_back(candidate_of(data, trust, *phrase));
     }
 }
 
