@@ -59,13 +59,14 @@ MassEstimate mass_of_box(const CategoryData& category, const Form& form, Attribu
     const Form usual = form_of({}, category.at_size);
     const bool by_area = category.scaling == MassScaling::area;
     const double ratio = by_area ? form.face_area / usual.face_area : form.box_volume / usual.box_volume;
-    const double factor = std::pow(ratio, category.exponent);
+    const double exponent = mass_exponent(category);
+    const double factor = std::pow(ratio, exponent);
     const Interval mass{category.mass.low * factor, category.mass.typical * factor, category.mass.high * factor};
     std::string source = category.name + " of " + size_text(category.at_size) + ": " +
                          short_number(category.mass.typical) + " kg (" + category.source + ")";
     if (form.size_known) {
-        source += ", x (" + short_number(ratio) + " times the " + (by_area ? "face" : "box") + ")^" +
-                  short_number(category.exponent);
+        source +=
+            ", x (" + short_number(ratio) + " times the " + (by_area ? "face" : "box") + ")^" + short_number(exponent);
     }
     return {mass, source, level};
 }
@@ -135,6 +136,14 @@ void widen(MassEstimate& estimate, const Doubt& doubt) {
 }
 
 }  // namespace
+
+double mass_exponent(const CategoryData& category) {
+    constexpr double solid_from = 0.95, flattening = 0.8;
+    const bool is_of_many_kinds = category.domain == "general";
+    const bool is_as_told =
+        is_of_many_kinds || category.exponent >= solid_from || category.said_by.contains("exponent");
+    return is_as_told ? category.exponent : flattening * category.exponent;
+}
 
 MassEstimate estimate_mass(const Taxonomy::Data& data, const Classification& what, const MaterialData& material,
                            const Form& form, bool closed) {

@@ -11,6 +11,7 @@
 #include "attributes/check.h"
 #include "attributes/classify.h"
 #include "attributes/form.h"
+#include "attributes/mass_estimate.h"
 #include "attributes/noun_reading.h"
 #include "attributes/sample_facts.h"
 #include "attributes/taxonomy_data.h"
@@ -38,7 +39,7 @@ double mass_at(const CategoryData& category, Vec3 size) {
         const Form form = form_of({.size = s}, s);
         return category.scaling == MassScaling::area ? form.face_area : form.box_volume;
     };
-    return category.mass.typical * std::pow(extent(size) / extent(category.at_size), category.exponent);
+    return category.mass.typical * std::pow(extent(size) / extent(category.at_size), mass_exponent(category));
 }
 
 bool is_general(const CategoryData& category) { return category.domain == "general"; }
