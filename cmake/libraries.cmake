@@ -13,6 +13,11 @@ pkg_check_modules(stb REQUIRED IMPORTED_TARGET stb)
 pkg_check_modules(minizip REQUIRED IMPORTED_TARGET minizip)
 pkg_check_modules(seccomp REQUIRED IMPORTED_TARGET libseccomp)
 find_package(embree 3 REQUIRED)
+# VRML only; without it a .wrl is refused with the name of the package.
+find_package(Coin CONFIG QUIET)
+if(NOT TARGET Coin::Coin)
+  message(STATUS "VRML will not be read: libcoin-dev is not installed.")
+endif()
 
 # Text files, not a library: the nouns are compiled into a table while building.
 find_path(EMBODY_WORDNET data.noun PATHS /usr/share/wordnet /usr/share/wordnet/dict /usr/share/wordnet-3.0/dict
@@ -25,6 +30,10 @@ endif()
 add_library(embody_model_readers INTERFACE)
 target_link_libraries(embody_model_readers INTERFACE assimp::assimp PkgConfig::minizip PkgConfig::stb
                       nlohmann_json::nlohmann_json meshoptimizer::meshoptimizer)
+if(TARGET Coin::Coin)
+  target_link_libraries(embody_model_readers INTERFACE Coin::Coin)
+  target_compile_definitions(embody_model_readers INTERFACE EMBODY_HAS_COIN)
+endif()
 
 add_library(embody_preparation_libraries INTERFACE)
 target_link_libraries(embody_preparation_libraries INTERFACE PkgConfig::seccomp embree Threads::Threads)

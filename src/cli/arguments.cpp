@@ -112,7 +112,7 @@ private:
                                  "embody import chair.glb ~/models /usr/share/sweethome3d/furniture/Scopia.sh3f");
         add_database(c);
         c.app->add_option("paths", c.into->paths,
-                          "Files (.glb .gltf .obj .stl .ply .dae .ac .sh3f .jar .zip) and folders");
+                          "Files (.glb .gltf .obj .stl .ply .dae .ac .wrl .sh3f .jar .zip) and folders");
         c.app->add_option(
             "--collection", c.into->collection,
             "Take the files as those of a collection (its unit, axes, licence), or without paths all that "

@@ -10,15 +10,20 @@
 
 namespace embody::interchange {
 
-/// File name extensions of the formats that are read, lower case with the dot: .obj .stl .ply .dae .gltf .glb .ac.
+/// Lower case, with the dot: ".obj" of "Chair.OBJ".
+std::string extension_of(const std::filesystem::path& file);
+/// File name extensions of the formats that are read: .obj .stl .ply .dae .gltf .glb .ac .wrl.
 const std::vector<std::string>& model_extensions();
 /// Whether the file's extension, in any case, is one of model_extensions().
 bool is_model_file(const std::filesystem::path& file);
+/// Why files of this name cannot be read: another format, or one (VRML) that this build was made without.
+Result<void> can_read(const std::filesystem::path& file);
 
 /// Reads a model file and what it refers to in its own folder and below. Every position is finite, every index in
 /// range, every mesh has triangles and every image is PNG or JPEG; else an error with file and reason. What can be left
 /// out (a texture that is missing or lies outside the folder, points and lines) is left out with a warning. glTF is in
-/// metres and Y up; COLLADA is turned and scaled as its <asset> says; OBJ, STL, PLY and AC3D are taken as they are.
+/// metres and Y up; COLLADA is turned and scaled as its <asset> says; OBJ, STL, PLY and AC3D are taken as they are;
+/// VRML's unit is the metre, Y up.
 Result<RawScene> read_model(const std::filesystem::path& file);
 
 /// The same from any source, e.g. an archive; `path` is inside the source.

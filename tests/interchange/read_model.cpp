@@ -56,7 +56,7 @@ TEST(ReadModel, RefusesMissingFilesAndUnknownFormats) {
     EXPECT_FALSE(read_model(scratch.path() / "missing.obj"));
     const auto unknown = read_model(scratch.write("model.xyz", cube_obj()));
     ASSERT_FALSE(unknown);
-    EXPECT_NE(unknown.error().message().find("glTF, OBJ, STL, PLY, COLLADA or AC3D"), std::string::npos);
+    EXPECT_NE(unknown.error().message().find("glTF, OBJ, STL, PLY, COLLADA, AC3D or VRML 2.0"), std::string::npos);
 }
 
 TEST(ReadModel, RefusesNumbersThatAreNoPositions) {

@@ -19,14 +19,8 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 3> archive_extensions{".sh3f", ".jar", ".zip"};
 
-std::string lower_extension(const fs::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-    return extension;
-}
-
 bool is_archive(const fs::path& path) {
-    return std::find(archive_extensions.begin(), archive_extensions.end(), lower_extension(path)) !=
+    return std::find(archive_extensions.begin(), archive_extensions.end(), interchange::extension_of(path)) !=
            archive_extensions.end();
 }
 
@@ -99,7 +93,7 @@ struct Walk {
     bool is_of_collection(const fs::path& file) const {
         if (!collection) return false;
         const auto& extensions = collection->extensions;
-        return std::find(extensions.begin(), extensions.end(), lower_extension(file)) != extensions.end();
+        return std::find(extensions.begin(), extensions.end(), interchange::extension_of(file)) != extensions.end();
     }
 
     void fail(const fs::path& path, std::string why, std::string remedy = {}) {
@@ -173,7 +167,7 @@ struct Walk {
         if (catalogue) return add_catalogue(file, std::move(*catalogue));
         auto archive = interchange::Archive::open(file);
         if (!archive) {
-            if (named_by_user || lower_extension(file) != ".jar")
+            if (named_by_user || interchange::extension_of(file) != ".jar")
                 fail(file, archive.error().why, archive.error().remedy);
             return;
         }
@@ -203,6 +197,10 @@ struct Walk {
     }
 
     void add_collection() {
+        for (const std::string& extension : collection->extensions) {
+            const auto able = interchange::can_read("model" + extension);
+            if (!able) return fail(collection->title, able.error().why, able.error().remedy);
+        }
         for (const CollectionFolder& folder : collection->folders) {
             std::error_code failure;
             const fs::path path = fs::weakly_canonical(folder.path, failure);

@@ -7,91 +7,38 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "interchange/image/image_codec.h"
+#include "interchange/screen_color.h"
+#include "interchange/texture_reader.h"
 
 namespace embody::interchange {
 namespace {
 
-float unit_range(float value) { return std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 0.0f; }
-
-/// IEC 61966-2-1.
-float linear_from_srgb(float value) {
-    value = unit_range(value);
-    return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
+Result<std::vector<std::uint8_t>> bytes_of(const aiTexture& texture) {
+    if (texture.mHeight == 0) {
+        const auto* begin = reinterpret_cast<const std::uint8_t*>(texture.pcData);
+        return std::vector<std::uint8_t>(begin, begin + texture.mWidth);
+    }
+    const std::size_t count = std::size_t{texture.mWidth} * texture.mHeight;
+    if (texture.mWidth > 32768 || texture.mHeight > 32768) return Error{"texture", "is too large"};
+    Image image{static_cast<int>(texture.mWidth), static_cast<int>(texture.mHeight), {}};
+    image.rgba.reserve(4 * count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const aiTexel& texel = texture.pcData[i];
+        image.rgba.insert(image.rgba.end(), {texel.r, texel.g, texel.b, texel.a});
+    }
+    return encode_png(image);
 }
 
-/// Reads textures once each, wherever they are.
-class TextureReader {
-public:
-    TextureReader(const aiScene& read, const FileSource& source, const std::string& model_path, RawScene& scene)
-        : read_(read), source_(source), scene_(scene) {
-        const std::size_t slash = model_path.rfind('/');
-        folder_ = slash == std::string::npos ? std::string() : model_path.substr(0, slash + 1);
+/// In the file or beside it.
+int index_of(TextureReader& textures, const aiScene& read, const std::string& reference) {
+    if (const aiTexture* texture = read.GetEmbeddedTexture(reference.c_str())) {
+        return textures.index_of(reference, bytes_of(*texture));
     }
-
-    /// Index of the image in the scene, -1 where it could not be had.
-    int index_of(const std::string& reference) {
-        const auto [known, is_new] = indices_.try_emplace(reference, -1);
-        if (!is_new) return known->second;
-        auto bytes = embedded_or_file(reference);
-        if (bytes) bytes = png_or_jpeg(std::move(*bytes));
-        if (!bytes) {
-            scene_.warnings.push_back("texture \"" + reference + "\" left out: " + bytes.error().why);
-            return -1;
-        }
-        known->second = static_cast<int>(scene_.images.size());
-        scene_.images.push_back({reference, std::move(*bytes)});
-        return known->second;
-    }
-
-private:
-    Result<std::vector<std::uint8_t>> embedded_or_file(const std::string& reference) const {
-        if (const aiTexture* texture = read_.GetEmbeddedTexture(reference.c_str())) return bytes_of(*texture);
-        if (reference.starts_with('*')) return Error{reference, "is not in the file"};
-
-        // Beside the model, else by its bare name: exporters write the paths of their own machine.
-        std::string found = source_.find(folder_ + reference);
-        if (found.empty()) {
-            const std::size_t slash = reference.find_last_of("/\\");
-            if (slash != std::string::npos) found = source_.find(folder_ + reference.substr(slash + 1));
-        }
-        if (found.empty()) return Error{reference, "is not in the model's folder"};
-        return source_.read(found);
-    }
-
-    static Result<std::vector<std::uint8_t>> bytes_of(const aiTexture& texture) {
-        if (texture.mHeight == 0) {
-            const auto* begin = reinterpret_cast<const std::uint8_t*>(texture.pcData);
-            return std::vector<std::uint8_t>(begin, begin + texture.mWidth);
-        }
-        const std::size_t count = std::size_t{texture.mWidth} * texture.mHeight;
-        if (texture.mWidth > 32768 || texture.mHeight > 32768) return Error{"texture", "is too large"};
-        Image image{static_cast<int>(texture.mWidth), static_cast<int>(texture.mHeight), {}};
-        image.rgba.reserve(4 * count);
-        for (std::size_t i = 0; i < count; ++i) {
-            const aiTexel& texel = texture.pcData[i];
-            image.rgba.insert(image.rgba.end(), {texel.r, texel.g, texel.b, texel.a});
-        }
-        return encode_png(image);
-    }
-
-    static Result<std::vector<std::uint8_t>> png_or_jpeg(std::vector<std::uint8_t> bytes) {
-        const auto header = read_image_header(bytes);
-        if (!header) return header.error();
-        if (header->format != ImageFormat::other) return bytes;
-        const auto image = decode_image(bytes);
-        if (!image) return image.error();
-        return encode_png(*image);
-    }
-
-    const aiScene& read_;
-    const FileSource& source_;
-    RawScene& scene_;
-    std::string folder_;
-    std::map<std::string, int> indices_;
-};
+    if (reference.starts_with('*')) return textures.index_of(reference, Error{reference, "is not in the file"});
+    return textures.index_of(reference);
+}
 
 std::string texture_reference(const aiMaterial& material) {
     aiString path;
@@ -130,9 +77,7 @@ void read_surface(const aiMaterial& material, const MaterialReading& reading, Ra
     if (material.Get(AI_MATKEY_ROUGHNESS_FACTOR, value) == aiReturn_SUCCESS) {
         out.roughness = unit_range(value);
     } else if (material.Get(AI_MATKEY_SHININESS, value) == aiReturn_SUCCESS && std::isfinite(value) && value > 0) {
-        // Blinn-Phong exponent n to GGX's α = roughness²: α² = 2 / (n + 2). Kept off the mirror end: old exponents are
-        // guesses.
-        out.roughness = std::clamp(std::pow(2.0f / (value + 2.0f), 0.25f), 0.35f, 1.0f);
+        out.roughness = roughness_from_exponent(value);
     }
     int two_sided = reading.double_sided ? 1 : 0;
     if (material.Get(AI_MATKEY_TWOSIDED, two_sided) == aiReturn_SUCCESS || reading.double_sided) {
@@ -144,7 +89,7 @@ void read_surface(const aiMaterial& material, const MaterialReading& reading, Ra
 
 void add_materials(const aiScene& read, const FileSource& source, const std::string& model_path,
                    const MaterialReading& reading, RawScene& scene) {
-    TextureReader textures(read, source, model_path, scene);
+    TextureReader textures(source, model_path, scene);
     for (unsigned i = 0; i < read.mNumMaterials; ++i) {
         const aiMaterial& material = *read.mMaterials[i];
         RawMaterial out;
@@ -153,7 +98,7 @@ void add_materials(const aiScene& read, const FileSource& source, const std::str
         read_colors(material, reading, out);
         read_surface(material, reading, out);
         if (const std::string reference = texture_reference(material); !reference.empty()) {
-            out.base_color_image = textures.index_of(reference);
+            out.base_color_image = index_of(textures, read, reference);
             if (out.base_color_image >= 0 && reading.texture_replaces_color) {
                 out.base_color = {1, 1, 1, out.base_color[3]};
             }

@@ -8,14 +8,12 @@
 #include <assimp/BaseImporter.h>
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <cctype>
 #include <cmath>
-#include <exception>
 #include <memory>
-#include <new>
 #include <sstream>
 
 #include "interchange/assimp/assimp_materials.h"
+#include "interchange/assimp/read_by_assimp.h"
 #include "interchange/assimp/source_files.h"
 #include "interchange/read_model.h"
 
@@ -24,12 +22,6 @@ namespace {
 
 constexpr std::size_t most_triangles = 20'000'000;
 constexpr std::size_t most_nodes = 1'000'000;
-
-std::string lower_extension(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension;
-}
 
 /// Removes every loader but those of the formats that we read, so that a file cannot pick another by its first bytes.
 void keep_our_formats(Assimp::Importer& importer) {
@@ -131,6 +123,8 @@ Result<void> add_meshes(const aiScene& read, RawScene& scene) {
     return {};
 }
 
+}  // namespace
+
 Result<RawScene> read_by_assimp(const FileSource& source, const std::string& path) {
     const std::string where = source.describe(path);
     Assimp::Importer importer;
@@ -149,42 +143,11 @@ Result<RawScene> read_by_assimp(const FileSource& source, const std::string& pat
     }
 
     RawScene scene;
-    add_materials(*read, source, path, material_reading_of(lower_extension(path)), scene);
+    add_materials(*read, source, path, material_reading_of(extension_of(path)), scene);
     if (const auto added = add_meshes(*read, scene); !added)
         return Error{where + ": " + added.error().where, added.error().why};
     if (scene.meshes.empty()) return Error{where, "holds no triangles"};
     return scene;
-}
-
-}  // namespace
-
-const std::vector<std::string>& model_extensions() {
-    static const std::vector<std::string> extensions{".obj", ".stl", ".ply", ".dae", ".gltf", ".glb", ".ac"};
-    return extensions;
-}
-
-bool is_model_file(const std::filesystem::path& file) {
-    const auto& known = model_extensions();
-    return std::find(known.begin(), known.end(), lower_extension(file)) != known.end();
-}
-
-Result<RawScene> read_model(const FileSource& source, const std::string& path) {
-    const std::string where = source.describe(path);
-    if (!is_model_file(path))
-        return Error{where, "is of a format that is not read", "use glTF, OBJ, STL, PLY, COLLADA or AC3D"};
-    const std::string found = source.find(path);
-    if (found.empty()) return Error{where, "no such file"};
-    try {
-        return read_by_assimp(source, found);
-    } catch (const std::bad_alloc&) {
-        return Error{where, "needs more memory than an import may use"};
-    } catch (const std::exception& problem) {
-        return Error{where, problem.what()};
-    }
-}
-
-Result<RawScene> read_model(const std::filesystem::path& file) {
-    return read_model(FolderSource(file.parent_path()), file.filename().string());
 }
 
 }  // namespace embody::interchange

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "interchange/read_model.h"
+
+#include <algorithm>
+#include <cctype>
+#include <exception>
+#include <new>
+
+#include "interchange/assimp/read_by_assimp.h"
+#include "interchange/vrml/read_vrml.h"
+
+namespace embody::interchange {
+
+std::string extension_of(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
+}
+
+const std::vector<std::string>& model_extensions() {
+    static const std::vector<std::string> extensions{".obj", ".stl", ".ply", ".dae", ".gltf", ".glb", ".ac", ".wrl"};
+    return extensions;
+}
+
+bool is_model_file(const std::filesystem::path& file) {
+    const auto& known = model_extensions();
+    return std::find(known.begin(), known.end(), extension_of(file)) != known.end();
+}
+
+Result<void> can_read(const std::filesystem::path& file) {
+    if (!is_model_file(file)) {
+        return Error{file.string(), "is of a format that is not read",
+                     "use glTF, OBJ, STL, PLY, COLLADA, AC3D or VRML 2.0"};
+    }
+    if (extension_of(file) == ".wrl") return can_read_vrml();
+    return {};
+}
+
+Result<RawScene> read_model(const FileSource& source, const std::string& path) {
+    const std::string where = source.describe(path);
+    if (const auto able = can_read(path); !able) return Error{where, able.error().why, able.error().remedy};
+    const std::string found = source.find(path);
+    if (found.empty()) return Error{where, "no such file"};
+    try {
+        return extension_of(path) == ".wrl" ? read_vrml(source, found) : read_by_assimp(source, found);
+    } catch (const std::bad_alloc&) {
+        return Error{where, "needs more memory than an import may use"};
+    } catch (const std::exception& problem) {
+        return Error{where, problem.what()};
+    }
+}
+
+Result<RawScene> read_model(const std::filesystem::path& file) {
+    return read_model(FolderSource(file.parent_path()), file.filename().string());
+}
+
+}  // namespace embody::interchange
