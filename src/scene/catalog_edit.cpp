@@ -120,15 +120,19 @@ Result<ChangeReport> change_models(SessionState& state, const catalog::Catalog::
 }
 
 Result<ChangeReport> undo_models(SessionState& state, std::int64_t batch) {
-    // The edit in turn goes its usual way, so that redo follows.
+    // What undo or redo would take next goes that way. Another is an edit of its own: those before it stay in their
+    // order, and are reached when it has been taken back itself.
     const Edit* last = state.history.undoable();
+    const Edit* next = state.history.redoable();
     const bool is_last = last && last->catalog && last->catalog->back == batch;
+    const bool is_next = next && next->catalog && next->catalog->again == batch;
     Result<ChangeReport> report = take_back(state, batch);
     if (!report.ok() || report.value().batch == 0) return report;
     if (is_last) {
         state.history.move_back(report.value().batch);
+    } else if (is_next) {
+        state.history.move_forward();
     } else {
-        state.history.forget_batch(batch);
         Edit edit = state.start_edit(label_of(report.value()));
         edit.catalog = CatalogStep{report.value().batch, 0};
         state.history.add(std::move(edit));

@@ -152,14 +152,6 @@ void History::move_back(std::int64_t batch) {
     move_back();
 }
 
-void History::forget_batch(std::int64_t batch) {
-    const auto is_about = [batch](const Edit& edit) {
-        return edit.catalog && (edit.catalog->back == batch || edit.catalog->again == batch);
-    };
-    std::erase_if(done_, is_about);
-    std::erase_if(undone_, is_about);
-}
-
 void History::clear() {
     done_.clear();
     undone_.clear();

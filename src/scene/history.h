@@ -82,8 +82,6 @@ public:
     /// The edit that undo, or redo, would take next can't be carried out any more.
     void drop_undoable() { done_.pop_back(); }
     void drop_redoable() { undone_.pop_back(); }
-    /// An act on the catalogue was taken back, or done again, by another way.
-    void forget_batch(std::int64_t batch);
 
     /// The document is on disk as it is now.
     void mark_saved() {

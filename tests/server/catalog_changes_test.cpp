@@ -167,6 +167,9 @@ TEST_F(CatalogChangesTest, ABatchIsTakenBackByItsNumberAndThatTooCanBeTakenBack)
     run("edit.undo");
     EXPECT_EQ(run("edit.undo").at("undone"), "Set Mass of oak chair 1");
     EXPECT_EQ(entry(key(1), "mass").at("overridden"), false);
+    EXPECT_EQ(run("edit.undo").at("undone"), "Set Mass of oak chair 0");
+    EXPECT_EQ(entry(key(0), "mass").at("overridden"), false);
+    EXPECT_EQ(run("edit.undo").at("undone"), nullptr);
 
     // As the last act it goes the way of undo: redo does it again.
     change({{"keys", {key(1)}}}, "mass", 5);
@@ -174,6 +177,14 @@ TEST_F(CatalogChangesTest, ABatchIsTakenBackByItsNumberAndThatTooCanBeTakenBack)
     run("catalog.undo", {{"batch", last}});
     EXPECT_EQ(run("edit.redo").at("redone"), "Set Mass of oak chair 1");
     EXPECT_EQ(value(key(1), "mass"), 5);
+    // So does the undo of that, which is what redo would take next.
+    run("edit.undo");
+    const json undo = run("catalog.history", {{"limit", 1}}).at("batches")[0];
+    EXPECT_EQ(undo.at("command"), "undo");
+    run("catalog.undo", {{"batch", undo.at("batch")}});
+    EXPECT_EQ(value(key(1), "mass"), 5);
+    EXPECT_EQ(run("edit.undo").at("undone"), "Set Mass of oak chair 1");
+    EXPECT_EQ(entry(key(1), "mass").at("overridden"), false);
     EXPECT_EQ(second, first.get<int>() + 1);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Changes of the catalogue's models in the Studio: one, all that are found, a category; undo, history, and who did it.
 import assert from "node:assert/strict";
-import { spawnSync } from "node:child_process";
+import { spawn, spawnSync } from "node:child_process";
 import { after, afterEach, before, beforeEach, describe, it } from "node:test";
 import { openBrowser, openStudio } from "./browser.mjs";
 import { findProgram, prepareDatabase, RealServer } from "./real_server.mjs";
@@ -53,7 +53,7 @@ describe("changes of the catalogue in the Studio", { timeout: 900000 }, () => {
     );
   }
   function embody(...words) {
-    const done = spawnSync(program, [...words, "--database", server.database], { encoding: "utf8" });
+    const done = spawnSync(program, [...words, "--database", server.database], { encoding: "utf8", maxBuffer: 1 << 28 });
     assert.equal(done.status, 0, done.stderr);
     return done.stdout;
   }
@@ -274,6 +274,54 @@ describe("changes of the catalogue in the Studio", { timeout: 900000 }, () => {
     await acts.nth(0).getByRole("button", { name: "Redo" }).click();
     await page.waitForFunction(() => document.querySelector("[data-testid=history] > li")?.innerText.includes("21 kg → 22 kg"));
     assert.equal((await value(key, "mass")).value, 22);
+  });
+
+  it("loses nothing when two Studios and the command line change the same models at once", async () => {
+    const other = await openStudio(browser, address);
+    others.push(other);
+    const rounds = 4;
+    const change = (of, mass) =>
+      of.evaluate(
+        async ([mass, rounds]) => {
+          const socket = new WebSocket(`ws://${location.host}/ws`);
+          await new Promise((opened) => (socket.onopen = opened));
+          let answered = 0;
+          const done = new Promise((all) => {
+            socket.onmessage = ({ data }) => {
+              if (typeof data !== "string" || !("ok" in JSON.parse(data))) return;
+              if (!JSON.parse(data).ok) throw new Error(data);
+              if (++answered === rounds) all();
+            };
+          });
+          for (let round = 0; round < rounds; ++round)
+            socket.send(JSON.stringify({ id: round, command: "catalog.change", params: { models: { words: "chair" }, attributes: [{ name: "mass", value: mass + round }] } }));
+          await done;
+          socket.close();
+        },
+        [mass, rounds],
+      );
+    const commandLine = async (mass) => {
+      for (let round = 0; round < rounds; ++round) {
+        const set = spawn(program, ["set", "--query", "chair", `mass=${mass + round}`, "--database", server.database]);
+        let told = "";
+        for (const stream of [set.stdout, set.stderr]) stream.on("data", (data) => (told += data));
+        const ended = await new Promise((end) => set.on("close", (code, signal) => end(signal ?? code)));
+        assert.equal(ended, 0, told);
+      }
+    };
+    const newest = (await command("catalog.history", { limit: 1 })).batches[0]?.batch ?? 0;
+    await Promise.all([change(page, 100), change(other, 200), commandLine(300)]);
+    const { changes } = JSON.parse(embody("history", "--limit", "100000", "--json"));
+    const present = new Map();
+    const acts = new Set();
+    for (const { batch, key, attribute, before, after } of changes.reverse()) {
+      if (attribute !== "mass") continue;
+      if (present.has(key)) assert.equal(before, present.get(key), `batch ${batch} found what the one before it left`);
+      present.set(key, after);
+      if (batch > newest) acts.add(batch);
+    }
+    assert.equal(acts.size, 3 * rounds);
+    for (const key of [...present.keys()].slice(0, 5)) assert.equal((await value(key, "mass")).value, present.get(key));
   });
 
   it("goes back to the automatic values of many", async () => {
