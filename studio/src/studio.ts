@@ -203,7 +203,7 @@ export class Studio {
     if (event.client !== this.client) {
       const who = event.session.replace(/^studio: /, "");
       const action = { label: "History", run: () => this.historyWanted.emit() };
-      this.notice.emit({ level: "info", text: `${event.label}, by ${who}`, action });
+      this.notice.emit({ level: "info", text: `${pastOf(event.label)}, by ${who}`, action });
       return;
     }
     const undone = event.command === "undo";

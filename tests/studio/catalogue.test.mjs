@@ -150,7 +150,7 @@ describe("changes of the catalogue in the Studio", { timeout: 900000 }, () => {
     await confirm(`Change ${found} models`);
     const done = toast(`Changed Mass of ${found} models`);
     await done.waitFor();
-    await other.locator(".toast", { hasText: `Set Mass of ${found} models, by Ada` }).waitFor();
+    await other.locator(".toast", { hasText: `Changed Mass of ${found} models, by Ada` }).waitFor();
     await other.waitForFunction(() => document.querySelector("[data-testid=attribute-mass] input").value === "8.25");
     assert.equal(await field("mass").inputValue(), "8.25");
     assert.match(embody("history", "--limit", "1"), /\(studio: Ada\).*models found by "chair"[\s\S]*automatic → 8.25/);

@@ -203,7 +203,7 @@ describe("the Studio's panels", { timeout: 300000 }, () => {
     assert.ok(!(await page.getByTestId("stop-work").isVisible()));
     assert.equal(sent("catalog.stop").length, 1);
     mock.broadcast({ event: "catalog", batch: 3, command: "set many", label: "Set Mass of 9 models", models: 9, keys: null, attributes: ["mass"], session: "studio: Eva", client: 8 });
-    await page.getByText("Set Mass of 9 models, by Eva").waitFor();
+    await page.getByText("Changed Mass of 9 models, by Eva").waitFor();
     await work.waitFor({ state: "hidden" });
   });
 

@@ -49,6 +49,7 @@ function row(studio: Studio, batch: ChangeBatch, ofOne: boolean): HTMLElement {
     studio.connection.request("catalog.undo", { batch: batch.batch }).catch((error: Error) => {
       undo.disabled = false;
       setText(problem, reasonText(error));
+      problem.scrollIntoView({ block: "nearest" });
     });
   });
   const values = batch.changes.map((change) =>
@@ -72,8 +73,8 @@ function row(studio: Studio, batch: ChangeBatch, ofOne: boolean): HTMLElement {
     ),
     // An undo that was itself done again, or an act that was taken back, has had its day.
     undone ? element("span", { class: "note history-state" }, "undone") : batch.undoes !== null && !isUndo ? element("span", { class: "history-state" }) : undo,
-    element("details", { open: values.length <= CHANGES_OPEN }, element("summary", {}, ofOne || batch.models === 1 ? "Values" : `${batch.models.toLocaleString("en")} models`), element("ul", {}, ...values)),
     problem,
+    element("details", { open: values.length <= CHANGES_OPEN }, element("summary", {}, ofOne || batch.models === 1 ? "Values" : `${batch.models.toLocaleString("en")} models`), element("ul", {}, ...values)),
   );
 }
 
