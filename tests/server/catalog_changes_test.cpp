@@ -239,6 +239,31 @@ TEST_F(CatalogChangesTest, TheOpenSceneFollowsAtOnceAndOwnValuesStay) {
     EXPECT_EQ(run("hello").at("simulation").at("step"), 5) << "a run goes on";
 }
 
+TEST_F(CatalogChangesTest, TheSceneFollowsAChangeOfKindWithItsJoints) {
+    json entities = json::array();
+    for (int i = 0; i < 2; ++i)
+        entities.push_back(
+            run("entity.add", {{"entity", {{"model", key(i)}, {"pose", {{"position", {i, 1, 0}}}}}}}).at("index"));
+    json joint;
+    joint["type"] = "ball";
+    joint["entity_a"] = entities[0];
+    joint["entity_b"] = entities[1];
+    run("joint.add", {{"joint", joint}});
+    for (const bool running : {false, true}) {
+        if (running) run("simulation.step", {{"count", 5}});
+        for (const char* kind : {"static", "visual", "soft"}) {
+            change({{"category", "chair"}}, "kind", kind);
+            EXPECT_EQ(value_in_scene(entities[0], "kind"), kind);
+            run("simulation.step", {{"count", 5}});
+            if (!running) run("simulation.reset");
+        }
+        for (int i = 0; i < 3; ++i) run("edit.undo");
+        EXPECT_EQ(value_in_scene(entities[0], "kind"), "rigid");
+        run("simulation.step", {{"count", 5}});
+        run("simulation.reset");
+    }
+}
+
 TEST_F(CatalogChangesTest, TheValuesOfAScaledThingAreToldAsTheModelHasThem) {
     const json index = run("entity.add", {{"entity", {{"model", key(0)}, {"scale", 2}}}}).at("index");
     const json answer = run("entity.attributes", {{"index", index}});
