@@ -114,6 +114,23 @@ private:
         value = {(*n)[0], (*n)[1], (*n)[2], (*n)[3]};
         return true;
     }
+    static bool take(const json& d, geometry::MassProperties& value) {
+        return d.is_array() && d.size() == 3 && take(d[0], value.volume) && take(d[1], value.center) &&
+               take(d[2], value.inertia);
+    }
+    static bool take(const json& d, std::vector<PartFacts>& value) {
+        if (!d.is_array()) return false;
+        for (const json& item : d) {
+            PartFacts part;
+            FactReader reader(item);
+            reader.read("material", part.material);
+            reader.read("shell", part.form.shell);
+            reader.read("solid", part.form.solid);
+            if (reader.error()) return false;
+            value.push_back(std::move(part));
+        }
+        return true;
+    }
     static bool take(const json& d, std::vector<std::string>& value) {
         if (!d.is_array()) return false;
         value.clear();
@@ -127,6 +144,21 @@ private:
     const json& object_;
     std::optional<Error> error_;
 };
+
+// Numbers of a body of unit density: [measure, centre, columns of the inertia].
+json mass_properties_json(const geometry::MassProperties& p) {
+    return json::array({p.volume, vector_json(p.center), columns_json(p.inertia)});
+}
+
+json parts_json(const std::vector<PartFacts>& parts) {
+    json list = json::array();
+    for (const PartFacts& part : parts) {
+        list.push_back({{"material", part.material},
+                        {"shell", mass_properties_json(part.form.shell)},
+                        {"solid", mass_properties_json(part.form.solid)}});
+    }
+    return list;
+}
 
 json geometry_json(const GeometryFacts& g) {
     const Quat turn = g.fitted_pose.rotation;
@@ -144,7 +176,8 @@ json geometry_json(const GeometryFacts& g) {
             {"fitted_dimensions", vector_json(g.fitted_dimensions)},
             {"fitted_position", vector_json(g.fitted_pose.position)},
             {"fitted_rotation", json::array({turn.x, turn.y, turn.z, turn.w})},
-            {"fitted_error", g.fitted_error}};
+            {"fitted_error", g.fitted_error},
+            {"parts", parts_json(g.parts)}};
 }
 
 std::optional<Error> read_geometry(const json& document, GeometryFacts& g) {
@@ -164,6 +197,7 @@ std::optional<Error> read_geometry(const json& document, GeometryFacts& g) {
     reader.read("fitted_position", g.fitted_pose.position);
     reader.read("fitted_rotation", g.fitted_pose.rotation);
     reader.read("fitted_error", g.fitted_error);
+    reader.read("parts", g.parts);
     return reader.error();
 }
 

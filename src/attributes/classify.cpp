@@ -470,4 +470,9 @@ MaterialChoice choose_material(const Taxonomy::Data& data, const ModelFacts& fac
     return result;
 }
 
+const MaterialData* material_of_part(const Taxonomy::Data& data, const std::string& part) {
+    MaterialChoice choice;
+    return material_by_words(data, "part material", part, choice) ? choice.material : nullptr;
+}
+
 }  // namespace embody::attributes

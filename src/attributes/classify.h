@@ -47,4 +47,7 @@ struct MaterialChoice {
 /// From the name ("wooden desk"), else the parts' material names, else the category.
 MaterialChoice choose_material(const Taxonomy::Data& data, const ModelFacts& facts, const Classification& what);
 
+/// The material that the name of a part's material says; null where it says none.
+const MaterialData* material_of_part(const Taxonomy::Data& data, const std::string& part);
+
 }  // namespace embody::attributes

@@ -60,22 +60,32 @@ Form form_of(const GeometryFacts& facts, Vec3 usual_size) {
     return form;
 }
 
-CenterAndInertia center_and_inertia(const GeometryFacts& facts, const Form& form, double mass) {
+CenterAndInertia center_and_inertia(const GeometryFacts& facts, const Form& form, double mass,
+                                    const std::optional<CenterAndInertia>& of_parts) {
     const Vec3 half = form.size * 0.5;
     const Vec3 lower{-half.x, 0, -half.z};
     const Vec3 upper{half.x, form.size.y, half.z};
 
-    // The surface's own moments, if they could be those of a real body.
-    if (form.volume_is_own && is_finite(facts.center_of_volume)) {
-        const Mat3 inertia = facts.unit_inertia * (mass / facts.volume);
-        const Vec3 center = min(max(facts.center_of_volume, lower), upper);
+    // Moments of a real body in this box, with the centre (which rounding may put just outside) inside it.
+    const auto possible = [&](CenterAndInertia moments) -> std::optional<CenterAndInertia> {
+        if (!is_finite(moments.center)) return std::nullopt;
+        const Vec3 center = min(max(moments.center, lower), upper);
         // No mass is farther from the centre than the diagonal of the box.
-        const bool fits = trace(inertia) <= 2 * mass * length_squared(form.size);
-        const bool centered = distance(center, facts.center_of_volume) < 0.05 * length(form.size);
-        if (validate("inertia", inertia) && fits && centered) {
-            return {center, inertia, "homogeneous solid inside the " + form.volume_source + ", scaled to the mass",
-                    form.volume_level};
-        }
+        const bool fits = trace(moments.inertia) <= 2 * mass * length_squared(form.size);
+        const bool centered = distance(center, moments.center) < 0.05 * length(form.size);
+        if (!validate("inertia", moments.inertia) || !fits || !centered) return std::nullopt;
+        moments.center = center;
+        return moments;
+    };
+
+    if (of_parts) {
+        if (const auto parts = possible(*of_parts)) return *parts;
+    }
+    if (form.volume_is_own) {
+        const auto solid = possible({facts.center_of_volume, facts.unit_inertia * (mass / facts.volume),
+                                     "homogeneous solid inside the " + form.volume_source + ", scaled to the mass",
+                                     form.volume_level});
+        if (solid) return *solid;
     }
     const AttributeLevel level = form.size_known ? AttributeLevel::model : AttributeLevel::category;
     return {{0, half.y, 0}, box_inertia(form.size, mass), "homogeneous bounding box", level};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "attributes/attribute.h"
@@ -36,8 +37,10 @@ struct CenterAndInertia {
     AttributeLevel level = AttributeLevel::standard;
 };
 
-/// Of the surface's own volume scaled to the mass, else of the homogeneous box.
-CenterAndInertia center_and_inertia(const GeometryFacts& facts, const Form& form, double mass);
+/// Of its parts where they are known (`of_parts`, see material_parts.h) and could be a real body of this size; else of
+/// the surface's own volume scaled to the mass, else of the homogeneous box.
+CenterAndInertia center_and_inertia(const GeometryFacts& facts, const Form& form, double mass,
+                                    const std::optional<CenterAndInertia>& of_parts);
 
 struct ShapeChoice {
     std::string shape;

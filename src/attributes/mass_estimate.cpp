@@ -25,14 +25,15 @@ std::string size_text(Vec3 size) {
 }
 
 // Density × filled share × volume of a closed surface, for things that are not hollow.
-MassEstimate mass_of_solid(const CategoryData& category, const MaterialData& material, const Form& form) {
+MassEstimate mass_of_solid(const CategoryData& category, const Substance& substance, const Form& form) {
     const auto product = [&](double density, double fill) { return density * fill * form.volume; };
-    const Interval mass{product(material.density.low, category.fill_fraction.low),
-                        product(material.density.typical, category.fill_fraction.typical),
-                        product(material.density.high, category.fill_fraction.high)};
+    const Interval& density = substance.density;
+    const Interval mass{product(density.low, category.fill_fraction.low),
+                        product(density.typical, category.fill_fraction.typical),
+                        product(density.high, category.fill_fraction.high)};
     return {mass,
-            "density of " + material.name + " (" + material.source + ") x " +
-                short_number(category.fill_fraction.typical) + " filled x volume of the " + form.volume_source,
+            "density of " + substance.source + " x " + short_number(category.fill_fraction.typical) +
+                " filled x volume of the " + form.volume_source,
             AttributeLevel::model};
 }
 
@@ -145,14 +146,14 @@ double mass_exponent(const CategoryData& category) {
     return is_as_told ? category.exponent : flattening * category.exponent;
 }
 
-MassEstimate estimate_mass(const Taxonomy::Data& data, const Classification& what, const MaterialData& material,
+MassEstimate estimate_mass(const Taxonomy::Data& data, const Classification& what, const Substance& substance,
                            const Form& form, bool closed) {
     const CategoryData& category = *what.category;
     const CategoryData& any = data.categories[data.unknown];
     Doubt doubt = doubt_about(what, form);
     MassEstimate estimate;
     if (category.solid && closed && form.volume_is_own) {
-        estimate = mass_of_solid(category, material, form);
+        estimate = mass_of_solid(category, substance, form);
     } else if (is_folded(category, form)) {
         estimate = mass_of_folded(category, form, what.level);
         doubt = {};

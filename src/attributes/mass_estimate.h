@@ -5,6 +5,7 @@
 
 #include "attributes/classify.h"
 #include "attributes/form.h"
+#include "attributes/material_parts.h"
 #include "attributes/taxonomy_data.h"
 
 namespace embody::attributes {
@@ -22,11 +23,11 @@ struct MassEstimate {
 /// user's own file says it.
 double mass_exponent(const CategoryData& category);
 
-/// The mass of a thing of this category, form and material: density × filled share × volume where the category is solid
-/// and `closed` says that the surface is; else the category's mass carried over to the box. The more doubtful the
+/// The mass of a thing of this category, form and substance: density × filled share × volume where the category is
+/// solid and `closed` says that the surface is; else the category's mass carried over to the box. The more doubtful the
 /// category is, or the less the size and the proportions are those of such things, the more the estimate is what any
 /// thing of this size weighs (the taxonomy's "object"), and the wider its interval.
-MassEstimate estimate_mass(const Taxonomy::Data& data, const Classification& what, const MaterialData& material,
+MassEstimate estimate_mass(const Taxonomy::Data& data, const Classification& what, const Substance& substance,
                            const Form& form, bool closed);
 
 }  // namespace embody::attributes

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/solid_and_shell.h"
 #include "math/mat3.h"
 #include "math/transform.h"
 
@@ -18,6 +19,12 @@ inline constexpr double unseen_share = 0.02;
 /// A convex hull with hollows no deeper than this (m) stands for a thing of this size; below the usual error a
 /// decomposition would be no better.
 inline double negligible_concavity(Vec3 size) { return std::max(usual_hull_error, unseen_share * length(size)); }
+
+/// Surfaces of a model that share a material.
+struct PartFacts {
+    std::string material;          ///< its name in the file; empty: none, or of several
+    geometry::SolidAndShell form;  ///< in the model's frame
+};
 
 /// What is known of a model's form. Lengths in metres, in the model's frame (Y up, origin at the centre of the base of
 /// its bounds).
@@ -38,7 +45,13 @@ struct GeometryFacts {
     Vec3 fitted_dimensions;    ///< box: half extents; sphere: (r,0,0); capsule, cylinder: (r, half height, 0)
     Transform fitted_pose;
     double fitted_error = 0;  ///< largest distance between primitive and hull, m
+
+    /// By material, largest area first; where volumes overlap they count in each. None: not known.
+    std::vector<PartFacts> parts;
 };
+
+/// The same form `factor` times as large: lengths, areas, volumes and moments follow.
+GeometryFacts scaled(const GeometryFacts& facts, double factor);
 
 /// What a file or catalogue says about a model.
 struct ModelFacts {

@@ -9,6 +9,7 @@
 #include "attributes/classify.h"
 #include "attributes/form.h"
 #include "attributes/mass_estimate.h"
+#include "attributes/material_parts.h"
 #include "attributes/phrase_match.h"
 #include "attributes/registry.h"
 
@@ -68,7 +69,7 @@ void put_scale(AttributeSet& set, const ModelFacts& facts, const CategoryData& c
     set.put({"scale_to_m", 1.0, {}, {}, source, AttributeLevel::model});
 }
 
-void put_mass(AttributeSet& set, const MassEstimate& estimate, const MaterialChoice& surface, const Form& form) {
+void put_mass(AttributeSet& set, const MassEstimate& estimate, const Substance& substance, const Form& form) {
     // Into the registry's range, and never denser than the densest element.
     const AttributeDescription& range = *describe("mass");
     const double most = std::min(*range.high, heaviest_density * form.volume);
@@ -77,26 +78,26 @@ void put_mass(AttributeSet& set, const MassEstimate& estimate, const MaterialCho
     set.put({"mass", mass.typical, mass.low, mass.high, estimate.source, estimate.level});
     set.put({"volume", form.volume, {}, {}, form.volume_source, form.volume_level});
 
-    // Mass = density × fill × volume: the material says the density, and fill is what remains, up to full.
-    const Interval& density = surface.material->density;
+    // Mass = density × fill × volume: the materials say the density, and fill is what remains, up to full.
+    const Interval& density = substance.density;
     const double fill = mass.typical / (density.typical * form.volume);
     if (fill <= 1) {
-        set.put({"density", density.typical, density.low, density.high,
-                 surface.material->name + " (" + surface.source + "): " + surface.material->source, surface.level});
+        set.put({"density", density.typical, density.low, density.high, substance.source, substance.level});
         set.put({"fill_fraction", fill, {}, {}, "mass / (density x volume)", AttributeLevel::model});
     } else {
         set.put({"density",
                  std::min(mass.typical / form.volume, heaviest_density),
                  {},
                  {},
-                 "mass / volume: " + surface.material->name + " would be too light for it",
+                 "mass / volume: " + substance.name + " would be too light for it",
                  AttributeLevel::model});
         set.put({"fill_fraction", 1.0, {}, {}, "full", AttributeLevel::model});
     }
 }
 
-void put_form(AttributeSet& set, const ModelFacts& facts, const Form& form) {
-    const CenterAndInertia moments = center_and_inertia(facts.geometry, form, set.number("mass", 1));
+void put_form(AttributeSet& set, const ModelFacts& facts, const std::vector<MaterialPart>& parts, const Form& form) {
+    const double mass = set.number("mass", 1);
+    const CenterAndInertia moments = center_and_inertia(facts.geometry, form, mass, spread_over(parts, mass));
     set.put({"center_of_mass", moments.center, {}, {}, moments.source, moments.level});
     set.put({"inertia", moments.inertia, {}, {}, moments.source, moments.level});
     const ShapeChoice shape = choose_collision_shape(facts.geometry, set.word("kind", "") == "static");
@@ -132,6 +133,14 @@ std::optional<double> suggested_scale(const Taxonomy& taxonomy, const ModelFacts
     return likely_unit(largest, category.usual_low, category.usual_high);
 }
 
+std::optional<double> density_sum(const Taxonomy& taxonomy, const ModelFacts& facts) {
+    const Taxonomy::Data& data = taxonomy.data();
+    const Classification what = classify(data, facts);
+    const auto parts = material_parts(data, facts, *what.category, choose_material(data, facts, what));
+    if (parts.empty()) return std::nullopt;
+    return mass_of_parts(parts);
+}
+
 AttributeSet resolve(const Taxonomy& taxonomy, const ModelFacts& facts) {
     // Words tell what it is and what it is made of.
     const Taxonomy::Data& data = taxonomy.data();
@@ -147,9 +156,11 @@ AttributeSet resolve(const Taxonomy& taxonomy, const ModelFacts& facts) {
     // Its form tells how much of that there is, and where.
     const Form form = form_of(facts.geometry, what.category->at_size);
     put_scale(set, facts, *what.category, form);
-    put_mass(set, estimate_mass(data, what, *surface.material, form, facts.geometry.closed), surface, form);
+    const std::vector<MaterialPart> parts = material_parts(data, facts, *what.category, surface);
+    const Substance substance = substance_of(parts, surface);
+    put_mass(set, estimate_mass(data, what, substance, form, facts.geometry.closed), substance, form);
     put_mass_dependents(set, facts.geometry, form);
-    put_form(set, facts, form);
+    put_form(set, facts, parts, form);
     put_category_attributes(set, what);
 
     // Defaults for the rest.

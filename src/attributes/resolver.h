@@ -45,6 +45,10 @@ private:
 /// then what geometry tells. Deterministic; never fails: what nothing tells gets the default.
 AttributeSet resolve(const Taxonomy& taxonomy, const ModelFacts& facts);
 
+/// What the parts of a model weigh by their volumes and materials, walls as thick as usual, kg: a second opinion on its
+/// mass that asks neither its category's mass nor its box. Nothing where the parts are not known.
+std::optional<double> density_sum(const Taxonomy& taxonomy, const ModelFacts& facts);
+
 /// Metres per unit that would make a model without stated size as large as things of its category usually are; nothing
 /// where it is that already, or where no usual unit does. The importer asks before it stores the geometry.
 std::optional<double> suggested_scale(const Taxonomy& taxonomy, const ModelFacts& facts);

@@ -31,6 +31,8 @@ Result<MaterialData> read_material(const json& object, const std::string& where)
     reader.interval("friction_dynamic", material.friction_dynamic, {0, 2}, true);
     reader.number("friction_rolling", material.friction_rolling, {0, 0.05}, true);
     reader.interval("restitution", material.restitution, {0, 1}, true);
+    reader.interval("wall", material.wall, {1e-4, 0.5}, false);
+    reader.word("core", material.core, false);
     reader.word("source", material.source, true);
     if (material.friction_dynamic.typical > material.friction_static.typical) {
         reader.fail("friction_dynamic", "must not exceed friction_static");
@@ -201,6 +203,14 @@ Result<void> load_materials(Taxonomy::Data& data, const std::filesystem::path& f
         data.materials.push_back(std::move(*material));
         if (auto added = index_entry(data.material_phrases, data.longest_phrase, data.materials, where); !added)
             return added;
+    }
+    for (const MaterialData& material : data.materials) {
+        const std::string where = file.filename().string() + ": \"" + material.name + "\".core";
+        if (material.core.empty()) continue;
+        if (data.material(material.core) == nullptr)
+            return Error{where, "there is no material \"" + material.core + "\"", "name one, or leave core out"};
+        if (!(material.wall.typical > 0))
+            return Error{where, "needs walls to be behind", "give wall too, or leave core out"};
     }
     if (data.material("generic") == nullptr) return Error{file.filename().string(), "has no material \"generic\""};
     return {};

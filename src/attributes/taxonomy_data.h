@@ -28,6 +28,8 @@ struct MaterialData {
     Interval friction_dynamic;
     double friction_rolling = 0;  ///< m
     Interval restitution;
+    Interval wall;     ///< m, how thick things are made of it; all 0: solid throughout
+    std::string core;  ///< the material that fills things covered with it, such as foam; empty: they are hollow
     std::string source;
 };
 

@@ -7,20 +7,6 @@
 namespace embody::catalog {
 namespace {
 
-/// Another size of the same form: lengths, areas, volumes and moments follow.
-void scale_geometry(attributes::GeometryFacts& geometry, double scale) {
-    const double area = scale * scale, volume = area * scale;
-    geometry.size = scale * geometry.size;
-    geometry.volume *= volume;
-    geometry.center_of_volume = scale * geometry.center_of_volume;
-    geometry.unit_inertia = (volume * area) * geometry.unit_inertia;
-    geometry.hull_volume *= volume;
-    geometry.surface_area *= area;
-    geometry.fitted_dimensions = scale * geometry.fitted_dimensions;
-    geometry.fitted_pose.position = scale * geometry.fitted_pose.position;
-    geometry.fitted_error *= scale;
-}
-
 void apply_variant(database::ModelRow& row, attributes::ModelFacts& facts, const ModelVariant& variant) {
     row.id = 0;
     row.key = variant.key;
@@ -30,7 +16,7 @@ void apply_variant(database::ModelRow& row, attributes::ModelFacts& facts, const
     if (!facts.catalogue_category.empty()) row.tags.push_back(facts.catalogue_category);
     if (!variant.material_names.empty()) facts.material_names = variant.material_names;
     for (double& length : row.size) length *= variant.scale;
-    scale_geometry(facts.geometry, variant.scale);
+    facts.geometry = attributes::scaled(facts.geometry, variant.scale);
 }
 
 void describe_one(Description& model, const attributes::Taxonomy& taxonomy) {

@@ -15,7 +15,7 @@ namespace embody::catalog {
 namespace {
 
 // Raise when resolve() gives other attributes from the same files and facts.
-constexpr std::uint64_t resolver_revision = 2;
+constexpr std::uint64_t resolver_revision = 3;
 
 std::string day_of(std::int64_t seconds) {
     const std::time_t time = seconds;

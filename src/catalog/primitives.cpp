@@ -102,6 +102,7 @@ void set_solid(GeometryFacts& facts, double volume, double area, double center_h
     facts.surface_area = area;
     facts.center_of_volume = {0, center_height, 0};
     facts.unit_inertia = Mat3::diagonal(unit_inertia);
+    facts.parts.clear();  // solid, of one material
 }
 
 void set_fit(GeometryFacts& facts, std::string shape, Vec3 dimensions) {

@@ -108,6 +108,10 @@ nlohmann::json catalogue_to_json(const CatalogueEvaluation& evaluation) {
              {{"models", evaluation.flagged},
               {"agreement", evaluation.movable_agreement()},
               {"disagreements", std::move(disagreements)}}},
+            {"density_sum",
+             {{"models", evaluation.density_sums.size()},
+              {"median_ratio", evaluation.median_density_sum()},
+              {"within_factor_2", evaluation.density_sums_within_factor_2()}}},
             {"broken", std::move(broken)}};
 }
 
@@ -122,6 +126,11 @@ void print_catalogue(const CatalogueEvaluation& evaluation) {
         fmt::print("  {} {} taken for {}\n",
                    model.catalogue_says_movable ? "movable:" : "static: ", padded(model.name, 34), model.category);
     }
+    fmt::print(
+        "density sum over the parts, at usual walls, of {} models: {:.2f} of the mass at the median, "
+        "within a factor 2 for {:.0f} %\n",
+        evaluation.density_sums.size(), evaluation.median_density_sum(),
+        100 * evaluation.density_sums_within_factor_2());
     fmt::print("models whose attributes contradict each other: {}\n", evaluation.broken.size());
     for (const auto& model : evaluation.broken)
         for (const attributes::Issue& issue : model.issues)

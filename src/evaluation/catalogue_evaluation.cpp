@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "evaluation/catalogue_evaluation.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "evaluation/found_category.h"
@@ -37,6 +38,8 @@ void evaluate_model(const attributes::Taxonomy& taxonomy, const ModelFacts& fact
     ++evaluation.by_level[level_name(level)];
     if (level == attributes::AttributeLevel::standard) evaluation.unknown.push_back(facts.name);
     compare_movable(taxonomy, facts, key, evaluation);
+    const auto sum = density_sum(taxonomy, facts);
+    if (const double mass = set.number("mass", 0); sum && mass > 0) evaluation.density_sums.push_back(*sum / mass);
     if (auto issues = check(set, facts); !issues.empty()) evaluation.broken.push_back({key, std::move(issues)});
 }
 
@@ -45,6 +48,15 @@ void evaluate_model(const attributes::Taxonomy& taxonomy, const ModelFacts& fact
 double CatalogueEvaluation::above_default() const { return share(models - unknown.size(), models); }
 
 double CatalogueEvaluation::movable_agreement() const { return share(flagged - disagreements.size(), flagged); }
+
+double CatalogueEvaluation::median_density_sum() const {
+    return density_sums.empty() ? 0 : density_sums[density_sums.size() / 2];
+}
+
+double CatalogueEvaluation::density_sums_within_factor_2() const {
+    const auto within = [](double ratio) { return ratio >= 0.5 && ratio <= 2; };
+    return share(static_cast<std::size_t>(std::ranges::count_if(density_sums, within)), density_sums.size());
+}
 
 Result<CatalogueEvaluation> evaluate_catalogue(const attributes::Taxonomy& taxonomy, const catalog::Catalog& catalog) {
     CatalogueEvaluation evaluation;
@@ -58,8 +70,10 @@ Result<CatalogueEvaluation> evaluate_catalogue(const attributes::Taxonomy& taxon
             evaluate_model(taxonomy, *facts, model.key, evaluation);
         }
         query.offset += query.limit;
-        if (page->models.empty() || query.offset >= page->total) return evaluation;
+        if (page->models.empty() || query.offset >= page->total) break;
     }
+    std::ranges::sort(evaluation.density_sums);
+    return evaluation;
 }
 
 }  // namespace embody::evaluation

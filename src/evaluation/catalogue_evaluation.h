@@ -34,9 +34,12 @@ struct CatalogueEvaluation {
     std::vector<MovableDisagreement> disagreements;
     std::vector<BrokenModel> broken;
     std::vector<std::string> unknown;  ///< names of the models at level default
+    std::vector<double> density_sums;  ///< density_sum() of its parts / mass, of each model that has both; ascending
 
     [[nodiscard]] double above_default() const;      ///< share of all models
     [[nodiscard]] double movable_agreement() const;  ///< share of the flagged
+    [[nodiscard]] double median_density_sum() const;
+    [[nodiscard]] double density_sums_within_factor_2() const;  ///< share of them
 };
 
 /// Resolves every model of the database anew. What the catalogue says of a model's moving is hidden for the comparison

@@ -36,22 +36,6 @@ Result<std::vector<AttributeEntry>> own_entries(const Entity& entity) {
     return entries;
 }
 
-// Lengths grow with s, areas with s², volumes with s³, moments of volume with s⁵.
-ModelFacts scaled(ModelFacts facts, double s) {
-    attributes::GeometryFacts& geometry = facts.geometry;
-    geometry.size *= s;
-    geometry.volume *= s * s * s;
-    geometry.center_of_volume *= s;
-    geometry.unit_inertia = geometry.unit_inertia * std::pow(s, 5);
-    geometry.hull_volume *= s * s * s;
-    geometry.hull_concavity *= s;
-    geometry.surface_area *= s * s;
-    geometry.fitted_dimensions *= s;
-    geometry.fitted_pose.position *= s;
-    geometry.fitted_error *= s;
-    return facts;
-}
-
 // Attributes that grow with a power of the size; the others are the material's.
 struct Power {
     const char* name;
@@ -246,7 +230,9 @@ Result<AttributeSet> EntityBodies::attributes(const Entity& entity) {
     Result<AttributeSet> automatic = automatic_attributes(entity);
     if (!automatic.ok() || own.value().empty()) return automatic;
     const Model& model = *find(std::get<ModelReference>(entity.geometry).key).value();
-    return lay_over(automatic.value(), own.value(), scaled(model.facts, entity.scale));
+    ModelFacts facts = model.facts;
+    facts.geometry = attributes::scaled(model.facts.geometry, entity.scale);
+    return lay_over(automatic.value(), own.value(), facts);
 }
 
 const attributes::Taxonomy* EntityBodies::taxonomy() const { return catalog_ ? &catalog_->taxonomy() : nullptr; }
@@ -304,8 +290,8 @@ Result<physics::ShapeDefinition> EntityBodies::shape(const Entity& entity, const
     const Result<const Model*> model = find(std::get<ModelReference>(entity.geometry).key);
     if (!model.ok()) return model.error();
     CatalogGeometry geometry(*catalog_, model.value()->summary.id, entity.scale);
-    Result<physics::ShapeDefinition> shape =
-        attributes::shape_from_attributes(attributes, scaled(model.value()->facts, entity.scale).geometry, geometry);
+    Result<physics::ShapeDefinition> shape = attributes::shape_from_attributes(
+        attributes, attributes::scaled(model.value()->facts.geometry, entity.scale), geometry);
     if (!shape.ok()) return at_field(shape.error(), "model");
     return shape;
 }

@@ -89,11 +89,19 @@ TEST(AttributeJson, FactsReadBackAlike) {
     facts.movable = false;
     facts.geometry.fitted_pose = {{0.1, 0.2, 0.3}, {0.5, 0.5, 0.5, 0.5}};
     facts.geometry.unit_inertia = {{1, 0.1, 1.0 / 3}, {0.1, 2, 0.3}, {1.0 / 3, 0.3, 3}};
+    geometry::SolidAndShell form;
+    form.shell = {6, {0, 0.5, 0}, {{1, 0.1, 0}, {0.1, 2, 0}, {0, 0, 3}}};
+    form.solid = {1.0 / 3, {0.25, 0.5, 0}, Mat3::diagonal({2, 2, 2})};
+    facts.geometry.parts = {{"oak", form}, {"", {}}};
     const auto read = facts_from_json(json::parse(to_json(facts).dump()));
     ASSERT_TRUE(read.ok()) << read.error().message();
     EXPECT_EQ(to_json(*read), to_json(facts));
     EXPECT_EQ(read->geometry.fitted_pose, facts.geometry.fitted_pose);
     EXPECT_EQ(read->geometry.unit_inertia, facts.geometry.unit_inertia);
+    ASSERT_EQ(read->geometry.parts.size(), 2u);
+    EXPECT_EQ(read->geometry.parts[0].material, "oak");
+    EXPECT_EQ(read->geometry.parts[0].form.shell.inertia, form.shell.inertia);
+    EXPECT_EQ(read->geometry.parts[0].form.solid.center, form.solid.center);
     EXPECT_EQ(read->movable, facts.movable);
     EXPECT_FALSE(facts_from_json(json::object()).value().movable.has_value());
 }

@@ -44,6 +44,8 @@ def main() -> int:
     hold("models", catalogue["models"], 800, 1e6)
     hold("category better than default", catalogue["above_default"], 0.97, 1)
     hold("static or movable as the catalogue says", catalogue["movable"]["agreement"], 0.92, 1)
+    hold("models with a density sum", catalogue["density_sum"]["models"], 800, 1e6)
+    hold("median density sum over mass", catalogue["density_sum"]["median_ratio"], 0.8, 1.25)
     hold("models that contradict themselves", len(catalogue["broken"]), 0, 0)
 
     # What the simulator makes of them.

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raise when preparing gives another result from the same file: the next import prepares all models again.
-constexpr std::uint64_t preparation_revision = 2;
+constexpr std::uint64_t preparation_revision = 3;
 
 void add_text(StateHash& hash, const std::string& text) {
     hash.add(std::uint64_t{text.size()});

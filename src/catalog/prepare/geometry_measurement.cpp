@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "catalog/prepare/join_meshes.h"
+#include "catalog/prepare/part_measurement.h"
 #include "geometry/convex_hull.h"
 #include "geometry/decomposition/decomposition.h"
 #include "geometry/fit.h"
@@ -16,16 +18,6 @@ constexpr double weld_share = 1e-6;       // of the largest extent, as the volum
 constexpr double least_thickness = 1e-3;  // m, of a flat model's box
 constexpr int most_hull_points = 256;
 constexpr int volume_cells = 16384;  // half of the usual: the grid is two thirds of an import's time
-
-geometry::TriangleMesh joined(const interchange::RawScene& scene) {
-    geometry::TriangleMesh mesh;
-    for (const auto& part : scene.meshes) {
-        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-        mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
-        for (const auto& t : part.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-    }
-    return mesh;
-}
 
 std::string words_for(geometry::VolumeMethod method) {
     switch (method) {
@@ -77,7 +69,7 @@ void add_parts(const geometry::TriangleMesh& mesh, Decompose decompose, Geometry
 }  // namespace
 
 GeometryMeasurement measure_geometry(const interchange::RawScene& scene, Decompose decompose) {
-    const geometry::TriangleMesh raw = joined(scene);
+    const geometry::TriangleMesh raw = joined(scene, [](const interchange::RawMesh&) { return true; });
     const Bounds bounds = geometry::bounds(raw);
     const Vec3 size = bounds.size();
     const geometry::TriangleMesh mesh = geometry::weld(raw, weld_share * std::max({size.x, size.y, size.z}));
@@ -100,6 +92,7 @@ GeometryMeasurement measure_geometry(const interchange::RawScene& scene, Decompo
     facts.volume_relative_error = estimate.relative_error;
     facts.center_of_volume = estimate.solid.center;
     facts.unit_inertia = estimate.solid.inertia;
+    facts.parts = measure_parts(scene);
 
     // Hull, or a box where the model is flat.
     facts.fitted_shape = "convex_hull";

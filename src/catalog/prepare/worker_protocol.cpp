@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "catalog/prepare/byte_stream.h"
+#include "catalog/prepare/part_measurement.h"
 #include "foundation/state_hash.h"
 
 namespace embody::catalog {
@@ -64,6 +65,37 @@ std::optional<bool> take_answer(ByteReader& in) {
     return value == 0 ? std::nullopt : std::optional(value == 2);
 }
 
+void put(ByteWriter& out, const geometry::MassProperties& p) {
+    out.number(p.volume);
+    put(out, p.center);
+    for (int c = 0; c < 3; ++c) put(out, p.inertia.column(c));
+}
+geometry::MassProperties take_mass_properties(ByteReader& in) {
+    geometry::MassProperties p;
+    p.volume = take_measure(in);
+    p.center = take_vector(in);
+    for (int c = 0; c < 3; ++c) p.inertia.column(c) = take_vector(in);
+    return p;
+}
+
+void put(ByteWriter& out, const std::vector<attributes::PartFacts>& parts) {
+    out.number(static_cast<std::uint64_t>(parts.size()));
+    for (const attributes::PartFacts& part : parts) {
+        out.text(std::string_view(part.material).substr(0, longest_text));
+        put(out, part.form.shell);
+        put(out, part.form.solid);
+    }
+}
+std::vector<attributes::PartFacts> take_parts(ByteReader& in) {
+    std::vector<attributes::PartFacts> parts(in.count(most_parts, sizeof(std::uint64_t)));
+    for (attributes::PartFacts& part : parts) {
+        part.material = in.text(longest_text);
+        part.form.shell = take_mass_properties(in);
+        part.form.solid = take_mass_properties(in);
+    }
+    return parts;
+}
+
 void put(ByteWriter& out, const attributes::GeometryFacts& facts) {
     put(out, facts.size);
     out.number(std::uint8_t(facts.closed));
@@ -81,6 +113,7 @@ void put(ByteWriter& out, const attributes::GeometryFacts& facts) {
     const Quat& q = facts.fitted_pose.rotation;
     for (const double part : {q.x, q.y, q.z, q.w}) out.number(part);
     out.number(facts.fitted_error);
+    put(out, facts.parts);
 }
 
 attributes::GeometryFacts take_geometry_facts(ByteReader& in) {
@@ -105,6 +138,7 @@ attributes::GeometryFacts take_geometry_facts(ByteReader& in) {
     for (double* part : {&q.x, &q.y, &q.z, &q.w}) *part = take_finite(in);
     if (std::fabs(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w - 1) > 1e-6) in.fail();
     facts.fitted_error = take_measure(in);
+    facts.parts = take_parts(in);
     return facts;
 }
 

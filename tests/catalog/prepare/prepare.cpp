@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "catalog/prepare/part_measurement.h"
 #include "catalog/prepare/placement.h"
 #include "catalog/prepare/surface_finish.h"
 #include "catalog/prepare/thumbnail.h"
@@ -32,6 +33,41 @@ interchange::RawScene square() {
                             .texture_coordinates = {},
                             .triangles = {{0, 2, 1}, {0, 3, 2}}});
     return scene;
+}
+
+TEST(MeasureParts, OneForEachMaterialTheLargestFirst) {
+    interchange::RawScene scene = square();
+    scene.materials[0].name = "glass";
+    scene.materials.push_back({.name = "steel"});
+    scene.materials.push_back({.name = "nowhere"});
+    for (const float x : {0.0f, 10.0f}) {  // two tetrahedra
+        scene.meshes.push_back({.name = "corner",
+                                .material = 1,
+                                .positions = {{x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0}, {x, 0, 1}},
+                                .normals = {},
+                                .texture_coordinates = {},
+                                .triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}});
+    }
+    const auto parts = measure_parts(scene);
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_EQ(parts[0].material, "steel");
+    EXPECT_NEAR(parts[0].form.solid.volume, 2.0 / 6, 1e-6);
+    EXPECT_NEAR(parts[0].form.shell.volume, 2 * (1.5 + std::sqrt(3.0) / 2), 1e-6);
+    EXPECT_NEAR(parts[0].form.solid.center.x, 5.25, 1e-5);
+    EXPECT_EQ(parts[1].material, "glass");
+    EXPECT_NEAR(parts[1].form.shell.volume, 2, 1e-6);
+    EXPECT_EQ(parts[1].form.solid.volume, 0);
+
+    // Very many materials: the rest is one without a name.
+    for (int i = 0; i < 100; ++i) {
+        scene.materials.push_back({.name = "m" + std::to_string(i)});
+        scene.meshes.push_back(scene.meshes[0]);
+        scene.meshes.back().material = 3 + i;
+    }
+    const auto many = measure_parts(scene);
+    ASSERT_EQ(many.size(), most_parts);
+    EXPECT_EQ(many.back().material, "");
+    EXPECT_NEAR(many.back().form.shell.volume, 2 * (102 - 31), 1e-4);
 }
 
 TEST(Placement, RefusesWhatHasNoExtentOrAnAbsurdOne) {

@@ -42,6 +42,10 @@ PreparedModel a_model() {
     model.facts.geometry.volume_method = "m";
     model.facts.geometry.fitted_shape = "box";
     model.facts.geometry.unit_inertia = Mat3::diagonal({1, 2, 3});
+    geometry::SolidAndShell form;
+    form.shell = {6, {0, 0.5, 0}, Mat3::diagonal({1, 1, 1})};
+    form.solid = {1, {0, 0.5, 0}, Mat3::diagonal({2, 2, 2})};
+    model.facts.geometry.parts = {{"oak", form}};
     model.content_hash = 42;
     model.vertices = 7;
     model.quality = 3;
@@ -87,6 +91,8 @@ TEST(WorkerProtocol, RefusesModelsThatCannotBe) {
     EXPECT_TRUE(refuses([](PreparedModel& m) { m.facts.geometry.volume = nan; }));
     EXPECT_TRUE(refuses([](PreparedModel& m) { m.facts.geometry.size.y = -1; }));
     EXPECT_TRUE(refuses([](PreparedModel& m) { m.facts.geometry.unit_inertia.y.z = nan; }));
+    EXPECT_TRUE(refuses([](PreparedModel& m) { m.facts.geometry.parts[0].form.shell.volume = nan; }));
+    EXPECT_TRUE(refuses([](PreparedModel& m) { m.facts.geometry.parts.resize(33); }));
     EXPECT_TRUE(refuses([](PreparedModel& m) { m.facts.geometry.fitted_shape = "donut"; }));
     EXPECT_TRUE(refuses([](PreparedModel& m) { m.facts.geometry.fitted_pose.rotation = {2, 0, 0, 0}; }));
     EXPECT_TRUE(refuses([](PreparedModel& m) { m.hull_points[0].x = std::numeric_limits<float>::infinity(); }));
