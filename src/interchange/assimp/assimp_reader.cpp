@@ -10,11 +10,13 @@
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <memory>
+#include <new>
 #include <sstream>
 
 #include "interchange/assimp/assimp_materials.h"
 #include "interchange/assimp/read_by_assimp.h"
 #include "interchange/assimp/source_files.h"
+#include "interchange/one_line.h"
 #include "interchange/read_model.h"
 
 namespace embody::interchange {
@@ -138,7 +140,9 @@ Result<RawScene> read_by_assimp(const FileSource& source, const std::string& pat
     importer.SetPropertyBool(AI_CONFIG_IMPORT_AC_EVAL_SUBDIVISION, false);
     const aiScene* read = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_RemoveComponent);
     if (read == nullptr || read->mRootNode == nullptr) {
-        const std::string reason = importer.GetErrorString();
+        // assimp catches what runs out of memory, and says no more than its name.
+        const std::string reason = one_line(importer.GetErrorString());
+        if (reason == "std::bad_alloc") throw std::bad_alloc();
         return Error{where, reason.empty() ? "is no model file of its kind" : reason};
     }
 

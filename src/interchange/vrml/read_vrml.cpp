@@ -38,6 +38,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "interchange/one_line.h"
 #include "interchange/screen_color.h"
 #include "interchange/texture_reader.h"
 
@@ -53,11 +54,7 @@ constexpr std::size_t deepest = 250;  // nodes in nodes; Coin reads and walks th
 std::string first_complaint;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 void note_complaint(const SoError* error, void*) {
-    if (!first_complaint.empty()) return;
-    // "Coin read error: … \n\tOccurred at line 5 in <buffer>" as one line.
-    first_complaint = error->getDebugString().getString();
-    std::ranges::replace(first_complaint, '\n', ' ');
-    std::erase(first_complaint, '\t');
+    if (first_complaint.empty()) first_complaint = one_line(error->getDebugString().getString());
 }
 
 void leave_inline_out(const SbString&, void*, SoVRMLInline*) {}

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace embody::interchange {
+
+/// What a library said of a file, fit for one line of an error: it may quote the file, line ends, broken UTF-8 and all.
+/// At most 200 characters, ASCII.
+inline std::string one_line(std::string_view text) {
+    constexpr std::size_t longest = 200;
+    std::string line;
+    for (const char c : text.substr(0, longest)) {
+        if (c > ' ' && c <= '~') {
+            line += c;
+        } else if (!line.empty() && line.back() != ' ') {
+            line += ' ';
+        }
+    }
+    return text.size() > longest ? line + " ..." : line;
+}
+
+}  // namespace embody::interchange
