@@ -21,6 +21,8 @@ std::string range_text(std::pair<double, double> range) {
 }  // namespace
 
 Result<json> read_json(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored)) return Error{file.string(), "is a folder", "name a file"};
     std::ifstream stream(file, std::ios::binary);
     if (!stream) return Error{file.string(), "cannot be opened"};
     try {

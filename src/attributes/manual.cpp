@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "attributes/assemble.h"
+#include "attributes/classify.h"
 #include "attributes/form.h"
 #include "attributes/registry.h"
 #include "attributes/resolver.h"
@@ -101,8 +102,12 @@ AttributeSet lay_over(const AttributeSet& automatic, const std::vector<Attribute
 // A person's material brings its density; the amount of material stays.
 void update_material(AttributeSet& set, const Taxonomy& taxonomy) {
     if (!is_manual(set, "surface_material")) return;
+    AttributeEntry named = *set.find("surface_material");
+    auto known = known_value(taxonomy, named.name, std::move(named.value));
+    if (!known) return;
+    named.value = std::move(*known);
+    set.put(std::move(named));
     const MaterialData* material = taxonomy.data().material(set.word("surface_material", ""));
-    if (material == nullptr) return;
     const double mass_per_density = set.number("mass", 1) / set.number("density", 1000);
     put_surface(set, *material, "manual surface material", AttributeLevel::model);
     if (is_manual(set, "mass") || is_manual(set, "density") || is_manual(set, "bulk_density")) return;
@@ -133,6 +138,17 @@ AttributeSet with_manual(const Taxonomy* taxonomy, const AttributeSet& automatic
 }
 
 }  // namespace
+
+Result<AttributeValue> known_value(const Taxonomy& taxonomy, std::string_view name, AttributeValue value) {
+    const auto* word = name == "surface_material" ? std::get_if<std::string>(&value) : nullptr;
+    if (word == nullptr || taxonomy.data().material(*word) != nullptr) return value;
+    if (const MaterialData* meant = material_of_part(taxonomy.data(), *word)) return AttributeValue(meant->name);
+    std::string names;
+    for (const MaterialData& material : taxonomy.data().materials) {
+        names += (names.empty() ? "" : ", ") + material.name;
+    }
+    return Error{std::string(name), "must be one of " + names + ", got \"" + *word + "\""};
+}
 
 AttributeSet with_manual(const AttributeSet& automatic, const std::vector<AttributeEntry>& manual,
                          const ModelFacts& facts) {

@@ -68,7 +68,8 @@ Error unknown_name(std::string_view name) {
 std::string range_text(const AttributeDescription& description) {
     const std::string unit = description.unit == "1" || description.unit.empty() ? "" : " " + description.unit;
     if (description.low && description.high) {
-        return "must be " + number_text(*description.low) + " to " + number_text(*description.high) + unit;
+        return (description.whole ? "must be a whole number from " : "must be ") + number_text(*description.low) +
+               " to " + number_text(*description.high) + unit;
     }
     if (description.low) return "must be at least " + number_text(*description.low) + unit;
     return "must be a number";
@@ -82,7 +83,7 @@ bool in_range(const AttributeDescription& description, double value) {
 }
 
 Result<void> validate_number(const AttributeDescription& description, double value) {
-    if (in_range(description, value)) return {};
+    if (in_range(description, value) && !(description.whole && value != std::floor(value))) return {};
     return Error{description.name, range_text(description) + ", got " + number_text(value)};
 }
 

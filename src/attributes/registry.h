@@ -24,6 +24,7 @@ struct AttributeDescription {
     std::string unit;                  ///< SI, "1" for a pure number, "" for words
     AttributeValue standard;           ///< default value
     std::optional<double> low, high;   ///< valid range of a number or of each component
+    bool whole = false;                ///< a count or a set of bits: a number without fraction
     std::vector<std::string> choices;  ///< of a word; empty: any word
     std::string applies_to;            ///< letters of the physical kinds: S R A V C P F G
     std::string label;                 ///< for people, e.g. "Sliding friction"

@@ -41,6 +41,10 @@ struct Group {
         if (high < infinity) row.high = high;
         rows.push_back(std::move(row));
     }
+    void whole(const Text& text, double standard, double low, double high) const {
+        number(text, "1", standard, low, high);
+        rows.back().whole = true;
+    }
     void word(const Text& text, const char* standard, std::vector<std::string> choices) const {
         AttributeDescription row = start(text, ValueType::word, "", std::string(standard));
         row.choices = std::move(choices);
@@ -123,8 +127,7 @@ void add_shape(Rows& rows) {
          "What collides: a primitive that fits, the convex hull, several hulls for a hollow thing (decomposition), or "
          "the triangles of a static thing."},
         "convex_hull", {"box", "sphere", "capsule", "cylinder", "convex_hull", "decomposition", "trimesh"});
-    group.number({"max_hulls", "SRA", "Convex parts at most", "Limit on the hulls of a decomposition."}, "1", 16, 1,
-                 256);
+    group.whole({"max_hulls", "SRA", "Convex parts at most", "Limit on the hulls of a decomposition."}, 16, 1, 256);
     group.number({"hull_error", "SRA", "Decomposition error",
                   "Depth of hollows that the hulls of a decomposition may fill, where the limit on them allows."},
                  "m", usual_hull_error, 1e-4, 1);
@@ -171,10 +174,10 @@ void add_motion(Rows& rows) {
     group.truth({"kinematic", "RA", "Moves by command", "Moves as its velocity says; nothing pushes it."}, false);
     group.truth({"continuous", "RA", "Continuous collision", "Swept against everything: for small fast things."},
                 false);
-    group.number({"collision_group", all_kinds, "Collision group", "Bits of the groups that it belongs to."}, "1", 1, 0,
-                 4294967295.0);
-    group.number({"collision_mask", all_kinds, "Collides with", "Bits of the groups that it collides with."}, "1",
-                 4294967295.0, 0, 4294967295.0);
+    group.whole({"collision_group", all_kinds, "Collision group", "Bits of the groups that it belongs to."}, 1, 0,
+                4294967295.0);
+    group.whole({"collision_mask", all_kinds, "Collides with", "Bits of the groups that it collides with."},
+                4294967295.0, 0, 4294967295.0);
     const Group later{rows, "motion", false};
     later.number({"drag_coefficient", "RAC", "Drag coefficient", "Of the drag of the air."}, "1", 1, 0, 3);
     later.number({"drag_area", "RAC", "Drag area", "Area that meets the air."}, "m²", 1, 0, 1e8);

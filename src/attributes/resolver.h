@@ -56,6 +56,10 @@ std::optional<double> suggested_scale(const Taxonomy& taxonomy, const ModelFacts
 /// The first usual unit (mm, cm, inch, foot …) that brings the largest extent into its usual range, m.
 std::optional<double> likely_unit(double largest, double usual_low, double usual_high);
 
+/// A value that a person gives, in the taxonomy's terms: a surface_material is a material of materials.json, named so
+/// or by one of its words ("oak" is wood); the error names them all. Other values are passed through, valid or not.
+Result<AttributeValue> known_value(const Taxonomy& taxonomy, std::string_view name, AttributeValue value);
+
 /// `automatic` with the manual entries laid over it and what depends on them computed again (mass from density, …).
 /// Entries that validate() refuses are left out; contradictions between manual entries stay, and check() names them.
 /// With a taxonomy, a manual surface_material brings that material's density, friction and bounciness.

@@ -238,7 +238,7 @@ Result<attributes::AttributeSet> Catalog::attributes(std::int64_t id) const {
     auto known = state_->known(id);
     if (!known) return known.error();
     if (known->manual.empty()) return std::move(known->automatic);
-    return attributes::with_manual(known->automatic, known->manual, known->facts);
+    return attributes::with_manual(*state_->taxonomy, known->automatic, known->manual, known->facts);
 }
 
 namespace {
@@ -282,8 +282,15 @@ void Catalog::prepare_shape(const ChangeReport& report) const {
                        set->number("hull_error", usual.hull_error));
 }
 
-Result<ChangeReport> Catalog::change_attributes(const ModelChoice& models, const std::vector<AttributeChange>& changes,
+Result<ChangeReport> Catalog::change_attributes(const ModelChoice& models, const std::vector<AttributeChange>& asked,
                                                 const ChangeOptions& options) {
+    std::vector<AttributeChange> changes = asked;
+    for (AttributeChange& change : changes) {
+        if (!change.value) continue;
+        auto known = attributes::known_value(*state_->taxonomy, change.name, std::move(*change.value));
+        if (!known) return known.error();
+        change.value = std::move(*known);
+    }
     const auto find_all = [&](database::ModelTable& table) -> Result<std::vector<database::ModelRow>> {
         if (const auto* query = std::get_if<SearchQuery>(&models)) {
             auto found = table.search({.words = query->words,

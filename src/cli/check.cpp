@@ -6,14 +6,20 @@
 #include "cli/commands.h"
 #include "cli/locations.h"
 #include "cli/output.h"
+#include "scene/entity_body.h"
 #include "scene/scene_file.h"
 #include "scene/simulation.h"
 
 namespace embody::cli {
 namespace {
 
+struct Checked {
+    std::size_t entities = 0;
+    std::vector<Error> contradictions;  ///< between attributes of an entity that a person set; the scene runs with them
+};
+
 /// Reads the file and brings it to life, as playing it would.
-Result<std::size_t> check_scene(const std::filesystem::path& file, catalog::Catalog* catalog) {
+Result<Checked> check_scene(const std::filesystem::path& file, catalog::Catalog* catalog) {
     auto document = scene::load_document(file);
     if (!document) return document.error();
     auto simulation = scene::Simulation::create(*document, catalog);
@@ -22,7 +28,26 @@ Result<std::size_t> check_scene(const std::filesystem::path& file, catalog::Cata
         error.where = file.string() + ": " + error.where;
         return error;
     }
-    return document->entities.size();
+    Checked checked{document->entities.size(), {}};
+    scene::EntityBodies bodies(catalog);
+    for (std::size_t i = 0; i < document->entities.size(); ++i) {
+        const auto found = bodies.contradictions(document->entities[i]);
+        if (!found) return found.error();
+        const std::string where = file.string() + ": entities[" + std::to_string(i) + "].attributes.";
+        for (const attributes::Issue& issue : *found) {
+            checked.contradictions.push_back(
+                {where + issue.attribute, issue.why, "change or reset one of these values"});
+        }
+    }
+    return checked;
+}
+
+void print_row(const nlohmann::json& row, std::size_t entities) {
+    if (row.contains("error")) return fmt::print("{}\n", row["error"].get<std::string>());
+    for (const auto& contradiction : row["contradictions"]) fmt::print("{}\n", contradiction.get<std::string>());
+    const std::string file = row["file"];
+    if (row["right"]) return fmt::print("{}: right, {} entities\n", file, entities);
+    fmt::print("{}: can be simulated, but its attributes contradict each other\n", file);
 }
 
 }  // namespace
@@ -33,16 +58,17 @@ int run_check(const CheckArguments& arguments) {
     nlohmann::json rows = nlohmann::json::array();
     bool all_right = true;
     for (const std::filesystem::path& file : arguments.scenes) {
-        const auto entities = check_scene(file, catalog->get());
-        all_right = all_right && entities.ok();
-        nlohmann::json row = {{"file", file.string()}, {"right", entities.ok()}};
-        if (!entities) row["error"] = entities.error().message();
+        const auto checked = check_scene(file, catalog->get());
+        const bool right = checked.ok() && checked->contradictions.empty();
+        all_right = all_right && right;
+        nlohmann::json row = {{"file", file.string()}, {"right", right}, {"contradictions", nlohmann::json::array()}};
+        if (!checked) {
+            row["error"] = checked.error().message();
+        } else {
+            for (const Error& one : checked->contradictions) row["contradictions"].push_back(one.message());
+        }
+        if (!arguments.json) print_row(row, checked ? checked->entities : 0);
         rows.push_back(std::move(row));
-        if (arguments.json) continue;
-        if (entities)
-            fmt::print("{}: right, {} entities\n", file.string(), *entities);
-        else
-            fmt::print("{}\n", entities.error().message());
     }
     if (arguments.json) print_json({{"scenes", std::move(rows)}});
     return all_right ? exit_ok : exit_failed;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene/entity_body.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -233,6 +234,25 @@ Result<AttributeSet> EntityBodies::attributes(const Entity& entity) {
     ModelFacts facts = model.facts;
     facts.geometry = attributes::scaled(model.facts.geometry, entity.scale);
     return lay_over(automatic.value(), own.value(), facts);
+}
+
+Result<std::vector<attributes::Issue>> EntityBodies::contradictions(const Entity& entity) {
+    Result<AttributeSet> acting = attributes(entity);
+    if (!acting.ok()) return acting.error();
+    const bool is_changed = std::ranges::any_of(
+        acting.value().entries(), [](const AttributeEntry& entry) { return entry.level == AttributeLevel::manual; });
+    // What nobody set is as it was resolved; of primitives the physics knows the form itself.
+    const auto* model = std::get_if<ModelReference>(&entity.geometry);
+    if (!is_changed || !model) return std::vector<attributes::Issue>{};
+    ModelFacts facts = find(model->key).value()->facts;
+    facts.geometry = attributes::scaled(facts.geometry, entity.scale);
+    std::vector<attributes::Issue> issues = attributes::check(acting.value(), facts);
+    const AttributeEntry* material = acting.value().find("surface_material");
+    if (material) {
+        const auto known = attributes::known_value(*taxonomy(), material->name, material->value);
+        if (!known) issues.push_back({material->name, known.error().why});
+    }
+    return issues;
 }
 
 const attributes::Taxonomy* EntityBodies::taxonomy() const { return catalog_ ? &catalog_->taxonomy() : nullptr; }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "attributes/attribute.h"
+#include "attributes/check.h"
 #include "attributes/model_facts.h"
 #include "catalog/catalog.h"
 #include "foundation/result.h"
@@ -24,6 +25,8 @@ public:
     /// The attributes as they act: the model's or the primitive's, with the entity's own over them. Errors name the
     /// field of the entity.
     Result<attributes::AttributeSet> attributes(const Entity& entity);
+    /// What of the attributes as they act contradicts each other: a person can set what cannot be.
+    Result<std::vector<attributes::Issue>> contradictions(const Entity& entity);
     /// What they would be without the entity's own.
     Result<attributes::AttributeSet> automatic_attributes(const Entity& entity);
     /// Everything but the shape's handle. What is only drawn becomes a disabled static body.

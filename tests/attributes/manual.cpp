@@ -22,6 +22,23 @@ struct Case {
     }
 };
 
+TEST(KnownValue, AMaterialIsNamedByItsWordsOrRefused) {
+    const auto known = [](const char* name, AttributeValue value) {
+        return known_value(shipped_taxonomy(), name, std::move(value));
+    };
+    EXPECT_EQ(known("surface_material", std::string("steel")).value(), AttributeValue(std::string("steel")));
+    EXPECT_EQ(known("surface_material", std::string("oak")).value(), AttributeValue(std::string("wood")));
+    const auto refused = known("surface_material", std::string("unobtainium"));
+    ASSERT_FALSE(refused.ok());
+    EXPECT_NE(refused.error().message().find("steel"), std::string::npos);
+    EXPECT_EQ(known("category", std::string("unobtainium")).value(), AttributeValue(std::string("unobtainium")));
+    EXPECT_EQ(known("mass", 2.0).value(), AttributeValue(2.0));
+    const Case crate;
+    const AttributeSet set = crate.with({manual("surface_material", std::string("mahogany"))});
+    EXPECT_EQ(set.word("surface_material", ""), "wood");
+    EXPECT_EQ(set.find("surface_material")->level, AttributeLevel::manual);
+}
+
 TEST(WithManual, LeavesOutWhatValidateRefuses) {
     const Case crate;
     const AttributeSet set =

@@ -35,6 +35,9 @@ TEST(Validate, SaysTheRange) {
 }
 
 TEST(Validate, RefusesNumbersThatAreNone) {
+    EXPECT_TRUE(validate("max_hulls", 3.0).ok());
+    EXPECT_NE(validate("max_hulls", 2.5).error().message().find("a whole number from 1 to 256"), std::string::npos);
+    EXPECT_FALSE(validate("collision_mask", 0.5).ok());
     EXPECT_FALSE(validate("mass", nan).ok());
     EXPECT_FALSE(validate("mass", infinity).ok());
     EXPECT_FALSE(validate("break_impulse", nan).ok());

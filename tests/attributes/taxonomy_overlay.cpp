@@ -57,6 +57,13 @@ TEST_F(TaxonomyOverlayTest, RefusesByFileEntryAndField) {
     }
 }
 
+TEST_F(TaxonomyOverlayTest, AFolderNamedLikeAFileIsNamed) {
+    std::filesystem::create_directory(folder_ / "folder.json");
+    const auto loaded = load();
+    ASSERT_FALSE(loaded);
+    EXPECT_NE(loaded.error().message().find("folder.json"), std::string::npos);
+}
+
 TEST_F(TaxonomyOverlayTest, ChangesOnlyTheGivenFieldsAndSaysWhoseTheyAre) {
     write(R"({"name": "chair", "words": ["zorbseat"], "mass": [20, 30, 40], "material": "steel",
               "source": "weighed in my shop"})");

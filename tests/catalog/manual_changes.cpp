@@ -73,6 +73,21 @@ TEST_F(ManualChangesTest, RefusesWhatIsWrongBeforeAnythingIsDone) {
     EXPECT_EQ(manual("chair a"), std::nullopt);
 }
 
+TEST_F(ManualChangesTest, AMaterialBringsItsDensityAndFrictionAndMustBeKnown) {
+    const auto id = catalog_->model("chair a")->id;
+    const auto density = [&] { return catalog_->attributes(id)->number("density", 0); };
+    const double before = density();
+    ASSERT_TRUE(catalog_->set_attribute(id, "surface_material", std::string("polished steel")));
+    const auto steel = catalog_->attributes(id);
+    EXPECT_EQ(steel->word("surface_material", ""), "steel");
+    EXPECT_NEAR(steel->number("density", 0), 7850, 100);
+    EXPECT_NE(density(), before);
+    EXPECT_FALSE(catalog_->set_attribute(id, "surface_material", std::string("unobtainium")));
+    EXPECT_EQ(catalog_->attributes(id)->word("surface_material", ""), "steel");
+    ASSERT_TRUE(catalog_->reset_attribute(id, "surface_material"));
+    EXPECT_EQ(density(), before);
+}
+
 TEST_F(ManualChangesTest, AnAttributeThatDoesNotConcernAModelStopsAllOrIsSkipped) {
     const std::vector<AttributeChange> softness = {{"youngs_modulus", 1e5}};
     const auto refused = catalog_->change_attributes(SearchQuery{}, softness);

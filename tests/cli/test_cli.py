@@ -104,6 +104,30 @@ class Database(unittest.TestCase):
         self.assertIn("notes.txt", result.stderr)
         self.assertIn("dear to me", alien.read_text())
 
+    def test_a_material_is_known_and_contradictions_are_told(self):
+        run("import", "--database", self.database, str(self.path / "models"))
+        model = json.loads(run("search", "--database", self.database, "--json", "chair").stdout)["models"][0]
+        one = ("--database", self.database, str(model["id"]))
+        refused = run("set", *one, "surface_material=unobtainium")
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("steel", refused.stderr)
+        self.assertEqual(run("set", *one, "max_hulls=2.5").returncode, 1)
+        self.assertEqual(run("set", *one, "surface_material=oak").returncode, 0)
+        shown = {a["name"]: a for a in json.loads(run("show", *one, "--json").stdout)["attributes"]}
+        self.assertEqual(shown["surface_material"]["value"], "wood")
+        self.assertIn("manual surface material", shown["density"]["source"])
+
+        scene = self.path / "scene.json"
+        entity = {"index": 1, "name": "chair", "model": model["key"]}
+        scene.write_text(json.dumps({"embody_scene": 1, "entities": [entity]}))
+        self.assertEqual(run("check", "--database", self.database, str(scene)).returncode, 0)
+        entity["attributes"] = {"friction_static": 0.1, "friction_dynamic": 0.9, "surface_material": "unobtainium"}
+        scene.write_text(json.dumps({"embody_scene": 1, "entities": [entity]}))
+        checked = run("check", "--database", self.database, str(scene))
+        self.assertEqual(checked.returncode, 1)
+        for name in ("friction_dynamic", "surface_material"):
+            self.assertIn("entities[0].attributes." + name, checked.stdout)
+
     def test_import_search_show_set_reset(self):
         broken = self.path / "models" / "broken.glb"
         broken.write_bytes(b"glTF but not really")

@@ -5,6 +5,7 @@
 
 #include "attributes/attribute_json.h"
 #include "attributes/registry.h"
+#include "attributes/resolver.h"
 #include "scene/commands/commands.h"
 #include "scene/json/parts.h"
 
@@ -75,6 +76,9 @@ Result<json> set_attribute(SessionState& state, const json& params) {
     reader.text("merge", merge);
     if (!reader.finish()) return *error;
     Result<attributes::AttributeValue> read = attribute_from_json(name, *value, "value");
+    if (read.ok() && state.catalog) {
+        read = attributes::known_value(state.catalog->taxonomy(), name, std::move(read).value());
+    }
     if (!read.ok()) return read.error();
     return change_attribute(state, indices, name, read.value(), merge);
 }
