@@ -136,6 +136,22 @@ TEST_F(ReadVrml, FollowsNoOtherFiles) {
     }
 }
 
+TEST_F(ReadVrml, SurfacesThatAreTooManyShareOneWithTextureOrWithout) {
+    const auto png = encode_png({1, 1, {255, 0, 0, 255}});
+    scratch_.write("wall.png", {png.begin(), png.end()});
+    for (const int remainder : {0, 1}) {
+        std::string nodes;
+        for (int i = 0; i < 1005; ++i) {
+            const char* texture = i % 2 == remainder ? " texture ImageTexture { url \"wall.png\" }" : "";
+            nodes += "Shape { appearance Appearance { material Material { diffuseColor 0 0 " +
+                     std::to_string(i / 2000.0) + " }" + texture + " } geometry Box { } }\n";
+        }
+        const auto scene = read(nodes);
+        ASSERT_TRUE(scene) << scene.error().message();
+        EXPECT_EQ(triangles_of(*scene), 1005u * 12);
+    }
+}
+
 TEST_F(ReadVrml, EndsWithWhatHasNoEnd) {
     // A node inside of itself; nodes in nodes; one node used 2^40 times.
     EXPECT_FALSE(read("DEF A Group { children [ " + box + " USE A ] }"));

@@ -304,7 +304,8 @@ private:
         if (++triangles_ > most_triangles) return fail("triangles", "are more than " + std::to_string(most_triangles));
         take_transform(action.getModelMatrix());
         RawMesh& mesh = mesh_of(action, corners[0]->getMaterialIndex());
-        const bool textured = !texture_.empty();
+        // The last mesh may have taken in what has another surface.
+        const bool textured = scene_.materials[static_cast<std::size_t>(mesh.material)].base_color_image >= 0;
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
         for (const SoPrimitiveVertex* corner : corners) {
             SbVec3f p, n;
