@@ -99,6 +99,7 @@ TEST_F(CatalogChangesTest, WhatIsWrongIsRefusedByFieldAndChangesNothing) {
     EXPECT_EQ(error_of("catalog.undo", {{"batch", 0}}).find("batch"), 0u);
     EXPECT_NE(error_of("catalog.undo", {{"batch", 77}}).find("77"), std::string::npos);
     EXPECT_EQ(error_of("catalog.history", {{"limit", 0}}).find("limit"), 0u);
+    EXPECT_EQ(error_of("catalog.history", {{"limit", 1000}, {"changes", 1000}}).find("limit"), 0u);
     EXPECT_EQ(error_of("client.set_name", {{"name", "A\nB"}}).find("name"), 0u);
     EXPECT_EQ(error_of("client.set_name", {{"name", std::string(161, 'x')}}).find("name"), 0u);
     EXPECT_TRUE(run("catalog.history").at("batches").empty());

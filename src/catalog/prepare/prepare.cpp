@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "catalog/prepare/prepare.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "catalog/prepare/geometry_measurement.h"
 #include "catalog/prepare/placement.h"
@@ -22,11 +27,29 @@ std::uint64_t hash_of(const std::vector<std::uint8_t>& bytes) {
     return hash.value();
 }
 
-/// The last two folders of the model's path: often the only words that say what it is.
+/// Folders that say where files lie, not what they are: a model on the desktop is no computer. Of the systems' own,
+/// also as German and French systems call them, those that are things.
+bool is_only_a_place(const std::filesystem::path& folder) {
+    constexpr auto places = std::to_array<std::string_view>(
+        {"desktop", "schreibtisch", "bureau",    "documents", "dokumente",   "downloads", "pictures",
+         "bilder",  "images",       "music",     "musik",     "videos",      "public",    "templates",
+         "media",   "temp",         "tmp",       "home",      "users",       "root",      "new folder",
+         "models",  "model",        "meshes",    "mesh",      "scenes",      "scene",     "objects",
+         "assets",  "files",        "3d models", "stuff",     "neuer ordner"});
+    std::string name = folder.filename().string();
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::filesystem::path above = folder.parent_path();
+    return std::ranges::find(places, name) != places.end() || above == "/home" || above == "/Users";
+}
+
+/// The last two folders of the model's path, as far as they say what it is: often the only words that do.
 std::string last_folders(const ImportItem& item) {
     const std::filesystem::path folder = std::filesystem::path(item.path).parent_path();
-    const std::filesystem::path above = folder.parent_path().filename();
-    return (above / folder.filename()).generic_string();
+    std::filesystem::path said;
+    for (const auto& one : {folder.parent_path(), folder}) {
+        if (!is_only_a_place(one)) said /= one.filename();
+    }
+    return said.generic_string();
 }
 
 Result<PreparedModel> prepare_from(const interchange::FileSource& source, const std::string& path,

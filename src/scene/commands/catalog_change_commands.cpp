@@ -23,6 +23,8 @@ namespace {
 
 constexpr std::size_t most_keys = 10'000;
 constexpr std::size_t most_name_bytes = 160;
+/// A history that is asked for holds at most so many changes: some megabytes.
+constexpr std::size_t most_told_changes = 20'000;
 /// A preview names the first; whoever wants all asks the history.
 constexpr std::size_t most_listed = 20;
 
@@ -224,6 +226,11 @@ Result<json> history(SessionState& state, const json& params) {
     reader.whole("limit", query.limit, 1, 1000);
     reader.whole("changes", query.changes, 1, 1000);
     if (!reader.finish()) return *error;
+    const auto told = static_cast<std::size_t>(query.limit) * static_cast<std::size_t>(query.changes);
+    if (told > most_told_changes) {
+        return Error{"limit", "times changes must be at most " + std::to_string(most_told_changes),
+                     "ask for the older ones with before"};
+    }
     query.before = before;
     const Result<Catalog*> catalog = open_catalog(state);
     if (!catalog.ok()) return catalog.error();

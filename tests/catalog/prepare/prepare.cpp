@@ -153,6 +153,19 @@ TEST(Prepare, SaysWhatIsWrongAndWhere) {
     EXPECT_FALSE(preparation.prepare({}));
 }
 
+TEST(Prepare, FoldersThatAreOnlyPlacesSayNothing) {
+    const ScratchFolder scratch;
+    Preparation preparation;
+    for (const auto& [file, folder] :
+         std::vector<std::pair<std::string, std::string>>{{"Chairs/Desktop/a.obj", "Chairs"},
+                                                          {"temp/Kitchen/a.obj", "Kitchen"},
+                                                          {"New Folder/Documents/a.obj", ""}}) {
+        const auto prepared = preparation.prepare({.path = scratch.write(file, cube_obj()).string()});
+        ASSERT_TRUE(prepared) << prepared.error().message();
+        EXPECT_EQ(prepared->facts.folder, folder);
+    }
+}
+
 TEST(Prepare, MeasuresACubeExactly) {
     const ScratchFolder scratch;
     Preparation preparation;
