@@ -16,8 +16,9 @@ namespace {
 
 // Of a word of the registry; its default where a file left it out.
 physics::CombineRule combine_rule(const std::string& name) {
-    constexpr std::array<std::pair<std::string_view, physics::CombineRule>, 6> rules{
+    constexpr std::array<std::pair<std::string_view, physics::CombineRule>, 7> rules{
         {{"pair_table", physics::CombineRule::pair_table},
+         {"own", physics::CombineRule::own},
          {"average", physics::CombineRule::average},
          {"geometric_mean", physics::CombineRule::geometric_mean},
          {"minimum", physics::CombineRule::minimum},
@@ -48,7 +49,8 @@ physics::Material material_from(const AttributeSet& set) {
 }
 
 // The table speaks for things whose numbers are their material's. A number of a thing's own, from its category or a
-// person, would be lost in it: there the rules that stand in for the table hold.
+// person, would be lost in it: there friction is the geometric mean with the other's, and a bounciness of its own
+// counts.
 void put_surface_id(const AttributeSet& set, const Taxonomy& taxonomy, physics::Material& material) {
     const std::string name = set.word("surface_material", "");
     material.surface = taxonomy.surfaces().surface_of(name);
@@ -60,7 +62,7 @@ void put_surface_id(const AttributeSet& set, const Taxonomy& taxonomy, physics::
         material.friction_combine = physics::CombineRule::geometric_mean;
     if (material.restitution != usual->restitution.typical &&
         material.restitution_combine == physics::CombineRule::pair_table)
-        material.restitution_combine = physics::CombineRule::maximum;
+        material.restitution_combine = physics::CombineRule::own;
 }
 
 physics::MassDefinition mass_from(const AttributeSet& set) {

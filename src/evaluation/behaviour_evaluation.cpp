@@ -75,9 +75,9 @@ OnFloor on_floor(const attributes::Taxonomy& taxonomy, const AttributeSet& model
     result.friction = pair != nullptr && is_materials(friction)
                           ? pair->friction_dynamic.typical
                           : std::sqrt(model.number("friction_dynamic", 0) * floor.number("friction_dynamic", 0));
-    result.restitution = pair != nullptr && is_materials(bounce)
-                             ? pair->restitution.typical
-                             : std::max(model.number("restitution", 0), floor.number("restitution", 0));
+    result.restitution = !is_materials(bounce) ? model.number("restitution", 0)
+                         : pair != nullptr     ? pair->restitution.typical
+                                           : std::max(model.number("restitution", 0), floor.number("restitution", 0));
     return result;
 }
 

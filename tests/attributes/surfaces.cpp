@@ -94,6 +94,12 @@ TEST(Surfaces, OwnNumbersGoBeforeTheTable) {
     EXPECT_EQ(own->material.friction_dynamic, 0.11);
     EXPECT_EQ(own->material.restitution_combine, physics::CombineRule::pair_table);
 
+    // A bounciness of its own, which the category says.
+    const AttributeSet ball = resolve(shipped_taxonomy(), named("medicine ball", {0.25, 0.25, 0.25}));
+    const auto dead = body_from_attributes(ball, &shipped_taxonomy());
+    EXPECT_EQ(dead->material.restitution_combine, physics::CombineRule::own);
+    EXPECT_EQ(dead->material.restitution, ball.number("restitution", 0));
+
     // A person's material brings that material's place in the table.
     set = with_manual(shipped_taxonomy(), resolve(shipped_taxonomy(), named("Wooden chair")),
                       {{"surface_material", std::string("steel"), {}, {}, "", AttributeLevel::manual}},

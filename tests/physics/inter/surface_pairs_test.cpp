@@ -71,6 +71,16 @@ TEST(SurfacePairs, TheTableSpeaksWhereBothLeaveItToIt) {
     EXPECT_EQ(combine(of(wood), own, pairs).friction_dynamic, 0.8);
     EXPECT_EQ(combine(of(wood), own, pairs).restitution, 0.2);
     EXPECT_EQ(combine(own, of(wood), pairs).friction_dynamic, combine(of(wood), own, pairs).friction_dynamic);
+
+    // A number of one's own counts alone; of two, their geometric mean.
+    Material dead = of(wood), lively = of(ice);
+    dead.restitution_combine = lively.restitution_combine = CombineRule::own;
+    dead.restitution = 0.1;
+    lively.restitution = 0.9;
+    EXPECT_EQ(combine(dead, of(wood), pairs).restitution, 0.1);
+    EXPECT_EQ(combine(of(wood), dead, pairs).restitution, 0.1);
+    EXPECT_EQ(combine(of(ice), lively, pairs).restitution, 0.9);
+    EXPECT_DOUBLE_EQ(combine(dead, lively, pairs).restitution, 0.3);
 }
 
 // A box that slides on a floor stops after v² / (2 μ g), with the μ of the pair.

@@ -18,10 +18,11 @@ Result<void> check_rule(const char* field, CombineRule rule) {
 double combine(CombineRule rule, double a, double b) {
     switch (rule) {
         case CombineRule::pair_table:  // replaced before by what stands in for it
-        case CombineRule::average:
-            return (a + b) / 2;
+        case CombineRule::own:         // likewise, of one body; here of both
         case CombineRule::geometric_mean:
             return std::sqrt(a * b);
+        case CombineRule::average:
+            return (a + b) / 2;
         case CombineRule::minimum:
             return std::min(a, b);
         case CombineRule::maximum:
@@ -30,6 +31,18 @@ double combine(CombineRule rule, double a, double b) {
             return a * b;
     }
     return 0;
+}
+
+/// A coefficient of each body with the body's own rule.
+struct Side {
+    CombineRule rule;
+    double value;
+};
+
+double combine(CombineRule rule, Side a, Side b) {
+    const bool only_one = (a.rule == CombineRule::own) != (b.rule == CombineRule::own);
+    if (rule == CombineRule::own && only_one) return a.rule == CombineRule::own ? a.value : b.value;
+    return combine(rule, a.value, b.value);
 }
 
 }  // namespace
@@ -59,8 +72,11 @@ Material combine(const Material& a, const Material& b, const SurfacePairs& pairs
     // Friction: of the table where both leave it to it, else by rule.
     const bool by_table = pair.friction_combine == CombineRule::pair_table;
     const CombineRule friction = by_table ? CombineRule::geometric_mean : pair.friction_combine;
-    pair.friction_static = combine(friction, a.friction_static, b.friction_static);
-    pair.friction_dynamic = combine(friction, a.friction_dynamic, b.friction_dynamic);
+    const auto rubbing = [&](double of_a, double of_b) {
+        return combine(friction, Side{a.friction_combine, of_a}, Side{b.friction_combine, of_b});
+    };
+    pair.friction_static = rubbing(a.friction_static, b.friction_static);
+    pair.friction_dynamic = rubbing(a.friction_dynamic, b.friction_dynamic);
     if (by_table && known != nullptr) {
         pair.friction_static = known->friction_static;
         pair.friction_dynamic = known->friction_dynamic;
@@ -69,8 +85,10 @@ Material combine(const Material& a, const Material& b, const SurfacePairs& pairs
     // Restitution likewise.
     const bool bounces_by_table = pair.restitution_combine == CombineRule::pair_table;
     const CombineRule restitution = bounces_by_table ? CombineRule::maximum : pair.restitution_combine;
-    pair.restitution =
-        bounces_by_table && known != nullptr ? known->restitution : combine(restitution, a.restitution, b.restitution);
+    pair.restitution = bounces_by_table && known != nullptr
+                           ? known->restitution
+                           : combine(restitution, Side{a.restitution_combine, a.restitution},
+                                     Side{b.restitution_combine, b.restitution});
 
     // A lever arm is a length of the softer of the two surfaces; the pair resists as the more resisting one does.
     pair.friction_rolling = std::max(a.friction_rolling, b.friction_rolling);

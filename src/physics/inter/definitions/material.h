@@ -8,8 +8,9 @@ namespace embody::physics {
 
 /// How the coefficients of two touching bodies become one. Where two bodies ask for different rules, the later in
 /// this order wins. pair_table: what World::set_surface_pairs says of their surfaces; where it says nothing, the
-/// geometric mean of the frictions and the larger restitution.
-enum class CombineRule { pair_table, average, geometric_mean, minimum, maximum, multiply };
+/// geometric mean of the frictions and the larger restitution. own: the number of the body that says so, measured
+/// against whatever it usually meets; the geometric mean where both do.
+enum class CombineRule { pair_table, own, average, geometric_mean, minimum, maximum, multiply };
 
 /// Surface of a body.
 struct Material {
