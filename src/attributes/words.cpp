@@ -46,7 +46,9 @@ std::string without_accents(std::string_view text) {
                 plain.back() = plain.back() == 'd' || plain.back() == 'D' ? ',' : ' ';
             if (text[i] != '\'') plain += text[i];
         } else if (byte == 0xC3 && i + 1 < text.size()) {
+            constexpr char sharp_s = '\x9F';
             const char letter = plain_letter(static_cast<std::uint8_t>(text[++i]));
+            if (text[i] == sharp_s) plain += letter;  // written "ss" without it
             plain += letter != '\0' ? letter : ' ';
         } else if (byte >= 0xC0) {
             plain += ' ';

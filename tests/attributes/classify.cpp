@@ -218,6 +218,11 @@ TEST(Classify, AccentsAndOtherLanguagesWordsOfTheTaxonomyAreFound) {
     EXPECT_EQ(category("Chaise d'angle"), category("chair"));
     EXPECT_EQ(category("Tisch mit Lampe"), category("table"));
     EXPECT_EQ(category("Kaffeetisch"), category("table"));
+    EXPECT_EQ(category("Gie\xC3\x9F"
+                       "kanne"),
+              category("watering can"));
+    EXPECT_EQ(category("pomme de terre"), category("potato"));
+    EXPECT_EQ(category("Zange"), category("pliers"));
     EXPECT_LT(classify(data, unsized("Kaffeetisch")).confidence, classify(data, unsized("Tisch")).confidence);
     // What it is made of is said after "aus" and "en".
     EXPECT_EQ(resolve(shipped_taxonomy(), named("Table en verre")).word("surface_material", ""), "glass");
