@@ -152,7 +152,8 @@ void add_surface(Rows& rows) {
         "1", 0.3, 0, 1);
     group.number({"restitution_threshold", "SRAVG", "Least bounce speed", "Slower impacts do not bounce."}, "m/s", 0, 0,
                  10);
-    const std::vector<std::string> rules{"pair_table", "own", "average", "geometric_mean", "minimum", "maximum", "multiply"};
+    const std::vector<std::string> rules{"pair_table", "own",     "average", "geometric_mean",
+                                         "minimum",    "maximum", "multiply"};
     group.word(
         {"friction_combine", "SRA", "Friction of a pair",
          "How the friction of two touching things becomes one: measured for the pair of materials, or by a rule."},
