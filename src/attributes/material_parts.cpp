@@ -18,7 +18,8 @@ namespace {
 using geometry::MassProperties;
 
 constexpr double sheet_of_solid = 0.005;  // m: how thick a sheet is of a material that has no usual wall
-constexpr double all_filled = 20;         // times the usual walls: people would call that filled
+// How much thicker or thinner than usual walls may be; what is left of the mass then is made up by all parts alike.
+constexpr double thinnest = 0.05, thickest = 20;
 
 struct Amount {
     double wall = 0, core = 0;  // m³
@@ -47,9 +48,11 @@ double total_mass(const std::vector<MaterialPart>& parts, double factor) {
     return sum;
 }
 
-// How much thicker than usual the walls must be, within a thousandth and a thousand times; the sum grows with it.
+// How much thicker than usual the walls must be; the sum grows with it.
 double fitting_walls(const std::vector<MaterialPart>& parts, double mass) {
-    double low = std::log(1e-3), high = std::log(1e3);
+    if (total_mass(parts, thinnest) >= mass) return thinnest;
+    if (total_mass(parts, thickest) <= mass) return thickest;
+    double low = std::log(thinnest), high = std::log(thickest);
     for (int halving = 0; halving < 50; ++halving) {
         const double middle = (low + high) / 2;
         (total_mass(parts, std::exp(middle)) < mass ? low : high) = middle;
@@ -167,10 +170,12 @@ std::optional<CenterAndInertia> spread_over(const std::vector<MaterialPart>& par
     for (const MaterialPart& part : parts) whole = geometry::combined(whole, spread(part, factor));
     if (!(whole.volume > 0)) return std::nullopt;
     const bool has_walls = std::ranges::any_of(parts, [](const MaterialPart& p) { return p.usual_wall > 0; });
-    const std::string walls = !has_walls ? ""
-                              : factor > all_filled
-                                  ? ", all filled"
-                                  : ", walls " + short_number(factor) + " times as thick as usual to make up the mass";
+    std::string walls;
+    if (has_walls) {
+        walls = ", walls " + short_number(factor) + " times as thick as usual to make up the mass";
+        if (factor == thinnest) walls += ": the least, and still too heavy, so all parts are made lighter alike";
+        if (factor == thickest) walls += ": the most, and still too light, so all parts are made heavier alike";
+    }
     return CenterAndInertia{whole.center, (mass / whole.volume) * whole.inertia,
                             "spread over its parts (" + shares_text(parts, factor) + ")" + walls,
                             AttributeLevel::model};

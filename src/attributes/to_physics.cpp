@@ -60,7 +60,8 @@ void put_surface_id(const AttributeSet& set, const Taxonomy& taxonomy, physics::
                                material.friction_dynamic == usual->friction_dynamic.typical;
     if (!rubs_as_usual && material.friction_combine == physics::CombineRule::pair_table)
         material.friction_combine = physics::CombineRule::geometric_mean;
-    if (material.restitution != usual->restitution.typical &&
+    const bool has_bounce = set.find("restitution") != nullptr;  // cloth, say, has none
+    if (has_bounce && material.restitution != usual->restitution.typical &&
         material.restitution_combine == physics::CombineRule::pair_table)
         material.restitution_combine = physics::CombineRule::own;
 }

@@ -69,7 +69,7 @@ OnFloor on_floor(const attributes::Taxonomy& taxonomy, const AttributeSet& model
     const attributes::AttributeEntry* bounce = model.find("restitution");
     // The resolver names the material first in the source of what comes from it.
     const auto is_materials = [&](const attributes::AttributeEntry* entry) {
-        return entry != nullptr && entry->source.starts_with(model.word("surface_material", "") + " (");
+        return entry == nullptr || entry->source.starts_with(model.word("surface_material", "") + " (");
     };
     OnFloor result;
     result.friction = pair != nullptr && is_materials(friction)

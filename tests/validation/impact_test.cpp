@@ -62,5 +62,40 @@ TEST(Impact, BoxCornerSwervesThroughTheWholeStep) {
     EXPECT_LT(length(world->angular_velocity(body) - to_y_up(to_vec3(reference["expected"]["omega1_after"]))), 0.02);
 }
 
+// Feet of one body that come down micrometres apart come down together: what they touch gives way for longer than that.
+// Each on its own would take the little rebound of the others away.
+class TableThatLands : public testing::TestWithParam<double> {};
+
+TEST_P(TableThatLands, BouncesOnAllItsFeet) {
+    const double restitution = GetParam();
+    const auto world = make_world({.time_step = 1.0 / 60});
+    const Material material{.friction_static = 0.5, .friction_dynamic = 0.4, .restitution = restitution};
+    add_plane(*world, material);
+    CompoundShape table;
+    table.children.push_back({BoxShape{{0.6, 0.02, 0.4}}, {{0, 0.72, 0}, {}}});
+    const double uneven[] = {0, 12e-6, 25e-6, 7e-6};
+    for (int i = 0; i < 4; ++i) {
+        const Vec3 foot{i & 1 ? 0.55 : -0.55, 0.35 + uneven[i], i & 2 ? 0.35 : -0.35};
+        table.children.push_back({BoxShape{{0.03, 0.35, 0.03}}, {foot, {}}});
+    }
+    const auto shape = world->create_shape(table).value();
+    const double height = 0.1;
+    const auto body = world->create_body({.shape = shape, .position = {0, height, 0}, .material = material}).value();
+
+    // It falls, meets the ground, and rises to e² of the height.
+    double top = 0;
+    bool has_bounced = false;
+    for (int i = 0; i < 60; ++i) {
+        world->step();
+        has_bounced = has_bounced || world->linear_velocity(body).y > 0;
+        if (has_bounced) top = std::max(top, world->pose(body).position.y);
+        if (has_bounced && world->linear_velocity(body).y < 0) break;
+    }
+    EXPECT_NEAR(std::sqrt(top / height), restitution, 0.03);
+    EXPECT_LT(length(world->angular_velocity(body)), 0.15);
+}
+
+INSTANTIATE_TEST_SUITE_P(Restitutions, TableThatLands, testing::Values(0.15, 0.3, 0.5, 0.8));
+
 }  // namespace
 }  // namespace embody::physics

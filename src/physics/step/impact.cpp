@@ -154,7 +154,6 @@ void ImpactStage::bend_path(const ImpactMemory::Moved& before, double time) {
 
 // Solves the collision of the sites, which `contact` began.
 void ImpactStage::solve(std::uint32_t contact, double time, SlidePath path) {
-    memory_.site_contact.assign(memory_.sites.size(), contact);
     regions_.add_loaded_neighbours(contact, time);
     list_bodies();
 
@@ -206,13 +205,18 @@ void ImpactStage::take(const ImpactEvent& event) {
     }
     list_contacts();
     memory_.sites.clear();
-    const bool may_bounce = memory_.impacts[event.contact]++ < most_bounces && paths_.bounces(contact);
-    if (may_bounce) paths_.note_bounce(contact);
+    const auto count_impact = [&](std::uint32_t index) {
+        return memory_.impacts[index]++ < most_bounces && paths_.bounces(world_.contacts[index]);
+    };
+    const bool may_bounce = count_impact(event.contact);
     if (as_found) {
         regions_.add_point_sites(contact, time);
     } else {
         regions_.add_manifold_sites(contact, manifold, time, may_bounce);
     }
+    memory_.site_contact.assign(memory_.sites.size(), event.contact);
+    if (may_bounce && !as_found) regions_.add_sites_beside(event.contact, manifold, time, count_impact);
+    if (may_bounce) paths_.note_bounce(contact);
     solve(event.contact, time, in_heap ? SlidePath::estimated : SlidePath::followed);
     predict_again();
 }

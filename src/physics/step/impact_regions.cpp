@@ -12,14 +12,6 @@ namespace {
 constexpr double patch_gap = 5e-4;   // m: corners this near to the first one collide together with it
 constexpr double near_share = 0.05;  // of a body's size
 
-double least_separation(const Manifold& manifold) {
-    double least = ImpactPaths::never;
-    for (int i = 0; i < manifold.count; ++i) {
-        least = std::min(least, manifold.points[static_cast<std::size_t>(i)].separation);
-    }
-    return least;
-}
-
 ImpactCoefficients coefficients_of(const Material& material, double restitution) {
     return {material.friction_dynamic, material.friction_static, restitution};
 }
@@ -38,6 +30,31 @@ void ImpactRegions::collide_at(const Contact& contact, double time) {
     PairMemory pair_memory = touch.records[watch->record].memory;
     collide(*a.shape, paths_.pose_at(contact.a, time), *b.shape, paths_.pose_at(contact.b, time), 0.02, pair_memory,
             memory_.manifolds);
+}
+
+double ImpactRegions::least_separation(const Manifold& manifold) {
+    double least = ImpactPaths::never;
+    for (int i = 0; i < manifold.count; ++i) {
+        least = std::min(least, manifold.points[static_cast<std::size_t>(i)].separation);
+    }
+    return least;
+}
+
+bool ImpactRegions::is_beside(const Manifold& first, double nearest, const Manifold& other, const Contact& contact,
+                              double time) const {
+    const bool is_first = other.piece_a == first.piece_a && other.piece_b == first.piece_b && other.part == first.part;
+    if (is_first || other.count == 0) return false;
+    const double gap = least_separation(other);
+    return gap <= nearest + patch_gap && closing_speed(contact, other, time, gap) >= ImpactPaths::slowest_impact;
+}
+
+std::optional<std::uint32_t> ImpactRegions::find_contact(std::uint32_t beside, const Manifold& manifold) const {
+    const Contact& known = world_.contacts[beside];
+    const std::array<std::uint32_t, 5> key{known.a, known.b, manifold.piece_a, manifold.piece_b, manifold.part};
+    const auto found = std::lower_bound(world_.contacts.begin(), world_.contacts.end(), key,
+                                        [](const Contact& c, const auto& k) { return contact_key(c) < k; });
+    if (found == world_.contacts.end() || contact_key(*found) != key) return std::nullopt;
+    return static_cast<std::uint32_t>(found - world_.contacts.begin());
 }
 
 // How fast the nearest points of the region close, m/s.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+
 #include "physics/step/impact_paths.h"
 
 namespace embody::physics {
@@ -23,10 +25,29 @@ public:
     // Each appends to the sites of the present impact.
     void add_manifold_sites(const Contact& contact, const Manifold& manifold, double time, bool may_bounce);
     void add_point_sites(const Contact& contact, double time);
+    /// Of the other regions of the two bodies that close as well and are as near as corners of one region may be: the
+    /// other feet of a table that comes down flat, be it micrometres later. `first`, found by refine() just now, began
+    /// the impact. A contact collides with a bounce if `may_bounce(contact)`.
+    template <class MayBounce>
+    void add_sites_beside(std::uint32_t contact, const Manifold& first, double time, const MayBounce& may_bounce) {
+        const double nearest = least_separation(first);
+        for (const Manifold& other : memory_.manifolds) {
+            if (!is_beside(first, nearest, other, world_.contacts[contact], time)) continue;
+            const auto found = find_contact(contact, other);
+            if (!found) continue;
+            add_manifold_sites(world_.contacts[*found], other, time, may_bounce(*found));
+            memory_.site_contact.resize(memory_.sites.size(), *found);
+        }
+    }
     /// Needs the lists of each body's contacts.
     void add_loaded_neighbours(std::uint32_t contact, double time);
 
 private:
+    static double least_separation(const Manifold& manifold);
+    bool is_beside(const Manifold& first, double nearest, const Manifold& other, const Contact& contact,
+                   double time) const;
+    /// Of the same two bodies, the contact of this region.
+    [[nodiscard]] std::optional<std::uint32_t> find_contact(std::uint32_t beside, const Manifold& manifold) const;
     double closing_speed(const Contact& contact, const Manifold& manifold, double time, double gap) const;
     void collide_at(const Contact& contact, double time);
     void add_site(const Contact& contact, Vec3 arm_a, Vec3 arm_b, Vec3 normal, bool may_bounce);
