@@ -165,27 +165,44 @@ bool noun_overrules(const Taxonomy::Data& data, const std::vector<Token>& tokens
     return noun.segment == phrase.segment ? noun.first >= phrase.end : noun.segment < phrase.segment;
 }
 
-// The taxonomy's word may mean something else as well, and what else is known may say that it does here: a "bat" beside
-// the tag "animal", a "crane" as large as a house. The other reading, where it is likelier.
-std::optional<ReadNoun> other_meaning(const Taxonomy::Data& data, const std::vector<Token>& tokens,
-                                      const PhraseMatch& phrase, const Surroundings& surroundings) {
+// What else the taxonomy's word may mean: something else altogether, not a neighbour of what the taxonomy means. The
+// readings with how likely each is beside the taxonomy's own, the likeliest first.
+struct OtherMeanings {
+    ReadNoun read;
+    std::vector<double> odds;  ///< one for each of read.readings
+};
+OtherMeanings other_meanings(const Taxonomy::Data& data, const std::vector<Token>& tokens, const PhraseMatch& phrase,
+                             const Surroundings& surroundings) {
     const auto noun = data.nouns->find_inflected(tokens[phrase.end - 1].text);
     const CategoryData& category = data.categories[phrase.entry];
     const auto meant = data.nouns->find_synset(category.synset);
-    if (phrase.end - phrase.first != 1 || !noun || !meant || !surroundings.tell()) return std::nullopt;
-    ReadNoun read{{.lemma = *noun, .first = phrase.first, .end = phrase.end, .physical = 1}, phrase.phrase, {}};
-    read.readings = readings_of(data, *noun, surroundings);
-    if (read.readings.empty()) return std::nullopt;
-
-    // Only what is something else altogether, not a neighbour of what the taxonomy means.
-    const NounReading& best = read.readings.front();
-    const CategoryData& other = data.categories[best.entry];
-    if (best.entry == phrase.entry || are_of_one_family(category, other) ||
-        common_content(*data.nouns, *meant, best.meaning) > 0.3)
-        return std::nullopt;
+    if (phrase.end - phrase.first != 1 || !noun || !meant) return {};
+    OtherMeanings others;
+    others.read = {{.lemma = *noun, .first = phrase.first, .end = phrase.end, .physical = 1}, phrase.phrase, {}};
     const double here = own_word * surroundings.support(meant, category);
-    if (best.prior * surroundings.support(best.meaning, other) <= here) return std::nullopt;
-    return read;
+    for (const NounReading& reading : readings_of(data, *noun, surroundings)) {
+        const CategoryData& other = data.categories[reading.entry];
+        if (reading.entry == phrase.entry || are_of_one_family(category, other) ||
+            common_content(*data.nouns, *meant, reading.meaning) > 0.3)
+            continue;
+        others.read.readings.push_back(reading);
+        others.odds.push_back(reading.prior * surroundings.support(reading.meaning, other) / here);
+    }
+    return others;
+}
+
+// Meanings that a person should hear of, less believed than the taxonomy's; the first one's source names them.
+void tell_other_meanings(const Taxonomy::Data& data, const OtherMeanings& others, std::vector<Candidate>& found) {
+    constexpr double worth_telling = 0.05;  // odds
+    for (std::size_t i = 0; i < others.odds.size() && i < 3; ++i) {
+        if (others.odds[i] < worth_telling) continue;
+        Candidate other = candidate_of(data, name_trust, others.read, i);
+        other.confidence = name_trust.phrase * others.odds[i] / (1 + others.odds[i]);
+        other.reckoning = "another meaning of the word, less usual for a model";
+        found.front().source += "; it may also mean " + std::string(data.nouns->name(others.read.readings[i].meaning)) +
+                                " (" + other.category->name + ")";
+        found.push_back(std::move(other));
+    }
 }
 
 // A "toy lawn mower" is a toy, unless the taxonomy has a word for just that.
@@ -232,8 +249,14 @@ std::vector<Candidate> ask_name(const Taxonomy::Data& data, std::string_view nam
     };
     if (read && noun_overrules(data, tokens, *phrase, *read)) {
         yield_to(*read, ", which another noun of the name overrules");
-    } else if (const auto other = other_meaning(data, tokens, *phrase, surroundings)) {
-        yield_to(*other, ", which what else is known speaks against");
+        return found;
+    }
+    // A "bat" beside the tag "animal", a "crane" as large as a house: what else is known may say that it is the other.
+    const OtherMeanings others = other_meanings(data, tokens, *phrase, surroundings);
+    if (surroundings.tell() && !others.odds.empty() && others.odds.front() > 1) {
+        yield_to(others.read, ", which what else is known speaks against");
+    } else {
+        tell_other_meanings(data, others, found);
     }
     return found;
 }

@@ -2,8 +2,10 @@
 #include "attributes/classify.h"
 
 #include <gtest/gtest.h>
+
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -267,6 +269,26 @@ TEST(NounReading, KinshipIsThatOfMeanings) {
     EXPECT_EQ(common_content(nouns, synset("tureen.n.01"), synset("tureen.n.01")), 1);
     EXPECT_TRUE(is_kind_of(nouns, synset("tureen.n.01"), synset("container.n.01")));
     EXPECT_FALSE(is_kind_of(nouns, synset("container.n.01"), synset("tureen.n.01")));
+}
+
+TEST(Classify, AnotherMeaningOfAWordOfTheTaxonomyIsToldWithIt) {
+    const auto answers = [](std::string name) {
+        const Classification what = classify(shipped_taxonomy().data(), named(std::move(name)));
+        std::vector<std::string> synsets;
+        for (const Candidate& other : what.others) {
+            synsets.push_back(other.synset);
+            EXPECT_LT(other.confidence, what.confidence);
+        }
+        return std::pair(what, synsets);
+    };
+    const auto [bat, others] = answers("bat");
+    EXPECT_EQ(bat.category->name, "baseball bat");
+    EXPECT_TRUE(std::ranges::find(others, "bat.n.01") != others.end()) << "the animal";
+    EXPECT_NE(bat.source.find("it may also mean bat.n.01"), std::string::npos) << bat.source;
+    const auto of_mouse = answers("mouse").second;
+    EXPECT_TRUE(std::ranges::find(of_mouse, "mouse.n.01") != of_mouse.end());
+    // A word that means one thing only says no more.
+    EXPECT_TRUE(answers("sofa").second.empty());
 }
 
 }  // namespace
