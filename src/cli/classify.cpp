@@ -52,6 +52,12 @@ std::vector<std::string> senses_of(const attributes::Taxonomy::Data& data, std::
     return senses;
 }
 
+// The unit in which things of this category would be as large as they usually are, m, where metres are not it.
+std::optional<double> unit_that_fits(const attributes::Taxonomy& taxonomy, attributes::ModelFacts facts) {
+    facts.size_is_stated = false;
+    return attributes::suggested_scale(taxonomy, facts);
+}
+
 nlohmann::json to_json(const Candidate& candidate) {
     nlohmann::json row = {{"category", candidate.category->name},
                           {"confidence", candidate.confidence},
@@ -63,7 +69,8 @@ nlohmann::json to_json(const Candidate& candidate) {
     return row;
 }
 
-void print(const Classification& what, const AttributeSet& set, const std::vector<std::string>& senses) {
+void print(const Classification& what, const AttributeSet& set, std::optional<double> unit,
+           const std::vector<std::string>& senses) {
     const auto line = [](const char* label, const std::string& text) {
         if (!text.empty()) fmt::print("  {} {}\n", padded(label, 11), text);
     };
@@ -76,6 +83,8 @@ void print(const Classification& what, const AttributeSet& set, const std::vecto
     if (const AttributeEntry* mass = set.find("mass"); mass != nullptr && mass->low && mass->high) {
         line("mass", fmt::format("{:.3g} kg [{:.3g} … {:.3g}]", set.number("mass", 0), *mass->low, *mass->high));
     }
+    if (unit)
+        line("size", fmt::format("is unusual for {}; it would fit in units of {:g} m", what.category->name, *unit));
     for (const Candidate& other : what.others) {
         line("or", fmt::format("{} ({:.2f}): {}", other.category->name, other.confidence, other.source));
     }
@@ -92,8 +101,9 @@ int run_classify(const ClassifyArguments& arguments) {
     const Classification what = attributes::classify((*taxonomy)->data(), facts);
     const AttributeSet set = attributes::resolve(**taxonomy, facts);
     const std::vector<std::string> senses = senses_of((*taxonomy)->data(), arguments.name);
+    const std::optional<double> unit = unit_that_fits(**taxonomy, facts);
     if (!arguments.json) {
-        print(what, set, senses);
+        print(what, set, unit, senses);
         return exit_ok;
     }
     nlohmann::json answer = to_json(what);
@@ -103,6 +113,7 @@ int run_classify(const ClassifyArguments& arguments) {
     if (const AttributeEntry* mass = set.find("mass"); mass != nullptr && mass->low && mass->high) {
         answer["mass_kg"] = {{"value", set.number("mass", 0)}, {"low", *mass->low}, {"high", *mass->high}};
     }
+    if (unit) answer["unit_that_fits_m"] = *unit;
     answer["senses"] = senses;
     answer["candidates"] = nlohmann::json::array();
     for (const Candidate& other : what.others) answer["candidates"].push_back(to_json(other));

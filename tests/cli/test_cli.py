@@ -68,6 +68,8 @@ class Classify(unittest.TestCase):
         self.assertTrue(0.2 < mass["low"] < mass["value"] < mass["high"] < 20, mass)
 
     def test_people_read_what_else_it_could_be(self):
+        result = run("classify", "chair", "--size", "500", "880", "520")
+        self.assertIn("it would fit in units of 0.001 m", result.stdout)
         result = run("classify", "mouse", "--tag", "animal")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("mouse.n.01", result.stdout)
