@@ -376,6 +376,27 @@ std::string with_compounds_split(const Taxonomy::Data& data, const std::vector<T
     return any ? text : std::string();
 }
 
+// Without what modelling programs append: "Car_root_node", "chair_mesh", "untitled". They say what the file holds, not
+// what that shows. Unchanged where there is none of it.
+std::string without_words_of_tools(const std::string& name) {
+    constexpr std::array<std::string_view, 7> tools{"mesh", "scene", "temp", "geo", "untitled", "node", "poly"};
+    constexpr std::array<std::string_view, 3> before_them{"root", "low", "high"};  // "root node", "low poly"
+    std::vector<Token> tokens = tokens_of(name);
+    const std::size_t all = tokens.size();
+    const auto ends_in = [&](std::span<const std::string_view> words) {
+        return !tokens.empty() && std::ranges::find(words, tokens.back().text) != words.end();
+    };
+    while (ends_in(tools)) {
+        const bool is_second = tokens.back().text == "node" || tokens.back().text == "poly";
+        tokens.pop_back();
+        if (is_second && ends_in(before_them)) tokens.pop_back();
+    }
+    if (tokens.size() == all) return name;
+    std::string text;
+    for (const Token& token : tokens) text += (text.empty() ? "" : " ") + token.text;
+    return text;
+}
+
 // The name, else the name with its compounds taken apart, believed less the more that is a guess.
 std::vector<Candidate> ask_name_and_compounds(const Taxonomy::Data& data, const std::string& name,
                                               const Surroundings& surroundings) {
@@ -449,7 +470,7 @@ bool material_by_words(const Taxonomy::Data& data, const std::string& where, std
 
 Classification classify(const Taxonomy::Data& data, const ModelFacts& facts) {
     const Surroundings surroundings(data, facts);
-    std::vector<Candidate> found = ask_name_and_compounds(data, facts.name, surroundings);
+    std::vector<Candidate> found = ask_name_and_compounds(data, without_words_of_tools(facts.name), surroundings);
     if (tokens_of(facts.name).size() >= long_name) doubt_long_name(found);
 
     ask_more_exact_tags(data, facts, found);

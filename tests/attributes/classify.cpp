@@ -291,5 +291,16 @@ TEST(Classify, AnotherMeaningOfAWordOfTheTaxonomyIsToldWithIt) {
     EXPECT_TRUE(answers("sofa").second.empty());
 }
 
+TEST(Classify, WordsOfModellingProgramsSayNothingOfTheThing) {
+    const auto category = [](const char* name) {
+        return classify(shipped_taxonomy().data(), named(name)).category->name;
+    };
+    for (const char* name : {"root_node", "mesh", "low_poly", "temp", "untitled", "Scene"})
+        EXPECT_EQ(category(name), "object") << name;
+    EXPECT_EQ(category("Car_root_node"), category("car"));
+    EXPECT_EQ(category("chair_low_poly_mesh"), category("chair"));
+    EXPECT_EQ(category("mesh chair"), "office chair") << "what it is made of, not how";
+}
+
 }  // namespace
 }  // namespace embody::attributes
