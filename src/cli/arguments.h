@@ -118,8 +118,9 @@ struct SceneArguments {
     bool json = false;
 };
 struct BenchArguments {
-    std::string suite = "table1";  ///< or "stability", "simbenchmark", "scaling", "decomposition", "catalogue", "race"
-    std::filesystem::path database;       ///< of decomposition and catalogue
+    /// Or "stability", "simbenchmark", "scaling", "decomposition", "tetrahedra", "catalogue", "race".
+    std::string suite = "table1";
+    std::filesystem::path database;       ///< of decomposition, tetrahedra and catalogue
     std::vector<std::string> race_words;  ///< for the race's own program
     std::string scene;                    ///< only this one
     int steps = 0;                        ///< 0: as many as the scene says

@@ -11,6 +11,7 @@
 #include "cli/bench_scaling.h"
 #include "cli/bench_simbenchmark.h"
 #include "cli/bench_stability.h"
+#include "cli/bench_tetrahedra.h"
 #include "cli/commands.h"
 #include "cli/output.h"
 
@@ -50,6 +51,7 @@ int run_bench(const BenchArguments& arguments) {
     if (arguments.suite == "simbenchmark") return run_simbenchmark(arguments);
     if (arguments.suite == "scaling") return run_scaling(arguments);
     if (arguments.suite == "decomposition") return run_decomposition(arguments);
+    if (arguments.suite == "tetrahedra") return run_tetrahedra(arguments);
     if (arguments.suite == "catalogue") return run_catalogue_bench(arguments);
     if (!arguments.scene.empty() && scenes::find_scene_builder(arguments.scene) == nullptr)
         return report({"--scene " + arguments.scene, "there is no such scene", "embody scene lists them"});

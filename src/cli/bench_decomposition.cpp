@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "cli/bench_models.h"
 #include "cli/locations.h"
 #include "cli/output.h"
 #include "geometry/decomposition/decomposition.h"
@@ -29,31 +29,6 @@ struct Row {
     geometry::DecompositionMeasure measure;
     double seconds = 0;
 };
-
-double processor_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-
-Result<std::vector<catalog::ModelSummary>> choose_models(const catalog::Catalog& catalog, const std::string& only) {
-    std::vector<catalog::ModelSummary> chosen;
-    if (!only.empty()) {
-        auto model = catalog.model(only);
-        if (!model) return model.error();
-        chosen.push_back(std::move(*model));
-        return chosen;
-    }
-    for (const char* word : words) {
-        auto page = catalog.search({.words = word, .limit = models_a_word});
-        if (!page) return page.error();
-        for (catalog::ModelSummary& model : page->models) {
-            const bool known =
-                std::any_of(chosen.begin(), chosen.end(), [&](const auto& m) { return m.id == model.id; });
-            if (!known && model.geometry_kind == catalog::GeometryKind::mesh) chosen.push_back(std::move(model));
-        }
-    }
-    if (chosen.empty())
-        return Error{"bench decomposition", "the database has none of the usual models",
-                     "embody import a Sweet Home 3D catalogue, or name a model with --scene"};
-    return chosen;
-}
 
 Result<Row> run_one(const catalog::Catalog& catalog, catalog::ModelSummary model) {
     const auto mesh = catalog.mesh(model.id);
@@ -93,7 +68,7 @@ void print_row(const Row& row) {
 int run_decomposition(const BenchArguments& arguments) {
     auto catalog = open_catalog(arguments.database);
     if (!catalog) return report(catalog.error());
-    const auto models = choose_models(**catalog, arguments.scene);
+    const auto models = choose_bench_models(**catalog, words, models_a_word, arguments);
     if (!models) return report(models.error());
     if (!arguments.json) {
         fmt::print("Lengths in mm, processor time in s. Added: from the hulls' union to the model; left out: back.\n");

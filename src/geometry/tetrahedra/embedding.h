@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "foundation/result.h"
+#include "geometry/tetrahedra/tetrahedral_mesh.h"
+#include "geometry/triangle_mesh.h"
+
+namespace embody::geometry {
+
+/// What carries a point: it stays at the same barycentric coordinates of a tetrahedron whose nodes move.
+struct EmbeddedPoint {
+    std::uint32_t tetrahedron = 0;
+    std::array<double, 4> weights{};  ///< of its nodes; their sum is 1, and some are negative outside of it
+};
+
+/// For each position the tetrahedron around it, or the one whose outer face is nearest where there is none. Errors: a
+/// mesh without tetrahedra or surface, a position that is not finite.
+Result<std::vector<EmbeddedPoint>> embed(const std::vector<Vec3f>& positions, const TetrahedralMesh& mesh);
+
+/// Where the point is when the nodes are at `nodes`, as many as the mesh had.
+Vec3 position(const EmbeddedPoint& point, const TetrahedralMesh& mesh, const std::vector<Vec3>& nodes);
+
+}  // namespace embody::geometry
