@@ -31,7 +31,8 @@ struct TetrahedralFilling {
 /// Tetrahedra that fill what a surface encloses, be it open, turned or made of overlapping parts: inside is where its
 /// generalised winding number is above one half. Isosurface stuffing (F. Labelle, J. R. Shewchuk 2007) on a lattice of
 /// one size: dihedral angles lie between 9° and 165°, edges and corners of the surface are cut off within a cell. The
-/// surface of the result is closed and faces outwards; parts that only touch do not hang together. Same mesh and
+/// surface of the result is closed (two faces at each edge; at some node two fans may touch) and faces outwards; parts
+/// that only touch do not hang together. Same mesh and
 /// parameters, same result. Errors: a parameter out of its range, indices or numbers that are none, no triangles,
 /// nothing enclosed (a sheet), a cell so large that it misses all or so small that there are above 4 million nodes.
 Result<TetrahedralFilling> fill_with_tetrahedra(const TriangleMesh& surface,
