@@ -80,7 +80,7 @@ TEST(Surfaces, TheShippedTableIsCompleteAndHoldsEveryMaterial) {
 }
 
 TEST(Surfaces, OwnNumbersGoBeforeTheTable) {
-    AttributeSet set = resolve(shipped_taxonomy(), named("Wooden chair"));
+    AttributeSet set = resolve(shipped_taxonomy(), named("Wooden crate"));
     ASSERT_EQ(set.word("surface_material", ""), "wood");
     const auto usual = body_from_attributes(set, &shipped_taxonomy());
     EXPECT_EQ(usual->material.surface, shipped_taxonomy().surfaces().surface_of("wood"));
@@ -88,7 +88,7 @@ TEST(Surfaces, OwnNumbersGoBeforeTheTable) {
     EXPECT_EQ(usual->material.restitution_combine, physics::CombineRule::pair_table);
 
     set = with_manual(shipped_taxonomy(), set, {{"friction_dynamic", 0.11, {}, {}, "", AttributeLevel::manual}},
-                      named("Wooden chair"));
+                      named("Wooden crate"));
     const auto own = body_from_attributes(set, &shipped_taxonomy());
     EXPECT_EQ(own->material.friction_combine, physics::CombineRule::geometric_mean);
     EXPECT_EQ(own->material.friction_dynamic, 0.11);
@@ -101,9 +101,9 @@ TEST(Surfaces, OwnNumbersGoBeforeTheTable) {
     EXPECT_EQ(dead->material.restitution, ball.number("restitution", 0));
 
     // A person's material brings that material's place in the table.
-    set = with_manual(shipped_taxonomy(), resolve(shipped_taxonomy(), named("Wooden chair")),
+    set = with_manual(shipped_taxonomy(), resolve(shipped_taxonomy(), named("Wooden crate")),
                       {{"surface_material", std::string("steel"), {}, {}, "", AttributeLevel::manual}},
-                      named("Wooden chair"));
+                      named("Wooden crate"));
     const auto steel = body_from_attributes(set, &shipped_taxonomy());
     EXPECT_EQ(steel->material.surface, shipped_taxonomy().surfaces().surface_of("steel"));
     EXPECT_EQ(steel->material.friction_combine, physics::CombineRule::pair_table);
