@@ -8,5 +8,6 @@ namespace embody::physics {
 using ShapeHandle = Handle<struct ShapeTag>;
 using BodyHandle = Handle<struct BodyTag>;
 using JointHandle = Handle<struct JointTag>;
+using DeformableHandle = Handle<struct DeformableTag>;
 
 }  // namespace embody::physics

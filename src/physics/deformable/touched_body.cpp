@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#include "physics/deformable/touched_body.h"
+
+namespace embody::physics {
+
+Mat3 TouchedBody::rotation_at(double time) const {
+    const Vec3 angle = time * path_spin + turn;
+    const double size = length(angle);
+    return size > 0 ? to_matrix(from_axis_angle(angle / size, size)) : Mat3::identity();
+}
+
+void TouchedBody::enter_substep(double h) {
+    velocity -= (inverse_mass * h) * expected_force;
+    spin -= inverse_inertia * (h * expected_torque);
+    shift += h * velocity;
+    turn += h * spin;
+}
+
+void TouchedBody::push(Vec3 given, Vec3 arm, double h) {
+    const Vec3 angular = cross(arm, given);
+    const Vec3 faster = inverse_mass * given, turning = inverse_inertia * angular;
+    velocity += faster;
+    spin += turning;
+    shift += h * faster;
+    turn += h * turning;
+    impulse += given;
+    angular_impulse += angular;
+}
+
+}  // namespace embody::physics

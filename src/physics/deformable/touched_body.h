@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "math/mat3.h"
+#include "math/transform.h"
+#include "physics/collision/collision_shape.h"
+
+namespace embody::physics {
+
+/// A rigid body near a deformable. It has made its step already: through the substeps it goes along the path of that
+/// step and, on top, by what the nodes push it.
+struct TouchedBody {
+    std::uint32_t body = 0;  ///< slot
+    const CollisionShape* shape = nullptr;
+    double friction = 0;  ///< Coulomb coefficient of its surface
+    Transform start;      ///< pose of the shape's frame when the step began
+    Vec3 start_center;    ///< of mass, when the step began, m
+    Vec3 path_velocity;   ///< mean over the step, m/s
+    Vec3 path_spin;       ///< mean over the step, rad/s
+    double inverse_mass = 0;
+    Mat3 inverse_inertia = Mat3::zero();   ///< world axes
+    Vec3 expected_force, expected_torque;  ///< pushes of the last step, which the path has in it already, N and N m
+
+    Vec3 shift, turn;               ///< off the path so far, m and rad
+    Vec3 velocity, spin;            ///< off the path's, m/s and rad/s
+    Vec3 impulse, angular_impulse;  ///< pushes of this step so far, N s and N m s about the centre of mass
+
+    /// Where the body is `time` (s) after the step began, pushes counted.
+    [[nodiscard]] Vec3 center_at(double time) const { return start_center + time * path_velocity + shift; }
+    /// What turns directions of the start to those then.
+    [[nodiscard]] Mat3 rotation_at(double time) const;
+    /// Moves it into a substep of h seconds: takes off what the path has in it already, goes on with the rest.
+    void enter_substep(double h);
+    /// Impulse (N s) at `arm` (m) from its centre of mass, in a substep of h seconds: moves it too.
+    void push(Vec3 impulse, Vec3 arm, double h);
+};
+
+}  // namespace embody::physics
