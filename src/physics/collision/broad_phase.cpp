@@ -21,10 +21,13 @@ constexpr std::uint32_t fewest_shared = 500;
 // As many pairs are always kept; beyond, as many as a body may have partners.
 constexpr std::size_t always_kept_pairs = 20000;
 
-Bounds enlarged_for(const Bounds& bounds, Vec3 motion) {
+double margin_of(const Bounds& bounds) {
     const Vec3 size = bounds.size();
-    const double margin = std::min(most_margin, 0.1 * std::max(size.x, std::max(size.y, size.z)));
-    Bounds fat = enlarged(bounds, margin);
+    return std::min(most_margin, 0.1 * std::max(size.x, std::max(size.y, size.z)));
+}
+
+Bounds enlarged_for(const Bounds& bounds, Vec3 motion) {
+    Bounds fat = enlarged(bounds, margin_of(bounds));
     fat.lower += min(motion, {});
     fat.upper += max(motion, {});
     return fat;
@@ -321,7 +324,7 @@ void BroadPhase::remove(std::uint32_t body) {
 // Kept while it still holds the body and has not become far too large (after a fast move came to rest).
 bool BroadPhase::holds(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion) const {
     const FloatBox& fat = state_->proxies[body].fat;
-    const Bounds largest = enlarged(enlarged_for(bounds, expected_motion), 4 * most_margin);
+    const Bounds largest = enlarged(enlarged_for(bounds, expected_motion), 4 * margin_of(bounds));
     return fat.contains(bounds) && contains(largest, fat.bounds());
 }
 

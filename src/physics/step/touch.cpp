@@ -29,6 +29,20 @@ bool is_moving(const WorldState& world, std::uint32_t body) {
            (world.motion[body].linear_velocity != Vec3{} || world.motion[body].angular_velocity != Vec3{});
 }
 
+// A ball has one point of contact, which does not jump to another corner: a part of its size is far enough. Grains of
+// millimetres would have most of their contacts with others that they do not touch.
+double within_ball(double distance, const TouchBody& a, const TouchBody& b) {
+    constexpr double part_of_ball = 0.1;
+    if (a.is_ball) distance = std::min(distance, part_of_ball * a.size);
+    if (b.is_ball) distance = std::min(distance, part_of_ball * b.size);
+    return distance;
+}
+
+// How near surfaces are looked at whatever their speed, m.
+double base_margin_of(const WorldState& world, const BroadPhase::Pair& pair) {
+    return within_ball(base_margin, world.touch_memory.bodies[pair.a], world.touch_memory.bodies[pair.b]);
+}
+
 // How far the surfaces can approach each other within the step: the margin of the narrow phase.
 double margin_of(const WorldState& world, std::uint32_t a, std::uint32_t b) {
     const double dt = world.settings.time_step;
@@ -41,7 +55,7 @@ double margin_of(const WorldState& world, std::uint32_t a, std::uint32_t b) {
     double size = 1e300;
     if (ta.yields) size = std::min(size, ta.size);
     if (tb.yields) size = std::min(size, tb.size);
-    return base_margin + std::min(travel, 2 * size);
+    return within_ball(base_margin, ta, tb) + std::min(travel, 2 * size);
 }
 
 void collide_pair(const WorldState& world, std::uint32_t a, std::uint32_t b, std::vector<Manifold>& manifolds) {
@@ -212,7 +226,8 @@ void compare_pair(const WorldState& world, PairRecord& record, const PairNow& no
     const bool is_known = record.version_a == a.version && record.version_b == b.version;
     if (!is_known) record.memory = {};
     worker.manifolds.clear();
-    const double searched = now.margin + follow_window;
+    const TouchMemory& memory = world.touch_memory;
+    const double searched = now.margin + within_ball(follow_window, memory.bodies[pair.a], memory.bodies[pair.b]);
     collide(*a.shape, world.pose(pair.a), *b.shape, world.pose(pair.b), searched, record.memory, worker.manifolds);
     record.version_a = a.version;
     record.version_b = b.version;
@@ -333,7 +348,7 @@ void touch_pair(WorldState& world, PairTouch& touch, std::uint8_t finder, TouchM
     if (may_follow(world, record, now)) {
         touch.next_count = touch.count;
         if (touch.count > 0) return follow_contacts(world, touch, followed_pair(world, record, now));
-        return leave_alone(world, watch, record.margin - now.moved - base_margin);
+        return leave_alone(world, watch, record.margin - now.moved - base_margin_of(world, watch.pair));
     }
 
     touch.finder = finder;
@@ -342,7 +357,7 @@ void touch_pair(WorldState& world, PairTouch& touch, std::uint8_t finder, TouchM
     touch.next_count = static_cast<std::uint32_t>(worker.found.size()) - touch.found_first;
     if (touch.next_count == touch.count) replace_contacts(world, touch, worker);
     watch.look_again = 0;
-    if (touch.next_count == 0) leave_alone(world, watch, record.margin - base_margin);
+    if (touch.next_count == 0) leave_alone(world, watch, record.margin - base_margin_of(world, watch.pair));
 }
 
 // Moves the contacts that a pair keeps to their next place.
