@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "physics/deformable/touched_body.h"
 
+#include "physics/dynamic/equations_of_motion.h"
+
 namespace embody::physics {
 
-Mat3 TouchedBody::rotation_at(double time) const {
-    const Vec3 angle = time * path_spin + turn;
-    const double size = length(angle);
-    return size > 0 ? to_matrix(from_axis_angle(angle / size, size)) : Mat3::identity();
-}
+Mat3 TouchedBody::rotation_at(double time) const { return to_matrix(cayley(time * path_turn + turn)); }
 
 void TouchedBody::enter_substep(double h) {
     velocity -= (inverse_mass * h) * expected_force;

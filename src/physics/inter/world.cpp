@@ -162,6 +162,15 @@ Conserved World::conserved() const {
         add_conserved(sum, state_->motion[body], state_->constants[body],
                       state_->settings.gravity * definition.gravity_factor);
     }
+    for (const DeformableHandle handle : deformables()) {
+        const DeformableRecord& record = state_->deformables.at(handle.index);
+        if (!record.definition.enabled) continue;
+        const Conserved own = record.solid->conserved(state_->settings.gravity * record.definition.gravity_factor);
+        sum.kinetic_energy += own.kinetic_energy;
+        sum.potential_energy += own.potential_energy;
+        sum.linear_momentum += own.linear_momentum;
+        sum.angular_momentum += own.angular_momentum;
+    }
     return sum;
 }
 
@@ -179,6 +188,11 @@ std::uint64_t World::state_hash() const {
         add(motion.linear_velocity);
         add(motion.angular_velocity);
         for (const double q : {motion.rotation.x, motion.rotation.y, motion.rotation.z, motion.rotation.w}) hash.add(q);
+    }
+    for (const DeformableHandle handle : deformables()) {
+        for (const auto& values : {node_positions(handle), node_velocities(handle)}) {
+            for (const Vec3 value : values) add(value);
+        }
     }
     return hash.value();
 }

@@ -10,6 +10,7 @@
 #include "foundation/result.h"
 #include "math/bounds.h"
 #include "physics/inter/definitions/body_definition.h"
+#include "physics/inter/definitions/deformable_definition.h"
 #include "physics/inter/definitions/events.h"
 #include "physics/inter/definitions/joint_definition.h"
 #include "physics/inter/definitions/shape_definition.h"
@@ -92,6 +93,18 @@ public:
     [[nodiscard]] JointReaction joint_reaction(JointHandle joint) const;
     /// Hinge angle (rad) or slider displacement (m); 0 for others.
     [[nodiscard]] double joint_coordinate(JointHandle joint) const;
+
+    // Deformables: soft solids, cloth and ropes.
+    Result<DeformableHandle> create_deformable(const DeformableDefinition& definition);
+    Result<void> destroy_deformable(DeformableHandle deformable);
+    [[nodiscard]] std::vector<DeformableHandle> deformables() const;
+    /// As it was defined; nullptr if stale.
+    [[nodiscard]] const DeformableDefinition* deformable(DeformableHandle deformable) const;
+    /// World positions (m) and velocities (m/s) of its nodes; empty if stale. Valid until the next step or change.
+    [[nodiscard]] std::span<const Vec3> node_positions(DeformableHandle deformable) const;
+    [[nodiscard]] std::span<const Vec3> node_velocities(DeformableHandle deformable) const;
+    [[nodiscard]] bool is_asleep(DeformableHandle deformable) const;
+    Result<void> wake(DeformableHandle deformable);
 
     /// Advances by settings().time_step.
     const StepReport& step();

@@ -31,8 +31,9 @@ void advance(WorldState& world, bool is_long) {
     run(world, StepStage::impact, solve_impacts);   // new, fast contacts by eq. (3)
     run(world, StepStage::islands, find_islands);   // contact graph → islands, levels, solve order
     run(world, StepStage::substeps, run_substeps);  // kick → solve → drift → kick → solve, shock propagation
-    run(world, StepStage::continuous, stop_tunnelling);  // bodies that would pass through others
-    run(world, StepStage::sleep, put_to_sleep);          // quiet islands leave the awake set
+    run(world, StepStage::continuous, stop_tunnelling);       // bodies that would pass through others
+    run(world, StepStage::deformables, advance_deformables);  // nodes and elements, and what they push
+    run(world, StepStage::sleep, put_to_sleep);               // quiet islands leave the awake set
 }
 
 }  // namespace
@@ -43,7 +44,7 @@ void step(WorldState& world) {
     const bool is_long = world.report.milliseconds > long_step;
     world.report = {.step = world.report.step + 1, .time = world.report.time + world.settings.time_step};
     run(world, StepStage::wake, wake_bodies);  // apply commands, wake touched islands
-    if (!world.awake.empty() || !world.contacts.empty()) advance(world, is_long);
+    if (!world.awake.empty() || !world.contacts.empty() || world.deformables.count() > 0) advance(world, is_long);
     write_report(world);  // events, counts
     world.report.milliseconds = milliseconds_since(start);
 }

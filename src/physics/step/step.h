@@ -16,6 +16,7 @@ void solve_impacts(WorldState& world);
 void find_islands(WorldState& world);
 void run_substeps(WorldState& world);
 void stop_tunnelling(WorldState& world);
+void advance_deformables(WorldState& world);
 void put_to_sleep(WorldState& world);
 void write_report(WorldState& world);
 

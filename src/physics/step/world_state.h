@@ -14,6 +14,7 @@
 #include "physics/constraint/direct_contact_solver.h"
 #include "physics/constraint/joint_system.h"
 #include "physics/constraint/wide_contact_solver.h"
+#include "physics/deformable/solid_contacts.h"
 #include "physics/inter/definitions/events.h"
 #include "physics/inter/definitions/step_report.h"
 #include "physics/inter/definitions/world_settings.h"
@@ -40,13 +41,26 @@ struct BodyRecord {
     std::uint32_t version = 0;     ///< another one after each change of the body's shape, kind or pose by the user
     double inner_radius = 0;       ///< half the thinnest extent: a body that moves farther in a step may tunnel, m
     Vec3 next_force, next_torque;  ///< for the next step only, cleared by report; N, N m about the centre of mass
-    Vec3 last_center;              ///< last finite pose, to freeze the body at
+    Vec3 deformable_force, deformable_torque;  ///< pushes of deformables in the last step, N, N m
+    Vec3 last_center;                          ///< last finite pose, to freeze the body at
     Quat last_rotation;
 };
 
 struct JointRecord {
     JointDefinition definition;
     Joint constraint;  ///< written by substeps; sleeps with its bodies
+};
+
+/// A deformable with what its contacts and its sleep need.
+struct DeformableRecord {
+    DeformableDefinition definition;
+    std::unique_ptr<SolidDeformable> solid;
+    std::unique_ptr<CollisionShape> node_ball;  ///< of its contact radius
+    std::vector<SolidContact> contacts;         ///< of the last step
+    std::vector<std::uint32_t> touched_bodies;  ///< slots: those that it pushed in the last step
+    double quiet_time = 0;                      ///< s
+    bool is_asleep = false;
+    std::vector<Vec3> last_positions;  ///< last finite ones, to freeze it at
 };
 
 /// An island that sleeps: its bodies and the contacts that it fell asleep with.
@@ -83,6 +97,7 @@ struct WorldState {
     HandleTable<struct ShapeTag, ShapeRecord> shapes;                 // face
     HandleTable<struct BodyTag, BodyRecord> bodies;                   // face
     HandleTable<struct JointTag, JointRecord> joints;                 // face; impulses: substeps
+    HandleTable<struct DeformableTag, DeformableRecord> deformables;  // face; nodes: deformables
     std::set<std::pair<std::uint32_t, std::uint32_t>> jointed_pairs;  // face: slots whose bodies must not collide
 
     std::vector<BodyState> motion;         // impact, substeps, continuous
@@ -113,6 +128,9 @@ struct WorldState {
     SolveSchedule schedule;                                   // substeps: memory only
     std::vector<PreparedContact> prepared_contacts;           // substeps: memory only
     std::vector<Vec3> kicked_velocity;                        // substeps: linear velocity before the constraints, m/s
+
+    SolidContacts solid_contacts;              // deformables: memory only
+    std::vector<std::uint32_t> pushed_bodies;  // deformables: slots whose deformable_force is not zero
 
     std::map<std::uint32_t, SleepingGroup> sleepers;  // sleep, wake
     std::uint32_t next_group = 1;                     // sleep

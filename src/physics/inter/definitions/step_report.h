@@ -9,7 +9,18 @@
 namespace embody::physics {
 
 /// The stages of a step, in their order.
-enum class StepStage : std::uint8_t { wake, find_pairs, touch, impact, islands, substeps, continuous, sleep, count };
+enum class StepStage : std::uint8_t {
+    wake,
+    find_pairs,
+    touch,
+    impact,
+    islands,
+    substeps,
+    continuous,
+    deformables,
+    sleep,
+    count
+};
 
 /// Limits reached while running; each names the setting to change.
 enum class StepLimit : std::uint32_t {
@@ -20,7 +31,8 @@ enum class StepLimit : std::uint32_t {
         1u << 2,                 ///< impacts needed more rounds, or were more, than allowed; a smaller time_step helps
     deep_penetration = 1u << 3,  ///< bodies overlap deeply; place them apart or use a smaller time_step
     too_many_pairs = 1u << 4,    ///< so many bodies are in each other that some pairs are left out
-    angular_speed_clamped = 1u << 5,  ///< raise WorldSettings::max_angular_speed
+    angular_speed_clamped = 1u << 5,         ///< raise WorldSettings::max_angular_speed
+    not_finite_deformable_frozen = 1u << 6,  ///< the same for a deformable
 };
 
 struct StepReport {

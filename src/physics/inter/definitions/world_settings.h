@@ -10,6 +10,7 @@ struct WorldSettings {
     Vec3 gravity{0, -9.81, 0};    ///< m/s²
     double time_step = 1.0 / 60;  ///< s, 1e-5 … 0.1
     int substeps = 4;             ///< parts a step is solved in, 1 … 64
+    int deformable_substeps = 2;  ///< the same for deformables, after the bodies, 1 … 64
     double time_to_sleep = 0.5;   ///< an island this long quiet falls asleep, s, 0.05 … 60
     bool sleeping = true;
     bool shock_propagation = true;   ///< paper, section IV

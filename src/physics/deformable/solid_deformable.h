@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "math/bounds.h"
+#include "physics/deformable/dissected_cholesky.h"
+#include "physics/deformable/nodes.h"
+#include "physics/deformable/solid_elements.h"
+#include "physics/inter/definitions/step_report.h"
+
+namespace embody::physics {
+
+/// A soft solid in motion (docs/physics/deformables.md). A substep is begin_substep(), push() with the contact forces
+/// that are guessed, solve(), what contacts make of it with push() and the compliance of nodes, and finish().
+class SolidDeformable {
+public:
+    /// Of a valid definition whose matter is a SoftSolid.
+    explicit SolidDeformable(const DeformableDefinition& definition);
+
+    [[nodiscard]] const Nodes& nodes() const { return nodes_; }
+    /// Outer faces, counter-clockwise from outside; and their nodes, ascending: what collides.
+    [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& surface() const { return surface_; }
+    [[nodiscard]] const std::vector<std::uint32_t>& surface_nodes() const { return surface_nodes_; }
+    [[nodiscard]] Bounds bounds() const;
+
+    /// Begins a substep of h seconds: nodes go on with their velocities. `gravity` in m/s², the body's factor counted.
+    void begin_substep(double h, Vec3 gravity);
+    /// Lets a force (N) act on a node for this substep; counts in the next solve() or settle().
+    void push(std::uint32_t node, Vec3 force);
+    /// Moves the nodes to where elastic, damping and inertial forces balance what acts on them: one round of Newton's
+    /// method. Returns the rounds of conjugate gradients.
+    int solve(TaskPool& workers);
+    /// Moves the nodes by what the pushes since solve() do, as the compliance says.
+    void settle(TaskPool& workers);
+    /// Velocities of what the substep has come to.
+    void finish();
+
+    /// Where a node was when the substep began, m.
+    [[nodiscard]] Vec3 start(std::uint32_t node) const { return start_[node]; }
+    /// How node i moves by a force on node j in this substep, in the axes of both at rest, m/N: i turns it by its
+    /// rotation, j the force against its own. Kept, so that asking again is cheap.
+    [[nodiscard]] Mat3 compliance(std::uint32_t i, std::uint32_t j);
+    [[nodiscard]] Quat rotation(std::uint32_t node) const { return elements_.node_rotations()[node]; }
+
+    /// Takes all velocities away.
+    void rest();
+    /// Takes it back to where its nodes were, at rest.
+    void stop_at(std::span<const Vec3> positions);
+
+    [[nodiscard]] bool is_finite() const;
+    /// Energy (elastic energy counts as potential) and momenta.
+    [[nodiscard]] Conserved conserved(Vec3 gravity) const;
+
+private:
+    void place_nodes(const DeformableDefinition& definition);
+    void find_surface();
+    void make_factor(double h);
+    void precondition(TaskPool& workers);
+    void keep_momenta();
+
+    SolidElements elements_;
+    double damping_ = 0;  // s
+    Nodes nodes_;
+    std::vector<Vec3> rest_;
+    std::vector<std::array<std::uint32_t, 3>> surface_;
+    std::vector<std::uint32_t> surface_nodes_;
+    bool is_free_ = true;  // no node is pinned
+    bool is_new_ = true;   // has made no substep yet
+
+    // Of the substep.
+    double h_ = 0;
+    Vec3 gravity_;
+    std::vector<Vec3> start_, pushes_;  // m; N, all of the substep
+    std::vector<Vec3> unsettled_;       // N, since the last solve
+    std::vector<Vec3> force_;           // N
+    std::vector<Vec3f> residual_, move_, direction_, product_, correction_;
+
+    // The factor of the matrix at rest, for substeps of factor_h_ seconds, and what is known of its inverse.
+    DissectedCholesky factor_;
+    double factor_h_ = 0;
+    struct TouchedNode {
+        DissectedCholesky::Columns columns;
+        std::vector<Mat3> blocks;  ///< with the nodes that were touched before it, and itself
+    };
+    static constexpr std::uint32_t untouched = 0xFFFFFFFF;
+    std::vector<std::uint32_t> touched_place_;  // by node
+    std::vector<TouchedNode> touched_;
+};
+
+}  // namespace embody::physics

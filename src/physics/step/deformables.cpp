@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: MIT
+// Deformables after the rigid bodies (docs/physics/deformables.md): in substeps of their own, while the bodies that
+// they touch go along their paths of this step and give way to the nodes.
+#include <algorithm>
+#include <cmath>
+
+#include "physics/dynamic/equations_of_motion.h"
+#include "physics/step/step.h"
+
+namespace embody::physics {
+
+namespace {
+
+constexpr double quiet_speed = 0.02;     // m/s: all nodes slower than this may sleep
+constexpr double noticed_change = 0.05;  // of a sleeping body's weight: a push that differs by more wakes it
+constexpr double noticed_speed = 0.05;   // m/s: a body as fast as this wakes what it is near
+
+bool may_collide(const DeformableDefinition& deformable, const BodyDefinition& body) {
+    return body.enabled && (deformable.collision_group & body.collision_mask) != 0 &&
+           (body.collision_group & deformable.collision_mask) != 0;
+}
+
+// How far its nodes may come within a step, and a little more.
+double reach_of(const WorldState& world, const DeformableRecord& record) {
+    double fastest = 0;
+    for (const Vec3 v : record.solid->nodes().mean_velocity) fastest = std::max(fastest, length(v));
+    const double dt = world.settings.time_step;
+    return 2 * record.definition.contact_radius + (fastest + length(world.settings.gravity) * dt) * dt;
+}
+
+template <class Visit>
+void for_each_body_near(const WorldState& world, const DeformableRecord& record, Visit visit) {
+    world.broad_phase.query(enlarged(record.solid->bounds(), reach_of(world, record)), [&](std::uint32_t slot) {
+        if (world.record(slot).shape && may_collide(record.definition, world.record(slot).definition)) visit(slot);
+    });
+}
+
+// A body with the path that it has gone in this step; one that sleeps or is fixed stands where it is.
+TouchedBody touched(const WorldState& world, std::uint32_t slot) {
+    const BodyRecord& record = world.record(slot);
+    const BodyState& state = world.motion[slot];
+    const double dt = world.settings.time_step;
+    const bool moves = record.definition.kind != BodyKind::static_body && !world.is_asleep(slot);
+    TouchedBody body;
+    body.body = slot;
+    body.shape = record.shape;
+    body.friction = record.definition.material.friction_dynamic;
+    body.start_center = moves ? state.start_center : state.center;
+    const Quat rotation = moves ? state.start_rotation : state.rotation;
+    body.start = {body.start_center - rotate(rotation, world.constants[slot].local_center), rotation};
+    if (!moves) return body;
+    const Quat turn = state.rotation * conjugate(rotation);
+    const Vec3 half_sine = (turn.w < 0 ? -1.0 : 1.0) * Vec3{turn.x, turn.y, turn.z};
+    const double half_cosine = std::fabs(turn.w), sine = length(half_sine);
+    body.path_velocity = (state.center - body.start_center) / dt;
+    body.path_spin = sine > 0 ? (2 * std::asin(std::min(sine, 1.0)) / (sine * dt)) * half_sine : Vec3{};
+    body.path_turn = (2 / (std::max(half_cosine, 1e-3) * dt)) * half_sine;
+    body.inverse_mass = state.inverse_mass;
+    body.inverse_inertia = state.inverse_inertia;
+    body.expected_force = record.deformable_force;
+    body.expected_torque = record.deformable_torque;
+    return body;
+}
+
+// Whether something has happened around a sleeping deformable.
+bool is_disturbed(const WorldState& world, const DeformableRecord& record) {
+    for (const std::uint32_t slot : record.touched_bodies) {
+        if (!world.is_used(slot)) return true;
+        if (world.is_dynamic(slot) && !world.is_asleep(slot)) return true;
+    }
+    bool is_disturbed = false;
+    for_each_body_near(world, record, [&](std::uint32_t slot) {
+        if (world.record(slot).definition.kind == BodyKind::static_body || world.is_asleep(slot)) return;
+        const BodyState& state = world.motion[slot];
+        is_disturbed = is_disturbed || length(state.linear_velocity) > noticed_speed ||
+                       length(state.angular_velocity) * world.record(slot).reach > noticed_speed;
+    });
+    return is_disturbed;
+}
+
+/// All deformables that move in this step, with the bodies that they may touch.
+struct MovingDeformables {
+    std::vector<DeformableRecord*> records;
+    std::vector<SolidDeformable*> solids;  ///< of the records, in their order
+    std::vector<TouchedBody> bodies;       ///< by slot
+    std::vector<SolidContact> contacts;    ///< record after record
+    [[nodiscard]] std::uint32_t index_of(std::uint32_t slot) const {
+        return static_cast<std::uint32_t>(std::ranges::lower_bound(bodies, slot, {}, &TouchedBody::body) -
+                                          bodies.begin());
+    }
+};
+
+void gather_bodies(const WorldState& world, MovingDeformables& moving) {
+    std::vector<std::uint32_t> slots;
+    for (const DeformableRecord* record : moving.records) {
+        for_each_body_near(world, *record, [&](std::uint32_t slot) { slots.push_back(slot); });
+        for (const Attachment& attachment : record->definition.attachments) {
+            if (world.bodies.find(attachment.body) != nullptr) slots.push_back(attachment.body.index);
+        }
+    }
+    for (const std::uint32_t slot : world.pushed_bodies) {
+        if (world.is_used(slot) && !world.is_asleep(slot)) slots.push_back(slot);
+    }
+    std::ranges::sort(slots);
+    slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
+    for (const std::uint32_t slot : slots) moving.bodies.push_back(touched(world, slot));
+}
+
+// Contacts of one deformable, with what is remembered of their forces.
+void find_contacts_of(const WorldState& world, std::uint32_t index, MovingDeformables& moving) {
+    DeformableRecord& record = *moving.records[index];
+    std::vector<TouchedBody> colliding;
+    for (const TouchedBody& body : moving.bodies) {
+        if (body.shape && may_collide(record.definition, world.record(body.body).definition)) colliding.push_back(body);
+    }
+    std::vector<NodeContact> found;
+    find_node_contacts(record.solid->nodes(), record.solid->surface_nodes(), *record.node_ball,
+                       record.definition.contact_radius, colliding, world.settings.time_step, world.settings.gravity,
+                       found);
+    std::vector<SolidContact> contacts;
+    for (const Attachment& attachment : record.definition.attachments) {
+        if (world.bodies.find(attachment.body) == nullptr) continue;
+        SolidContact contact;
+        contact.body = moving.index_of(attachment.body.index);
+        const TouchedBody& body = moving.bodies[contact.body];
+        contact.point = {index, 1, {attachment.node}, {1}};
+        contact.anchor = transform_point(body.start, attachment.anchor) - body.start_center;
+        contact.holds = true;
+        contacts.push_back(contact);
+    }
+    for (const NodeContact& node : found) {
+        const TouchedBody& body = colliding[node.body];
+        SolidContact contact;
+        contact.body = moving.index_of(body.body);
+        contact.point = {index, 1, {node.node}, {1}};
+        contact.anchor = node.anchor;
+        contact.normal = node.normal;
+        contact.radius = record.definition.contact_radius;
+        contact.friction = std::sqrt(body.friction * record.definition.friction);
+        contacts.push_back(contact);
+    }
+    // Contacts of a node with a body go by their order.
+    const auto key = [](const SolidContact& c) { return std::make_tuple(c.slot, c.point.node[0], !c.holds); };
+    for (SolidContact& contact : contacts) contact.slot = moving.bodies[contact.body].body;
+    std::ranges::stable_sort(contacts, {}, key);
+    auto old = record.contacts.begin();
+    for (SolidContact& contact : contacts) {
+        while (old != record.contacts.end() && key(*old) < key(contact)) ++old;
+        if (old != record.contacts.end() && key(*old) == key(contact)) contact.force = (old++)->force;
+    }
+    moving.contacts.insert(moving.contacts.end(), contacts.begin(), contacts.end());
+}
+
+void run_substeps(WorldState& world, MovingDeformables& moving) {
+    const int substeps = world.settings.deformable_substeps;
+    const double h = world.settings.time_step / substeps;
+    for (int k = 1; k <= substeps; ++k) {
+        for (std::size_t i = 0; i < moving.solids.size(); ++i)
+            moving.solids[i]->begin_substep(h, moving.records[i]->definition.gravity_factor * world.settings.gravity);
+        for (TouchedBody& body : moving.bodies) body.enter_substep(h);
+        SolidContacts::begin(moving.contacts, moving.solids, moving.bodies, h);
+        for (SolidDeformable* solid : moving.solids) solid->solve(*world.workers);
+        world.solid_contacts.solve(moving.contacts, moving.solids, moving.bodies, h, k * h, *world.workers);
+        for (SolidDeformable* solid : moving.solids) solid->finish();
+    }
+}
+
+// The bodies where the pushes have brought them; what the rigid bodies will feel in their next step. Sleepers wake if
+// they are pushed otherwise than when they fell asleep.
+void put_back_bodies(WorldState& world, const MovingDeformables& moving) {
+    const double dt = world.settings.time_step;
+    std::erase_if(world.pushed_bodies,
+                  [&](std::uint32_t slot) { return !world.is_used(slot) || !world.is_asleep(slot); });
+    for (const TouchedBody& body : moving.bodies) {
+        BodyRecord& record = world.record(body.body);
+        if (!world.is_dynamic(body.body)) continue;
+        const Vec3 force = body.impulse / dt, torque = body.angular_impulse / dt;
+        if (world.is_asleep(body.body)) {
+            const double mass = 1 / world.motion[body.body].inverse_mass;
+            const double weight = mass * length(world.settings.gravity);
+            if (length(force - record.deformable_force) > noticed_change * weight) world.to_wake.push_back(body.body);
+            continue;
+        }
+        record.deformable_force = force;
+        record.deformable_torque = torque;
+        if (force != Vec3{} || torque != Vec3{}) world.pushed_bodies.push_back(body.body);
+        if (force == Vec3{} && body.expected_force == Vec3{}) continue;
+        BodyState& state = world.motion[body.body];
+        state.center += body.shift;
+        state.rotation = normalized(cayley(body.turn) * state.rotation);
+        state.linear_velocity += body.velocity;
+        state.angular_velocity += body.spin;
+        refresh_inertia(state, world.constants[body.body]);
+    }
+}
+
+// What each deformable remembers; those whose numbers are none are stopped where they last were.
+void finish(WorldState& world, MovingDeformables& moving) {
+    for (DeformableRecord* record : moving.records) record->contacts.clear();
+    for (const SolidContact& contact : moving.contacts) {
+        if (contact.force != Vec3{}) moving.records[contact.point.solid]->contacts.push_back(contact);
+    }
+    for (DeformableRecord* record : moving.records) {
+        record->touched_bodies.clear();
+        for (const SolidContact& contact : record->contacts) record->touched_bodies.push_back(contact.slot);
+        auto& touched = record->touched_bodies;
+        touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+        if (!record->solid->is_finite()) {
+            record->solid->stop_at(record->last_positions);
+            record->definition.enabled = false;
+            world.report.limits |= static_cast<std::uint32_t>(StepLimit::not_finite_deformable_frozen);
+        }
+        record->last_positions = record->solid->nodes().position;
+    }
+}
+
+// A deformable sleeps when it is quiet and all bodies that it touches sleep; these stay awake while it is not quiet.
+void put_to_sleep(WorldState& world, MovingDeformables& moving) {
+    for (DeformableRecord* record : moving.records) {
+        double fastest = 0;
+        for (const Vec3 v : record->solid->nodes().velocity) fastest = std::max(fastest, length(v));
+        record->quiet_time = fastest < quiet_speed ? record->quiet_time + world.settings.time_step : 0;
+        bool all_sleep = true;
+        for (const std::uint32_t slot : record->touched_bodies) {
+            if (!world.is_used(slot) || !world.is_dynamic(slot)) continue;
+            all_sleep = all_sleep && world.is_asleep(slot);
+            SleepRecord& sleep = world.sleep[slot];
+            sleep.quiet_time = std::min(sleep.quiet_time, record->quiet_time);
+        }
+        record->is_asleep = world.settings.sleeping && all_sleep && record->quiet_time >= world.settings.time_to_sleep;
+        if (record->is_asleep) record->solid->rest();
+    }
+}
+
+}  // namespace
+
+void advance_deformables(WorldState& world) {
+    MovingDeformables moving;
+    for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
+        if (!world.deformables.used(slot)) continue;
+        DeformableRecord& record = world.deformables.at(slot);
+        if (!record.definition.enabled) continue;
+        if (record.is_asleep && is_disturbed(world, record)) {
+            record.is_asleep = false;
+            record.quiet_time = 0;
+        }
+        if (record.is_asleep) continue;
+        moving.records.push_back(&record);
+        moving.solids.push_back(record.solid.get());
+    }
+    gather_bodies(world, moving);
+    for (std::uint32_t i = 0; i < moving.records.size(); ++i) find_contacts_of(world, i, moving);
+    run_substeps(world, moving);
+    put_back_bodies(world, moving);
+    finish(world, moving);
+    put_to_sleep(world, moving);
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// Soft solids beside the theory of elasticity, and with rigid bodies.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "physics/deformable_meshes.h"
+#include "validation/reference.h"
+
+namespace embody::physics {
+namespace {
+
+constexpr double g = 9.81;
+
+DeformableDefinition brick(Vec3 size, std::array<int, 3> cells, double density, double youngs_modulus,
+                           double poisson_ratio, double damping) {
+    DeformableDefinition definition = tetrahedral_brick(size, cells);
+    SoftSolid& solid = std::get<SoftSolid>(definition.matter);
+    solid.density = density;
+    solid.youngs_modulus = youngs_modulus;
+    solid.poisson_ratio = poisson_ratio;
+    solid.rayleigh_damping = damping;
+    return definition;
+}
+
+void pin_where(DeformableDefinition& definition, const auto& is_pinned) {
+    for (std::uint32_t i = 0; i < definition.nodes.size(); ++i) {
+        if (is_pinned(definition.nodes[i])) definition.pinned.push_back(i);
+    }
+}
+
+// Mean way of the nodes that count along an axis.
+double mean_way(const World& world, DeformableHandle handle, const auto& is_counted, int axis) {
+    const DeformableDefinition& definition = *world.deformable(handle);
+    const auto positions = world.node_positions(handle);
+    double sum = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        if (!is_counted(definition.nodes[i])) continue;
+        sum += positions[i][axis] - definition.nodes[i][axis];
+        ++count;
+    }
+    return sum / count;
+}
+
+TEST(SoftSolid, AHangingBarStretchesByItsOwnWeight) {
+    const auto reference = reference_case("bar_self_weight");
+    const double length_of_bar = reference["setup"]["L"];
+    DeformableDefinition bar =
+        brick({0.1, length_of_bar, 0.1}, {1, 10, 1}, reference["setup"]["rho"], reference["setup"]["E"], 0, 0.02);
+    pin_where(bar, [&](Vec3 p) { return p.y == length_of_bar; });
+    const auto world = make_world({});
+    const DeformableHandle handle = world->create_deformable(bar).value();
+    run(*world, 10);
+    const double expected = reference["expected"]["dL"];
+    const double stretch = -mean_way(
+        *world, handle, [](Vec3 p) { return p.y == 0; }, 1);
+    EXPECT_NEAR(stretch, expected, static_cast<double>(reference["tolerance"]["rel"]) * expected);
+    EXPECT_LT(world->conserved().kinetic_energy, 1e-8);
+}
+
+DeformableDefinition cantilever(const nlohmann::json& setup, std::array<int, 3> cells, double damping) {
+    const double length_of_beam = setup["L"];
+    const double width = setup["section"][0], height = setup["section"][1];
+    DeformableDefinition beam = brick({length_of_beam, height, width}, cells, setup["rho"], setup["E"], 0.3, damping);
+    pin_where(beam, [](Vec3 p) { return p.x == 0; });
+    return beam;
+}
+
+double tip_way(const World& world, DeformableHandle handle) {
+    const double end = world.deformable(handle)->nodes.back().x;
+    return mean_way(
+        world, handle, [&](Vec3 p) { return p.x == end; }, 1);
+}
+
+TEST(SoftSolid, ACantileverBendsByItsOwnWeight) {
+    const auto reference = reference_case("cantilever_gravity");
+    const double expected = reference["expected"]["tip"];
+    for (const std::array<int, 3> cells : {std::array<int, 3>{20, 2, 2}, std::array<int, 3>{40, 4, 4}}) {
+        const auto world = make_world({});
+        const DeformableHandle handle = world->create_deformable(cantilever(reference["setup"], cells, 0.01)).value();
+        run(*world, 3);
+        EXPECT_NEAR(-tip_way(*world, handle), expected, static_cast<double>(reference["tolerance"]["rel"]) * expected)
+            << cells[1] << " across";
+    }
+}
+
+TEST(SoftSolid, ACantileverSwingsAtItsFrequency) {
+    const auto reference = reference_case("cantilever_freq");
+    const double expected = reference["expected"]["f1"];
+    WorldSettings settings;
+    settings.time_step = 1.0 / 240;
+    const auto world = make_world(settings);
+    const DeformableHandle handle = world->create_deformable(cantilever(reference["setup"], {20, 2, 2}, 0)).value();
+    // From straight: it swings about where it will hang, which it passes upwards once a period.
+    std::vector<double> way;
+    for (int i = 0; i < 480; ++i) {
+        world->step();
+        way.push_back(tip_way(*world, handle));
+    }
+    const auto [lowest, highest] = std::minmax_element(way.begin(), way.begin() + 80);
+    const double middle = (*lowest + *highest) / 2;
+    double first = 0, last = 0;
+    int crossings = 0;
+    for (std::size_t i = 1; i < way.size(); ++i) {
+        if (!(way[i - 1] < middle && way[i] >= middle)) continue;
+        last = (static_cast<double>(i) + (middle - way[i - 1]) / (way[i] - way[i - 1])) * settings.time_step;
+        if (crossings++ == 0) first = last;
+    }
+    ASSERT_GE(crossings, 4);
+    EXPECT_NEAR((crossings - 1) / (last - first), expected,
+                static_cast<double>(reference["tolerance"]["rel"]) * expected);
+}
+
+TEST(SoftSolid, AFreeOneKeepsItsMomenta) {
+    const auto reference = reference_case("soft_momentum");
+    DeformableDefinition block = brick({0.4, 0.2, 0.2}, {4, 2, 2}, 1000, 1e5, 0.4, 0);
+    block.linear_velocity = {1, 2, 0.5};
+    block.angular_velocity = {3, 1, 2};
+    WorldSettings settings;
+    settings.gravity = {};
+    const auto world = make_world(settings);
+    ASSERT_TRUE(world->create_deformable(block).ok());
+    const Conserved before = world->conserved();
+    const double duration = reference["setup"]["duration"];
+    run(*world, duration);
+    const Conserved after = world->conserved();
+    EXPECT_LT(length(after.linear_momentum - before.linear_momentum),
+              static_cast<double>(reference["tolerance"]["p_rel"]) * length(before.linear_momentum));
+    const Vec3 center{0.2, 0.1, 0.1};
+    const Vec3 center_after = center + (duration / (0.4 * 0.2 * 0.2 * 1000)) * before.linear_momentum;
+    const Vec3 spin_before = before.angular_momentum - cross(center, before.linear_momentum);
+    const Vec3 spin_after = after.angular_momentum - cross(center_after, after.linear_momentum);
+    EXPECT_LT(length(spin_after - spin_before),
+              static_cast<double>(reference["tolerance"]["L_rel"]) * length(spin_before));
+    EXPECT_LE(after.kinetic_energy + after.potential_energy, 1.001 * (before.kinetic_energy + before.potential_energy));
+}
+
+TEST(SoftSolid, AFreeOneFallsExactly) {
+    DeformableDefinition block = tetrahedral_brick({0.2, 0.2, 0.2}, {2, 2, 2});
+    block.pose.position = {1000, 100, -1000};
+    const auto world = make_world({});
+    const DeformableHandle handle = world->create_deformable(block).value();
+    run(*world, 2);
+    for (std::size_t i = 0; i < block.nodes.size(); ++i) {
+        EXPECT_NEAR(world->node_positions(handle)[i].y, 100 + block.nodes[i].y - g * 4 / 2, 1e-6);
+        EXPECT_NEAR(world->node_velocities(handle)[i].y, -g * 2, 1e-6);
+    }
+}
+
+BodyHandle add_box(World& world, Vec3 half, Vec3 position, double mass) {
+    const ShapeHandle shape = world.create_shape(BoxShape{half}).value();
+    BodyDefinition box;
+    box.shape = shape;
+    box.position = position;
+    box.mass.mass = mass;
+    box.material.restitution = 0;
+    return world.create_body(box).value();
+}
+
+TEST(SoftSolid, ACushionCarriesABox) {
+    DeformableDefinition cushion = brick({0.5, 0.15, 0.5}, {10, 3, 10}, 40, 2e4, 0.2, 0.02);
+    cushion.pose.position = {-0.25, 0.002, -0.25};
+    const auto world = make_world({});
+    add_plane(*world, {});
+    const BodyHandle box = add_box(*world, {0.2, 0.05, 0.2}, {0, 0.25, 0}, 10);
+    const DeformableHandle handle = world->create_deformable(cushion).value();
+    run(*world, 3);
+    EXPECT_LT(length(world->linear_velocity(box)), 0.005);
+    // It sinks in by about p L / E, a tenth of which the part around the box bears.
+    const double sunk = 0.15 - (world->pose(box).position.y - 0.05);
+    const double one_dimensional = 10 * g / (0.4 * 0.4) / 2e4 * 0.15;
+    EXPECT_GT(sunk, 0.6 * one_dimensional);
+    EXPECT_LT(sunk, 1.1 * one_dimensional);
+    for (const Vec3 p : world->node_positions(handle)) EXPECT_GT(p.y, -1e-3);
+}
+
+}  // namespace
+}  // namespace embody::physics
