@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: MIT
+//
+// Stretch and shear as in D. Baraff and A. Witkin, "Large steps in cloth simulation" (1998), section 4, with F = (f g)
+// the images of the unit steps along warp and weft: energy per area ½ k ((|f| - 1)² + (|g| - 1)²) + ½ s (f·g)². Of
+// their second derivative we keep what is positive: the stress of a stretched triangle stiffens it across, that of a
+// pressed one would let it buckle and is left out of the matrix, not out of the force.
+#include "physics/deformable/cloth_sheet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace embody::physics {
+
+namespace {
+
+Mat3 symmetric_outer(Vec3 a) { return outer(a, a); }
+
+float to_float(double v) { return static_cast<float>(v); }
+
+Block to_block(const Mat3& m) {
+    const auto column = [](Vec3 v) { return Float4{to_float(v.x), to_float(v.y), to_float(v.z), 0}; };
+    return {column(m.x), column(m.y), column(m.z)};
+}
+
+void add(Block& to, const Mat3& m) {
+    const Block b = to_block(m);
+    to.x += b.x;
+    to.y += b.y;
+    to.z += b.z;
+}
+
+// The nearest positive semidefinite matrix of [a b; b c].
+void make_positive(double& a, double& b, double& c) {
+    const double mean = (a + c) / 2, half = (a - c) / 2, radius = std::sqrt(half * half + b * b);
+    const double low = mean - radius, high = mean + radius;
+    if (low >= 0) return;
+    if (high <= 0 || radius == 0) {
+        a = b = c = 0;
+        return;
+    }
+    // high · e eᵀ with e the eigenvector of high: (1 + [half b; b -half] / radius) / 2.
+    a = high * (1 + half / radius) / 2;
+    c = high * (1 - half / radius) / 2;
+    b = high * b / radius / 2;
+}
+
+}  // namespace
+
+ClothSheet::ClothSheet(const DeformableDefinition& definition)
+    : cloth_(std::get<Cloth>(definition.matter)),
+      triangles_(make_cloth_triangles(definition.nodes, cloth_)),
+      bending_(make_bending_rows(definition.nodes, cloth_)) {
+    const std::size_t count = definition.nodes.size();
+    nodes_.mass.assign(count, 0);
+    for (const ClothTriangle& triangle : triangles_) {
+        for (const std::uint32_t node : triangle.node) nodes_.mass[node] += cloth_.area_density * triangle.area / 3;
+    }
+    Vec3 center;
+    double mass = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        nodes_.position.push_back(transform_point(definition.pose, definition.nodes[i]));
+        nodes_.inverse_mass.push_back(1 / nodes_.mass[i]);
+        center += nodes_.mass[i] * nodes_.position[i];
+        mass += nodes_.mass[i];
+    }
+    center = center / mass;
+    for (const Vec3 position : nodes_.position)
+        nodes_.mean_velocity.push_back(definition.linear_velocity +
+                                       cross(definition.angular_velocity, position - center));
+    fixed_.assign(count, 0);
+    for (const std::uint32_t node : definition.pinned) {
+        nodes_.inverse_mass[node] = 0;
+        nodes_.mean_velocity[node] = {};
+        fixed_[node] = 1;
+    }
+    nodes_.velocity = nodes_.mean_velocity;
+    for (double& value : bending_.value) value *= cloth_.bend_stiffness;
+    springs_.radius = definition.contact_radius;
+    springs_.friction = definition.friction;
+    springs_.attachments = definition.attachments;
+    make_pattern(bending_);
+}
+
+// Blocks between corners of a triangle, numbers between the nodes that only bending joins.
+void ClothSheet::make_pattern(const ScalarRows& bending) {
+    const std::size_t count = nodes_.size();
+    std::vector<std::map<std::uint32_t, std::uint32_t>> neighbours(count);
+    for (const ClothTriangle& triangle : triangles_) {
+        for (const std::uint32_t a : triangle.node) {
+            for (const std::uint32_t b : triangle.node) {
+                if (a != b) neighbours[a][b] = 0;
+            }
+        }
+    }
+    matrix_.diagonal.resize(count);
+    matrix_.start.push_back(0);
+    matrix_.far_start.push_back(0);
+    for (std::size_t i = 0; i < count; ++i) {
+        for (auto& [other, slot] : neighbours[i]) {
+            slot = static_cast<std::uint32_t>(matrix_.column.size());
+            matrix_.column.push_back(other);
+        }
+        near_bending_.resize(matrix_.column.size(), 0);
+        for (std::uint32_t k = bending.start[i]; k < bending.start[i + 1]; ++k) {
+            const auto near = neighbours[i].find(bending.column[k]);
+            if (near != neighbours[i].end()) {
+                near_bending_[near->second] = bending.value[k];
+            } else if (bending.column[k] != i) {
+                matrix_.far_column.push_back(bending.column[k]);
+            }
+        }
+        matrix_.start.push_back(static_cast<std::uint32_t>(matrix_.column.size()));
+        matrix_.far_start.push_back(static_cast<std::uint32_t>(matrix_.far_column.size()));
+    }
+    matrix_.block.resize(matrix_.column.size());
+    matrix_.far_value.resize(matrix_.far_column.size());
+
+    std::vector<std::vector<Corner>> corners(count);
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const std::uint32_t node = triangles_[t].node[k];
+            Corner corner{t, k, {}};
+            for (std::size_t other = 0; other < 3; ++other) {
+                if (other != k) corner.slot[other] = neighbours[node].at(triangles_[t].node[other]);
+            }
+            corners[node].push_back(corner);
+        }
+    }
+    corner_start_.push_back(0);
+    for (const auto& of_node : corners) {
+        corners_.insert(corners_.end(), of_node.begin(), of_node.end());
+        corner_start_.push_back(static_cast<std::uint32_t>(corners_.size()));
+    }
+}
+
+void ClothSheet::find_strains(const Substep& substep, TaskPool& workers) {
+    const double damped = 1 + cloth_.rayleigh_damping / substep.h;
+    strains_.resize(triangles_.size());
+    air_.resize(triangles_.size());
+    const auto work = [&](int, Share share) {
+        for (std::size_t t = share.first; t < share.last; ++t) {
+            const ClothTriangle& triangle = triangles_[t];
+            Strain& strain = strains_[t];
+            strain.f = strain.g = {};
+            Vec3 velocity;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vec3 x = nodes_.position[triangle.node[k]];
+                strain.f += triangle.warp[k] * x;
+                strain.g += triangle.weft[k] * x;
+                velocity += nodes_.mean_velocity[triangle.node[k]] / 3;
+            }
+            const double f = length(strain.f), g = length(strain.g), angle = dot(strain.f, strain.g);
+            strain.f_way = normalized(strain.f, {1, 0, 0});
+            strain.g_way = normalized(strain.g, any_perpendicular(strain.f_way));
+            const double k = cloth_.stretch_stiffness, s = cloth_.shear_stiffness;
+            strain.f_stress = k * (f - 1) * strain.f_way + s * angle * strain.g;
+            strain.g_stress = k * (g - 1) * strain.g_way + s * angle * strain.f;
+            // The second derivative of ½ (|f| - 1)² is f̂ f̂ᵀ / |f| + (1 - 1/|f|) 1.
+            strain.across_ff = f > 0 ? k * (1 - 1 / f) : -k;
+            strain.across_gg = g > 0 ? k * (1 - 1 / g) : -k;
+            strain.across_fg = s * angle;
+            strain.warp = k * (std::min(1.0, 1 / std::max(f, 1e-9)) + damped - 1);
+            strain.weft = k * (std::min(1.0, 1 / std::max(g, 1e-9)) + damped - 1);
+            strain.shear = s * damped;
+            make_positive(strain.across_ff, strain.across_fg, strain.across_gg);
+
+            // Drag by what blows through the triangle: ρ/2 C A |v·n| (v·n) n, a third of it a node.
+            const Vec3 normal = normalized(cross(strain.f, strain.g));
+            const double through = std::fabs(dot(velocity - substep.wind, normal));
+            air_[t] = std::sqrt(substep.air_density * cloth_.drag_coefficient * triangle.area * through / 6) * normal;
+        }
+    };
+    share_among(workers, triangles_.size(), triangles_.size() >= 1000, work);
+}
+
+void ClothSheet::fill_row(std::size_t i, const Substep& substep) {
+    const double h = substep.h, damped = 1 + cloth_.rayleigh_damping / h;
+    const double inertia = nodes_.mass[i] / (h * h);
+    Mat3 own = Mat3::diagonal({inertia, inertia, inertia});
+    Vec3 load = nodes_.mass[i] / h * nodes_.mean_velocity[i] + weight_[i];
+
+    for (std::uint32_t k = matrix_.start[i]; k < matrix_.start[i + 1]; ++k) {
+        const double b = damped * near_bending_[k];
+        matrix_.block[k] = to_block(Mat3::diagonal({b, b, b}));
+    }
+    std::uint32_t far = matrix_.far_start[i];
+    for (std::uint32_t k = bending_.start[i]; k < bending_.start[i + 1]; ++k) {
+        const std::uint32_t other = bending_.column[k];
+        load -= bending_.value[k] * nodes_.position[other];
+        if (other == i)
+            own += damped * bending_.value[k] * Mat3::identity();
+        else if (far < matrix_.far_start[i + 1] && matrix_.far_column[far] == other)
+            matrix_.far_value[far++] = to_float(damped * bending_.value[k]);
+    }
+    for (std::uint32_t c = corner_start_[i]; c < corner_start_[i + 1]; ++c) {
+        const Corner& corner = corners_[c];
+        const ClothTriangle& triangle = triangles_[corner.triangle];
+        const Strain& strain = strains_[corner.triangle];
+        const double area = triangle.area, b = triangle.warp[corner.corner], d = triangle.weft[corner.corner];
+        load -= area * (b * strain.f_stress + d * strain.g_stress);
+        const Vec3 angle = b * strain.g + d * strain.f;  // derivative of f·g
+        for (std::size_t other = 0; other < 3; ++other) {
+            const double b2 = triangle.warp[other], d2 = triangle.weft[other];
+            Mat3 block = (area * strain.warp * b * b2) * symmetric_outer(strain.f_way) +
+                         (area * strain.weft * d * d2) * symmetric_outer(strain.g_way) +
+                         (area * strain.shear) * outer(angle, b2 * strain.g + d2 * strain.f);
+            const double across =
+                area * (strain.across_ff * b * b2 + strain.across_gg * d * d2 + strain.across_fg * (b * d2 + d * b2));
+            block += across * Mat3::identity();
+            if (other == corner.corner)
+                own += block;
+            else
+                add(matrix_.block[corner.slot[other]], block);
+        }
+        const Vec3 air = air_[corner.triangle];
+        own += (1 / h) * symmetric_outer(air);
+        load += dot(air, substep.wind) * air;
+    }
+    matrix_.diagonal[i] = to_block(own);
+    node_stiffness_[i] = trace(own) / 3;
+    rhs_[i] = load;
+}
+
+void ClothSheet::fill_rows(const Substep& substep, TaskPool& workers) {
+    const std::size_t count = nodes_.size();
+    rhs_.resize(count);
+    weight_.resize(count);
+    small_load_.resize(count);
+    node_stiffness_.resize(count);
+    const double least = std::max(length(substep.gravity), 1.0);  // m/s²: an acceleration that matters anywhere
+    for (std::size_t i = 0; i < count; ++i) {
+        weight_[i] = nodes_.mass[i] * substep.gravity;
+        small_load_[i] = {0, nodes_.mass[i] * least, 0};
+    }
+    share_among(workers, count, count >= 1000, [&](int, Share share) {
+        for (std::size_t i = share.first; i < share.last; ++i) fill_row(i, substep);
+    });
+}
+
+bool ClothSheet::solve_moves(const Substep& substep, std::span<const TouchedBody> bodies, TaskPool& workers) {
+    const double h = substep.h;
+    inertias_.clear();
+    for (const TouchedBody& body : bodies) {
+        BodyInertia inertia;
+        if (body.inverse_mass > 0) {
+            // Axes that are held still turn a million times harder than the freest.
+            const Mat3& inverse = body.inverse_inertia;
+            const double least = std::max(1e-6 * trace(inverse), 1e-12 * body.inverse_mass);
+            inertia = {true, 1 / (body.inverse_mass * h * h),
+                       (1 / (h * h)) * inverse_or_zero(inverse + least * Mat3::identity())};
+        }
+        inertias_.push_back(inertia);
+    }
+    body_moves_.assign(bodies.size(), {});
+    moves_.resize(nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) moves_[i] = h * nodes_.mean_velocity[i];
+    springs_.choose(moves_, body_moves_, true);
+    rounds_ = solves_ = 0;
+    constexpr int most_solves = 4;
+    for (;;) {
+        rounds_ += solver.solve(matrix_, rhs_, small_load_, fixed_, springs_.springs(), inertias_, moves_, body_moves_,
+                                workers);
+        ++solves_;
+        if (springs_.springs().empty() || solves_ == most_solves) break;
+        // The last solve's springs stay as they were in it, so that what bodies feel is what nodes felt.
+        TouchSprings next = springs_;
+        if (!next.choose(moves_, body_moves_, false)) break;
+        springs_ = std::move(next);
+    }
+    for (const Vec3 move : moves_) {
+        if (!is_finite(move)) return false;
+    }
+    for (const BodyMove& move : body_moves_) {
+        if (!is_finite(move.shift) || !is_finite(move.turn)) return false;
+    }
+    return true;
+}
+
+// Nothing inside changes the momenta: what a solve that ended early, and backward Euler, take from them is given back
+// by a small move and turn of the whole. Only while nothing outside but weight and air acts.
+void ClothSheet::keep_momentum(const Substep& substep) {
+    const double h = substep.h;
+    double mass = 0;
+    Vec3 before, now, center;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        mass += nodes_.mass[i];
+        center += nodes_.mass[i] * nodes_.position[i];
+    }
+    center = center / mass;
+    // Forces of the air as they acted.
+    std::vector<Vec3> given(nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) given[i] = h * weight_[i];
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+        for (const std::uint32_t node : triangles_[t].node)
+            given[node] += dot(air_[t], h * substep.wind - moves_[node]) * air_[t];
+    }
+    Vec3 angular;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        const Vec3 momentum = nodes_.mass[i] * nodes_.mean_velocity[i] + given[i];
+        before += momentum;
+        now += nodes_.mass[i] / h * moves_[i];
+        angular += cross(nodes_.position[i] - center, momentum);
+    }
+    const Vec3 shift = (h / mass) * (before - now);
+    const Vec3 new_center = center + (h / mass) * before;
+    for (Vec3& move : moves_) move += shift;
+    // The turn changes the arms too, so it takes some rounds.
+    for (int round = 0; round < 5; ++round) {
+        Mat3 inertia = Mat3::zero();
+        Vec3 missing = angular;
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            const Vec3 arm = nodes_.position[i] + moves_[i] - new_center;
+            missing -= nodes_.mass[i] * cross(arm, moves_[i] / h - before / mass);
+            inertia += nodes_.mass[i] * (length_squared(arm) * Mat3::identity() - outer(arm, arm));
+        }
+        const Vec3 spin = embody::solve(inertia, missing);
+        if (!is_finite(spin) || length(spin) * h > 0.1) return;
+        for (std::size_t i = 0; i < nodes_.size(); ++i)
+            moves_[i] += h * cross(spin, nodes_.position[i] + moves_[i] - new_center);
+    }
+}
+
+void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> contacts,
+                         std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies,
+                         TaskPool& workers) {
+    if (is_frozen_) return;
+    find_strains(substep, workers);
+    fill_rows(substep, workers);
+    springs_.attachment_bodies.assign(attachment_bodies.begin(), attachment_bodies.end());
+    springs_.begin(nodes_, contacts, bodies, substep, node_stiffness_);
+    if (!solve_moves(substep, bodies, workers)) {
+        is_frozen_ = true;
+        for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.mean_velocity[i] = nodes_.velocity[i] = {};
+        return;
+    }
+    const auto acts = [](const TouchSpring& spring) { return spring.acts; };
+    const bool is_held = std::any_of(fixed_.begin(), fixed_.end(), [](std::uint8_t f) { return f != 0; });
+    if (!is_held && std::none_of(springs_.springs().begin(), springs_.springs().end(), acts)) keep_momentum(substep);
+    springs_.finish(moves_, body_moves_, substep, bodies);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        const Vec3 mean = moves_[i] / substep.h;
+        nodes_.velocity[i] = mean + 0.5 * (mean - nodes_.mean_velocity[i]);
+        nodes_.mean_velocity[i] = mean;
+        nodes_.position[i] += moves_[i];
+    }
+}
+
+double ClothSheet::elastic_energy() const {
+    double energy = 0;
+    for (const ClothTriangle& triangle : triangles_) {
+        Vec3 f, g;
+        for (std::size_t k = 0; k < 3; ++k) {
+            f += triangle.warp[k] * nodes_.position[triangle.node[k]];
+            g += triangle.weft[k] * nodes_.position[triangle.node[k]];
+        }
+        const double warp = length(f) - 1, weft = length(g) - 1, angle = dot(f, g);
+        energy += triangle.area / 2 *
+                  (cloth_.stretch_stiffness * (warp * warp + weft * weft) + cloth_.shear_stiffness * angle * angle);
+    }
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        for (std::uint32_t k = bending_.start[i]; k < bending_.start[i + 1]; ++k)
+            energy += bending_.value[k] / 2 * dot(nodes_.position[i], nodes_.position[bending_.column[k]]);
+    }
+    return energy;
+}
+
+}  // namespace embody::physics

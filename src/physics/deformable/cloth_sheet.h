@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "foundation/task_pool.h"
+#include "physics/deformable/cloth_mesh.h"
+#include "physics/deformable/cloth_solver.h"
+#include "physics/deformable/nodes.h"
+#include "physics/deformable/touch_springs.h"
+
+namespace embody::physics {
+
+/// Cloth that moves: membrane of warp, weft and shear, bending, air, contacts, by backward Euler with one linear
+/// solve for the elastic forces a substep (docs/physics/cloth.md).
+class ClothSheet {
+public:
+    /// `definition` is valid and its matter is cloth.
+    explicit ClothSheet(const DeformableDefinition& definition);
+
+    /// One substep. `attachment_bodies`: where the definition's attachments hold in `bodies`. Pushes the bodies.
+    void advance(const Substep& substep, std::span<const NodeContact> contacts,
+                 std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies, TaskPool& workers);
+
+    [[nodiscard]] Nodes& nodes() { return nodes_; }
+    [[nodiscard]] const Nodes& nodes() const { return nodes_; }
+    [[nodiscard]] const std::vector<ClothTriangle>& triangles() const { return triangles_; }
+    /// Energies of what it is now, J.
+    [[nodiscard]] double elastic_energy() const;
+    /// True once a number was none: it stays where it last was.
+    [[nodiscard]] bool is_frozen() const { return is_frozen_; }
+    /// Rounds of conjugate gradients in the last substep, and solves.
+    [[nodiscard]] int rounds() const { return rounds_; }
+    [[nodiscard]] int solves() const { return solves_; }
+
+    ClothSolver solver;
+
+private:
+    // How a triangle meets a node's row of the matrix.
+    struct Corner {
+        std::uint32_t triangle = 0, corner = 0;
+        std::array<std::uint32_t, 3> slot{};  // of the row's blocks; own: the diagonal
+    };
+    // Of a triangle, this substep: F's columns and what the energy makes of them.
+    struct Strain {
+        Vec3 f, g;                                           // images of the unit steps along warp and weft
+        Vec3 f_way, g_way;                                   // their directions
+        Vec3 f_stress, g_stress;                             // derivatives of the energy per area by f and g, N/m
+        double warp = 0, weft = 0, shear = 0;                // stiffness along f_way, g_way, of the angle, N/m
+        double across_ff = 0, across_fg = 0, across_gg = 0;  // stiffness by stress, N/m
+    };
+
+    void make_pattern(const ScalarRows& bending);
+    void find_strains(const Substep& substep, TaskPool& workers);
+    void fill_rows(const Substep& substep, TaskPool& workers);
+    void fill_row(std::size_t i, const Substep& substep);
+    bool solve_moves(const Substep& substep, std::span<const TouchedBody> bodies, TaskPool& workers);
+    void keep_momentum(const Substep& substep);
+
+    Cloth cloth_;
+    Nodes nodes_;
+    std::vector<ClothTriangle> triangles_;
+    ScalarRows bending_;  // times bend stiffness, N/m
+    ClothMatrix matrix_;
+    std::vector<std::uint32_t> corner_start_;
+    std::vector<Corner> corners_;
+    std::vector<double> near_bending_;  // of the blocks between neighbours
+    TouchSprings springs_;
+    std::vector<std::uint8_t> fixed_;
+
+    // Of the substep.
+    std::vector<Strain> strains_;
+    std::vector<Vec3> rhs_, weight_, small_load_, air_, moves_;
+    std::vector<double> node_stiffness_;
+    std::vector<BodyInertia> inertias_;
+    std::vector<BodyMove> body_moves_;
+    bool is_frozen_ = false;
+    int rounds_ = 0, solves_ = 0;
+};
+
+}  // namespace embody::physics

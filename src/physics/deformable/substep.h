@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "math/vec3.h"
+
+namespace embody::physics {
+
+/// What a deformable is told of one substep.
+struct Substep {
+    double h = 1.0 / 60;       ///< its length, s
+    double time = 0;           ///< of its start, s after the step began
+    Vec3 gravity;              ///< m/s², the deformable's own gravity factor in it
+    Vec3 wind;                 ///< velocity of the air, m/s
+    double air_density = 1.2;  ///< kg/m³
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "math/mat3.h"
+#include "physics/deformable/node_contacts.h"
+#include "physics/deformable/substep.h"
+#include "physics/inter/definitions/deformable_definition.h"
+
+namespace embody::physics {
+
+/// How far the pushes of a substep move a body off its path: m, rad.
+struct BodyMove {
+    Vec3 shift, turn;
+};
+
+inline constexpr std::uint32_t no_body = 0xFFFFFFFFu;
+
+/// What holds a point of a deformable, Σ weight x, off or to a plane, another point of it or a body's anchor: the force
+///   load - matrix s
+/// on the point, where s is how far it moves in the substep on top of what the touched body's pushes move it.
+struct TouchSpring {
+    std::array<std::uint32_t, 4> node{};
+    std::array<double, 4> weight{};
+    int count = 1;                 ///< of nodes
+    std::uint32_t body = no_body;  ///< index in the list of bodies
+    bool is_attachment = false;    ///< pulls too, in every direction
+    Vec3 normal;                   ///< unit, towards the point, at the end of the substep
+    Vec3 arm;                      ///< from the body's centre of mass to what is touched, then
+    double friction = 0;           ///< Coulomb coefficient
+    double gap = 0;                ///< at the end of the substep if the point stays, m
+    Vec3 carried;                  ///< how far the body's surface goes in the substep on its path, m
+    double stiffness = 0;          ///< of both directions at most, N/m
+    double inertia = 0;            ///< mass of the point over the substep squared, N/m
+    Vec3 pull;                     ///< force that the spring had at the last substep's end, N: the push is along n
+    Vec3 hold;                     ///< tangential stretch of the spring while it sticks, m
+
+    bool acts = false;
+    Mat3 matrix = Mat3::zero();  ///< symmetric, not negative, N/m
+    Vec3 load;
+
+    /// Of the point for that lead over the body.
+    [[nodiscard]] Vec3 force(Vec3 s) const { return load - matrix * s; }
+    [[nodiscard]] Vec3 lead(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves) const;
+};
+
+/// Contacts and attachments of one deformable as springs with memory. A spring starts where it left off in the last
+/// substep, so its force grows until nothing gives way any more: stiff as it is, it acts like a hard contact (method of
+/// multipliers, one round a substep; stable from a stiffness of the node's own on). Friction is a spring along the
+/// plane that gives way at Coulomb's limit.
+class TouchSprings {
+public:
+    /// Begins a substep: `radius`, friction of the deformable; `node_stiffness`: what the node's neighbours resist with
+    /// together, N/m. A contact counts that may close in the substep.
+    void begin(const Nodes& nodes, std::span<const NodeContact> contacts, std::span<const TouchedBody> bodies,
+               const Substep& substep, std::span<const double> node_stiffness);
+    /// One between points of the deformable itself, without memory.
+    void add(const TouchSpring& spring) { springs_.push_back(spring); }
+    /// Which springs act, and how friction does, for these moves. True where that has changed by more than a solve is
+    /// worth. `is_foretold`: of moves by inertia alone, no measure of forces: those of the last substep are.
+    bool choose(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, bool is_foretold);
+    /// Pushes the bodies, and remembers.
+    void finish(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, const Substep& substep,
+                std::span<TouchedBody> bodies);
+
+    [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_; }
+
+    double radius = 1e-3;                          ///< m
+    double friction = 0.5;                         ///< Coulomb coefficient of the deformable
+    std::vector<Attachment> attachments;           ///< that still hold
+    std::vector<std::uint32_t> attachment_bodies;  ///< index of each in the list of bodies, set before begin()
+
+private:
+    struct Memory {
+        std::uint32_t node = 0, slot = 0;
+        Vec3 normal, pull, hold;
+    };
+    void recall(const TouchedBody& body, TouchSpring& spring) const;
+    static double choose_friction(TouchSpring& spring, Vec3 s, double limit, bool is_foretold);
+
+    std::vector<TouchSpring> springs_;
+    std::vector<Memory> memory_;        // by node
+    std::vector<std::uint32_t> slots_;  // of the bodies, this substep
+};
+
+}  // namespace embody::physics

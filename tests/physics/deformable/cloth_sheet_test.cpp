@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: MIT
+#include "physics/deformable/cloth_sheet.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "physics/inter/definitions/deformable_primitives.h"
+
+namespace embody::physics {
+namespace {
+
+constexpr double gravity = 9.81, h = 1.0 / 60;
+
+struct Bench {
+    ClothSheet sheet;
+    TaskPool workers{1};
+    Substep substep{.h = h, .gravity = {0, -gravity, 0}, .air_density = 0};
+    std::vector<NodeContact> contacts;
+    std::vector<TouchedBody> bodies;
+    std::vector<std::uint32_t> attachments;
+    double total_rounds = 0;
+
+    explicit Bench(const DeformableDefinition& definition) : sheet(definition) {
+        EXPECT_TRUE(validate(definition).ok()) << validate(definition).error().message();
+    }
+    void step() {
+        sheet.advance(substep, contacts, attachments, bodies, workers);
+        total_rounds += sheet.rounds();
+    }
+    void run(double seconds) {
+        for (int i = 0; i < std::lround(seconds / substep.h); ++i) step();
+    }
+    [[nodiscard]] Vec3 at(std::size_t node) const { return sheet.nodes().position[node]; }
+    [[nodiscard]] double fastest() const {
+        double most = 0;
+        for (const Vec3 v : sheet.nodes().velocity) most = std::max(most, length(v));
+        return most;
+    }
+};
+
+// Nodes within the distance of where x is least.
+std::vector<std::uint32_t> pin_low_x(const DeformableDefinition& definition, double distance) {
+    double least = 1e9;
+    for (const Vec3 node : definition.nodes) least = std::min(least, node.x);
+    std::vector<std::uint32_t> pinned;
+    for (std::uint32_t i = 0; i < definition.nodes.size(); ++i) {
+        if (definition.nodes[i].x < least + distance) pinned.push_back(i);
+    }
+    return pinned;
+}
+
+std::uint32_t farthest_x(const DeformableDefinition& definition) {
+    std::uint32_t best = 0;
+    for (std::uint32_t i = 0; i < definition.nodes.size(); ++i) {
+        const Vec3 a = definition.nodes[i], b = definition.nodes[best];
+        if (a.x > b.x + 1e-9 || (a.x > b.x - 1e-9 && std::fabs(a.z) < std::fabs(b.z))) best = i;
+    }
+    return best;
+}
+
+TEST(ClothBending, EnergyOfACylinderIsThatOfThePlateOnAnyMeshInAnyDirection) {
+    // ½ k κ² per area, for a small curvature of any direction.
+    for (const auto& definition : {cloth_rectangle(0.4, 0.3, 0.02), cloth_disc(0.2, 0.02)}) {
+        const auto& cloth = std::get<Cloth>(definition.matter);
+        const ScalarRows rows = make_bending_rows(definition.nodes, cloth);
+        double area = 0;
+        for (const ClothTriangle& triangle : make_cloth_triangles(definition.nodes, cloth)) area += triangle.area;
+        for (double angle = 0; angle < 3.1; angle += 0.3) {
+            const double curvature = 0.1;
+            std::vector<double> w;
+            for (const Vec3 node : definition.nodes) {
+                const double along = std::cos(angle) * node.x + std::sin(angle) * node.z;
+                w.push_back(curvature * along * along / 2);
+            }
+            double energy = 0;
+            for (std::size_t i = 0; i < w.size(); ++i) {
+                for (std::uint32_t k = rows.start[i]; k < rows.start[i + 1]; ++k)
+                    energy += rows.value[k] / 2 * w[i] * w[rows.column[k]];
+            }
+            EXPECT_NEAR(energy / (0.5 * curvature * curvature * area), 1, 0.07) << angle;
+        }
+    }
+}
+
+TEST(ClothSheet, HangingStripStretchesByItsWeight) {
+    // dL = ρ g L² / (2 k)
+    auto definition =
+        cloth_rectangle(1, 0.1, 0.05, {.area_density = 0.5, .stretch_stiffness = 200, .rayleigh_damping = 0.05});
+    definition.pinned = pin_low_x(definition, 1e-3);
+    definition.pose.rotation = from_axis_angle({0, 0, 1}, -std::acos(-1.0) / 2);  // x downwards
+    Bench bench(definition);
+    const std::uint32_t end = farthest_x(definition);
+    bench.run(5);
+    EXPECT_NEAR(-bench.at(end).y - 0.5, 0.5 * gravity / (2 * 200), 0.01 * 0.5 * gravity / 400);
+    EXPECT_LT(bench.fastest(), 2e-3);
+}
+
+// What holds two rows of nodes clamps half way between them: there the curvature that both tell begins.
+// Tip of a heavy elastica clamped horizontally: B θ'' = w (L - s) cos θ, θ(0) = 0, θ'(L) = 0, by shooting.
+Vec3 heavy_elastica(double stiffness, double weight, double length) {
+    constexpr int parts = 4000;
+    const double ds = length / parts;
+    const auto shoot = [&](double curvature, Vec3& tip) {
+        double angle = 0;
+        tip = {};
+        for (int i = 0; i < parts; ++i) {
+            const double s = (i + 0.5) * ds;
+            const double middle = angle + curvature * ds / 2;
+            tip += ds * Vec3{std::cos(middle), -std::sin(middle), 0};
+            const double change = -weight * (length - s) * std::cos(middle) / stiffness;
+            angle += curvature * ds + change * ds * ds / 2;
+            curvature += change * ds;
+        }
+        return curvature;
+    };
+    double low = 0, high = 100 / length;
+    Vec3 tip;
+    for (int i = 0; i < 100; ++i) {
+        const double middle = (low + high) / 2;
+        (shoot(middle, tip) > 0 ? high : low) = middle;
+    }
+    return tip;
+}
+
+TEST(ClothSheet, CantileveredStripHangsAsTheHeavyElastica) {
+    // Peirce's test of bending length: an overhang whose chord falls by 41.5° is twice the bending length (B/w)^(1/3).
+    const double density = 0.2, stiffness = 2e-5, overhang = 2 * std::cbrt(stiffness / (density * gravity));
+    for (const int parts : {8, 16}) {
+        const double edge = overhang / parts;
+        auto definition = cloth_rectangle(overhang / 2, overhang + edge, edge / std::sqrt(0.75),
+                                          {.area_density = density,
+                                           .stretch_stiffness = 500,
+                                           .shear_stiffness = 200,
+                                           .bend_stiffness = stiffness,
+                                           .rayleigh_damping = 0.02});
+        const double clamp = -(overhang + edge) / 2 + edge;  // the two rows up to here are held
+        for (std::uint32_t i = 0; i < definition.nodes.size(); ++i) {
+            if (definition.nodes[i].z < clamp + 1e-9) definition.pinned.push_back(i);
+        }
+        Bench bench(definition);
+        bench.run(6);
+        const auto tip = bench.at(definition.nodes.size() - 1) - Vec3{0, 0, clamp - edge / 2};
+        const Vec3 right = heavy_elastica(stiffness, density * gravity, overhang + edge / 2);
+        EXPECT_NEAR(tip.y, right.y, 0.05 * std::fabs(right.y));
+    }
+}
+
+TEST(ClothSheet, FreeSheetKeepsItsMomenta) {
+    auto definition = cloth_rectangle(0.5, 0.3, 0.05);
+    definition.linear_velocity = {1, 2, 3};
+    definition.angular_velocity = {2, 5, 1};
+    Bench bench(definition);
+    const auto momenta = [&] {
+        const Nodes& nodes = bench.sheet.nodes();
+        Vec3 linear, angular, center;
+        double mass = 0;
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            linear += nodes.mass[i] * nodes.mean_velocity[i];
+            center += nodes.mass[i] * nodes.position[i];
+            mass += nodes.mass[i];
+        }
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            angular += nodes.mass[i] * cross(nodes.position[i] - center / mass, nodes.mean_velocity[i]);
+        return std::pair(linear, angular);
+    };
+    const auto [linear, angular] = momenta();
+    const double seconds = 5;
+    bench.run(seconds);
+    const auto [later, later_angular] = momenta();
+    double mass = 0;
+    for (const double m : bench.sheet.nodes().mass) mass += m;
+    EXPECT_LT(length(later - linear - mass * seconds * Vec3{0, -gravity, 0}), 1e-9 * length(later));
+    EXPECT_LT(length(later_angular - angular), 1e-3 * length(angular));
+}
+
+TEST(ClothSheet, SwingsAsAPendulum) {
+    // A hanging sheet that is small beside its strings' length would be a point; here a strip 1 m long and stiff to
+    // bending swings as a thin rod: T = 2π √(2 L / 3 g) for small angles.
+    auto definition = cloth_rectangle(
+        1, 0.1, 0.05, {.area_density = 0.5, .stretch_stiffness = 5000, .shear_stiffness = 1000, .bend_stiffness = 5});
+    definition.pinned = pin_low_x(definition, 1e-3);
+    const double start = 0.1;
+    definition.pose.rotation = from_axis_angle({0, 0, 1}, start - std::acos(-1.0) / 2);
+    Bench bench(definition);
+    bench.substep.h = 1.0 / 240;
+    const std::uint32_t end = farthest_x(definition);
+    const Vec3 root = bench.at(definition.pinned[0]);
+    double crossed = 0, before = 1, period = 0;
+    for (int i = 1; i < 1200; ++i) {
+        bench.step();
+        const double x = bench.at(end).x - root.x, time = i * bench.substep.h;
+        if (before > 0 && x <= 0) {
+            const double at = time - bench.substep.h * x / (x - before);
+            if (crossed > 0) period = at - crossed;
+            crossed = at;
+        }
+        before = x;
+    }
+    const double right = 2 * std::acos(-1.0) * std::sqrt(2.0 / (3 * gravity));
+    EXPECT_NEAR(period, right * (1 + start * start / 16), 0.01 * right);
+}
+
+// The box of half extents `half` with its middle at `center`, still.
+struct StillBody {
+    std::unique_ptr<CollisionShape> shape;
+    TouchedBody body;
+    StillBody(const ShapeDefinition& definition, Vec3 center, double friction)
+        : shape(std::move(CollisionShape::create(definition)).value()) {
+        body.shape = shape.get();
+        body.friction = friction;
+        body.start = {center, {}};
+        body.start_center = center;
+    }
+};
+
+struct Scene : Bench {
+    std::unique_ptr<CollisionShape> ball;
+    std::vector<std::uint32_t> all;
+    double radius;
+    explicit Scene(const DeformableDefinition& definition) : Bench(definition), radius(definition.contact_radius) {
+        ball = std::move(CollisionShape::create(SphereShape{radius})).value();
+        for (std::uint32_t i = 0; i < definition.nodes.size(); ++i) all.push_back(i);
+    }
+    void step() {
+        contacts.clear();
+        find_node_contacts(sheet.nodes(), all, *ball, radius, bodies, substep.h, substep.gravity, contacts);
+        for (TouchedBody& body : bodies) body.shift = body.turn = body.impulse = body.angular_impulse = {};
+        Bench::step();
+        for (TouchedBody& body : bodies) move_on(body);
+    }
+    // What the rigid solver would do: gravity, and the path that the pushes gave.
+    void move_on(TouchedBody& body) const {
+        if (body.inverse_mass == 0) return;
+        body.start_center = body.center_at(substep.h);
+        body.start.position = body.start_center;
+        body.path_velocity += body.velocity + substep.h * substep.gravity;
+        body.velocity = body.spin = {};
+    }
+    void run(double seconds) {
+        for (int i = 0; i < std::lround(seconds / substep.h); ++i) step();
+    }
+};
+
+TEST(ClothSheet, SlidesDownAnInclineByCoulombsLaw) {
+    // Held below the angle of friction, else a = g (sin α - μ cos α).
+    for (const double mu : {0.2, 0.6}) {
+        const double angle = 0.4;
+        auto definition = cloth_rectangle(0.2, 0.2, 0.04);
+        definition.friction = mu;
+        definition.pose.rotation = from_axis_angle({0, 0, 1}, -angle);
+        definition.pose.position = definition.contact_radius * Vec3{std::sin(angle), std::cos(angle), 0};
+        Scene scene(definition);
+        StillBody plane(PlaneShape{{std::sin(angle), std::cos(angle), 0}, 0}, {}, mu);
+        scene.bodies.push_back(plane.body);
+        const Vec3 start = scene.at(0);
+        scene.run(1);
+        const double way = dot(scene.at(0) - start, {std::cos(angle), -std::sin(angle), 0});
+        // Backward Euler's way is longer by a substep's share.
+        const double right = std::max(0.0, gravity * (std::sin(angle) - mu * std::cos(angle)) / 2) * (1 + h);
+        EXPECT_NEAR(way, right, 0.04 * right + 5e-4) << mu;
+    }
+}
+
+TEST(ClothSheet, TableclothFallsOverATableAndStays) {
+    auto definition =
+        cloth_rectangle(1.2, 1.2, 0.05, {.area_density = 0.2, .stretch_stiffness = 500, .rayleigh_damping = 0.01});
+    definition.pose.position = {0, 0.8, 0};
+    Scene scene(definition);
+    scene.substep.air_density = 1.2;
+    StillBody table(BoxShape{{0.4, 0.35, 0.4}}, {0, 0.35, 0}, 0.5);
+    scene.bodies.push_back(table.body);
+    scene.run(4);
+    const auto before = scene.sheet.nodes().position;
+    scene.run(2);
+    double drift = 0, lowest = 1, deepest = 0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        const Vec3 x = scene.at(i);
+        drift = std::max(drift, length(x - before[i]));
+        lowest = std::min(lowest, x.y);
+        const Vec3 inside = Vec3{0.4, 0.35, 0.4} - abs(x - Vec3{0, 0.35, 0});
+        deepest = std::max(deepest, std::min({inside.x, inside.y, inside.z}));
+    }
+    EXPECT_LT(drift, 5e-3);
+    EXPECT_NEAR(lowest, 0.7 - 0.2, 0.12);  // corners hang lower than the borders' 0.2 m
+    EXPECT_LT(deepest, 2e-3);
+}
+
+TEST(ClothSheet, BallOnAPinnedSheetIsHeldWithItsWholeWeight) {
+    auto definition = cloth_rectangle(
+        1, 1, 0.05, {.area_density = 0.3, .stretch_stiffness = 2000, .shear_stiffness = 500, .rayleigh_damping = 0.02});
+    for (std::uint32_t i = 0; i < definition.nodes.size(); ++i) {
+        if (std::max(std::fabs(definition.nodes[i].x), std::fabs(definition.nodes[i].z)) > 0.499)
+            definition.pinned.push_back(i);
+    }
+    for (const double mass : {0.5, 50.0}) {
+        Scene scene(definition);
+        const double radius = 0.15;
+        StillBody ball(SphereShape{radius}, {0, radius + 0.05, 0}, 0.5);
+        ball.body.inverse_mass = 1 / mass;
+        const double inverse_inertia = 1 / (0.4 * mass * radius * radius);
+        ball.body.inverse_inertia = Mat3::diagonal({inverse_inertia, inverse_inertia, inverse_inertia});
+        ball.body.path_velocity = {0, -0.5 * gravity * h, 0};
+        scene.bodies.push_back(ball.body);
+        scene.run(8);
+        EXPECT_NEAR(scene.bodies[0].impulse.y, mass * gravity * h, 0.02 * mass * gravity * h);
+        EXPECT_LT(std::fabs(scene.bodies[0].start_center.x), 0.01);
+        EXPECT_GT(scene.bodies[0].start_center.y, -0.5);
+    }
+}
+
+}  // namespace
+}  // namespace embody::physics
