@@ -25,6 +25,8 @@ public:
     [[nodiscard]] const std::vector<ClothTriangle>& triangles() const { return triangles_; }
     /// Energies of what it is now, J.
     [[nodiscard]] double elastic_energy() const;
+    /// Contacts and attachments of the last substep.
+    [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_.springs(); }
     /// True once a number was none: it stays where it last was.
     [[nodiscard]] bool is_frozen() const { return is_frozen_; }
     /// Rounds of conjugate gradients in the last substep, and solves.

@@ -126,7 +126,8 @@ bool TouchSprings::choose(std::span<const Vec3> node_moves, std::span<const Body
         const double depth = -(spring.gap + dot(spring.normal, s)), push = push_before + spring.stiffness * depth;
         const bool is_new = !spring.acts;
         if (is_new != (push <= 0)) change += std::fabs(push);
-        spring.acts = push > 0;
+        // What pushed in the last substep is let go by a solve alone: the stiff spring calls every breath a leave.
+        spring.acts = push > 0 || (is_foretold && push_before > 0);
         all += std::fabs(push);
         if (!spring.acts) {
             spring.matrix = Mat3::zero();
