@@ -168,7 +168,7 @@ void add_motion(Rows& rows) {
     const Group group{rows, "motion"};
     group.number({"linear_damping", "RA", "Linear damping", "Share of the velocity lost a second."}, "1/s", 0, 0, 100);
     group.number({"angular_damping", "RA", "Angular damping", "Share of the spin lost a second."}, "1/s", 0.05, 0, 100);
-    group.number({"gravity_factor", "RA", "Gravity factor", "1 falls, 0 floats, -1 rises."}, "1", 1, -10, 10);
+    group.number({"gravity_factor", "RAV", "Gravity factor", "1 falls, 0 floats, -1 rises."}, "1", 1, -10, 10);
     group.number(
         {"sleep_energy_per_mass", "RA", "Sleep energy", "Quieter than this for half a second may fall asleep."}, "J/kg",
         4.5e-4, 0, 1);
@@ -189,15 +189,18 @@ void add_motion(Rows& rows) {
 }
 
 void add_soft_and_cloth(Rows& rows) {
-    const Group soft{rows, "soft", false};
+    const Group soft{rows, "soft"};
     soft.number({"youngs_modulus", "VC", "Young's modulus", "Stiffness of the material."}, "Pa", 1e5, 1e2, 1e12);
-    soft.number({"poisson_ratio", "VC", "Poisson's ratio", "Sideways shrinking when stretched."}, "1", 0.45, -0.999,
-                0.4999);
+    soft.number({"poisson_ratio", "VC", "Poisson's ratio",
+                 "Sideways shrinking when stretched; simulated within -0.9 and 0.495."},
+                "1", 0.45, -0.999, 0.4999);
     soft.number({"damping_rayleigh", "VCP", "Internal damping", "Stiffness-proportional Rayleigh damping."}, "s", 0.01,
                 0, 100);
-    soft.number({"yield_stress", "VCP", "Yield stress", "Stress from which it stays deformed."}, "Pa", infinity, 0,
-                infinity);
-    soft.number({"internal_pressure", "VC", "Internal pressure", "Above that of the air around."}, "Pa", 0, 0, 1e8);
+    const Group soft_later{rows, "soft", false};
+    soft_later.number({"yield_stress", "VCP", "Yield stress", "Stress from which it stays deformed."}, "Pa", infinity,
+                      0, infinity);
+    soft_later.number({"internal_pressure", "VC", "Internal pressure", "Above that of the air around."}, "Pa", 0, 0,
+                      1e8);
     const Group cloth{rows, "cloth", false};
     cloth.number({"area_density", "C", "Area density", "Mass of a square metre."}, "kg/m²", 0.2, 1e-4, 1e3);
     cloth.number({"thickness", "C", "Thickness", "Of the cloth."}, "m", 5e-4, 1e-6, 0.1);

@@ -170,4 +170,38 @@ Result<physics::ShapeDefinition> shape_from_attributes(const AttributeSet& attri
     return primitive_shape(shape, facts);
 }
 
+physics::DeformableDefinition deformable_from_attributes(const AttributeSet& attributes) {
+    physics::DeformableDefinition deformable;
+    deformable.friction = number_or_standard(attributes, "friction_dynamic");
+    deformable.gravity_factor = number_or_standard(attributes, "gravity_factor");
+    deformable.collision_group = static_cast<std::uint32_t>(number_or_standard(attributes, "collision_group"));
+    deformable.collision_mask = static_cast<std::uint32_t>(number_or_standard(attributes, "collision_mask"));
+    return deformable;
+}
+
+Result<physics::DeformableDefinition> soft_solid_from_attributes(const AttributeSet& attributes,
+                                                                 const geometry::TetrahedralMesh& mesh) {
+    constexpr double least_poisson = -0.9, greatest_poisson = 0.495, least_yield = 1;
+    const AttributeDescription& range = *describe("density");
+    const double mass = number_or_standard(attributes, "mass"), volume = geometry::volume(mesh);
+    const double density = mass / volume;
+    if (!(density >= *range.low && density <= *range.high))
+        return Error{"mass",
+                     short_number(mass) + " kg in " + short_number(1000 * volume) + " litres is a density of " +
+                         short_number(density) + " kg/m³",
+                     "a soft thing needs " + short_number(*range.low) + " to " + short_number(*range.high) + " kg/m³"};
+    physics::DeformableDefinition deformable = deformable_from_attributes(attributes);
+    deformable.nodes = mesh.nodes;
+    physics::SoftSolid solid;
+    solid.tetrahedra = mesh.tetrahedra;
+    solid.density = density;
+    solid.youngs_modulus = number_or_standard(attributes, "youngs_modulus");
+    solid.poisson_ratio = std::clamp(number_or_standard(attributes, "poisson_ratio"), least_poisson, greatest_poisson);
+    solid.rayleigh_damping = number_or_standard(attributes, "damping_rayleigh");
+    solid.yield_stress = std::max(number_or_standard(attributes, "yield_stress"), least_yield);
+    solid.internal_pressure = number_or_standard(attributes, "internal_pressure");
+    deformable.matter = std::move(solid);
+    return deformable;
+}
+
 }  // namespace embody::attributes

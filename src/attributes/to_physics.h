@@ -5,7 +5,9 @@
 #include "attributes/model_facts.h"
 #include "attributes/resolver.h"
 #include "foundation/result.h"
+#include "geometry/tetrahedra/tetrahedral_mesh.h"
 #include "physics/inter/definitions/body_definition.h"
+#include "physics/inter/definitions/deformable_definition.h"
 #include "physics/inter/definitions/shape_definition.h"
 
 namespace embody::attributes {
@@ -30,5 +32,14 @@ Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attribu
 /// The collision shape that the attributes name (collision_shape), in the model's frame.
 Result<physics::ShapeDefinition> shape_from_attributes(const AttributeSet& attributes, const GeometryFacts& facts,
                                                        ModelGeometry& geometry);
+
+/// What all deformables have of the attributes, without nodes, matter and pose: friction, gravity factor, groups.
+physics::DeformableDefinition deformable_from_attributes(const AttributeSet& attributes);
+
+/// A soft solid of these tetrahedra, without pose. Its density is the one that makes its mass that of the attributes,
+/// since tetrahedra miss what is thinner than they are. Poisson's ratio is taken within -0.9 … 0.495, and a yield
+/// stress of 0 as one of 1 Pa. The error says where the mass gives a density that nothing has.
+Result<physics::DeformableDefinition> soft_solid_from_attributes(const AttributeSet& attributes,
+                                                                 const geometry::TetrahedralMesh& mesh);
 
 }  // namespace embody::attributes

@@ -269,13 +269,16 @@ Result<void> Catalog::reset_attribute(std::int64_t id, std::string_view name) {
 
 void Catalog::prepare_shape(const ChangeReport& report) const {
     const auto is_of_shape = [](const std::string& name) {
-        return name == "collision_shape" || name == "max_hulls" || name == "hull_error";
+        return name == "collision_shape" || name == "max_hulls" || name == "hull_error" || name == "kind" ||
+               name == "category";
     };
     if (report.batch == 0 || report.models.size() != 1 || report.models.front().id == 0 ||
         std::none_of(report.attributes.begin(), report.attributes.end(), is_of_shape))
         return;
     const auto set = attributes(report.models.front().id);
-    if (!set || set->word("collision_shape", "") != "decomposition") return;
+    if (!set) return;
+    if (set->word("kind", "") == "soft") (void)soft_mesh(report.models.front().id);
+    if (set->word("collision_shape", "") != "decomposition") return;
     // What fails here fails again where the shape is needed, and is told there.
     const geometry::DecompositionParameters usual;
     (void)convex_parts(report.models.front().id, static_cast<int>(set->number("max_hulls", usual.max_hulls)),
@@ -524,6 +527,22 @@ Result<ConvexParts> Catalog::convex_parts(std::int64_t id, int max_hulls, double
     if (!parts) return parts.error();
     if (auto kept = table.put(id, stored_form(*parts)); !kept) return kept.error();
     return parts;
+}
+
+Result<SoftMesh> Catalog::soft_mesh(std::int64_t id) const {
+    database::SimulationMeshTable table(*state_->connection);
+    const auto stored = table.find(id, "soft");
+    if (!stored) return stored.error();
+    if (*stored && is_current(**stored)) {
+        auto mesh = soft_mesh_from(**stored);
+        // What can't be read is made again.
+        if (mesh || !(*stored)->problem.empty()) return mesh;
+    }
+    const auto model = mesh(id);
+    if (!model) return model.error();
+    auto made = make_soft_mesh(*model);
+    if (auto kept = table.put(id, stored_form(made)); !kept) return kept.error();
+    return made;
 }
 
 Result<ImportReport> Catalog::import(const std::vector<std::filesystem::path>& paths, const ImportOptions& options) {

@@ -18,6 +18,7 @@
 #include "catalog/geometry_kind.h"
 #include "catalog/manual_change.h"
 #include "catalog/prepare/convex_parts.h"
+#include "catalog/soft_mesh.h"
 #include "foundation/result.h"
 #include "geometry/triangle_mesh.h"
 
@@ -126,8 +127,8 @@ public:
     /// Which models a change is for: these, or all that the query finds, whatever its limit and offset.
     using ModelChoice = std::variant<std::vector<std::int64_t>, SearchQuery>;
     /// Manual changes of many models, all or nothing. Where models refuse and options do not skip them, the report
-    /// names them and its batch is 0. Where one model was changed, the decomposition that it then needs is made at
-    /// once. Errors: a wrong name or value, a model that is not there, stopped.
+    /// names them and its batch is 0. Where one model was changed, the decomposition or the tetrahedra that it
+    /// then needs are made at once. Errors: a wrong name or value, a model that is not there, stopped.
     Result<ChangeReport> change_attributes(const ModelChoice& models, const std::vector<AttributeChange>& changes,
                                            const ChangeOptions& options = {});
     /// Restores the manual values from before a batch of changes; of an undo: does again what it took back. 0: the last
@@ -153,6 +154,10 @@ public:
     /// it, or made now (some tenths of a second) and kept for the next time.
     Result<ConvexParts> convex_parts(std::int64_t id, int max_hulls, double hull_error) const;
 
+    /// The tetrahedra of a soft model: as the import made them, or made now (some tenths of a second) and kept for the
+    /// next time. Why it cannot be soft is kept, too.
+    Result<SoftMesh> soft_mesh(std::int64_t id) const;
+
     /// Imports files, folders and catalogues (.sh3f, the Sweet Home 3D jar); without paths, the folders of the
     /// collection in the options. Fails only if nothing can be imported at all; what is wrong with single files is in
     /// the report.
@@ -163,7 +168,7 @@ public:
 
 private:
     Catalog();
-    /// Makes the decomposition that a change of one model asks for, so that no one waits later.
+    /// Makes the decomposition or the tetrahedra that a change of one model asks for, so that no one waits later.
     void prepare_shape(const ChangeReport& report) const;
     void after_change(const ChangeReport& report);
     struct State;

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "attributes/attribute_json.h"
 #include "attributes/registry.h"
@@ -58,6 +59,32 @@ void print_parts(const catalog::ConvexParts& parts) {
         parts.hulls.size(), parts.hulls.size() == 1 ? "" : "s", 1e3 * parts.concavity, 1e3 * parts.hull_concavity);
 }
 
+// What a soft thing is computed on, or why it cannot be soft. Made now where the import has not made it.
+std::optional<Result<catalog::SoftMesh>> soft_mesh(const catalog::Catalog& catalog, std::int64_t id,
+                                                   const attributes::AttributeSet& set) {
+    if (set.word("kind", "") != "soft") return std::nullopt;
+    return catalog.soft_mesh(id);
+}
+
+void print_soft_mesh(const Result<catalog::SoftMesh>& soft) {
+    if (!soft) {
+        fmt::print("  soft      no, simulated as rigid: {}\n", soft.error().why);
+        return;
+    }
+    fmt::print("  soft      as {} tetrahedra of cells of {:.1f} mm, which hold {:.0f} % of its volume\n",
+               soft->mesh.tetrahedra.size(), 1e3 * soft->cell, 100 * soft->volume_share);
+}
+
+nlohmann::json soft_mesh_json(const std::optional<Result<catalog::SoftMesh>>& soft) {
+    if (!soft) return nullptr;
+    if (!*soft) return {{"problem", soft->error().why}};
+    return {{"tetrahedra", (*soft)->mesh.tetrahedra.size()},
+            {"nodes", (*soft)->mesh.nodes.size()},
+            {"cell", (*soft)->cell},
+            {"volume_share", (*soft)->volume_share},
+            {"left_out", (*soft)->left_out}};
+}
+
 nlohmann::json parts_json(const std::optional<catalog::ConvexParts>& parts) {
     if (!parts) return nullptr;
     return {{"parts", parts->hulls.size()},
@@ -78,14 +105,17 @@ int run_show(const ShowArguments& arguments) {
     if (!attributes) return report(attributes.error());
     const auto parts = collision_parts(**catalog, model->id, *attributes);
     if (!parts) return report(parts.error());
+    const auto soft = soft_mesh(**catalog, model->id, *attributes);
     if (arguments.json) {
         print_json({{"model", scene::model_to_json(*model)},
                     {"attributes", attributes::to_json(*attributes)},
-                    {"decomposition", parts_json(*parts)}});
+                    {"decomposition", parts_json(*parts)},
+                    {"soft_mesh", soft_mesh_json(soft)}});
         return exit_ok;
     }
     print_model(*model);
     if (*parts) print_parts(**parts);
+    if (soft) print_soft_mesh(*soft);
     print_line("");
     for (const AttributeEntry& entry : attributes->entries()) print_entry(entry);
     return exit_ok;

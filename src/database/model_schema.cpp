@@ -204,8 +204,23 @@ WHEN (new.name, new.tags, new.category, new.subcategory, new.source)
 END;
 )sql";
 
-constexpr std::array<Migration, 4> migrations{
-    {{1, first_version}, {2, with_decompositions}, {3, audit_of_manual_changes}, {4, shared_contents}}};
+// What things that change their form are computed on (tetrahedra of soft ones), or why that could not be made.
+constexpr const char* with_simulation_meshes = R"sql(
+CREATE TABLE model_simulation_mesh (
+    model    INTEGER NOT NULL REFERENCES model (id) ON DELETE CASCADE,
+    kind     TEXT    NOT NULL,                   -- physical kind that it is for
+    revision INTEGER NOT NULL,                   -- of the rule that it was made by
+    problem  TEXT    NOT NULL,                   -- why there is none; empty where there is one
+    mesh     BLOB    NOT NULL,
+    PRIMARY KEY (model, kind)
+) STRICT;
+)sql";
+
+constexpr std::array<Migration, 5> migrations{{{1, first_version},
+                                               {2, with_decompositions},
+                                               {3, audit_of_manual_changes},
+                                               {4, shared_contents},
+                                               {5, with_simulation_meshes}}};
 
 }  // namespace
 

@@ -161,5 +161,55 @@ TEST(ToPhysics, CombineRulesAndFlagsArriveInThePhysics) {
     EXPECT_EQ(body->gravity_factor, -1);
 }
 
+geometry::TetrahedralMesh unit_tetrahedron() {
+    geometry::TetrahedralMesh mesh;
+    mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.tetrahedra = {{0, 1, 2, 3}};
+    return mesh;
+}
+
+TEST(ToPhysics, SoftThingsWeighWhatTheirMassSaysWhateverTheTetrahedraMiss) {
+    for (const char* name : {"Teddy bear", "Cushion", "Air mattress"}) {
+        AttributeSet set = resolve(shipped_taxonomy(), closed_box(name, {0.5, 0.7, 0.3}));
+        set.put({"mass", 4.0, {}, {}, "test", AttributeLevel::manual});
+        const auto soft = soft_solid_from_attributes(set, unit_tetrahedron());
+        ASSERT_TRUE(soft.ok()) << name << ": " << soft.error().message();
+        EXPECT_TRUE(physics::validate(*soft).ok()) << name;
+        EXPECT_DOUBLE_EQ(std::get<physics::SoftSolid>(soft->matter).density, 4.0 * 6) << "in a sixth of a cubic metre";
+        EXPECT_EQ(soft->friction, set.number("friction_dynamic", -1));
+    }
+}
+
+TEST(ToPhysics, SoftAttributesArriveWithinWhatTheSolverTakes) {
+    AttributeSet set;
+    const auto put = [&set](const char* name, double value) {
+        set.put({name, value, {}, {}, "test", AttributeLevel::manual});
+    };
+    put("mass", 2);
+    put("youngs_modulus", 3e4);
+    put("damping_rayleigh", 0.02);
+    put("internal_pressure", 500);
+    put("gravity_factor", 0.5);
+    put("collision_group", 6);
+    for (const auto& [told, taken] : {std::pair{0.4999, 0.495}, {-0.99, -0.9}, {0.3, 0.3}}) {
+        put("poisson_ratio", told);
+        put("yield_stress", 0);
+        const auto soft = soft_solid_from_attributes(set, unit_tetrahedron());
+        ASSERT_TRUE(soft.ok()) << soft.error().message();
+        const auto& solid = std::get<physics::SoftSolid>(soft->matter);
+        EXPECT_EQ(solid.poisson_ratio, taken);
+        EXPECT_EQ(solid.youngs_modulus, 3e4);
+        EXPECT_EQ(solid.rayleigh_damping, 0.02);
+        EXPECT_EQ(solid.internal_pressure, 500);
+        EXPECT_EQ(soft->gravity_factor, 0.5);
+        EXPECT_EQ(soft->collision_group, 6u);
+        EXPECT_TRUE(physics::validate(*soft).ok());
+    }
+    put("mass", 1e7);
+    const auto too_dense = soft_solid_from_attributes(set, unit_tetrahedron());
+    ASSERT_FALSE(too_dense.ok());
+    EXPECT_EQ(too_dense.error().where, "mass");
+}
+
 }  // namespace
 }  // namespace embody::attributes

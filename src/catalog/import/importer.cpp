@@ -13,6 +13,7 @@
 #include "catalog/stored_parts.h"
 #include "database/transaction.h"
 #include "foundation/state_hash.h"
+#include "interchange/compact/compact_geometry.h"
 
 namespace embody::catalog {
 namespace {
@@ -417,6 +418,7 @@ Result<Importer::Stored> Importer::store(const ImportItem& item, const PreparedM
     if (!id) return id.error();
     source.model = *id;
     if (auto stored = store_convex_parts(*id, prepared.convex_parts); !stored) return stored.error();
+    if (auto stored = store_soft_mesh(*id, row.physical_kind == "soft", prepared); !stored) return stored.error();
     if (auto forgotten = imports_.forget_other_preparations(*id, source.prepare_hash); !forgotten) {
         return forgotten.error();
     }
@@ -431,6 +433,16 @@ Result<void> Importer::store_convex_parts(std::int64_t id, const ConvexParts& pa
     if (auto forgotten = table.forget(id); !forgotten) return forgotten;
     if (parts.hulls.empty()) return {};
     return table.put(id, stored_form(parts));
+}
+
+Result<void> Importer::store_soft_mesh(std::int64_t id, bool is_soft, const PreparedModel& prepared) {
+    database::SimulationMeshTable table(connection_);
+    if (auto forgotten = table.forget(id); !forgotten) return forgotten;
+    if (!is_soft) return {};
+    const auto surface = interchange::decode_mesh(prepared.geometry);
+    if (!surface) return surface.error();
+    // Why there is none is stored as well.
+    return table.put(id, stored_form(make_soft_mesh(*surface)));
 }
 
 bool Importer::tell_progress(const ImportOptions& options, const std::string& name) {

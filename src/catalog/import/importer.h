@@ -54,6 +54,7 @@ private:
     Result<void> prepare_planned(const std::vector<Planned>& planned, const ImportOptions& options);
     Result<void> take(const Planned& planned, Result<PreparedModel> prepared);
     Result<void> store_convex_parts(std::int64_t id, const ConvexParts& parts);
+    Result<void> store_soft_mesh(std::int64_t id, bool is_soft, const PreparedModel& prepared);
     void name_in_report(const std::string& key);
     bool needs_other_unit(const Planned& planned, const PreparedModel& prepared);
     bool tell_progress(const ImportOptions& options, const std::string& name);

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "database/simulation_mesh_table.h"
+#include "foundation/result.h"
+#include "geometry/tetrahedra/tetrahedral_mesh.h"
+#include "geometry/triangle_mesh.h"
+
+namespace embody::catalog {
+
+/// What a soft thing is computed on.
+struct SoftMesh {
+    geometry::TetrahedralMesh mesh;  ///< in the thing's frame; nodes have single precision, as stored ones have
+    double cell = 0;                 ///< m, side of the cubes of the lattice that it is cut from
+    double volume_share = 0;         ///< of what the surface encloses: what it lacks is thinner than a cell
+    std::size_t left_out = 0;        ///< pieces of the thing that do not hang together with it and go along with it
+};
+
+inline constexpr int fewest_soft_tetrahedra = 300, most_soft_tetrahedra = 2000;
+
+/// Fills what the surface encloses, two cells across its thickness where 300 to 2,000 tetrahedra allow it
+/// (docs/import.md: Soft things). Same surface, same mesh. The error says why the thing cannot be soft: nothing
+/// enclosed, nearly all of it too thin, or several things that do not hang together.
+Result<SoftMesh> make_soft_mesh(const geometry::TriangleMesh& surface);
+
+/// As the database has it: the mesh, or why there is none.
+database::StoredSimulationMesh stored_form(const Result<SoftMesh>& mesh);
+/// Whether it was made by the rule of today: what was not is made again.
+bool is_current(const database::StoredSimulationMesh& stored);
+/// The mesh, or the stored problem. What cannot be read is an error whose `where` is "soft mesh".
+Result<SoftMesh> soft_mesh_from(const database::StoredSimulationMesh& stored);
+
+}  // namespace embody::catalog
