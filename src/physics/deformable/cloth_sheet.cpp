@@ -10,6 +10,8 @@
 #include <cmath>
 #include <map>
 
+#include "physics/deformable/free_motion.h"
+
 namespace embody::physics {
 
 namespace {
@@ -240,18 +242,7 @@ void ClothSheet::fill_rows(const Substep& substep, TaskPool& workers) {
 
 bool ClothSheet::solve_moves(const Substep& substep, std::span<const TouchedBody> bodies, TaskPool& workers) {
     const double h = substep.h;
-    inertias_.clear();
-    for (const TouchedBody& body : bodies) {
-        BodyInertia inertia;
-        if (body.inverse_mass > 0) {
-            // Axes that are held still turn a million times harder than the freest.
-            const Mat3& inverse = body.inverse_inertia;
-            const double least = std::max(1e-6 * trace(inverse), 1e-12 * body.inverse_mass);
-            inertia = {true, 1 / (body.inverse_mass * h * h),
-                       (1 / (h * h)) * inverse_or_zero(inverse + least * Mat3::identity())};
-        }
-        inertias_.push_back(inertia);
-    }
+    inertias_ = inertias_of(bodies, h);
     body_moves_.assign(bodies.size(), {});
     moves_.resize(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) moves_[i] = h * nodes_.mean_velocity[i];
@@ -277,48 +268,16 @@ bool ClothSheet::solve_moves(const Substep& substep, std::span<const TouchedBody
     return true;
 }
 
-// Nothing inside changes the momenta: what a solve that ended early, and backward Euler, take from them is given back
-// by a small move and turn of the whole. Only while nothing outside but weight and air acts.
+// Only while nothing outside but weight and air acts.
 void ClothSheet::keep_momentum(const Substep& substep) {
     const double h = substep.h;
-    double mass = 0;
-    Vec3 before, now, center;
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        mass += nodes_.mass[i];
-        center += nodes_.mass[i] * nodes_.position[i];
-    }
-    center = center / mass;
-    // Forces of the air as they acted.
     std::vector<Vec3> given(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) given[i] = h * weight_[i];
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {  // the air as it acted
         for (const std::uint32_t node : triangles_[t].node)
             given[node] += dot(air_[t], h * substep.wind - moves_[node]) * air_[t];
     }
-    Vec3 angular;
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        const Vec3 momentum = nodes_.mass[i] * nodes_.mean_velocity[i] + given[i];
-        before += momentum;
-        now += nodes_.mass[i] / h * moves_[i];
-        angular += cross(nodes_.position[i] - center, momentum);
-    }
-    const Vec3 shift = (h / mass) * (before - now);
-    const Vec3 new_center = center + (h / mass) * before;
-    for (Vec3& move : moves_) move += shift;
-    // The turn changes the arms too, so it takes some rounds.
-    for (int round = 0; round < 5; ++round) {
-        Mat3 inertia = Mat3::zero();
-        Vec3 missing = angular;
-        for (std::size_t i = 0; i < nodes_.size(); ++i) {
-            const Vec3 arm = nodes_.position[i] + moves_[i] - new_center;
-            missing -= nodes_.mass[i] * cross(arm, moves_[i] / h - before / mass);
-            inertia += nodes_.mass[i] * (length_squared(arm) * Mat3::identity() - outer(arm, arm));
-        }
-        const Vec3 spin = embody::solve(inertia, missing);
-        if (!is_finite(spin) || length(spin) * h > 0.1) return;
-        for (std::size_t i = 0; i < nodes_.size(); ++i)
-            moves_[i] += h * cross(spin, nodes_.position[i] + moves_[i] - new_center);
-    }
+    keep_momenta(nodes_, given, h, moves_);
 }
 
 void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> contacts,

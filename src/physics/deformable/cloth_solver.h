@@ -27,13 +27,6 @@ struct ClothMatrix {
     std::vector<float> far_value;
 };
 
-/// A rigid body in the system: what resists its move, in N/m and N m.
-struct BodyInertia {
-    bool moves = false;
-    double mass = 0;  ///< over the substep squared, kg/s²
-    Mat3 inertia = Mat3::zero();
-};
-
 /// Conjugate gradients for the moves of nodes and touched bodies,
 ///   (A + springs) d = rhs.
 /// Preconditioned by the inverse of everything that couples a node with itself and with the bodies that hold it:

@@ -10,14 +10,30 @@ namespace {
 
 constexpr double stiffness_factor = 20;  // over what the node's neighbours resist with
 
-struct Place {
-    Vec3 center;
-    Mat3 rotation;
-};
-
 Vec3 across(Vec3 v, Vec3 normal) { return v - dot(v, normal) * normal; }
 
+// How the surface of a body goes on its path within the substep.
+Vec3 path_of(const TouchedBody& body, Vec3 arm, double h) {
+    return h * (body.path_velocity + body.velocity + cross(body.path_spin + body.spin, arm));
+}
+
 }  // namespace
+
+std::vector<BodyInertia> inertias_of(std::span<const TouchedBody> bodies, double h) {
+    std::vector<BodyInertia> inertias;
+    for (const TouchedBody& body : bodies) {
+        BodyInertia inertia;
+        if (body.inverse_mass > 0) {
+            // Axes that are held still turn a million times harder than the freest.
+            const Mat3& inverse = body.inverse_inertia;
+            const double least = std::max(1e-6 * trace(inverse), 1e-12 * body.inverse_mass);
+            inertia = {true, 1 / (body.inverse_mass * h * h),
+                       (1 / (h * h)) * inverse_or_zero(inverse + least * Mat3::identity())};
+        }
+        inertias.push_back(inertia);
+    }
+    return inertias;
+}
 
 Vec3 TouchSpring::lead(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves) const {
     Vec3 s;
@@ -31,46 +47,67 @@ void TouchSprings::recall(const TouchedBody& body, TouchSpring& spring) const {
     auto at = std::lower_bound(memory_.begin(), memory_.end(), spring.node[0], is_before);
     double nearest = 0.8;  // cosine: another face of the body is another contact
     for (; at != memory_.end() && at->node == spring.node[0]; ++at) {
-        if (at->slot != body.body || dot(at->normal, spring.normal) < nearest) continue;
+        if (at->slot != body.body || at->count != spring.count || at->is_attachment != spring.is_attachment) continue;
+        if (dot(at->normal, spring.normal) < nearest) continue;
         nearest = dot(at->normal, spring.normal);
         spring.pull = spring.is_attachment ? at->pull : length(at->pull) * spring.normal;
         spring.hold = across(at->hold, spring.normal);
     }
 }
 
+bool TouchSprings::is_attached(std::uint32_t node, std::uint32_t body) const {
+    for (std::size_t i = 0; i < attachments.size(); ++i) {
+        if (attachments[i].node == node && attachment_bodies[i] == body) return true;
+    }
+    return false;
+}
+
+void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::span<const TouchedBody> bodies,
+                            const Substep& substep, std::span<const double> node_stiffness, TouchSpring& spring) {
+    const TouchedBody& body = bodies[plane.body];
+    const Place& place = places_[plane.body];
+    Vec3 point, velocity;
+    bool is_free = false;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k) {
+        const std::uint32_t node = spring.node[k];
+        point += spring.weight[k] * nodes.position[node];
+        velocity += spring.weight[k] * nodes.mean_velocity[node];
+        spring.stiffness = std::max(spring.stiffness, stiffness_factor * node_stiffness[node]);
+        spring.inertia += spring.weight[k] * nodes.mass[node] / (substep.h * substep.h);
+        is_free |= nodes.inverse_mass[node] > 0;
+    }
+    spring.body = plane.body;
+    spring.normal = place.rotation * plane.normal;
+    spring.arm = place.rotation * plane.anchor;
+    const Vec3 offset = point - place.center - spring.arm;
+    spring.gap = dot(offset, spring.normal) - radius;
+    // The point's own reach within the substep, and what gravity adds.
+    const double reach = (length(velocity) + length(substep.gravity) * substep.h) * substep.h + radius;
+    if (!is_free || spring.gap > reach) return;
+    spring.arm += across(offset, spring.normal);
+    spring.friction = std::sqrt(friction * body.friction);
+    spring.carried = path_of(body, spring.arm, substep.h);
+    recall(body, spring);
+    springs_.push_back(spring);
+}
+
+void TouchSprings::add(const Nodes& nodes, const SegmentContact& contact, std::span<const TouchedBody> bodies,
+                       const Substep& substep, std::span<const double> node_stiffness) {
+    TouchSpring spring{
+        .node = {contact.node, contact.node + 1}, .weight = {1 - contact.along, contact.along}, .count = 2};
+    complete(nodes, contact.plane, bodies, substep, node_stiffness, spring);
+}
+
 void TouchSprings::begin(const Nodes& nodes, std::span<const NodeContact> contacts, std::span<const TouchedBody> bodies,
                          const Substep& substep, std::span<const double> node_stiffness) {
     const double end = substep.time + substep.h;
-    std::vector<Place> places;
-    slots_.clear();
-    for (const TouchedBody& body : bodies) {
-        places.push_back({body.center_at(end), body.rotation_at(end)});
-        slots_.push_back(body.body);
-    }
-    const auto path_of = [&](const TouchedBody& body, Vec3 arm) {
-        return substep.h * (body.path_velocity + body.velocity + cross(body.path_spin + body.spin, arm));
-    };
+    places_.clear();
+    for (const TouchedBody& body : bodies) places_.push_back({body.center_at(end), body.rotation_at(end)});
     springs_.clear();
     for (const NodeContact& contact : contacts) {
-        if (nodes.inverse_mass[contact.node] == 0) continue;
-        const TouchedBody& body = bodies[contact.body];
-        const Place& place = places[contact.body];
-        TouchSpring spring{.node = {contact.node}, .weight = {1}, .body = contact.body};
-        spring.normal = place.rotation * contact.normal;
-        spring.arm = place.rotation * contact.anchor;
-        const Vec3 offset = nodes.position[contact.node] - place.center - spring.arm;
-        spring.gap = dot(offset, spring.normal) - radius;
-        // The node's own reach within the substep, and what gravity adds.
-        const double reach = length(nodes.mean_velocity[contact.node]) * substep.h +
-                             length(substep.gravity) * substep.h * substep.h + radius;
-        if (spring.gap > reach) continue;
-        spring.arm += across(offset, spring.normal);
-        spring.friction = std::sqrt(friction * body.friction);
-        spring.carried = path_of(body, spring.arm);
-        spring.stiffness = stiffness_factor * node_stiffness[contact.node];
-        spring.inertia = nodes.mass[contact.node] / (substep.h * substep.h);
-        recall(body, spring);
-        springs_.push_back(spring);
+        if (is_attached(contact.node, contact.body)) continue;
+        TouchSpring spring{.node = {contact.node}, .weight = {1}};
+        complete(nodes, contact, bodies, substep, node_stiffness, spring);
     }
     for (std::size_t i = 0; i < attachments.size(); ++i) {
         const Attachment& attachment = attachments[i];
@@ -81,8 +118,8 @@ void TouchSprings::begin(const Nodes& nodes, std::span<const NodeContact> contac
         spring.normal = {1, 0, 0};
         // The anchor is in the frame that the body's pose at the step's start gives.
         const Vec3 anchor = transform_point(body.start, attachment.anchor) - body.start_center;
-        spring.arm = places[b].rotation * anchor;
-        spring.carried = nodes.position[attachment.node] - places[b].center - spring.arm;  // off the anchor
+        spring.arm = places_[b].rotation * anchor;
+        spring.carried = nodes.position[attachment.node] - places_[b].center - spring.arm;  // off the anchor
         spring.stiffness = stiffness_factor * node_stiffness[attachment.node];
         recall(body, spring);
         springs_.push_back(spring);
@@ -91,14 +128,16 @@ void TouchSprings::begin(const Nodes& nodes, std::span<const NodeContact> contac
 
 // Friction: k (hold + slip) up to its limit. Beyond it the secant through that limit at the slip to be expected, which
 // can only stop what slides; where the slip is so long that friction cannot end it in this substep, the limit itself.
-// Expected after a solve is what the point would do alone with the limit instead of a larger force that it had.
+// Expected of what stuck is what the point would do alone with the limit instead of the larger force that it had.
 // Returns by how much the force is another than before, N.
 double TouchSprings::choose_friction(TouchSpring& spring, Vec3 s, double limit, bool is_foretold) {
     const Mat3 plane = Mat3::identity() - outer(spring.normal, spring.normal);
     const Vec3 loose = spring.hold - across(spring.carried, spring.normal);  // stretch with s = 0
     const Vec3 stretch = loose + across(s, spring.normal), force = across(spring.force(s), spring.normal);
     const double size = length(stretch);
-    const double expected = is_foretold ? size : size + std::max(0.0, length(force) - limit) / spring.inertia;
+    const double excess = length(force) - limit;
+    const bool has_stuck = length(force) > 0.99 * spring.stiffness * size;
+    const double expected = !is_foretold && has_stuck && excess > 0 ? size + excess / spring.inertia : size;
     const bool sticks = limit > 0 && spring.stiffness * expected <= limit;
     const double tangent = sticks ? spring.stiffness : limit > 0 ? limit / expected : 0;
     spring.matrix = tangent * plane;
@@ -112,7 +151,6 @@ double TouchSprings::choose_friction(TouchSpring& spring, Vec3 s, double limit, 
 }
 
 bool TouchSprings::choose(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, bool is_foretold) {
-    constexpr double small = 0.05;  // share of the forces whose change is not worth a solve
     double change = 0, all = 0;
     for (TouchSpring& spring : springs_) {
         if (spring.is_attachment) {
@@ -141,7 +179,7 @@ bool TouchSprings::choose(std::span<const Vec3> node_moves, std::span<const Body
         spring.matrix += spring.stiffness * outer(spring.normal, spring.normal);
         spring.load += (push_before - spring.stiffness * spring.gap) * spring.normal;
     }
-    return change > small * all;
+    return change > tolerance * all;
 }
 
 void TouchSprings::finish(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves,
@@ -153,7 +191,8 @@ void TouchSprings::finish(std::span<const Vec3> node_moves, std::span<const Body
         const Vec3 force = spring.force(s);
         if (spring.body == no_body) continue;
         bodies[spring.body].push(-substep.h * force, spring.arm, substep.h);
-        Memory memory{spring.node[0], slots_[spring.body], spring.normal, force, {}};
+        Memory memory{
+            spring.node[0], bodies[spring.body].body, spring.count, spring.is_attachment, spring.normal, force, {}};
         if (!spring.is_attachment) {
             const double push = std::max(0.0, dot(force, spring.normal));
             memory.pull = push * spring.normal;

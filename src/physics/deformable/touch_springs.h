@@ -19,6 +19,21 @@ struct BodyMove {
 
 inline constexpr std::uint32_t no_body = 0xFFFFFFFFu;
 
+/// How hard bodies are to move within a substep of h seconds: none that the pushes do not move.
+struct BodyInertia {
+    bool moves = false;
+    double mass = 0;  ///< over the substep squared, kg/s²
+    Mat3 inertia = Mat3::zero();
+};
+std::vector<BodyInertia> inertias_of(std::span<const TouchedBody> bodies, double h);
+
+/// A point between two neighbours of a line, over a plane of a body.
+struct SegmentContact {
+    std::uint32_t node = 0;  ///< the first; the second comes after it
+    double along = 0.5;      ///< 0 … 1 from the first to the second
+    NodeContact plane;       ///< `node` does not count
+};
+
 /// What holds a point of a deformable, Σ weight x, off or to a plane, another point of it or a body's anchor: the force
 ///   load - matrix s
 /// on the point, where s is how far it moves in the substep on top of what the touched body's pushes move it.
@@ -54,9 +69,12 @@ struct TouchSpring {
 class TouchSprings {
 public:
     /// Begins a substep: `radius`, friction of the deformable; `node_stiffness`: what the node's neighbours resist with
-    /// together, N/m. A contact counts that may close in the substep.
+    /// together, N/m. A contact counts that may close in the substep, but none of a node with what it is attached to.
     void begin(const Nodes& nodes, std::span<const NodeContact> contacts, std::span<const TouchedBody> bodies,
                const Substep& substep, std::span<const double> node_stiffness);
+    /// After begin(): one of a point of a line.
+    void add(const Nodes& nodes, const SegmentContact& contact, std::span<const TouchedBody> bodies,
+             const Substep& substep, std::span<const double> node_stiffness);
     /// One between points of the deformable itself, without memory.
     void add(const TouchSpring& spring) { springs_.push_back(spring); }
     /// Which springs act, and how friction does, for these moves. True where that has changed by more than a solve is
@@ -70,20 +88,31 @@ public:
 
     double radius = 1e-3;                          ///< m
     double friction = 0.5;                         ///< Coulomb coefficient of the deformable
+    double tolerance = 0.05;                       ///< share of the forces whose change is not worth a solve
     std::vector<Attachment> attachments;           ///< that still hold
     std::vector<std::uint32_t> attachment_bodies;  ///< index of each in the list of bodies, set before begin()
 
 private:
     struct Memory {
         std::uint32_t node = 0, slot = 0;
+        int count = 1;
+        bool is_attachment = false;
         Vec3 normal, pull, hold;
     };
+    struct Place {
+        Vec3 center;
+        Mat3 rotation;
+    };
+    // Of a contact at a point, once its nodes and weights are known.
+    void complete(const Nodes& nodes, const NodeContact& plane, std::span<const TouchedBody> bodies,
+                  const Substep& substep, std::span<const double> node_stiffness, TouchSpring& spring);
+    [[nodiscard]] bool is_attached(std::uint32_t node, std::uint32_t body) const;
     void recall(const TouchedBody& body, TouchSpring& spring) const;
     static double choose_friction(TouchSpring& spring, Vec3 s, double limit, bool is_foretold);
 
     std::vector<TouchSpring> springs_;
-    std::vector<Memory> memory_;        // by node
-    std::vector<std::uint32_t> slots_;  // of the bodies, this substep
+    std::vector<Memory> memory_;  // by node
+    std::vector<Place> places_;   // of the bodies, at the substep's end
 };
 
 }  // namespace embody::physics

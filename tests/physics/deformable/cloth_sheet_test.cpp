@@ -5,39 +5,14 @@
 
 #include <cmath>
 
+#include "physics/deformable_scene.h"
 #include "physics/inter/definitions/deformable_primitives.h"
 
 namespace embody::physics {
 namespace {
 
-constexpr double gravity = 9.81, h = 1.0 / 60;
-
-struct Bench {
-    ClothSheet sheet;
-    TaskPool workers{1};
-    Substep substep{.h = h, .gravity = {0, -gravity, 0}, .air_density = 0};
-    std::vector<NodeContact> contacts;
-    std::vector<TouchedBody> bodies;
-    std::vector<std::uint32_t> attachments;
-    double total_rounds = 0;
-
-    explicit Bench(const DeformableDefinition& definition) : sheet(definition) {
-        EXPECT_TRUE(validate(definition).ok()) << validate(definition).error().message();
-    }
-    void step() {
-        sheet.advance(substep, contacts, attachments, bodies, workers);
-        total_rounds += sheet.rounds();
-    }
-    void run(double seconds) {
-        for (int i = 0; i < std::lround(seconds / substep.h); ++i) step();
-    }
-    [[nodiscard]] Vec3 at(std::size_t node) const { return sheet.nodes().position[node]; }
-    [[nodiscard]] double fastest() const {
-        double most = 0;
-        for (const Vec3 v : sheet.nodes().velocity) most = std::max(most, length(v));
-        return most;
-    }
-};
+using Bench = DeformableScene<ClothSheet>;
+using Scene = DeformableScene<ClothSheet>;
 
 // Nodes within the distance of where x is least.
 std::vector<std::uint32_t> pin_low_x(const DeformableDefinition& definition, double distance) {
@@ -151,27 +126,12 @@ TEST(ClothSheet, FreeSheetKeepsItsMomenta) {
     definition.linear_velocity = {1, 2, 3};
     definition.angular_velocity = {2, 5, 1};
     Bench bench(definition);
-    const auto momenta = [&] {
-        const Nodes& nodes = bench.sheet.nodes();
-        Vec3 linear, angular, center;
-        double mass = 0;
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-            linear += nodes.mass[i] * nodes.mean_velocity[i];
-            center += nodes.mass[i] * nodes.position[i];
-            mass += nodes.mass[i];
-        }
-        for (std::size_t i = 0; i < nodes.size(); ++i)
-            angular += nodes.mass[i] * cross(nodes.position[i] - center / mass, nodes.mean_velocity[i]);
-        return std::pair(linear, angular);
-    };
-    const auto [linear, angular] = momenta();
+    const Vec3 linear = bench.momentum(), angular = bench.angular_momentum();
     const double seconds = 5;
     bench.run(seconds);
-    const auto [later, later_angular] = momenta();
-    double mass = 0;
-    for (const double m : bench.sheet.nodes().mass) mass += m;
-    EXPECT_LT(length(later - linear - mass * seconds * Vec3{0, -gravity, 0}), 1e-9 * length(later));
-    EXPECT_LT(length(later_angular - angular), 1e-3 * length(angular));
+    const Vec3 fall = bench.mass() * seconds * Vec3{0, -gravity, 0};
+    EXPECT_LT(length(bench.momentum() - linear - fall), 1e-9 * length(fall));
+    EXPECT_LT(length(bench.angular_momentum() - angular), 1e-3 * length(angular));
 }
 
 TEST(ClothSheet, SwingsAsAPendulum) {
@@ -201,47 +161,6 @@ TEST(ClothSheet, SwingsAsAPendulum) {
     EXPECT_NEAR(period, right * (1 + start * start / 16), 0.01 * right);
 }
 
-// The box of half extents `half` with its middle at `center`, still.
-struct StillBody {
-    std::unique_ptr<CollisionShape> shape;
-    TouchedBody body;
-    StillBody(const ShapeDefinition& definition, Vec3 center, double friction)
-        : shape(std::move(CollisionShape::create(definition)).value()) {
-        body.shape = shape.get();
-        body.friction = friction;
-        body.start = {center, {}};
-        body.start_center = center;
-    }
-};
-
-struct Scene : Bench {
-    std::unique_ptr<CollisionShape> ball;
-    std::vector<std::uint32_t> all;
-    double radius;
-    explicit Scene(const DeformableDefinition& definition) : Bench(definition), radius(definition.contact_radius) {
-        ball = std::move(CollisionShape::create(SphereShape{radius})).value();
-        for (std::uint32_t i = 0; i < definition.nodes.size(); ++i) all.push_back(i);
-    }
-    void step() {
-        contacts.clear();
-        find_node_contacts(sheet.nodes(), all, *ball, radius, bodies, substep.h, substep.gravity, contacts);
-        for (TouchedBody& body : bodies) body.shift = body.turn = body.impulse = body.angular_impulse = {};
-        Bench::step();
-        for (TouchedBody& body : bodies) move_on(body);
-    }
-    // What the rigid solver would do: gravity, and the path that the pushes gave.
-    void move_on(TouchedBody& body) const {
-        if (body.inverse_mass == 0) return;
-        body.start_center = body.center_at(substep.h);
-        body.start.position = body.start_center;
-        body.path_velocity += body.velocity + substep.h * substep.gravity;
-        body.velocity = body.spin = {};
-    }
-    void run(double seconds) {
-        for (int i = 0; i < std::lround(seconds / substep.h); ++i) step();
-    }
-};
-
 TEST(ClothSheet, SlidesDownAnInclineByCoulombsLaw) {
     // Held below the angle of friction, else a = g (sin α - μ cos α).
     for (const double mu : {0.2, 0.6}) {
@@ -251,13 +170,14 @@ TEST(ClothSheet, SlidesDownAnInclineByCoulombsLaw) {
         definition.pose.rotation = from_axis_angle({0, 0, 1}, -angle);
         definition.pose.position = definition.contact_radius * Vec3{std::sin(angle), std::cos(angle), 0};
         Scene scene(definition);
-        StillBody plane(PlaneShape{{std::sin(angle), std::cos(angle), 0}, 0}, {}, mu);
+        LooseBody plane(PlaneShape{{std::sin(angle), std::cos(angle), 0}, 0}, {}, mu);
         scene.bodies.push_back(plane.body);
         const Vec3 start = scene.at(0);
         scene.run(1);
         const double way = dot(scene.at(0) - start, {std::cos(angle), -std::sin(angle), 0});
         // Backward Euler's way is longer by a substep's share.
-        const double right = std::max(0.0, gravity * (std::sin(angle) - mu * std::cos(angle)) / 2) * (1 + h);
+        const double right =
+            std::max(0.0, gravity * (std::sin(angle) - mu * std::cos(angle)) / 2) * (1 + scene.substep.h);
         EXPECT_NEAR(way, right, 0.04 * right + 5e-4) << mu;
     }
 }
@@ -268,10 +188,10 @@ TEST(ClothSheet, TableclothFallsOverATableAndStays) {
     definition.pose.position = {0, 0.8, 0};
     Scene scene(definition);
     scene.substep.air_density = 1.2;
-    StillBody table(BoxShape{{0.4, 0.35, 0.4}}, {0, 0.35, 0}, 0.5);
+    LooseBody table(BoxShape{{0.4, 0.35, 0.4}}, {{0, 0.35, 0}, {}}, 0.5);
     scene.bodies.push_back(table.body);
     scene.run(4);
-    const auto before = scene.sheet.nodes().position;
+    const auto before = scene.deformable.nodes().position;
     scene.run(2);
     double drift = 0, lowest = 1, deepest = 0;
     for (std::size_t i = 0; i < before.size(); ++i) {
@@ -296,14 +216,13 @@ TEST(ClothSheet, BallOnAPinnedSheetIsHeldWithItsWholeWeight) {
     for (const double mass : {0.5, 50.0}) {
         Scene scene(definition);
         const double radius = 0.15;
-        StillBody ball(SphereShape{radius}, {0, radius + 0.05, 0}, 0.5);
-        ball.body.inverse_mass = 1 / mass;
-        const double inverse_inertia = 1 / (0.4 * mass * radius * radius);
-        ball.body.inverse_inertia = Mat3::diagonal({inverse_inertia, inverse_inertia, inverse_inertia});
-        ball.body.path_velocity = {0, -0.5 * gravity * h, 0};
+        LooseBody ball(SphereShape{radius}, {{0, radius + 0.05, 0}, {}}, 0.5);
+        ball.make_ball(mass, radius);
+        ball.body.path_velocity = {0, -0.5 * gravity * scene.substep.h, 0};
         scene.bodies.push_back(ball.body);
         scene.run(8);
-        EXPECT_NEAR(scene.bodies[0].impulse.y, mass * gravity * h, 0.02 * mass * gravity * h);
+        EXPECT_NEAR(scene.bodies[0].impulse.y, mass * gravity * scene.substep.h,
+                    0.02 * mass * gravity * scene.substep.h);
         EXPECT_LT(std::fabs(scene.bodies[0].start_center.x), 0.01);
         EXPECT_GT(scene.bodies[0].start_center.y, -0.5);
     }

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "math/mat3.h"
+
+namespace embody::physics {
+
+/// Symmetric positive definite matrix of 3 × 3 blocks in which row i has blocks up to column i ± 2, and its factor L
+/// Lᵀ.
+class BandCholesky {
+public:
+    /// All zero, of that many block rows.
+    void reset(std::size_t blocks);
+    /// Adds to block (i, k), |i - k| <= 2; only i >= k are kept, so give each pair once.
+    void add(std::size_t i, std::size_t k, const Mat3& block);
+    void add_diagonal(std::size_t i, double value);
+    [[nodiscard]] double diagonal_mean(std::size_t i) const;
+    /// Makes row and column i those of the identity: the unknown stays zero.
+    void fix(std::size_t i);
+    /// False where the matrix is not positive definite or not finite.
+    bool factorize();
+    /// In place.
+    void solve(std::span<Vec3> rhs) const;
+
+private:
+    static constexpr std::size_t reach = 8;     // of a row to the left of the diagonal, in numbers
+    using Row = std::array<double, reach + 1>;  // element (i, k) is rows_[i][k + reach - i]
+    [[nodiscard]] double& at(std::size_t i, std::size_t k) { return rows_[i][k + reach - i]; }
+    [[nodiscard]] double at(std::size_t i, std::size_t k) const { return rows_[i][k + reach - i]; }
+    std::vector<Row> rows_;
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+
+#include "physics/deformable/band_cholesky.h"
+#include "physics/deformable/nodes.h"
+#include "physics/deformable/touch_springs.h"
+
+namespace embody::physics {
+
+/// A rope in motion: stretch and bending of a line of nodes by backward Euler, with Newton's method and a direct solve,
+/// so that it is exact for any stiffness (docs/physics/cloth.md).
+class RopeLine {
+public:
+    /// `definition` is valid and its matter is a rope.
+    explicit RopeLine(const DeformableDefinition& definition);
+
+    /// One substep. `attachment_bodies`: where the definition's attachments hold in `bodies`. Pushes the bodies.
+    void advance(const Substep& substep, std::span<const NodeContact> contacts,
+                 std::span<const SegmentContact> segment_contacts, std::span<const std::uint32_t> attachment_bodies,
+                 std::span<TouchedBody> bodies);
+
+    [[nodiscard]] Nodes& nodes() { return nodes_; }
+    [[nodiscard]] const Nodes& nodes() const { return nodes_; }
+    /// Of each segment, from node k to k + 1, N; below zero: pressed. 0 where it is broken.
+    [[nodiscard]] std::span<const double> tensions() const { return tensions_; }
+    [[nodiscard]] bool is_broken(std::size_t segment) const { return segments_[segment].is_broken; }
+    /// Segments that broke in the last substep.
+    [[nodiscard]] std::span<const std::uint32_t> new_breaks() const { return new_breaks_; }
+    [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_.springs(); }
+    [[nodiscard]] double elastic_energy() const;
+    /// True once a number was none: it stays where it last was.
+    [[nodiscard]] bool is_frozen() const { return is_frozen_; }
+    /// Rounds of Newton's method in the last substep.
+    [[nodiscard]] int rounds() const { return rounds_; }
+
+private:
+    struct Segment {
+        double length = 0;  ///< at rest, m
+        bool is_broken = false;
+    };
+    // How the direction turns at a node, with its derivatives by the three nodes.
+    struct Bend {
+        bool is_whole = false;
+        double stiffness = 0;  // EI / l, N m
+        Vec3 turn;
+        std::array<Mat3, 3> by_node;
+        Mat3 damping = Mat3::zero();  // over the substep, of the turn's change, N m
+    };
+    struct Tension {
+        double force = 0, slope = 0;  // N, N/m
+        double energy = 0;            // J
+    };
+    // The matrix and right side about `moves_`; forces of springs not yet.
+    void assemble(const Substep& substep);
+    void add_stretch(std::size_t segment, double h);
+    void add_bend(std::size_t node);
+    bool solve_round(std::span<const BodyInertia> inertias);
+    // What the round's step minimises: inertia, elastic energy, damping and springs of these moves, J.
+    [[nodiscard]] double merit(const Substep& substep, std::span<const BodyInertia> inertias,
+                               std::span<const Vec3> moves, std::span<const BodyMove> body_moves) const;
+    bool take_step(const Substep& substep, std::span<const BodyInertia> inertias);
+    bool solve_moves(const Substep& substep, std::span<const TouchedBody> bodies);
+    void break_segments();
+    [[nodiscard]] Tension tension_at(std::size_t segment, double length) const;
+    [[nodiscard]] Tension damped_tension_at(std::size_t segment, double length, double h) const;
+    void begin_substep(double h);
+    [[nodiscard]] Bend bend_at(std::size_t node, std::span<const Vec3> positions) const;
+
+    Rope rope_;
+    Nodes nodes_;
+    std::vector<Segment> segments_;
+    std::vector<bool> fixed_;
+    TouchSprings springs_;
+    std::vector<double> tensions_;
+    std::vector<std::uint32_t> new_breaks_;
+
+    // Of the substep.
+    BandCholesky matrix_;
+    std::vector<Vec3> places_, rhs_, moves_, next_moves_;
+    std::vector<Bend> bends_;            // by node, when the substep began
+    std::vector<double> start_lengths_;  // of segments, then, m
+    std::vector<double> pulls_;          // of segments, as the last round foretold them, N
+    std::vector<double> node_stiffness_;
+    std::vector<BodyMove> body_moves_, next_body_moves_;
+    bool is_frozen_ = false;
+    int rounds_ = 0;
+};
+
+}  // namespace embody::physics
