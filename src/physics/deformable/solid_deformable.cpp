@@ -234,6 +234,15 @@ void SolidDeformable::keep_momenta() {
     for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += shift + cross(turn, start_[i] - center);
 }
 
+void SolidDeformable::set_motion(std::span<const Vec3> positions, std::span<const Vec3> velocities, Quat rotation) {
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        nodes_.position[i] = positions[i];
+        nodes_.mean_velocity[i] = nodes_.velocity[i] = nodes_.inverse_mass[i] > 0 ? velocities[i] : Vec3{};
+    }
+    elements_.reset_rotations(rotation);
+    is_new_ = true;
+}
+
 void SolidDeformable::rest() {
     std::ranges::fill(nodes_.mean_velocity, Vec3{});
     std::ranges::fill(nodes_.velocity, Vec3{});

@@ -41,6 +41,8 @@ public:
     [[nodiscard]] Mat3 compliance(std::uint32_t i, std::uint32_t j);
     [[nodiscard]] Quat rotation(std::uint32_t node) const { return elements_.node_rotations()[node]; }
 
+    /// Places its nodes and gives them these velocities; pinned ones rest. `rotation` is about that of the whole.
+    void set_motion(std::span<const Vec3> positions, std::span<const Vec3> velocities, Quat rotation);
     /// Takes all velocities away.
     void rest();
     /// Takes it back to where its nodes were, at rest.

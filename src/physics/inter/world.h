@@ -103,8 +103,20 @@ public:
     /// World positions (m) and velocities (m/s) of its nodes; empty if stale. Valid until the next step or change.
     [[nodiscard]] std::span<const Vec3> node_positions(DeformableHandle deformable) const;
     [[nodiscard]] std::span<const Vec3> node_velocities(DeformableHandle deformable) const;
+    /// Where its frame would be if it had kept its form: the rigid motion nearest to that of its nodes, by mass.
+    [[nodiscard]] Transform pose(DeformableHandle deformable) const;
+    [[nodiscard]] double mass(DeformableHandle deformable) const;  ///< kg, pinned nodes too
+    [[nodiscard]] Vec3 center_of_mass(DeformableHandle deformable) const;
     [[nodiscard]] bool is_asleep(DeformableHandle deformable) const;
     Result<void> wake(DeformableHandle deformable);
+    /// Places and moves all of its nodes, as many as it has, and wakes it. Pinned ones rest where they are placed.
+    Result<void> set_nodes(DeformableHandle deformable, std::span<const Vec3> positions,
+                           std::span<const Vec3> velocities);
+    /// Other matter, pins, friction and the like, of the same nodes and elements; these stay where they are and go on
+    /// as they move, whatever the definition says of pose and velocity. Wakes it.
+    Result<void> set_deformable(DeformableHandle deformable, const DeformableDefinition& definition);
+    /// The attachments alone: costs nothing.
+    Result<void> set_attachments(DeformableHandle deformable, const std::vector<Attachment>& attachments);
 
     /// Advances by settings().time_step.
     const StepReport& step();

@@ -1,17 +1,27 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <string>
+#include <utility>
 
+#include "physics/deformable/rotation_part.h"
 #include "physics/inter/world.h"
 #include "physics/step/world_state.h"
 
 namespace embody::physics {
 
-Result<DeformableHandle> World::create_deformable(const DeformableDefinition& definition) {
-    if (auto result = validate(definition); !result) return result.error();
-    for (std::size_t i = 0; i < definition.attachments.size(); ++i) {
-        if (!contains(definition.attachments[i].body))
+namespace {
+
+Result<void> check_attachments(const World& world, const std::vector<Attachment>& attachments) {
+    for (std::size_t i = 0; i < attachments.size(); ++i) {
+        if (!world.contains(attachments[i].body))
             return Error{"attachments[" + std::to_string(i) + "]", "is to a body that is not one of this world"};
     }
+    return {};
+}
+
+Result<DeformableRecord> make_record(const World& world, const DeformableDefinition& definition) {
+    if (auto result = validate(definition); !result) return result.error();
+    if (auto result = check_attachments(world, definition.attachments); !result) return result.error();
     auto ball = CollisionShape::create(SphereShape{definition.contact_radius});
     if (!ball) return ball.error();
     DeformableRecord record;
@@ -19,12 +29,62 @@ Result<DeformableHandle> World::create_deformable(const DeformableDefinition& de
     record.solid = std::make_unique<SolidDeformable>(definition);
     record.node_ball = std::move(*ball);
     record.last_positions = record.solid->nodes().position;
-    return state_->deformables.insert(std::move(record));
+    return record;
+}
+
+Vec3 center_of(const Nodes& nodes) {
+    Vec3 sum;
+    double whole = 0;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        sum += nodes.mass[i] * nodes.position[i];
+        whole += nodes.mass[i];
+    }
+    return sum / whole;
+}
+
+// The rotation R and shift nearest to x = R X + t of all nodes: A = Σ m (x - c)(X - C)ᵀ, max tr(Rᵀ A).
+Transform nearest_rigid_motion(const DeformableRecord& record) {
+    const Nodes& nodes = record.solid->nodes();
+    const std::vector<Vec3>& rest = record.definition.nodes;
+    const Vec3 center = center_of(nodes);
+    Vec3 rest_center;
+    double whole = 0;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        rest_center += nodes.mass[i] * rest[i];
+        whole += nodes.mass[i];
+    }
+    rest_center = rest_center / whole;
+    Mat3 moments = Mat3::zero();
+    double size = 0;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const Vec3 arm = rest[i] - rest_center;
+        moments += nodes.mass[i] * outer(nodes.position[i] - center, arm);
+        size += nodes.mass[i] * length_squared(arm);
+    }
+    Quat rotation = record.solid->rotation(0);  // not far from the whole's
+    if (size > 0) follow_rotation((3 / size) * moments, rotation);
+    return {center - rotate(rotation, rest_center), rotation};
+}
+
+// As everything that is done to it from outside.
+void wake_up(DeformableRecord& record) {
+    record.is_asleep = false;
+    record.quiet_time = 0;
+}
+
+const Error no_such_deformable{"deformable", "is not one of this world"};
+
+}  // namespace
+
+Result<DeformableHandle> World::create_deformable(const DeformableDefinition& definition) {
+    auto record = make_record(*this, definition);
+    if (!record) return record.error();
+    return state_->deformables.insert(std::move(*record));
 }
 
 Result<void> World::destroy_deformable(DeformableHandle deformable) {
     const DeformableRecord* record = state_->deformables.find(deformable);
-    if (record == nullptr) return Error{"deformable", "is not one of this world"};
+    if (record == nullptr) return no_such_deformable;
     for (const std::uint32_t body : record->touched_bodies) {
         if (state_->is_used(body)) state_->to_wake.push_back(body);
     }
@@ -60,11 +120,76 @@ bool World::is_asleep(DeformableHandle deformable) const {
     return record == nullptr || record->is_asleep;
 }
 
+Transform World::pose(DeformableHandle deformable) const {
+    const DeformableRecord* record = state_->deformables.find(deformable);
+    return record != nullptr ? nearest_rigid_motion(*record) : Transform{};
+}
+
+double World::mass(DeformableHandle deformable) const {
+    const DeformableRecord* record = state_->deformables.find(deformable);
+    double sum = 0;
+    if (record != nullptr) {
+        for (const double mass : record->solid->nodes().mass) sum += mass;
+    }
+    return sum;
+}
+
+Vec3 World::center_of_mass(DeformableHandle deformable) const {
+    const DeformableRecord* record = state_->deformables.find(deformable);
+    return record != nullptr ? center_of(record->solid->nodes()) : Vec3{};
+}
+
 Result<void> World::wake(DeformableHandle deformable) {
     DeformableRecord* record = state_->deformables.find(deformable);
-    if (record == nullptr) return Error{"deformable", "is not one of this world"};
-    record->is_asleep = false;
-    record->quiet_time = 0;
+    if (record == nullptr) return no_such_deformable;
+    wake_up(*record);
+    return {};
+}
+
+Result<void> World::set_nodes(DeformableHandle deformable, std::span<const Vec3> positions,
+                              std::span<const Vec3> velocities) {
+    DeformableRecord* record = state_->deformables.find(deformable);
+    if (record == nullptr) return no_such_deformable;
+    const std::size_t count = record->definition.nodes.size();
+    for (const auto& [field, values] : {std::pair{"positions", positions}, {"velocities", velocities}}) {
+        if (values.size() != count) return Error{field, "must be " + std::to_string(count) + ", one a node"};
+        if (!std::ranges::all_of(values, [](Vec3 v) { return is_finite(v); }))
+            return Error{field, "must be finite numbers"};
+    }
+    // Placed first: the turn of the whole follows from where the nodes are.
+    record->solid->set_motion(positions, velocities, record->definition.pose.rotation);
+    record->solid->set_motion(positions, velocities, nearest_rigid_motion(*record).rotation);
+    record->last_positions = record->solid->nodes().position;
+    record->contacts.clear();
+    wake_up(*record);
+    return {};
+}
+
+Result<void> World::set_deformable(DeformableHandle deformable, const DeformableDefinition& definition) {
+    DeformableRecord* record = state_->deformables.find(deformable);
+    if (record == nullptr) return no_such_deformable;
+    auto changed = make_record(*this, definition);
+    if (!changed) return changed.error();
+    if (definition.nodes.size() != record->definition.nodes.size())
+        return Error{"nodes", "are not as many as before", "make another deformable in its place"};
+    const Nodes& nodes = record->solid->nodes();
+    changed->solid->set_motion(nodes.position, nodes.velocity, nearest_rigid_motion(*record).rotation);
+    changed->last_positions = nodes.position;
+    changed->contacts = std::move(record->contacts);
+    changed->touched_bodies = std::move(record->touched_bodies);
+    *record = std::move(*changed);
+    return {};
+}
+
+Result<void> World::set_attachments(DeformableHandle deformable, const std::vector<Attachment>& attachments) {
+    DeformableRecord* record = state_->deformables.find(deformable);
+    if (record == nullptr) return no_such_deformable;
+    if (auto result = check_attachments(*this, attachments); !result) return result;
+    DeformableDefinition changed = record->definition;
+    changed.attachments = attachments;
+    if (auto result = validate(changed); !result) return result;
+    record->definition = std::move(changed);
+    wake_up(*record);
     return {};
 }
 
