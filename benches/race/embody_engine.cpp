@@ -15,6 +15,8 @@ std::string_view stage_name(StepStage stage) {
     switch (stage) {
         case StepStage::wake:
             return "wake";
+        case StepStage::fluids:
+            return "fluids";
         case StepStage::find_pairs:
             return "find_pairs";
         case StepStage::touch:
@@ -27,6 +29,8 @@ std::string_view stage_name(StepStage stage) {
             return "substeps";
         case StepStage::continuous:
             return "continuous";
+        case StepStage::deformables:
+            return "deformables";
         case StepStage::sleep:
             return "sleep";
         case StepStage::count:

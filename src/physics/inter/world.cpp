@@ -171,6 +171,14 @@ Conserved World::conserved() const {
         sum.linear_momentum += own.linear_momentum;
         sum.angular_momentum += own.angular_momentum;
     }
+    for (const FluidHandle handle : fluids()) {
+        const FluidRecord& record = state_->fluids.at(handle.index);
+        const Conserved own = record.solver->conserved(state_->settings.gravity * record.definition.gravity_factor);
+        sum.kinetic_energy += own.kinetic_energy;
+        sum.potential_energy += own.potential_energy;
+        sum.linear_momentum += own.linear_momentum;
+        sum.angular_momentum += own.angular_momentum;
+    }
     return sum;
 }
 
@@ -192,6 +200,14 @@ std::uint64_t World::state_hash() const {
     for (const DeformableHandle handle : deformables()) {
         for (const auto& values : {node_positions(handle), node_velocities(handle)}) {
             for (const Vec3 value : values) add(value);
+        }
+    }
+    for (const FluidHandle handle : fluids()) {
+        for (const FluidParticle& particle : state_->fluids.at(handle.index).solver->particles()) {
+            for (int axis = 0; axis < 3; ++axis) {
+                hash.add(static_cast<double>(particle.position[axis]));
+                hash.add(static_cast<double>(particle.velocity[axis]));
+            }
         }
     }
     return hash.value();

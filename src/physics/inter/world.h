@@ -12,6 +12,7 @@
 #include "physics/inter/definitions/body_definition.h"
 #include "physics/inter/definitions/deformable_definition.h"
 #include "physics/inter/definitions/events.h"
+#include "physics/inter/definitions/fluid_definition.h"
 #include "physics/inter/definitions/joint_definition.h"
 #include "physics/inter/definitions/shape_definition.h"
 #include "physics/inter/definitions/step_report.h"
@@ -22,7 +23,7 @@ namespace embody::physics {
 
 struct WorldState;
 
-/// The paper's Inter module: how a user and every other part talk to the physics. Owns shapes, bodies and joints and
+/// The paper's Inter module: how a user and every other part talk to the physics. Owns shapes, bodies, joints and
 /// advances them. One thread at a time; several worlds are independent. Setters that are given a bad number or a stale
 /// handle refuse it with the field's name and change nothing.
 class World {
@@ -117,6 +118,22 @@ public:
     Result<void> set_deformable(DeformableHandle deformable, const DeformableDefinition& definition);
     /// The attachments alone: costs nothing.
     Result<void> set_attachments(DeformableHandle deformable, const std::vector<Attachment>& attachments);
+
+    // Fluids.
+    Result<FluidHandle> create_fluid(const FluidDefinition& definition);
+    Result<void> destroy_fluid(FluidHandle fluid);
+    [[nodiscard]] std::vector<FluidHandle> fluids() const;
+    /// As it was defined or last set; nullptr if stale.
+    [[nodiscard]] const FluidDefinition* fluid(FluidHandle fluid) const;
+    /// Another density, viscosity, yield stress, …; where the liquid is does not change, and cell_size must not.
+    Result<void> set_fluid(FluidHandle fluid, const FluidDefinition& definition);
+    /// Empty if stale.
+    [[nodiscard]] FluidParticles fluid_particles(FluidHandle fluid) const;
+    /// At a world point, Pa above the air's; 0 outside the liquid.
+    [[nodiscard]] double fluid_pressure(FluidHandle fluid, Vec3 point) const;
+    /// Of all fluids on a dynamic or kinematic body; on static ones it is not measured.
+    [[nodiscard]] FluidForce fluid_force(BodyHandle body) const;
+    Result<void> wake(FluidHandle fluid);
 
     /// Advances by settings().time_step.
     const StepReport& step();

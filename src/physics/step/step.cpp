@@ -43,7 +43,8 @@ void step(WorldState& world) {
     const auto start = Clock::now();
     const bool is_long = world.report.milliseconds > long_step;
     world.report = {.step = world.report.step + 1, .time = world.report.time + world.settings.time_step};
-    run(world, StepStage::wake, wake_bodies);  // apply commands, wake touched islands
+    run(world, StepStage::wake, wake_bodies);       // apply commands, wake touched islands
+    run(world, StepStage::fluids, advance_fluids);  // particles, and forces of their pressure on bodies
     if (!world.awake.empty() || !world.contacts.empty() || world.deformables.count() > 0) advance(world, is_long);
     write_report(world);  // events, counts
     world.report.milliseconds = milliseconds_since(start);

@@ -10,6 +10,7 @@ void step(WorldState& world);
 
 // The stages, in their order; each in the file of its name.
 void wake_bodies(WorldState& world);
+void advance_fluids(WorldState& world);
 void find_pairs(WorldState& world);
 void find_contacts(WorldState& world);
 void solve_impacts(WorldState& world);

@@ -42,8 +42,8 @@ void refresh_forces(WorldState& world, std::uint32_t body) {
     BodyConstants& constants = world.constants[body];
     const double inverse_mass = world.motion[body].inverse_mass;
     constants.acceleration = world.settings.gravity * record.definition.gravity_factor +
-                             (record.definition.force + record.next_force + record.deformable_force) * inverse_mass;
-    constants.torque = record.definition.torque + record.next_torque + record.deformable_torque;
+                             (record.definition.force + record.next_force + record.deformable_force + record.fluid_force) * inverse_mass;
+    constants.torque = record.definition.torque + record.next_torque + record.deformable_torque + record.fluid_torque;
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "physics/optimization/island_sleep.h"
 #include "physics/optimization/islands.h"
 #include "physics/optimization/solve_schedule.h"
+#include "physics/step/fluids.h"
 #include "physics/step/impact_memory.h"
 #include "physics/step/touch_memory.h"
 
@@ -42,6 +43,7 @@ struct BodyRecord {
     double inner_radius = 0;       ///< half the thinnest extent: a body that moves farther in a step may tunnel, m
     Vec3 next_force, next_torque;  ///< for the next step only, cleared by report; N, N m about the centre of mass
     Vec3 deformable_force, deformable_torque;  ///< pushes of deformables in the last step, N, N m
+    Vec3 fluid_force, fluid_torque;            ///< of fluids in this step, N, N m
     Vec3 last_center;                          ///< last finite pose, to freeze the body at
     Quat last_rotation;
 };
@@ -98,6 +100,9 @@ struct WorldState {
     HandleTable<struct BodyTag, BodyRecord> bodies;                   // face
     HandleTable<struct JointTag, JointRecord> joints;                 // face; impulses: substeps
     HandleTable<struct DeformableTag, DeformableRecord> deformables;  // face; nodes: deformables
+    HandleTable<struct FluidTag, FluidRecord> fluids;                 // face; particles: fluids
+    std::vector<FluidTouch> fluid_touches;                            // fluids: by slot of the body
+    std::vector<std::uint32_t> pushed_by_fluids;                      // fluids: slots whose fluid_force is not zero
     std::set<std::pair<std::uint32_t, std::uint32_t>> jointed_pairs;  // face: slots whose bodies must not collide
 
     std::vector<BodyState> motion;         // impact, substeps, continuous

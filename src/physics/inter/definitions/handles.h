@@ -9,5 +9,6 @@ using ShapeHandle = Handle<struct ShapeTag>;
 using BodyHandle = Handle<struct BodyTag>;
 using JointHandle = Handle<struct JointTag>;
 using DeformableHandle = Handle<struct DeformableTag>;
+using FluidHandle = Handle<struct FluidTag>;
 
 }  // namespace embody::physics

@@ -11,6 +11,7 @@ namespace embody::physics {
 /// The stages of a step, in their order.
 enum class StepStage : std::uint8_t {
     wake,
+    fluids,
     find_pairs,
     touch,
     impact,
@@ -33,6 +34,10 @@ enum class StepLimit : std::uint32_t {
     too_many_pairs = 1u << 4,    ///< so many bodies are in each other that some pairs are left out
     angular_speed_clamped = 1u << 5,         ///< raise WorldSettings::max_angular_speed
     not_finite_deformable_frozen = 1u << 6,  ///< the same for a deformable
+    not_finite_fluid_frozen = 1u << 7,       ///< the same for a fluid
+    fluid_particles_lost = 1u << 8,  ///< particles flew so far that no grid holds them: walls or a floor are missing
+    fluid_too_fast = 1u << 9,        ///< liquid moves many cells a step; a larger cell_size or smaller time_step helps
+    fluid_unsolved = 1u << 10,       ///< its pressure or viscosity was not solved to the end; a smaller time_step helps
 };
 
 struct StepReport {
@@ -48,7 +53,7 @@ struct StepReport {
     std::array<double, static_cast<std::size_t>(StepStage::count)> stage_milliseconds{};
 };
 
-/// Sums over all enabled dynamic bodies.
+/// Sums over all enabled dynamic bodies, deformables and fluids.
 struct Conserved {
     double kinetic_energy = 0;    ///< J
     double potential_energy = 0;  ///< J in the world's gravity, zero at the origin's height

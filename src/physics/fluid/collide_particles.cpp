@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "physics/fluid/collide_particles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/fluid/transfer.h"
+
+namespace embody::physics {
+
+namespace {
+
+// Particles come no nearer to a solid than this, in cells.
+constexpr float least_distance = 0.02f;
+// They go no farther in a part of a step than this, in cells.
+constexpr double longest_way = 4;
+
+Vec3 to_vec(const float* p) { return {p[0], p[1], p[2]}; }
+
+void set_position(FluidParticle& particle, Vec3 p) {
+    for (int axis = 0; axis < 3; ++axis) particle.position[axis] = static_cast<float>(p[axis]);
+}
+
+Cell cell_at(const FluidGrid& grid, const float* position) {
+    Cell cell{};
+    for (int axis = 0; axis < 3; ++axis) {
+        cell[axis] = std::clamp(static_cast<int>(grid.in_cells(position[axis], axis)), 1, grid.size()[axis] - 2);
+    }
+    return cell;
+}
+
+}  // namespace
+
+ParticleCollider::ParticleCollider(const FluidGrid& grid, const FluidSolids& solids, double dt)
+    : grid_(grid), solids_(solids), dt_(dt), fixed_(solids.fixed()) {
+    for (const MovingSolid& moving : solids.moving()) moving_.push_back(moving.probe);
+}
+
+bool ParticleCollider::is_near_thin(const float* position) const {
+    return (grid_.thin[grid_.index(cell_at(grid_, position))] & near_thin) != 0;
+}
+
+// What goes into the wall stops.
+void ParticleCollider::stop_at(FluidParticle& particle, const Wall& wall) const {
+    const double inwards = std::min(0.0, dot(to_vec(particle.velocity) - wall.velocity, wall.normal));
+    for (int axis = 0; axis < 3; ++axis) particle.velocity[axis] -= static_cast<float>(wall.normal[axis] * inwards);
+}
+
+void ParticleCollider::push_out(FluidParticle& particle, Vec3 before) const {
+    constexpr float deep = -0.1f;  // cells
+    float gradient[3];
+    const float distance = sample_center(grid_, grid_.solid, particle.position, gradient);
+    if (distance >= least_distance) return;
+    const Vec3 normal = normalized(Vec3{gradient[0], gradient[1], gradient[2]});
+    set_position(particle, to_vec(particle.position) + normal * ((least_distance - distance) * grid_.cell_size()));
+    const int owner = grid_.solid_owner[grid_.index(cell_at(grid_, particle.position))];
+    const Vec3 wall = solids_.velocity_at(owner, to_vec(particle.position));
+    stop_at(particle, {normal, wall});
+
+    // Where that leads nowhere (the seam of two solids) it does not go on.
+    const float now = sample_center(grid_, grid_.solid, particle.position, gradient);
+    if (now > deep) return;
+    FluidParticle back = particle;
+    set_position(back, before);
+    if (sample_center(grid_, grid_.solid, back.position, gradient) < now) return;
+    std::copy_n(back.position, 3, particle.position);
+    for (int axis = 0; axis < 3; ++axis) particle.velocity[axis] = static_cast<float>(wall[axis]);
+}
+
+// Shortens the way from `from` to `to` where the probe bars it, and slides on along what bars it.
+bool ParticleCollider::bar(SolidProbe& probe, Vec3 from, Vec3& to, Vec3& normal) const {
+    constexpr int most_slides = 3;
+    const double gap = least_distance * grid_.cell_size();
+    Bounds box;
+    box.add(from);
+    box.add(to);
+    if (!probe.look_at(enlarged(box, gap), gap)) return false;
+    bool is_barred = false;
+    Vec3 start = from;
+    for (int slide = 0; slide < most_slides; ++slide) {
+        const auto hit = probe.crossing(start, to);
+        if (!hit) break;
+        is_barred = true;
+        normal = hit->normal;
+        const Vec3 place = start + (to - start) * hit->share + normal * gap, rest = to - place;
+        start = place;
+        to = slide + 1 < most_slides ? place + rest - normal * std::min(0.0, dot(rest, normal)) : place;
+    }
+    // Too near without having gone through, or inside since the start.
+    const SolidDistance near = probe.nearest(to);
+    const bool is_behind = probe.is_surface() && near.distance < 0;
+    const double distance = is_behind ? -near.distance : near.distance;
+    if (distance >= gap) return is_barred;
+    normal = is_behind ? -near.normal : near.normal;
+    to += normal * (gap - distance);
+    return true;
+}
+
+// By the true shapes; a moving one is seen from the middle of its way.
+void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to) {
+    constexpr int rounds = 2;
+    Vec3 normal;
+    for (int round = 0; round < rounds; ++round) {
+        bool any = false;
+        for (SolidProbe& probe : fixed_) {
+            if (!bar(probe, from, to, normal)) continue;
+            any = true;
+            stop_at(particle, {normal, {}});
+        }
+        for (std::size_t i = 0; i < moving_.size(); ++i) {
+            const MovingSolid& moving = solids_.moving()[i];
+            if (!moving.is_in_reach) continue;
+            const Vec3 seen_from = from + moving.velocity_at(from) * (dt_ / 2);
+            Vec3 seen_to = to - moving.velocity_at(to) * (dt_ / 2);
+            if (!bar(moving_[i], seen_from, seen_to, normal)) continue;
+            any = true;
+            to = seen_to + moving.velocity_at(seen_to) * (dt_ / 2);
+            stop_at(particle, {normal, moving.velocity_at(seen_to)});
+        }
+        if (!any) break;
+    }
+    set_position(particle, to);
+}
+
+void ParticleCollider::move(FluidParticle& particle, const float* end) {
+    // Nothing goes farther than the tiles around the particles' reach, nor two cells at once.
+    const auto longest = static_cast<float>(longest_way * grid_.cell_size());
+    float way[3], size = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        way[axis] = std::clamp(end[axis] - particle.position[axis], -longest, longest);
+        size = std::max(size, std::fabs(way[axis]));
+    }
+    const int strides = 1 + static_cast<int>(size / (1.5f * static_cast<float>(grid_.cell_size())));
+    for (int i = 0; i < strides; ++i) {
+        float to[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            to[axis] = particle.position[axis] + way[axis] / static_cast<float>(strides);
+        }
+        stride(particle, to);
+    }
+}
+
+void ParticleCollider::stride(FluidParticle& particle, const float* to) {
+    if (is_near_thin(particle.position) || is_near_thin(to)) {
+        sweep(particle, to_vec(particle.position), to_vec(to));
+        return;
+    }
+    const Vec3 before = to_vec(particle.position);
+    std::copy_n(to, 3, particle.position);
+    if (grid_.solid[grid_.index(cell_at(grid_, to))] < 1.5f) push_out(particle, before);
+}
+
+void ParticleCollider::carry(FluidParticle& particle, std::size_t moving, const Transform& jump) {
+    if (!is_near_thin(particle.position)) return;
+    const Vec3 place = to_vec(particle.position), from = transform_point(jump, place);
+    Vec3 to = place, normal;
+    if (bar(moving_[moving], from, to, normal)) set_position(particle, to);
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include "physics/fluid/faces.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/fluid/transfer.h"
+
+namespace embody::physics {
+
+namespace {
+
+struct FaceValue {
+    int axis, cell;
+    float value;
+};
+
+// Where a face's centre is.
+Vec3 face_center(const FluidGrid& grid, int axis, const Cell& c) {
+    Vec3 center = grid.center(c);
+    center[axis] -= grid.cell_size() / 2;
+    return center;
+}
+
+// Means of the known neighbours of unknown faces in a tile.
+void list_next_layer(const FluidGrid& grid, const std::array<std::vector<float>, 3>& field, const Cell& corner,
+                     std::vector<FaceValue>& found) {
+    const int strides[3] = {grid.stride(0), grid.stride(1), grid.stride(2)};
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::vector<std::uint8_t>& known = grid.known[axis];
+        grid.for_cells(corner, [&](int cell, const Cell&) {
+            if (known[cell]) return;
+            float sum = 0;
+            int count = 0;
+            for (const int stride : strides) {
+                for (const int other : {cell - stride, cell + stride}) {
+                    if (!known[other]) continue;
+                    sum += field[axis][other];
+                    ++count;
+                }
+            }
+            if (count > 0) found.push_back({axis, cell, sum / static_cast<float>(count)});
+        });
+    }
+}
+
+// Velocity at a shut face; the components across are means of the four nearest faces.
+float followed(const FluidGrid& grid, const FluidSolids& solids, int axis, int cell, const Cell& c) {
+    const int below = cell - grid.stride(axis);
+    const int nearer = grid.solid[cell] < grid.solid[below] ? cell : below;
+    const Vec3 center = face_center(grid, axis, c);
+    const Vec3 wall = solids.velocity_at(grid.solid_owner[nearer], center);
+    if (grid.thin[cell] & (1 << axis)) return static_cast<float>(wall[axis]);
+    const float at[3] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)};
+    float gradient[3];
+    sample_center(grid, grid.solid, at, gradient);
+    const Vec3 normal = normalized(Vec3{gradient[0], gradient[1], gradient[2]});
+    Vec3 velocity;
+    for (int other = 0; other < 3; ++other) {
+        const auto& field = grid.velocity[other];
+        if (other == axis) {
+            velocity[other] = field[cell];
+            continue;
+        }
+        const int up = grid.stride(other);
+        velocity[other] = 0.25 * (field[cell] + field[cell + up] + field[below] + field[below + up]);
+    }
+    velocity += normal * dot(wall - velocity, normal);
+    return static_cast<float>(velocity[axis]);
+}
+
+}  // namespace
+
+void extrapolate(FluidGrid& grid, std::array<std::vector<float>, 3>& field, int layers, TaskPool& workers) {
+    const auto tiles = grid.tiles();
+    std::vector<std::vector<FaceValue>> found(static_cast<std::size_t>(workers.workers()));
+    for (int layer = 0; layer < layers; ++layer) {
+        share_among(workers, tiles.size(), tiles.size() > 16, [&](int worker, Share share) {
+            auto& list = found[static_cast<std::size_t>(worker)];
+            list.clear();
+            for (std::size_t i = share.first; i < share.last; ++i) list_next_layer(grid, field, tiles[i], list);
+        });
+        for (auto& list : found) {
+            for (const FaceValue& face : list) {
+                field[face.axis][face.cell] = face.value;
+                grid.known[face.axis][face.cell] = 1;
+            }
+            list.clear();
+        }
+    }
+}
+
+void admit_drops(FluidGrid& grid, TaskPool& workers) {
+    grid.for_tiles(workers, [&](const Cell& corner) {
+        for (int axis = 0; axis < 3; ++axis) {
+            grid.for_cells(corner, [&](int cell, const Cell&) {
+                const bool has_drops = grid.open[axis][cell] > 0 && grid.mass[axis][cell] > 1e-6f;
+                grid.known[axis][cell] = grid.known[axis][cell] || has_drops;
+            });
+        }
+    });
+}
+
+void follow_solids(FluidGrid& grid, const FluidSolids& solids, TaskPool& workers) {
+    const auto tiles = grid.tiles();
+    std::vector<std::vector<FaceValue>> found(static_cast<std::size_t>(workers.workers()));
+    share_among(workers, tiles.size(), tiles.size() > 16, [&](int worker, Share share) {
+        auto& list = found[static_cast<std::size_t>(worker)];
+        for (std::size_t i = share.first; i < share.last; ++i) {
+            grid.for_cells(tiles[i], [&](int cell, const Cell& c) {
+                for (int axis = 0; axis < 3; ++axis) {
+                    if (grid.open[axis][cell] > 0 || !grid.known[axis][cell]) continue;
+                    list.push_back({axis, cell, followed(grid, solids, axis, cell, c)});
+                }
+            });
+        }
+    });
+    for (const auto& list : found) {
+        for (const FaceValue& face : list) grid.velocity[face.axis][face.cell] = face.value;
+    }
+}
+
+void outflow(const FluidGrid& grid, const FluidSolids& solids, const PressureSystem& system, std::vector<double>& flow,
+             TaskPool& workers) {
+    flow.resize(system.size());
+    const double area = grid.cell_size() * grid.cell_size();
+    share_among(workers, flow.size(), flow.size() > 2000, [&](int, Share share) {
+        for (std::size_t row = share.first; row < share.last; ++row) {
+            const auto cell = static_cast<int>(system.cell(row));
+            double sum = 0;
+            for (int axis = 0; axis < 3; ++axis) {
+                const int above = cell + grid.stride(axis);
+                const auto &open = grid.open[axis], &velocity = grid.velocity[axis];
+                sum += static_cast<double>(open[above]) * velocity[above];
+                sum -= static_cast<double>(open[cell]) * velocity[cell];
+            }
+            flow[row] = sum * area;
+        }
+    });
+    for (const MovingSolid& solid : solids.moving()) {
+        for (const SolidArea& part : solid.areas) {
+            flow[part.row] += dot(part.area, solid.linear_velocity) + dot(part.moment, solid.angular_velocity);
+        }
+    }
+}
+
+void subtract_gradient(FluidGrid& grid, std::span<const double> x, double scale,
+                       std::array<std::vector<float>, 3>& field, TaskPool& workers) {
+    grid.for_tiles(workers, [&](const Cell& corner) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const int stride = grid.stride(axis);
+            grid.for_cells(corner, [&](int cell, const Cell&) {
+                const int below = cell - stride, upper = grid.row[cell], lower = grid.row[below];
+                std::uint8_t& known = grid.known[axis][cell];
+                if (grid.open[axis][cell] <= 0) {
+                    known = 0;
+                    return;
+                }
+                if (upper < 0 && lower < 0) {
+                    known = 0;
+                    return;
+                }
+                double difference = (upper >= 0 ? x[upper] : 0) - (lower >= 0 ? x[lower] : 0);
+                if (upper < 0) difference /= PressureSystem::gap_share(grid.surface[below], grid.surface[cell]);
+                if (lower < 0) difference /= PressureSystem::gap_share(grid.surface[cell], grid.surface[below]);
+                field[axis][cell] -= static_cast<float>(difference * scale);
+                known = 1;
+            });
+        }
+    });
+}
+
+}  // namespace embody::physics

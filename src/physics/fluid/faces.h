@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "foundation/task_pool.h"
+#include "physics/fluid/grid.h"
+#include "physics/fluid/pressure_system.h"
+#include "physics/fluid/solids.h"
+
+namespace embody::physics {
+
+/// Gives faces without a velocity the mean of their neighbours', `layers` faces far from those that are known.
+void extrapolate(FluidGrid& grid, std::array<std::vector<float>, 3>& field, int layers, TaskPool& workers);
+
+/// Faces that particles reach but that are unknown are known by them.
+void admit_drops(FluidGrid& grid, TaskPool& workers);
+
+/// Shut faces move as the solid does: along its normal, or wholly where the solid is thin.
+void follow_solids(FluidGrid& grid, const FluidSolids& solids, TaskPool& workers);
+
+/// Volume that flows out of each liquid cell by faces and surfaces of solids, m³/s.
+void outflow(const FluidGrid& grid, const FluidSolids& solids, const PressureSystem& system, std::vector<double>& flow,
+             TaskPool& workers);
+
+/// Adds −`scale` ∂x to the open faces of liquid cells (∂x: difference over the way to the neighbour or the surface, in
+/// cells). Other faces become unknown.
+void subtract_gradient(FluidGrid& grid, std::span<const double> x, double scale,
+                       std::array<std::vector<float>, 3>& field, TaskPool& workers);
+
+}  // namespace embody::physics

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "physics/fluid/solid_region.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace embody::physics {
+
+namespace {
+
+// A cube that is farther than this from a surface is not cut by it, in half its edges: √3.
+constexpr double half_diagonal = 1.7320508;
+
+Vec3 octant_offset(int octant) {
+    return {(octant & 1) ? 0.25 : -0.25, (octant & 2) ? 0.25 : -0.25, (octant & 4) ? 0.25 : -0.25};
+}
+
+}  // namespace
+
+void SolidRegion::begin(const FluidGrid& grid, const Cell& lower, const Cell& upper) {
+    grid_ = &grid;
+    lower_ = lower;
+    upper_ = upper;
+    std::size_t cells = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        size_[axis] = upper[axis] - lower[axis] + 2;
+        cells *= static_cast<std::size_t>(size_[axis]);
+    }
+    distance_.assign(cells, static_cast<float>(reach));
+    octants_.assign(cells, Octants{});
+    for (auto& share : share_) share.assign(cells, 0);
+    thin_.assign(cells, 0);
+    is_cut_.assign(cells, 0);
+    any_thin_ = false;
+}
+
+void SolidRegion::add_octants(const SolidProbe& probe, int cell, Vec3 center) {
+    const double h = grid_->cell_size();
+    for (int octant = 0; octant < 8; ++octant) {
+        const double share = probe.share_of_cube(center + octant_offset(octant) * h, h / 2);
+        float& sum = octants_[cell][octant];
+        sum = std::min(1.0f, sum + static_cast<float>(share));
+    }
+    is_cut_[cell] = 1;
+}
+
+bool SolidRegion::add(SolidProbe& probe) {
+    const double h = grid_->cell_size();
+    Cell low = lower_, high = upper_;
+    for (int axis = 0; axis < 3; ++axis) --low[axis];
+    const Vec3 half{h / 2, h / 2, h / 2};
+    if (!probe.look_at({grid_->center(low) - half, grid_->center(high) + half}, reach * h)) return false;
+    own_distance_.assign(distance_.size(), static_cast<float>(reach));
+    for (int z = low[2], cell = 0; z <= high[2]; ++z) {
+        for (int y = low[1]; y <= high[1]; ++y) {
+            for (int x = low[0]; x <= high[0]; ++x, ++cell) {
+                const Vec3 center = grid_->center({x, y, z});
+                const double distance = probe.nearest(center).distance;
+                own_distance_[cell] = static_cast<float>(std::clamp(distance / h, -reach, reach));
+                distance_[cell] = std::min(distance_[cell], own_distance_[cell]);
+                if (distance > half_diagonal / 2 * h) continue;
+                if (distance < -half_diagonal / 2 * h) {
+                    octants_[cell].fill(1);
+                    is_cut_[cell] = 1;
+                } else {
+                    add_octants(probe, cell, center);
+                }
+            }
+        }
+    }
+    shut_thin(probe);
+    return true;
+}
+
+// What the shares cannot see (docs/physics/fluids.md, "Thin walls"): surfaces between two centres that are both
+// outside, and walls around a centre that end before the next one.
+void SolidRegion::shut_thin(const SolidProbe& probe) {
+    const double h = grid_->cell_size();
+    constexpr double thickness = 1.2;  // cells
+    constexpr float on_surface = 1e-3f;
+    const auto shut = [&](int axis, int cell) {
+        share_[axis][cell] = 1;
+        thin_[cell] |= static_cast<std::uint8_t>(1 << axis);
+        any_thin_ = true;
+    };
+    for (int z = 0, cell = 0; z < size_[2]; ++z) {
+        for (int y = 0; y < size_[1]; ++y) {
+            for (int x = 0; x < size_[0]; ++x, ++cell) {
+                const float here = own_distance_[cell];
+                if (here > 1.05f || here < -1) continue;
+                const Vec3 center = grid_->center({x + lower_[0] - 1, y + lower_[1] - 1, z + lower_[2] - 1});
+                const Cell place{x, y, z};
+                if (here < on_surface) {
+                    if (!probe.is_thinner(center, probe.nearest(center).normal, thickness * h)) continue;
+                    for (int axis = 0; axis < 3; ++axis) {
+                        shut(axis, cell);
+                        if (place[axis] + 1 < size_[axis]) shut(axis, cell + stride(axis));
+                    }
+                    continue;
+                }
+                for (int axis = 0; axis < 3; ++axis) {
+                    if (place[axis] == 0) continue;
+                    const float there = own_distance_[cell - stride(axis)];
+                    if (there < on_surface || here + there > 1.05f) continue;
+                    Vec3 from = center;
+                    from[axis] -= h;
+                    if (probe.crossing(from, center)) shut(axis, cell);
+                }
+            }
+        }
+    }
+}
+
+void SolidRegion::mark_near_thin() {
+    const auto mark_around = [&](int x, int y, int z) {
+        for (int dz = std::max(z - 1, 0); dz <= std::min(z + 1, size_[2] - 1); ++dz) {
+            for (int dy = std::max(y - 1, 0); dy <= std::min(y + 1, size_[1] - 1); ++dy) {
+                for (int dx = std::max(x - 1, 0); dx <= std::min(x + 1, size_[0] - 1); ++dx) {
+                    thin_[dx + size_[0] * (dy + size_[1] * dz)] |= near_thin;
+                }
+            }
+        }
+    };
+    for (int z = 0, cell = 0; z < size_[2]; ++z) {
+        for (int y = 0; y < size_[1]; ++y) {
+            for (int x = 0; x < size_[0]; ++x, ++cell) {
+                const int bits = thin_[cell];
+                if (!(bits & (closed_x | closed_y | closed_z))) continue;
+                mark_around(x, y, z);
+                if (bits & closed_x) mark_around(x - 1, y, z);
+                if (bits & closed_y) mark_around(x, y - 1, z);
+                if (bits & closed_z) mark_around(x, y, z - 1);
+            }
+        }
+    }
+}
+
+void SolidRegion::finish() {
+    for (int z = 1; z < size_[2]; ++z) {
+        for (int y = 1; y < size_[1]; ++y) {
+            for (int x = 1; x < size_[0]; ++x) {
+                const int cell = x + size_[0] * (y + size_[1] * z);
+                for (int axis = 0; axis < 3; ++axis) {
+                    if (share_[axis][cell] == 1) continue;
+                    const int below = cell - stride(axis);
+                    if (!is_cut_[cell] && !is_cut_[below]) continue;
+                    float sum = 0;
+                    for (int octant = 0; octant < 8; ++octant) {
+                        const bool is_upper = octant >> axis & 1;
+                        sum += octants_[is_upper ? below : cell][octant];
+                    }
+                    share_[axis][cell] = sum / 8;
+                }
+            }
+        }
+    }
+    if (any_thin_) mark_near_thin();
+}
+
+float SolidRegion::room(int cell) const {
+    if (distance_[cell] > 1.75f) return 1;
+    // The tent kernel over the octants of 27 cells: 1/8, 3/8, 3/8, 1/8 along each axis.
+    float filled = 0;
+    for (int z = -1; z <= 1; ++z) {
+        for (int y = -1; y <= 1; ++y) {
+            for (int x = -1; x <= 1; ++x) {
+                const int other = cell + x + size_[0] * (y + size_[1] * z);
+                if (!is_cut_[other]) continue;
+                const std::array<int, 3> step{x, y, z};
+                for (int octant = 0; octant < 8; ++octant) {
+                    float weight = octants_[other][octant];
+                    for (int axis = 0; axis < 3; ++axis) {
+                        const bool is_upper = octant >> axis & 1;
+                        // Beside the own cell only the octants that face it lie within the kernel.
+                        const bool faces = step[axis] == 0 || (step[axis] > 0) != is_upper;
+                        weight *= step[axis] == 0 ? 0.375f : faces ? 0.125f : 0.0f;
+                    }
+                    filled += weight;
+                }
+            }
+        }
+    }
+    return std::max(0.0f, 1 - filled);
+}
+
+}  // namespace embody::physics

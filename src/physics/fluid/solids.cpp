@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+#include "physics/fluid/solids.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace embody::physics {
+
+namespace {
+
+// Faces of which less is open are shut: seams between solids that touch do not leak.
+constexpr float least_open = 0.02f;
+
+Quat turned(Quat rotation, Vec3 angular_velocity, double dt) {
+    const Vec3 half = angular_velocity * (dt / 2);
+    const Quat change = Quat{half.x, half.y, half.z, 0} * rotation;
+    return normalized({rotation.x + change.x, rotation.y + change.y, rotation.z + change.z, rotation.w + change.w});
+}
+
+Transform moved(const FluidSolid& solid, Vec3 origin, Vec3 center, Quat rotation) {
+    // The body's origin relative to its centre of mass turns along.
+    const Vec3 arm = rotate_inverse(solid.pose.rotation, solid.pose.position - solid.center);
+    return {center - origin + rotate(rotation, arm), rotation};
+}
+
+}  // namespace
+
+void FluidSolids::begin(std::span<FluidSolid> solids, FluidGrid& grid) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> versions;
+    std::size_t count = 0;
+    for (FluidSolid& solid : solids) {
+        if (solid.is_static) {
+            versions.emplace_back(solid.body, solid.version);
+            continue;
+        }
+        if (count == moving_.size()) {
+            moving_.push_back({.probe = SolidProbe(*solid.shape, solid.pose)});
+        }
+        MovingSolid& moving = moving_[count++];
+        moving.solid = &solid;
+        moving.center = solid.center - origin_;
+        moving.rotation = solid.pose.rotation;
+        moving.linear_velocity = solid.linear_velocity;
+        moving.angular_velocity = solid.angular_velocity;
+    }
+    moving_.erase(moving_.begin() + static_cast<std::ptrdiff_t>(count), moving_.end());
+    if (versions == fixed_versions_) return;
+    fixed_versions_ = std::move(versions);
+    fixed_.clear();
+    for (const FluidSolid& solid : solids) {
+        if (!solid.is_static) continue;
+        fixed_.emplace_back(*solid.shape, Transform{solid.pose.position - origin_, solid.pose.rotation});
+    }
+    std::fill(grid.is_static_known.begin(), grid.is_static_known.end(), 0);
+}
+
+void FluidSolids::measure_static_tile(FluidGrid& grid, const Cell& corner, std::vector<SolidProbe>& probes,
+                                      SolidRegion& region) {
+    Cell upper = corner;
+    for (int axis = 0; axis < 3; ++axis) upper[axis] += FluidGrid::tile[axis];
+    region.begin(grid, corner, upper);
+    for (SolidProbe& probe : probes) region.add(probe);
+    region.finish();
+    grid.for_cells(corner, [&](int cell, const Cell& c) {
+        const int here = region.index(c);
+        for (int axis = 0; axis < 3; ++axis) grid.static_share[axis][cell] = region.share(axis, here);
+        grid.static_distance[cell] = region.distance(here);
+        grid.static_room[cell] = region.room(here);
+        grid.static_thin[cell] = region.thin(here);
+    });
+    grid.is_static_known[grid.tile_of(corner)] = 1;
+}
+
+void FluidSolids::measure_static(FluidGrid& grid, TaskPool& workers) {
+    std::vector<Cell> unknown;
+    for (const Cell& corner : grid.tiles()) {
+        if (!grid.is_static_known[grid.tile_of(corner)]) unknown.push_back(corner);
+    }
+    share_among(workers, unknown.size(), unknown.size() > 4, [&](int, Share share) {
+        if (share.first == share.last) return;
+        std::vector<SolidProbe> probes = fixed_;
+        SolidRegion region;
+        for (std::size_t i = share.first; i < share.last; ++i) measure_static_tile(grid, unknown[i], probes, region);
+    });
+}
+
+void FluidSolids::measure_moving(MovingSolid& moving, int owner, FluidGrid& grid) {
+    // The cells in reach, within the box and away from its rim.
+    const double h = grid.cell_size();
+    const Bounds wide = enlarged(moving.probe.bounds(), SolidRegion::reach * h);
+    Cell lower{}, upper{};
+    moving.is_in_reach = true;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = std::floor(wide.lower[axis] / h) - grid.lower()[axis];
+        const double high = std::ceil(wide.upper[axis] / h) - grid.lower()[axis];
+        lower[axis] = static_cast<int>(std::clamp(low, 1.0, grid.size()[axis] - 1.0));
+        upper[axis] = static_cast<int>(std::clamp(high, 1.0, grid.size()[axis] - 1.0));
+        moving.is_in_reach = moving.is_in_reach && lower[axis] < upper[axis];
+    }
+    if (!moving.is_in_reach) return;
+    SolidRegion& region = moving.region;
+    region.begin(grid, lower, upper);
+    moving.is_in_reach = region.add(moving.probe);
+    if (!moving.is_in_reach) return;
+    region.finish();
+
+    // Where solids overlap, the first one has the space.
+    for (auto& share : moving.share) share.assign(static_cast<std::size_t>(region.index(upper)) + 1, 0);
+    for (int z = lower[2]; z < upper[2]; ++z) {
+        for (int y = lower[1]; y < upper[1]; ++y) {
+            for (int x = lower[0]; x < upper[0]; ++x) {
+                const Cell c{x, y, z};
+                if (!grid.is_active(c)) continue;
+                const int cell = grid.index(c), here = region.index(c);
+                for (int axis = 0; axis < 3; ++axis) {
+                    float& open = grid.open[axis][cell];
+                    float share = std::min(region.share(axis, here), open);
+                    if (open - share < least_open) share = open;
+                    moving.share[axis][here] = share;
+                    open -= share;
+                }
+                if (region.distance(here) < grid.solid[cell]) {
+                    grid.solid[cell] = region.distance(here);
+                    grid.solid_owner[cell] = static_cast<std::int16_t>(owner);
+                }
+                grid.room[cell] *= region.room(here);
+                grid.thin[cell] |= region.thin(here);
+            }
+        }
+    }
+}
+
+void FluidSolids::measure(double dt, FluidGrid& grid, TaskPool& workers) {
+    measure_static(grid, workers);
+    grid.for_tiles(workers, [&](const Cell& corner) {
+        grid.for_rows(corner, [&](int first, const Cell&) {
+            for (int cell = first; cell < first + FluidGrid::tile[0]; ++cell) {
+                for (int axis = 0; axis < 3; ++axis) {
+                    const float open = 1 - grid.static_share[axis][cell];
+                    grid.open[axis][cell] = open < least_open ? 0 : open;
+                }
+                grid.solid[cell] = grid.static_distance[cell];
+                grid.room[cell] = grid.static_room[cell];
+                grid.thin[cell] = grid.static_thin[cell];
+                grid.solid_owner[cell] = -1;
+            }
+        });
+    });
+    for (std::size_t i = 0; i < moving_.size(); ++i) {
+        MovingSolid& moving = moving_[i];
+        const FluidSolid& solid = *moving.solid;
+        moving.center += moving.linear_velocity * (dt / 2);
+        moving.rotation = turned(moving.rotation, moving.angular_velocity, dt / 2);
+        moving.linear_velocity += solid.acceleration * dt;
+        moving.angular_velocity += solid.angular_acceleration * dt;
+        const Transform placed = moved(solid, origin_, moving.center + origin_, moving.rotation);
+        moving.probe = SolidProbe(*solid.shape, placed);
+        measure_moving(moving, static_cast<int>(i), grid);
+    }
+
+    // A cell that is shut all around is solid, be its centre on the seam of two solids.
+    grid.for_tiles(workers, [&](const Cell& corner) {
+        grid.for_cells(corner, [&](int cell, const Cell&) {
+            if (grid.solid[cell] > 0.5f) return;
+            for (int axis = 0; axis < 3; ++axis) {
+                if (grid.open[axis][cell] > 0 || grid.open[axis][cell + grid.stride(axis)] > 0) return;
+            }
+            grid.solid[cell] = std::min(grid.solid[cell], -0.5f);
+        });
+    });
+}
+
+void FluidSolids::list_areas(const FluidGrid& grid) {
+    const double h = grid.cell_size();
+    for (MovingSolid& moving : moving_) {
+        moving.areas.clear();
+        if (!moving.is_in_reach) continue;
+        const SolidRegion& region = moving.region;
+        const Cell &low = region.lower(), &high = region.upper();
+        for (int z = low[2]; z < high[2]; ++z) {
+            for (int y = low[1]; y < high[1]; ++y) {
+                for (int x = low[0]; x < high[0]; ++x) {
+                    const Cell c{x, y, z};
+                    if (!grid.is_active(c)) continue;
+                    const int row = grid.row[grid.index(c)];
+                    if (row < 0) continue;
+                    Vec3 area;
+                    for (int axis = 0; axis < 3; ++axis) {
+                        Cell next = c;
+                        ++next[axis];
+                        const double above = next[axis] < high[axis] ? moving.share[axis][region.index(next)] : 0.0f;
+                        area[axis] = (above - moving.share[axis][region.index(c)]) * h * h;
+                    }
+                    if (area == Vec3{}) continue;
+                    moving.areas.push_back({row, area, cross(grid.center(c) - moving.center, area)});
+                }
+            }
+        }
+    }
+}
+
+void FluidSolids::advance(double dt) {
+    for (MovingSolid& moving : moving_) {
+        moving.center += moving.linear_velocity * (dt / 2);
+        moving.rotation = turned(moving.rotation, moving.angular_velocity, dt / 2);
+    }
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "math/transform.h"
+#include "physics/fluid/grid.h"
+#include "physics/fluid/solid_probe.h"
+#include "physics/fluid/solid_region.h"
+
+namespace embody::physics {
+
+/// A rigid body as a fluid meets it in a step.
+struct FluidSolid {
+    std::uint32_t body = 0;  ///< caller's number; solids come in its order
+    const CollisionShape* shape = nullptr;
+    std::uint32_t version = 0;  ///< another one after each change of a static body
+    bool is_static = false;     ///< never moves: measured once
+    Transform pose;             ///< when the step begins, world
+    Vec3 center;                ///< of mass, world, m
+    Vec3 linear_velocity, angular_velocity;
+    double inverse_mass = 0;  ///< 0: no fluid moves it
+    Mat3 inverse_inertia = Mat3::zero();
+    Vec3 acceleration, angular_acceleration;  ///< by all but the fluid, as far as is known
+
+    Vec3 impulse, angular_impulse;  ///< result: of the fluid on it in this step, about its centre of mass, N s, N m s
+};
+
+/// What a solid's surface in a cell is to the cell's pressure: its area vector, m², into the solid, and the moment of
+/// it about the solid's centre of mass, m³.
+struct SolidArea {
+    int row = 0;
+    Vec3 area, moment;
+};
+
+/// A solid that is or may be in motion, through the parts of a step.
+struct MovingSolid {
+    FluidSolid* solid = nullptr;
+    Vec3 center;  ///< in the fluid's frame, in the middle of the part
+    Quat rotation;
+    Vec3 linear_velocity, angular_velocity;
+    SolidProbe probe;
+    SolidRegion region;
+    std::array<std::vector<float>, 3> share;  ///< of faces, by the region's index: what other solids left
+    std::vector<SolidArea> areas;
+    bool is_in_reach = false;
+
+    [[nodiscard]] Vec3 velocity_at(Vec3 p) const { return linear_velocity + cross(angular_velocity, p - center); }
+};
+
+/// Measures the solids on the grid: static ones once for each tile, the others in each part of a step.
+class FluidSolids {
+public:
+    explicit FluidSolids(Vec3 origin) : origin_(origin) {}
+
+    /// Before the parts of a step.
+    void begin(std::span<FluidSolid> solids, FluidGrid& grid);
+    /// Forces but the fluid's change velocities over `dt`; measures with the poses in the middle of it.
+    void measure(double dt, FluidGrid& grid, TaskPool& workers);
+    /// Once rows are known.
+    void list_areas(const FluidGrid& grid);
+    /// Moves on to the end of the part.
+    void advance(double dt);
+
+    [[nodiscard]] std::vector<MovingSolid>& moving() { return moving_; }
+    [[nodiscard]] const std::vector<MovingSolid>& moving() const { return moving_; }
+    /// A solid's velocity at a point by its number in the grid's solid_owner.
+    [[nodiscard]] Vec3 velocity_at(int owner, Vec3 p) const {
+        return owner < 0 ? Vec3{} : moving_[static_cast<std::size_t>(owner)].velocity_at(p);
+    }
+    /// Static solids as they stand in the fluid's frame.
+    [[nodiscard]] const std::vector<SolidProbe>& fixed() const { return fixed_; }
+
+private:
+    void measure_static(FluidGrid& grid, TaskPool& workers);
+    void measure_static_tile(FluidGrid& grid, const Cell& corner, std::vector<SolidProbe>& probes, SolidRegion& region);
+    void measure_moving(MovingSolid& moving, int owner, FluidGrid& grid);
+
+    Vec3 origin_;
+    std::vector<MovingSolid> moving_;
+    std::vector<SolidProbe> fixed_;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> fixed_versions_;
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: MIT
+#include "physics/fluid/solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/fluid/collide_particles.h"
+#include "physics/fluid/faces.h"
+#include "physics/fluid/transfer.h"
+
+namespace embody::physics {
+
+namespace {
+
+// A part of a step is so short that nothing moves farther than this, in cells, and they are so many at most.
+constexpr double longest_way = 1.5;
+constexpr int most_parts = 16;
+
+bool is_finite(const FluidParticle& particle) {
+    float sum = 0;
+    for (int axis = 0; axis < 3; ++axis) sum += std::fabs(particle.position[axis]) + std::fabs(particle.velocity[axis]);
+    return std::isfinite(sum);
+}
+
+}  // namespace
+
+FluidSolver::FluidSolver(Vec3 origin, double cell_size, const FluidProperties& properties,
+                         std::span<const Vec3f> positions, Vec3 velocity)
+    : origin_(origin), properties_(properties), grid_(cell_size), solids_(origin) {
+    particles_.resize(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        FluidParticle& particle = particles_[i];
+        const Vec3 p = positions[i];
+        for (int axis = 0; axis < 3; ++axis) {
+            particle.position[axis] = static_cast<float>(p[axis]);
+            particle.velocity[axis] = static_cast<float>(velocity[axis]);
+        }
+        particle.id = static_cast<std::uint32_t>(i);
+    }
+}
+
+double FluidSolver::usual_speed() const {
+    constexpr std::size_t drops_by_particle = 200;
+    std::vector<float> squares(particles_.size());
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+        const float* v = particles_[i].velocity;
+        squares[i] = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    }
+    const auto place =
+        squares.begin() + static_cast<std::ptrdiff_t>(squares.size() - 1 - squares.size() / drops_by_particle);
+    std::nth_element(squares.begin(), place, squares.end());
+    return std::sqrt(static_cast<double>(*place));
+}
+
+FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidSolid> solids, TaskPool& workers) {
+    FluidOutcome outcome;
+    for (FluidSolid& solid : solids) solid.impulse = solid.angular_impulse = {};
+    if (particles_.empty()) return outcome;
+    const std::vector<FluidParticle> before = particles_;
+
+    const double speed = usual_speed() + length(gravity) * dt, cells = speed * dt / (longest_way * grid_.cell_size());
+    outcome.parts = static_cast<int>(std::clamp(std::ceil(cells), 1.0, static_cast<double>(most_parts)));
+    outcome.is_slowed = cells > most_parts;
+    solids_.begin(solids, grid_);
+    const double part = dt / outcome.parts;
+    for (int i = 0; i < outcome.parts && !particles_.empty(); ++i) advance_part(part, gravity, outcome, workers);
+
+    // Numbers that are none: back to where it was, and no solid learns of them.
+    for (const FluidSolid& solid : solids) {
+        outcome.is_finite =
+            outcome.is_finite && embody::is_finite(solid.impulse) && embody::is_finite(solid.angular_impulse);
+    }
+    for (const FluidParticle& particle : particles_) outcome.is_finite = outcome.is_finite && is_finite(particle);
+    if (outcome.is_finite) return outcome;
+    particles_ = before;
+    for (FluidSolid& solid : solids) solid.impulse = solid.angular_impulse = {};
+    return outcome;
+}
+
+void FluidSolver::stop() {
+    for (FluidParticle& particle : particles_) {
+        std::fill_n(particle.velocity, 3, 0.0f);
+        for (auto& row : particle.affine) std::fill_n(row, 3, 0.0f);
+    }
+}
+
+Conserved FluidSolver::conserved(Vec3 gravity) const {
+    const double mass = properties_.density * properties_.particle_volume;
+    Conserved sum;
+    for (const FluidParticle& particle : particles_) {
+        const float *x = particle.position, *v = particle.velocity;
+        const Vec3 place = origin_ + Vec3{x[0], x[1], x[2]}, velocity{v[0], v[1], v[2]};
+        sum.kinetic_energy += mass / 2 * length_squared(velocity);
+        sum.potential_energy -= mass * dot(gravity, place);
+        sum.linear_momentum += mass * velocity;
+        sum.angular_momentum += mass * cross(place, velocity);
+    }
+    return sum;
+}
+
+void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers) {
+    const double h = grid_.cell_size();
+    outcome.lost += grid_.cover(particles_);
+    if (particles_.empty()) return;
+    grid_.sort(particles_, workers);
+    solids_.measure(dt, grid_, workers);
+    particles_to_grid(grid_, particles_, static_cast<float>(properties_.particle_volume / (h * h * h)), workers);
+    accelerate(gravity * dt, workers);
+    extrapolate(grid_, grid_.velocity, 2, workers);
+
+    system_.build(grid_, mark_liquid(grid_, workers));
+    solids_.list_areas(grid_);
+    project(dt, outcome, workers);
+    // Next to the liquid the air's faces go along with it; farther away drops fall freely.
+    extrapolate(grid_, grid_.velocity, 1, workers);
+    admit_drops(grid_, workers);
+    extrapolate(grid_, grid_.velocity, 2, workers);
+    follow_solids(grid_, solids_, workers);
+    spread_out(workers);
+    move_particles(dt, workers);
+    solids_.advance(dt);
+}
+
+void FluidSolver::accelerate(Vec3 change, TaskPool& workers) {
+    grid_.for_tiles(workers, [&](const Cell& corner) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto by = static_cast<float>(change[axis]);
+            grid_.for_cells(corner, [&](int cell, const Cell&) {
+                if (grid_.known[axis][cell]) grid_.velocity[axis][cell] += by;
+            });
+        }
+    });
+}
+
+// The impulse density P = p dt that makes the velocity free of divergence (docs/physics/fluids.md, "Pressure").
+void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
+    constexpr double allowed_change = 1e-4;  // of a cell's volume in a part of a step
+    constexpr int most_iterations = 300;
+    const double h = grid_.cell_size(), rho = properties_.density;
+    outflow(grid_, solids_, system_, flow_, workers);
+    impulse_.resize(system_.size());
+    for (std::size_t row = 0; row < system_.size(); ++row) {
+        flow_[row] *= -rho / h;
+        impulse_[row] = grid_.pressure[system_.cell(row)] * dt;
+    }
+    system_.set_bodies(solids_.moving(), rho / h);
+    const double tolerance = allowed_change * rho * h * h / dt;
+    const int iterations = system_.solve(flow_, impulse_, tolerance, most_iterations);
+    outcome.pressure_iterations += iterations;
+    outcome.is_solved = outcome.is_solved && iterations <= most_iterations;
+
+    subtract_gradient(grid_, impulse_, 1 / (rho * h), grid_.velocity, workers);
+    push_solids(impulse_);
+    grid_.for_tiles(workers, [&](const Cell& corner) {
+        grid_.for_cells(corner, [&](int cell, const Cell&) {
+            const int row = grid_.row[cell];
+            grid_.pressure[cell] = row < 0 ? 0.0f : static_cast<float>(impulse_[row] / dt);
+        });
+    });
+}
+
+void FluidSolver::push_solids(std::span<const double> impulse) {
+    for (MovingSolid& moving : solids_.moving()) {
+        Vec3 linear, angular;
+        for (const SolidArea& part : moving.areas) {
+            linear += part.area * impulse[part.row];
+            angular += part.moment * impulse[part.row];
+        }
+        FluidSolid& solid = *moving.solid;
+        solid.impulse += linear;
+        solid.angular_impulse += angular;
+        moving.linear_velocity += linear * solid.inverse_mass;
+        moving.angular_velocity += solid.inverse_inertia * angular;
+    }
+}
+
+// Displacements that bring the density back to one: A q = (density − room), shift = −h ∂q (docs/physics/fluids.md,
+// "Volume"; after T. Kugelstadt and others, "Implicit density projection for volume conserving liquids", 2019).
+void FluidSolver::spread_out(TaskPool& workers) {
+    constexpr double share = 0.5, most = 0.5, allowed_error = 0.02;
+    constexpr int most_iterations = 40;
+    potential_.assign(system_.size(), 0);
+    flow_.resize(system_.size());
+    for (std::size_t row = 0; row < system_.size(); ++row) {
+        const auto cell = static_cast<int>(system_.cell(row));
+        double error = std::clamp<double>(grid_.density[cell] - grid_.room[cell], -most, most);
+        for (int axis = 0; axis < 3 && error < 0; ++axis) {
+            // Near the surface there may be less.
+            const int stride = grid_.stride(axis);
+            if (grid_.open[axis][cell] > 0 && grid_.row[cell - stride] < 0) error = 0;
+            if (grid_.open[axis][cell + stride] > 0 && grid_.row[cell + stride] < 0) error = 0;
+        }
+        flow_[row] = share * error;
+    }
+    system_.set_bodies({}, 0);
+    system_.solve(flow_, potential_, share * allowed_error, most_iterations);
+    grid_.for_tiles(workers, [&](const Cell& corner) {
+        grid_.for_rows(corner, [&](int first, const Cell&) {
+            for (auto& field : grid_.shift) std::fill_n(field.begin() + first, FluidGrid::tile[0], 0.0f);
+        });
+    });
+    subtract_gradient(grid_, potential_, grid_.cell_size(), grid_.shift, workers);
+}
+
+void FluidSolver::move_particles(double dt, TaskPool& workers) {
+    const auto time = static_cast<float>(dt);
+    share_among(workers, particles_.size(), particles_.size() > 1000, [&](int, Share share) {
+        ParticleCollider collider(grid_, solids_, dt);
+        for (std::size_t i = share.first; i < share.last; ++i) {
+            FluidParticle& particle = particles_[i];
+            const FieldSample sample = sample_field(grid_, grid_.velocity, particle.position);
+            float shift[3], end[3];
+            sample_value(grid_, grid_.shift, particle.position, shift);
+            for (int a = 0; a < 3; ++a) {
+                particle.velocity[a] = sample.value[a];
+                std::copy_n(sample.gradient[a], 3, particle.affine[a]);
+            }
+            // Along the affine field by the midpoint rule.
+            for (int a = 0; a < 3; ++a) {
+                const float* g = sample.gradient[a];
+                const float turn = g[0] * sample.value[0] + g[1] * sample.value[1] + g[2] * sample.value[2];
+                end[a] = particle.position[a] + time * (sample.value[a] + 0.5f * time * turn) + shift[a];
+            }
+            collider.move(particle, end);
+        }
+    });
+}
+
+double FluidSolver::pressure_at(Vec3 p) const {
+    Cell cell{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const double at = p[axis] / grid_.cell_size() - grid_.lower()[axis];
+        if (!(at >= 1) || !(at < grid_.size()[axis] - 1)) return 0;
+        cell[axis] = static_cast<int>(at);
+    }
+    if (!grid_.is_active(cell)) return 0;
+    const float at[3] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+    float gradient[3];
+    return sample_center(grid_, grid_.pressure, at, gradient);
+}
+
+}  // namespace embody::physics

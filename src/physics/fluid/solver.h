@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "physics/fluid/grid.h"
+#include "physics/fluid/pressure_system.h"
+#include "physics/fluid/solids.h"
+#include "physics/inter/definitions/step_report.h"
+
+namespace embody::physics {
+
+struct FluidProperties {
+    double density = 998;        ///< kg/m³
+    double viscosity = 0.001;    ///< Pa s
+    double yield_stress = 0;     ///< Pa
+    double particle_volume = 0;  ///< m³
+};
+
+/// What a step of a fluid came to.
+struct FluidOutcome {
+    int parts = 0;                ///< the step was solved in
+    int pressure_iterations = 0;  ///< over all parts
+    std::size_t lost = 0;         ///< particles that flew out of reach
+    bool is_finite = true;        ///< false: nothing was changed
+    bool is_solved = true;        ///< false: a solve ended early
+    bool is_slowed = false;       ///< particles were faster than the parts allow
+};
+
+/// A liquid: particles that carry it and a grid on which its pressure and viscosity are solved, with the rigid bodies
+/// in the same equations. docs/physics/fluids.md.
+class FluidSolver {
+public:
+    /// Positions in the frame of world axes at `origin`.
+    FluidSolver(Vec3 origin, double cell_size, const FluidProperties& properties, std::span<const Vec3f> positions,
+                Vec3 velocity);
+
+    /// Advances by dt; the solids' impulses are set.
+    FluidOutcome advance(double dt, Vec3 gravity, std::span<FluidSolid> solids, TaskPool& workers);
+
+    [[nodiscard]] Vec3 origin() const { return origin_; }
+    [[nodiscard]] const FluidProperties& properties() const { return properties_; }
+    [[nodiscard]] const FluidGrid& grid() const { return grid_; }
+    [[nodiscard]] const std::vector<FluidParticle>& particles() const { return particles_; }
+    void set_matter(double density, double viscosity, double yield_stress) {
+        properties_.density = density;
+        properties_.viscosity = viscosity;
+        properties_.yield_stress = yield_stress;
+    }
+    /// Energies and momenta, of the particles as points.
+    [[nodiscard]] Conserved conserved(Vec3 gravity) const;
+    /// The speed that all but a few drops stay below, m/s; there is liquid.
+    [[nodiscard]] double usual_speed() const;
+    /// Stops all motion.
+    void stop();
+    /// Pressure at a place of the fluid's frame, Pa; 0 outside the liquid.
+    [[nodiscard]] double pressure_at(Vec3 p) const;
+
+private:
+    struct Part;
+    void advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers);
+    void accelerate(Vec3 change, TaskPool& workers);
+    void project(double dt, FluidOutcome& outcome, TaskPool& workers);
+    void spread_out(TaskPool& workers);
+    void move_particles(double dt, TaskPool& workers);
+    void push_solids(std::span<const double> impulse);
+
+    Vec3 origin_;
+    FluidProperties properties_;
+    FluidGrid grid_;
+    FluidSolids solids_;
+    PressureSystem system_;
+    std::vector<FluidParticle> particles_;
+    std::vector<double> flow_, impulse_, potential_;
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "physics/inter/world.h"
+#include "physics/step/world_state.h"
+
+namespace embody::physics {
+
+Result<FluidHandle> World::create_fluid(const FluidDefinition& definition) {
+    auto record = set_up_fluid(*state_, definition);
+    if (!record) return record.error();
+    return state_->fluids.insert(std::move(*record));
+}
+
+Result<void> World::destroy_fluid(FluidHandle fluid) {
+    const FluidRecord* record = state_->fluids.find(fluid);
+    if (record == nullptr) return Error{"fluid", "is not one of this world"};
+    for (const auto& [slot, seen] : record->seen) {
+        if (state_->is_used(slot)) state_->to_wake.push_back(slot);
+    }
+    state_->fluids.remove(fluid);
+    return {};
+}
+
+std::vector<FluidHandle> World::fluids() const {
+    std::vector<FluidHandle> handles;
+    for (std::uint32_t slot = 0; slot < state_->fluids.slot_count(); ++slot) {
+        if (state_->fluids.used(slot)) handles.push_back(state_->fluids.handle_at(slot));
+    }
+    return handles;
+}
+
+const FluidDefinition* World::fluid(FluidHandle fluid) const {
+    const FluidRecord* record = state_->fluids.find(fluid);
+    return record != nullptr ? &record->definition : nullptr;
+}
+
+Result<void> World::set_fluid(FluidHandle fluid, const FluidDefinition& definition) {
+    FluidRecord* record = state_->fluids.find(fluid);
+    if (record == nullptr) return Error{"fluid", "is not one of this world"};
+    if (auto result = validate(definition); !result) return result;
+    if (definition.cell_size != record->definition.cell_size)
+        return Error{"cell_size", "cannot change", "destroy the fluid and create another one"};
+    record->definition = definition;
+    record->solver->set_matter(definition.density, definition.viscosity, definition.yield_stress);
+    return wake(fluid);
+}
+
+FluidParticles World::fluid_particles(FluidHandle fluid) const {
+    const FluidRecord* record = state_->fluids.find(fluid);
+    if (record == nullptr) return {};
+    return {record->solver->origin(),
+            record->positions,
+            record->velocities,
+            record->ids,
+            record->solver->properties().particle_volume,
+            record->definition.cell_size,
+            record->is_asleep,
+            record->is_frozen};
+}
+
+double World::fluid_pressure(FluidHandle fluid, Vec3 point) const {
+    const FluidRecord* record = state_->fluids.find(fluid);
+    return record != nullptr ? record->solver->pressure_at(point - record->solver->origin()) : 0;
+}
+
+FluidForce World::fluid_force(BodyHandle body) const {
+    if (!contains(body)) return {};
+    const BodyRecord& record = state_->record(body.index);
+    return {record.fluid_force, record.fluid_torque};
+}
+
+Result<void> World::wake(FluidHandle fluid) {
+    FluidRecord* record = state_->fluids.find(fluid);
+    if (record == nullptr) return Error{"fluid", "is not one of this world"};
+    record->is_asleep = false;
+    record->quiet_time = 0;
+    for (const auto& [slot, seen] : record->seen) {
+        if (state_->is_used(slot)) state_->to_wake.push_back(slot);
+    }
+    return {};
+}
+
+}  // namespace embody::physics
