@@ -21,6 +21,7 @@
 #include "physics/optimization/island_sleep.h"
 #include "physics/optimization/islands.h"
 #include "physics/optimization/solve_schedule.h"
+#include "physics/step/deformable_record.h"
 #include "physics/step/fluids.h"
 #include "physics/step/impact_memory.h"
 #include "physics/step/touch_memory.h"
@@ -51,18 +52,6 @@ struct BodyRecord {
 struct JointRecord {
     JointDefinition definition;
     Joint constraint;  ///< written by substeps; sleeps with its bodies
-};
-
-/// A deformable with what its contacts and its sleep need.
-struct DeformableRecord {
-    DeformableDefinition definition;
-    std::unique_ptr<SolidDeformable> solid;
-    std::unique_ptr<CollisionShape> node_ball;  ///< of its contact radius
-    std::vector<SolidContact> contacts;         ///< of the last step
-    std::vector<std::uint32_t> touched_bodies;  ///< slots: those that it pushed in the last step
-    double quiet_time = 0;                      ///< s
-    bool is_asleep = false;
-    std::vector<Vec3> last_positions;  ///< last finite ones, to freeze it at
 };
 
 /// An island that sleeps: its bodies and the contacts that it fell asleep with.
