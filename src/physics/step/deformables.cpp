@@ -53,6 +53,11 @@ TouchedBody touched(const WorldState& world, std::uint32_t slot) {
     const Quat turn = state.rotation * conjugate(rotation);
     const Vec3 half_sine = (turn.w < 0 ? -1.0 : 1.0) * Vec3{turn.x, turn.y, turn.z};
     const double half_cosine = std::fabs(turn.w), sine = length(half_sine);
+    body.step_time = dt;
+    if (world.is_dynamic(slot)) {
+        body.path_acceleration = (state.linear_velocity - record.start_linear_velocity) / dt;
+        body.path_spin_up = (state.angular_velocity - record.start_angular_velocity) / dt;
+    }
     body.path_velocity = (state.center - body.start_center) / dt;
     body.path_spin = sine > 0 ? (2 * std::asin(std::min(sine, 1.0)) / (sine * dt)) * half_sine : Vec3{};
     body.path_turn = (2 / (std::max(half_cosine, 1e-3) * dt)) * half_sine;

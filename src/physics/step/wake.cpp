@@ -38,11 +38,16 @@ void list_awake(WorldState& world) {
 
 // Gravity and forces of the coming step.
 void refresh_forces(WorldState& world, std::uint32_t body) {
-    const BodyRecord& record = world.record(body);
+    BodyRecord& record = world.record(body);
+    if (world.deformables.count() > 0) {
+        record.start_linear_velocity = world.motion[body].linear_velocity;
+        record.start_angular_velocity = world.motion[body].angular_velocity;
+    }
     BodyConstants& constants = world.constants[body];
     const double inverse_mass = world.motion[body].inverse_mass;
-    constants.acceleration = world.settings.gravity * record.definition.gravity_factor +
-                             (record.definition.force + record.next_force + record.deformable_force + record.fluid_force) * inverse_mass;
+    constants.acceleration =
+        world.settings.gravity * record.definition.gravity_factor +
+        (record.definition.force + record.next_force + record.deformable_force + record.fluid_force) * inverse_mass;
     constants.torque = record.definition.torque + record.next_torque + record.deformable_torque + record.fluid_torque;
 }
 

@@ -43,9 +43,10 @@ struct BodyRecord {
     std::uint32_t version = 0;     ///< another one after each change of the body's shape, kind or pose by the user
     double inner_radius = 0;       ///< half the thinnest extent: a body that moves farther in a step may tunnel, m
     Vec3 next_force, next_torque;  ///< for the next step only, cleared by report; N, N m about the centre of mass
-    Vec3 deformable_force, deformable_torque;  ///< pushes of deformables in the last step, N, N m
-    Vec3 fluid_force, fluid_torque;            ///< of fluids in this step, N, N m
-    Vec3 last_center;                          ///< last finite pose, to freeze the body at
+    Vec3 start_linear_velocity, start_angular_velocity;  ///< when the step began, where there are deformables
+    Vec3 deformable_force, deformable_torque;            ///< pushes of deformables in the last step, N, N m
+    Vec3 fluid_force, fluid_torque;                      ///< of fluids in this step, N, N m
+    Vec3 last_center;                                    ///< last finite pose, to freeze the body at
     Quat last_rotation;
 };
 
