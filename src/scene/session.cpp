@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene/session.h"
 
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -75,14 +76,14 @@ double Session::time_step() const { return state_->document.settings.time_step; 
 void Session::step() { state_->step(); }
 
 void Session::read_states(std::vector<EntityState>& states) const {
-    const Simulation& simulation = *state_->simulation;
+    const physics::World& world = state_->simulation->world();
     states.clear();
-    for (const EntityIndex index : simulation.entities()) {
+    for (const EntityIndex index : state_->simulation->entities()) {
+        const physics::BodyHandle body = state_->simulation->body(index);
         EntityState& state = states.emplace_back();
         state.entity = index;
-        state.pose = simulation.pose(index);
-        if (simulation.is_movable(index)) state.state = static_cast<std::uint8_t>(simulation.sleep_state(index));
-        state.points = simulation.points(index);
+        state.pose = world.pose(body);
+        if (!std::isinf(world.mass(body))) state.state = static_cast<std::uint8_t>(world.sleep_state(body));
     }
 }
 

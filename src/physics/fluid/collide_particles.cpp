@@ -40,6 +40,52 @@ bool ParticleCollider::is_near_thin(const float* position) const {
     return (grid_.thin[grid_.index(cell_at(grid_, position))] & near_thin) != 0;
 }
 
+bool ParticleCollider::sees(Vec3 from, Vec3 to) {
+    Bounds box;
+    box.add(from);
+    box.add(to);
+    const auto is_barred = [&](SolidProbe& probe) { return probe.look_at(box, 0) && probe.crossing(from, to); };
+    if (std::any_of(fixed_.begin(), fixed_.end(), is_barred)) return false;
+    for (std::size_t i = 0; i < moving_.size(); ++i) {
+        if (solids_.moving()[i].is_in_reach && is_barred(moving_[i])) return false;
+    }
+    return true;
+}
+
+std::array<float, 3> ParticleCollider::place_of(const FluidParticle& particle) {
+    std::array<float, 3> place{particle.position[0], particle.position[1], particle.position[2]};
+    if (!is_near_thin(particle.position)) return place;
+
+    // The cell whose centre it sees: its own, or the nearest one beside it.
+    const Vec3 p = to_vec(particle.position);
+    Cell cell = cell_at(grid_, particle.position);
+    if (!sees(p, grid_.center(cell))) {
+        double nearest = 1e300;
+        Cell found = cell;
+        for (int k = 0; k < 6; ++k) {
+            Cell other = cell;
+            other[k / 2] += k % 2 == 0 ? -1 : 1;
+            const double distance = length_squared(grid_.center(other) - p);
+            if (distance >= nearest || !sees(p, grid_.center(other))) continue;
+            nearest = distance;
+            found = other;
+        }
+        if (nearest == 1e300) return place;
+        cell = found;
+    }
+
+    // Towards what is shut it reaches no farther than the centre.
+    const int index = grid_.index(cell);
+    const Vec3 center = grid_.center(cell);
+    for (int axis = 0; axis < 3; ++axis) {
+        const int bit = 1 << axis;
+        const auto middle = static_cast<float>(center[axis]);
+        if (grid_.thin[index] & bit) place[axis] = std::max(place[axis], middle);
+        if (grid_.thin[index + grid_.stride(axis)] & bit) place[axis] = std::min(place[axis], middle);
+    }
+    return place;
+}
+
 // What goes into the wall stops.
 void ParticleCollider::stop_at(FluidParticle& particle, const Wall& wall) const {
     const double inwards = std::min(0.0, dot(to_vec(particle.velocity) - wall.velocity, wall.normal));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "physics/fluid/grid.h"
@@ -13,6 +14,8 @@ namespace embody::physics {
 class ParticleCollider {
 public:
     ParticleCollider(const FluidGrid& grid, const FluidSolids& solids, double dt);
+    /// Where a particle meets the grid: its place, but on its own side of thin walls only.
+    std::array<float, 3> place_of(const FluidParticle& particle);
     /// Moves the particle towards `end`, a place of the fluid's frame, as far as solids let it.
     void move(FluidParticle& particle, const float* end);
     /// Takes the particle along where a thin wall of a solid went past it: the solid went on by `jump` (a place it had
@@ -26,6 +29,7 @@ private:
     };
     void stride(FluidParticle& particle, const float* to);
     void push_out(FluidParticle& particle, Vec3 before) const;
+    [[nodiscard]] bool sees(Vec3 from, Vec3 to);
     void sweep(FluidParticle& particle, Vec3 from, Vec3 to);
     bool bar(SolidProbe& probe, Vec3 from, Vec3& to, Vec3& normal) const;
     void stop_at(FluidParticle& particle, const Wall& wall) const;

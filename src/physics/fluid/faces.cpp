@@ -44,13 +44,9 @@ void list_next_layer(const FluidGrid& grid, const std::array<std::vector<float>,
     }
 }
 
-// Velocity at a shut face; the components across are means of the four nearest faces.
-float followed(const FluidGrid& grid, const FluidSolids& solids, int axis, int cell, const Cell& c) {
+// Velocity at a shut face that slides along the solid; the components across are means of the four nearest faces.
+double sliding(const FluidGrid& grid, int axis, int cell, Vec3 center, Vec3 wall) {
     const int below = cell - grid.stride(axis);
-    const int nearer = grid.solid[cell] < grid.solid[below] ? cell : below;
-    const Vec3 center = face_center(grid, axis, c);
-    const Vec3 wall = solids.velocity_at(grid.solid_owner[nearer], center);
-    if (grid.thin[cell] & (1 << axis)) return static_cast<float>(wall[axis]);
     const float at[3] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)};
     float gradient[3];
     sample_center(grid, grid.solid, at, gradient);
@@ -58,15 +54,27 @@ float followed(const FluidGrid& grid, const FluidSolids& solids, int axis, int c
     Vec3 velocity;
     for (int other = 0; other < 3; ++other) {
         const auto& field = grid.velocity[other];
-        if (other == axis) {
-            velocity[other] = field[cell];
-            continue;
-        }
         const int up = grid.stride(other);
-        velocity[other] = 0.25 * (field[cell] + field[cell + up] + field[below] + field[below + up]);
+        velocity[other] =
+            other == axis ? field[cell] : 0.25 * (field[cell] + field[cell + up] + field[below] + field[below + up]);
     }
-    velocity += normal * dot(wall - velocity, normal);
-    return static_cast<float>(velocity[axis]);
+    return velocity[axis] + normal[axis] * dot(wall - velocity, normal);
+}
+
+// Velocity at a shut face.
+float followed(const FluidGrid& grid, const FluidSolids& solids, double sticking, const FaceValue& face,
+               const Cell& c) {
+    const int axis = face.axis, cell = face.cell, below = cell - grid.stride(axis);
+    const int nearer = grid.solid[cell] < grid.solid[below] ? cell : below;
+    const Vec3 center = face_center(grid, axis, c);
+    const Vec3 wall = solids.velocity_at(grid.solid_owner[nearer], center);
+    if (grid.thin[cell] & (1 << axis)) return static_cast<float>(wall[axis]);
+    const double slides = sticking < 1 ? sliding(grid, axis, cell, center, wall) : 0;
+
+    // Straight from the velocity one face farther out, through the solid's at its surface.
+    const double inside = std::clamp(-0.5 * (grid.solid[cell] + grid.solid[below]), 0.0, 0.5);
+    const double sticks = wall[axis] - (grid.velocity[axis][cell] - wall[axis]) * inside / (1 - inside);
+    return static_cast<float>(slides + (sticks - slides) * sticking);
 }
 
 }  // namespace
@@ -101,7 +109,7 @@ void admit_drops(FluidGrid& grid, TaskPool& workers) {
     });
 }
 
-void follow_solids(FluidGrid& grid, const FluidSolids& solids, TaskPool& workers) {
+void follow_solids(FluidGrid& grid, const FluidSolids& solids, double sticking, TaskPool& workers) {
     const auto tiles = grid.tiles();
     std::vector<std::vector<FaceValue>> found(static_cast<std::size_t>(workers.workers()));
     share_among(workers, tiles.size(), tiles.size() > 16, [&](int worker, Share share) {
@@ -110,7 +118,7 @@ void follow_solids(FluidGrid& grid, const FluidSolids& solids, TaskPool& workers
             grid.for_cells(tiles[i], [&](int cell, const Cell& c) {
                 for (int axis = 0; axis < 3; ++axis) {
                     if (grid.open[axis][cell] > 0 || !grid.known[axis][cell]) continue;
-                    list.push_back({axis, cell, followed(grid, solids, axis, cell, c)});
+                    list.push_back({axis, cell, followed(grid, solids, sticking, {axis, cell, 0}, c)});
                 }
             });
         }

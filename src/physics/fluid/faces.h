@@ -14,8 +14,10 @@ void extrapolate(FluidGrid& grid, std::array<std::vector<float>, 3>& field, int 
 /// Faces that particles reach but that are unknown are known by them.
 void admit_drops(FluidGrid& grid, TaskPool& workers);
 
-/// Shut faces move as the solid does: along its normal, or wholly where the solid is thin.
-void follow_solids(FluidGrid& grid, const FluidSolids& solids, TaskPool& workers);
+/// Shut faces move as the solid does: along its normal, or wholly where the solid is thin. As far as the liquid sticks
+/// (1: its layer at the wall is thicker than a cell, 0: much thinner) such that the velocity at the surface is the
+/// solid's.
+void follow_solids(FluidGrid& grid, const FluidSolids& solids, double sticking, TaskPool& workers);
 
 /// Volume that flows out of each liquid cell by faces and surfaces of solids, m³/s.
 void outflow(const FluidGrid& grid, const FluidSolids& solids, const PressureSystem& system, std::vector<double>& flow,

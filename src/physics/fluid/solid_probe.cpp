@@ -10,6 +10,12 @@ namespace embody::physics {
 
 namespace {
 
+// How far a point is outside of a box along the worst axis: at most its distance.
+double outside_of(const Bounds& box, Vec3 p) {
+    const Vec3 out = max(box.lower - p, p - box.upper);
+    return std::max({out.x, out.y, out.z});
+}
+
 // Half-space distances of a convex at a point: the largest, and the largest of those whose faces are turned away from
 // its face by more than this cosine tells.
 constexpr double turned_away = 0.8;
@@ -162,6 +168,7 @@ SolidDistance SolidProbe::nearest(Vec3 p) const {
     SolidDistance best{reach_, {0, 1, 0}};
     for (const std::uint32_t index : near_pieces_) {
         const Piece& piece = pieces_[index];
+        if (outside_of(piece.bounds, p) >= best.distance) continue;
         const Vec3 from = p - piece.position;
         const Vec3 local{dot(piece.rotation.x, from), dot(piece.rotation.y, from), dot(piece.rotation.z, from)};
         const SolidDistance here = faces_near(*piece.convex, local).first;
@@ -176,6 +183,7 @@ double SolidProbe::share_of_cube(Vec3 p, double edge) const {
     double sum = 0;
     for (const std::uint32_t index : near_pieces_) {
         const Piece& piece = pieces_[index];
+        if (outside_of(piece.bounds, p) > edge) continue;
         const Vec3 from = p - piece.position;
         const Vec3 local{dot(piece.rotation.x, from), dot(piece.rotation.y, from), dot(piece.rotation.z, from)};
         TwoFaces faces = faces_near(*piece.convex, local);

@@ -159,6 +159,14 @@ void SolidRegion::finish() {
 
 float SolidRegion::room(int cell) const {
     if (distance_[cell] > 1.75f) return 1;
+
+    // Behind a thin wall nothing counts, and what lies before it is taken to the centre (ParticleCollider::place_of).
+    for (int axis = 0; axis < 3 && any_thin_; ++axis) {
+        const int bit = 1 << axis;
+        if ((thin_[cell] & bit) || (thin_[cell + stride(axis)] & bit)) {
+            return std::clamp(0.5f + distance_[cell], 0.0f, 1.0f);
+        }
+    }
     // The tent kernel over the octants of 27 cells: 1/8, 3/8, 3/8, 1/8 along each axis.
     float filled = 0;
     for (int z = -1; z <= 1; ++z) {

@@ -58,7 +58,8 @@ FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidSolid>
     if (particles_.empty()) return outcome;
     const std::vector<FluidParticle> before = particles_;
 
-    const double speed = usual_speed() + length(gravity) * dt, cells = speed * dt / (longest_way * grid_.cell_size());
+    speed_ = usual_speed();
+    const double cells = (speed_ + length(gravity) * dt) * dt / (longest_way * grid_.cell_size());
     outcome.parts = static_cast<int>(std::clamp(std::ceil(cells), 1.0, static_cast<double>(most_parts)));
     outcome.is_slowed = cells > most_parts;
     solids_.begin(solids, grid_);
@@ -104,21 +105,33 @@ void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, T
     if (particles_.empty()) return;
     grid_.sort(particles_, workers);
     solids_.measure(dt, grid_, workers);
-    particles_to_grid(grid_, particles_, static_cast<float>(properties_.particle_volume / (h * h * h)), workers);
+    find_places(dt, workers);
+    particles_to_grid(grid_, particles_, places_, static_cast<float>(properties_.particle_volume / (h * h * h)),
+                      workers);
     accelerate(gravity * dt, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
 
     system_.build(grid_, mark_liquid(grid_, workers));
     solids_.list_areas(grid_);
+    const Viscosity liquid{properties_.density, properties_.viscosity, properties_.yield_stress};
+    if (is_viscous(liquid, h, dt)) shear(liquid, dt, outcome);
     project(dt, outcome, workers);
     // Next to the liquid the air's faces go along with it; farther away drops fall freely.
     extrapolate(grid_, grid_.velocity, 1, workers);
     admit_drops(grid_, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
-    follow_solids(grid_, solids_, workers);
+    follow_solids(grid_, solids_, sticking_of(liquid, h, speed_), workers);
     spread_out(workers);
     move_particles(dt, workers);
     solids_.advance(dt);
+}
+
+void FluidSolver::find_places(double dt, TaskPool& workers) {
+    places_.resize(particles_.size());
+    share_among(workers, particles_.size(), particles_.size() > 1000, [&](int, Share share) {
+        ParticleCollider collider(grid_, solids_, dt);
+        for (std::size_t i = share.first; i < share.last; ++i) places_[i] = collider.place_of(particles_[i]);
+    });
 }
 
 void FluidSolver::accelerate(Vec3 change, TaskPool& workers) {
@@ -130,6 +143,13 @@ void FluidSolver::accelerate(Vec3 change, TaskPool& workers) {
             });
         }
     });
+}
+
+void FluidSolver::shear(const Viscosity& liquid, double dt, FluidOutcome& outcome) {
+    constexpr int most_iterations = 300;
+    const int iterations = viscosity_.solve(liquid, dt, most_iterations, grid_, solids_);
+    outcome.viscosity_iterations += iterations;
+    outcome.is_solved = outcome.is_solved && iterations <= most_iterations;
 }
 
 // The impulse density P = p dt that makes the velocity free of divergence (docs/physics/fluids.md, "Pressure").
@@ -208,9 +228,9 @@ void FluidSolver::move_particles(double dt, TaskPool& workers) {
         ParticleCollider collider(grid_, solids_, dt);
         for (std::size_t i = share.first; i < share.last; ++i) {
             FluidParticle& particle = particles_[i];
-            const FieldSample sample = sample_field(grid_, grid_.velocity, particle.position);
+            const FieldSample sample = sample_field(grid_, grid_.velocity, places_[i].data());
             float shift[3], end[3];
-            sample_value(grid_, grid_.shift, particle.position, shift);
+            sample_value(grid_, grid_.shift, places_[i].data(), shift);
             for (int a = 0; a < 3; ++a) {
                 particle.velocity[a] = sample.value[a];
                 std::copy_n(sample.gradient[a], 3, particle.affine[a]);

@@ -7,6 +7,7 @@
 #include "physics/fluid/grid.h"
 #include "physics/fluid/pressure_system.h"
 #include "physics/fluid/solids.h"
+#include "physics/fluid/viscosity.h"
 #include "physics/inter/definitions/step_report.h"
 
 namespace embody::physics {
@@ -20,12 +21,12 @@ struct FluidProperties {
 
 /// What a step of a fluid came to.
 struct FluidOutcome {
-    int parts = 0;                ///< the step was solved in
-    int pressure_iterations = 0;  ///< over all parts
-    std::size_t lost = 0;         ///< particles that flew out of reach
-    bool is_finite = true;        ///< false: nothing was changed
-    bool is_solved = true;        ///< false: a solve ended early
-    bool is_slowed = false;       ///< particles were faster than the parts allow
+    int parts = 0;                                          ///< the step was solved in
+    int pressure_iterations = 0, viscosity_iterations = 0;  ///< over all parts
+    std::size_t lost = 0;                                   ///< particles that flew out of reach
+    bool is_finite = true;                                  ///< false: nothing was changed
+    bool is_solved = true;                                  ///< false: a solve ended early
+    bool is_slowed = false;                                 ///< particles were faster than the parts allow
 };
 
 /// A liquid: particles that carry it and a grid on which its pressure and viscosity are solved, with the rigid bodies
@@ -60,8 +61,10 @@ public:
 private:
     struct Part;
     void advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers);
+    void find_places(double dt, TaskPool& workers);
     void accelerate(Vec3 change, TaskPool& workers);
     void project(double dt, FluidOutcome& outcome, TaskPool& workers);
+    void shear(const Viscosity& liquid, double dt, FluidOutcome& outcome);
     void spread_out(TaskPool& workers);
     void move_particles(double dt, TaskPool& workers);
     void push_solids(std::span<const double> impulse);
@@ -71,8 +74,11 @@ private:
     FluidGrid grid_;
     FluidSolids solids_;
     PressureSystem system_;
+    ViscositySystem viscosity_;
     std::vector<FluidParticle> particles_;
+    std::vector<std::array<float, 3>> places_;  // where they meet the grid
     std::vector<double> flow_, impulse_, potential_;
+    double speed_ = 0;  // usual one when the step began, m/s
 };
 
 }  // namespace embody::physics

@@ -41,11 +41,11 @@ void clear_tiles(FluidGrid& grid, TaskPool& workers) {
     });
 }
 
-void spread(FluidGrid& grid, const FluidParticle& particle, float volume) {
+void spread(FluidGrid& grid, const FluidParticle& particle, const std::array<float, 3>& place, float volume) {
     const int dy = grid.stride(1), dz = grid.stride(2);
     const auto h = static_cast<float>(grid.cell_size());
     float at[3];
-    for (int axis = 0; axis < 3; ++axis) at[axis] = grid.in_cells(particle.position[axis], axis);
+    for (int axis = 0; axis < 3; ++axis) at[axis] = grid.in_cells(place[axis], axis);
     const int offsets[8] = {0, 1, dy, dy + 1, dz, dz + 1, dz + dy, dz + dy + 1};
     for (int axis = 0; axis < 3; ++axis) {
         const Corners c = corners_at(grid, at, axis);
@@ -74,7 +74,8 @@ void spread(FluidGrid& grid, const FluidParticle& particle, float volume) {
 
 }  // namespace
 
-void particles_to_grid(FluidGrid& grid, const std::vector<FluidParticle>& particles, float volume, TaskPool& workers) {
+void particles_to_grid(FluidGrid& grid, const std::vector<FluidParticle>& particles,
+                       const std::vector<std::array<float, 3>>& places, float volume, TaskPool& workers) {
     clear_tiles(grid, workers);
 
     // Tiles of one colour reach no common face, so that each face is added to in the same order by any workers.
@@ -84,7 +85,7 @@ void particles_to_grid(FluidGrid& grid, const std::vector<FluidParticle>& partic
             for (std::size_t i = share.first; i < share.last; ++i) {
                 grid.for_cells(grid.tiles()[list[i]], [&](int cell, const Cell&) {
                     const std::uint32_t first = grid.first_particle[cell], count = grid.particle_count[cell];
-                    for (std::uint32_t p = first; p < first + count; ++p) spread(grid, particles[p], volume);
+                    for (std::uint32_t p = first; p < first + count; ++p) spread(grid, particles[p], places[p], volume);
                 });
             }
         });

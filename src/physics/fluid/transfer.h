@@ -10,7 +10,9 @@ namespace embody::physics {
 
 /// Particles to faces: grid.mass, grid.velocity (momentum over mass), grid.density (`volume`: a particle's, in cells).
 /// grid.known tells which faces any particle reached.
-void particles_to_grid(FluidGrid& grid, const std::vector<FluidParticle>& particles, float volume, TaskPool& workers);
+/// `places`: where each particle meets the grid.
+void particles_to_grid(FluidGrid& grid, const std::vector<FluidParticle>& particles,
+                       const std::vector<std::array<float, 3>>& places, float volume, TaskPool& workers);
 
 /// A vector field on faces at a place, and its gradient.
 struct FieldSample {

@@ -17,10 +17,9 @@ Bounds World::bounds(BodyHandle body) const {
     return state_->record(body.index).shape->bounds(state_->pose(body.index));
 }
 
-std::optional<double> World::drop_distance(BodyHandle body, double max_distance,
-                                           const std::function<bool(BodyHandle)>& ignores) const {
+std::optional<double> World::drop_distance(BodyHandle body, double max_distance) const {
     if (!contains(body)) return std::nullopt;
-    return physics::drop_distance(*state_, body.index, max_distance, ignores);
+    return physics::drop_distance(*state_, body.index, max_distance);
 }
 
 }  // namespace embody::physics

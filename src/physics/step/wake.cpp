@@ -38,11 +38,7 @@ void list_awake(WorldState& world) {
 
 // Gravity and forces of the coming step.
 void refresh_forces(WorldState& world, std::uint32_t body) {
-    BodyRecord& record = world.record(body);
-    if (world.deformables.count() > 0) {
-        record.start_linear_velocity = world.motion[body].linear_velocity;
-        record.start_angular_velocity = world.motion[body].angular_velocity;
-    }
+    const BodyRecord& record = world.record(body);
     BodyConstants& constants = world.constants[body];
     const double inverse_mass = world.motion[body].inverse_mass;
     constants.acceleration =
