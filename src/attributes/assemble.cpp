@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "attributes/registry.h"
@@ -91,6 +93,23 @@ void put_mass_dependents(AttributeSet& set, const GeometryFacts& facts, const Fo
     }
     if (kind == "fluid") put_number(set, "rest_density", density, "density of the material", level);
     if (kind == "granular") put_number(set, "grain_density", density, "density of the material", level);
+}
+
+void put_simulated_grains(AttributeSet& set, const GeometryFacts& facts, const Form& form) {
+    if (set.word("kind", "") != "granular") return;
+    const double grain = set.number("grain_diameter", 0.002), budget = set.number("grain_budget", 2000);
+    const double volume = facts.hull_volume > 0 && std::isfinite(facts.hull_volume) ? facts.hull_volume : form.volume;
+    const double least = std::cbrt(6 * loose_packing * volume / (std::numbers::pi * budget));
+    const AttributeDescription& range = *describe("simulated_diameter");
+    // At least one layer of them must lie inside.
+    const double largest = std::max(*range.low, 0.6 * std::min({form.size.x, form.size.y, form.size.z}));
+    const double diameter = std::min(std::max({grain, least, *range.low}), largest);
+    const double stands_for = std::pow(diameter / grain, 3);
+    const std::string source = stands_for < 1.5 ? "of a grain"
+                                                : "each ball stands for " + short_number(stands_for) +
+                                                      " grains, so that " + short_number(budget) +
+                                                      " fill its volume of " + short_number(volume * 1000) + " litres";
+    put_number(set, "simulated_diameter", diameter, source, AttributeLevel::model);
 }
 
 }  // namespace embody::attributes

@@ -21,6 +21,13 @@ void put_surface(AttributeSet& set, const MaterialData& material, const std::str
 /// What follows from mass, density and volume: fill, bulk density, wall thickness, area and line density.
 void put_mass_dependents(AttributeSet& set, const GeometryFacts& facts, const Form& form);
 
+/// Of bulk that lies as loose as it is poured, the share that is grain (random loose packing).
+inline constexpr double loose_packing = 0.55;
+
+/// How large the balls are that stand for the grains of a granular thing (docs/physics/grains.md); nothing else is
+/// touched.
+void put_simulated_grains(AttributeSet& set, const GeometryFacts& facts, const Form& form);
+
 /// Replaces the entry unless a person set it.
 void replace(AttributeSet& set, AttributeEntry entry);
 

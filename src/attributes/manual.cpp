@@ -134,6 +134,7 @@ AttributeSet with_manual(const Taxonomy* taxonomy, const AttributeSet& automatic
     order_friction(set);
     update_collision_shape(set, facts.geometry, automatic.word("kind", "rigid"));
     complete_for_kind(set);
+    put_simulated_grains(set, facts.geometry, form);
     return set;
 }
 

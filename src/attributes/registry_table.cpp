@@ -227,11 +227,24 @@ void add_rope_fluid_and_grain(Rows& rows) {
                  "Pa", 0, 0, 1e9);
     fluid.number({"surface_tension", "F", "Surface tension", "Against air."}, "N/m", 0.072, 0, 10);
     fluid.number({"contact_angle", "F", "Contact angle", "On a solid wall."}, "deg", 60, 0, 180);
-    const Group grain{rows, "grain", false};
+    const Group grain{rows, "grain"};
     grain.number({"grain_density", "G", "Grain density", "Density of a single grain."}, "kg/m³", 2650, 0.1, 22600);
     grain.number({"grain_diameter", "G", "Grain diameter", "Median diameter of a grain."}, "m", 0.002, 1e-6, 1);
-    grain.number({"friction_angle", "G", "Friction angle", "Internal friction angle of the heap."}, "deg", 34, 0, 80);
-    grain.number({"cohesion", "G", "Cohesion", "Shear strength without load."}, "Pa", 0, 0, 1e7);
+    grain.whole(
+        {"grain_budget", "G", "Most grains",
+         "As many grains are simulated at most; where there would be more, fewer and larger ones stand for them."},
+        2000, 10, 20000);
+    grain.number(
+        {"simulated_diameter", "G", "Simulated grain diameter",
+         "Diameter of the balls that stand for the grains: of a grain, or as large as \"Most grains\" asks for. "
+         "The slope of a heap does not depend on it; an opening narrower than five of them is blocked."},
+        "m", 0.01, 1e-3, 1);
+    grain.number({"friction_angle", "G", "Friction angle",
+                  "Slope at which a poured heap comes to rest; from 7 to 49 degrees; what is flatter or steeper is "
+                  "simulated as these."},
+                 "deg", 34, 0, 80);
+    const Group unsimulated{rows, "grain", false};
+    unsimulated.number({"cohesion", "G", "Cohesion", "Shear strength without load."}, "Pa", 0, 0, 1e7);
 }
 
 }  // namespace

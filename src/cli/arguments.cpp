@@ -290,11 +290,12 @@ private:
             ->add_option("suite", c.into->suite,
                          "table1; stability: do structures stand, tight and quiet; simbenchmark: accuracy beside "
                          "published figures; scaling: cost of 1,000 to 100,000 bodies; decomposition: convex parts of "
-                         "models of the database; tetrahedra: fillings of soft ones; catalogue: search in the "
+                         "models of the database; tetrahedra: fillings of soft ones; grains: slopes of heaps "
+                         "and cost of grains; catalogue: search in the "
                          "database, filled with variants")
             ->capture_default_str()
-            ->check(CLI::IsMember(
-                        {"table1", "stability", "simbenchmark", "scaling", "decomposition", "tetrahedra", "catalogue"})
+            ->check(CLI::IsMember({"table1", "stability", "simbenchmark", "scaling", "decomposition", "tetrahedra",
+                                   "grains", "catalogue"})
                         .description(""));
         c.app->add_option("--scene", c.into->scene, "Only this scene, or this model");
         add_database(c);

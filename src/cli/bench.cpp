@@ -7,6 +7,7 @@
 
 #include "cli/bench_catalogue.h"
 #include "cli/bench_decomposition.h"
+#include "cli/bench_grains.h"
 #include "cli/bench_race.h"
 #include "cli/bench_scaling.h"
 #include "cli/bench_simbenchmark.h"
@@ -51,6 +52,7 @@ int run_bench(const BenchArguments& arguments) {
     if (arguments.suite == "simbenchmark") return run_simbenchmark(arguments);
     if (arguments.suite == "scaling") return run_scaling(arguments);
     if (arguments.suite == "decomposition") return run_decomposition(arguments);
+    if (arguments.suite == "grains") return run_grains(arguments);
     if (arguments.suite == "tetrahedra") return run_tetrahedra(arguments);
     if (arguments.suite == "catalogue") return run_catalogue_bench(arguments);
     if (!arguments.scene.empty() && scenes::find_scene_builder(arguments.scene) == nullptr)

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "attributes/assemble.h"
+#include "attributes/form.h"
 #include "attributes/registry.h"
 #include "attributes/resolver.h"
 #include "attributes/to_physics.h"
@@ -98,6 +99,21 @@ AttributeSet primitive_attributes(const Entity& entity, const physics::ShapeDefi
     // What collides is the primitive itself.
     set.erase("collision_shape");
     return set;
+}
+
+// How large the balls are, of this size of the thing; and what a primitive that is filled with them weighs.
+void complete_grains(AttributeSet& set, const attributes::GeometryFacts& geometry, bool is_primitive) {
+    if (set.word("kind", "") != "granular") return;
+    attributes::put_simulated_grains(set, geometry, attributes::form_of(geometry, {0.5, 0.5, 0.5}));
+    if (!is_primitive) return;
+    const double density = set.number("grain_density", 2650) * attributes::loose_packing;
+    const attributes::AttributeDescription& range = *attributes::describe("mass");
+    attributes::replace(set, {"mass",
+                              std::clamp(density * geometry.volume, *range.low, *range.high),
+                              {},
+                              {},
+                              "grain density × 0.55, as poured grains lie, × volume",
+                              AttributeLevel::model});
 }
 
 // Large shapes have no short name to be found by.
@@ -226,14 +242,18 @@ Result<AttributeSet> EntityBodies::attributes(const Entity& entity) {
         const ModelFacts& facts = primitive(*shape);
         AttributeSet set = lay_over(primitive_attributes(entity, *shape, facts), own.value(), facts);
         set.erase("collision_shape");
+        complete_grains(set, facts.geometry, true);
         return set;
     }
     Result<AttributeSet> automatic = automatic_attributes(entity);
-    if (!automatic.ok() || own.value().empty()) return automatic;
+    if (!automatic.ok()) return automatic;
     const Model& model = *find(std::get<ModelReference>(entity.geometry).key).value();
     ModelFacts facts = model.facts;
     facts.geometry = attributes::scaled(model.facts.geometry, entity.scale);
-    return lay_over(automatic.value(), own.value(), facts);
+    AttributeSet set =
+        own.value().empty() ? std::move(automatic).value() : lay_over(automatic.value(), own.value(), facts);
+    complete_grains(set, facts.geometry, false);
+    return set;
 }
 
 Result<std::vector<attributes::Issue>> EntityBodies::contradictions(const Entity& entity) {

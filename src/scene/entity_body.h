@@ -12,6 +12,7 @@
 #include "physics/inter/definitions/body_definition.h"
 #include "physics/inter/definitions/shape_definition.h"
 #include "scene/document.h"
+#include "scene/grain_bodies.h"
 
 namespace embody::scene {
 
@@ -32,6 +33,8 @@ public:
     /// Everything but the shape's handle. What is only drawn becomes a disabled static body.
     Result<physics::BodyDefinition> body(const Entity& entity, const attributes::AttributeSet& attributes);
     Result<physics::ShapeDefinition> shape(const Entity& entity, const attributes::AttributeSet& attributes);
+    /// Balls for an entity of kind granular, of the shape that they fill.
+    Result<GrainDefinition> grains(const Entity& entity, const attributes::AttributeSet& attributes);
     /// Entities with the same key have the same shape; empty: nobody else has it.
     static std::string shape_key(const Entity& entity, const attributes::AttributeSet& attributes);
     /// The model's summary; fails for what is not a model.

@@ -20,9 +20,9 @@ constexpr std::size_t bytes_held = std::size_t{1} << 20;
 json to_json(Vec3 v) { return {v.x, v.y, v.z}; }
 json to_json(Quat q) { return {q.x, q.y, q.z, q.w}; }
 
-const char* state_name(const physics::World& world, physics::BodyHandle body) {
-    if (!std::isfinite(world.mass(body))) return "static";
-    switch (world.sleep_state(body)) {
+const char* state_name(const Simulation& simulation, EntityIndex entity) {
+    if (!simulation.is_movable(entity)) return "static";
+    switch (simulation.sleep_state(entity)) {
         case physics::SleepState::active:
             return "active";
         case physics::SleepState::wants_to_sleep:
@@ -33,18 +33,28 @@ const char* state_name(const physics::World& world, physics::BodyHandle body) {
     return "active";
 }
 
+json points_json(const MovingPoints& points) {
+    std::vector<Vec3> positions;
+    points.read(positions);
+    json numbers = json::array();
+    for (const Vec3 p : positions)
+        for (const double number : {p.x, p.y, p.z}) numbers.push_back(number);
+    return numbers;
+}
+
 json entities_json(const Simulation& simulation) {
     const physics::World& world = simulation.world();
     json entities = json::array();
     for (const EntityIndex entity : simulation.entities()) {
         const physics::BodyHandle body = simulation.body(entity);
-        const Transform pose = world.pose(body);
+        const Transform pose = simulation.pose(entity);
         entities.push_back({{"index", entity},
                             {"position", to_json(pose.position)},
                             {"rotation", to_json(pose.rotation)},
                             {"linear_velocity", to_json(world.linear_velocity(body))},
                             {"angular_velocity", to_json(world.angular_velocity(body))},
-                            {"state", state_name(world, body)}});
+                            {"state", state_name(simulation, entity)}});
+        if (const MovingPoints* points = simulation.points(entity)) entities.back()["points"] = points_json(*points);
     }
     return entities;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene/session.h"
 
-#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -76,14 +75,14 @@ double Session::time_step() const { return state_->document.settings.time_step; 
 void Session::step() { state_->step(); }
 
 void Session::read_states(std::vector<EntityState>& states) const {
-    const physics::World& world = state_->simulation->world();
+    const Simulation& simulation = *state_->simulation;
     states.clear();
-    for (const EntityIndex index : state_->simulation->entities()) {
-        const physics::BodyHandle body = state_->simulation->body(index);
+    for (const EntityIndex index : simulation.entities()) {
         EntityState& state = states.emplace_back();
         state.entity = index;
-        state.pose = world.pose(body);
-        if (!std::isinf(world.mass(body))) state.state = static_cast<std::uint8_t>(world.sleep_state(body));
+        state.pose = simulation.pose(index);
+        if (simulation.is_movable(index)) state.state = static_cast<std::uint8_t>(simulation.sleep_state(index));
+        state.points = simulation.points(index);
     }
 }
 

@@ -13,6 +13,7 @@
 #include "catalog/catalog.h"
 #include "foundation/result.h"
 #include "scene/document.h"
+#include "scene/moving_points.h"
 
 namespace embody::scene {
 
@@ -27,7 +28,8 @@ struct Events {
 struct EntityState {
     EntityIndex entity = 0;
     Transform pose;
-    std::uint8_t state = 3;  ///< 0 active, 1 wants to sleep, 2 asleep, 3 static or kinematic
+    std::uint8_t state = 3;                ///< 0 active, 1 wants to sleep, 2 asleep, 3 static or kinematic
+    const MovingPoints* points = nullptr;  ///< of what is not one body; valid until the next command or step
 };
 
 /// Numbers a connection for as long as the program runs; 0: the program itself.

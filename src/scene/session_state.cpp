@@ -180,25 +180,23 @@ Result<void> SessionState::sync_entity(const EntityChange& change) {
     if (!change.before) return simulation->add(*document.find(change.after->index));
     const EntityIndex index = change.before->index;
     // An action may have taken it away.
-    if (simulation->body(index).is_null()) return {};
+    if (!simulation->contains(index)) return {};
     if (!change.after) return simulation->remove(index);
     const Entity& entity = *document.find(index);
     if (play_state == PlayState::stopped) return simulation->update(entity, false);
 
     // In a run it goes on from where it is, but for what was changed on purpose.
-    const physics::BodyHandle body = simulation->body(index);
     if (Result<void> updated = simulation->update(entity, true); !updated.ok()) return updated;
-    physics::World& world = simulation->world();
     if (change.before->pose != change.after->pose)
-        if (Result<void> moved = world.set_pose(body, entity.pose); !moved.ok()) return moved;
+        if (Result<void> moved = simulation->set_pose(index, entity.pose); !moved.ok()) return moved;
     if (change.before->linear_velocity != change.after->linear_velocity ||
         change.before->angular_velocity != change.after->angular_velocity)
-        return world.set_velocity(body, entity.linear_velocity, entity.angular_velocity);
+        return simulation->set_velocity(index, entity.linear_velocity, entity.angular_velocity);
     return {};
 }
 
 Result<void> SessionState::sync_heading(const HeadingChange& change) {
-    return simulation->world().set_settings(change.after.settings);
+    return simulation->set_settings(change.after.settings);
 }
 
 Result<void> SessionState::sync(const Change& change) {
@@ -217,11 +215,10 @@ Result<void> SessionState::sync(const Change& change) {
 
     // A thing that is moved by hand stands still there.
     const auto& pose = std::get<PoseChange>(change);
-    const physics::BodyHandle body = simulation->body(pose.index);
-    if (body.is_null()) return {};
-    if (Result<void> moved = simulation->world().set_pose(body, pose.after); !moved.ok()) return moved;
+    if (!simulation->contains(pose.index)) return {};
+    if (Result<void> moved = simulation->set_pose(pose.index, pose.after); !moved.ok()) return moved;
     if (play_state == PlayState::stopped) return {};
-    return simulation->world().set_velocity(body, {}, {});
+    return simulation->set_velocity(pose.index, {}, {});
 }
 
 // All changes or none.

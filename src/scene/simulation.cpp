@@ -2,11 +2,15 @@
 #include "scene/simulation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <utility>
 
 #include "attributes/surfaces.h"
+#include "physics/inter/definitions/grain_material.h"
 #include "scene/action_runner.h"
 #include "scene/entity_body.h"
+#include "scene/grain_bodies.h"
 
 namespace embody::scene {
 
@@ -32,10 +36,25 @@ Error of_entity(const Entity& entity, Error error) {
 struct LiveEntity {
     Entity definition;
     AttributeSet attributes;
-    BodyHandle body;
+    BodyHandle body;  // null of what has points
     ShapeHandle shape;
     std::string shape_key;
+    std::unique_ptr<GrainBodies> grains;  // of a granular one
+    std::string filling;                  // what it was filled with: the same, the same places
+    Transform frame;                      // of its points: where they were put, or moved to by hand
+
+    [[nodiscard]] MovingPoints* points() const { return grains.get(); }
 };
+
+bool is_granular(const AttributeSet& attributes) { return attributes.word("kind", "") == "granular"; }
+
+// Equal where geometry and size of the grains are.
+std::string filling_of(const Entity& entity, const AttributeSet& attributes) {
+    const std::string key = EntityBodies::shape_key(entity, attributes);
+    if (key.empty()) return {};
+    return key + '\n' + std::to_string(attributes.number("simulated_diameter", 0)) + '\n' +
+           std::to_string(attributes.number("grain_budget", 0));
+}
 
 struct SharedShape {
     ShapeHandle shape;
@@ -54,10 +73,20 @@ struct TimedForce {
     double until = 0;
 };
 
+// Grains of one entity that meet are no news.
+std::vector<physics::ContactEvent> contacts_between_entities(const physics::World& world) {
+    std::vector<physics::ContactEvent> contacts;
+    for (const physics::ContactEvent& event : world.contact_events())
+        if (event.user_data_a != event.user_data_b) contacts.push_back(event);
+    return contacts;
+}
+
 }  // namespace
 
 struct Simulation::State {
     std::unique_ptr<physics::World> world;
+    physics::WorldSettings settings;  // the document's
+    double finest_grain = 1e300;      // that was ever in this world, m
     EntityBodies bodies;
     std::map<EntityIndex, Entity> templates;  // the document's entities, for actions that spawn
     std::map<EntityIndex, LiveEntity> live;
@@ -104,34 +133,137 @@ struct Simulation::State {
 
     // Entities -----------------------------------------------------------------------------------------------------
 
-    Result<LiveEntity> prepare(const Entity& entity, physics::BodyDefinition& body) {
-        LiveEntity prepared;
-        prepared.definition = entity;
+    // What it is made of, without anything of it in the world.
+    Result<LiveEntity> describe(const Entity& entity) {
+        LiveEntity described;
+        described.definition = entity;
         Result<AttributeSet> set = bodies.attributes(entity);
-        if (!set.ok()) return of_entity(entity, set.error());
-        prepared.attributes = std::move(set).value();
-        Result<physics::BodyDefinition> made = bodies.body(entity, prepared.attributes);
-        if (!made.ok()) return of_entity(entity, made.error());
-        body = std::move(made).value();
-        prepared.shape_key = EntityBodies::shape_key(entity, prepared.attributes);
-        if (const Result<void> taken = take_shape(prepared); !taken.ok()) return of_entity(entity, taken.error());
-        body.shape = prepared.shape;
-        return prepared;
+        if (!set.ok()) return set.error();
+        described.attributes = std::move(set).value();
+        described.frame = entity.pose;
+        if (is_granular(described.attributes))
+            described.filling = filling_of(entity, described.attributes);
+        else
+            described.shape_key = EntityBodies::shape_key(entity, described.attributes);
+        return described;
+    }
+
+    // With its shape; the body's definition lacks nothing then.
+    Result<physics::BodyDefinition> prepare_body(LiveEntity& entity) {
+        Result<physics::BodyDefinition> made = bodies.body(entity.definition, entity.attributes);
+        if (!made.ok()) return made.error();
+        if (const Result<void> taken = take_shape(entity); !taken.ok()) return taken.error();
+        made.value().shape = entity.shape;
+        return made;
+    }
+
+    Result<void> put_body(LiveEntity& entity) {
+        const Result<physics::BodyDefinition> body = prepare_body(entity);
+        if (!body.ok()) return body.error();
+        const Result<BodyHandle> handle = world->create_body(body.value());
+        if (!handle.ok()) {
+            give_shape_back(entity);
+            return handle.error();
+        }
+        entity.body = handle.value();
+        return {};
+    }
+
+    Result<void> put_grains(LiveEntity& entity) {
+        const Result<GrainDefinition> definition = bodies.grains(entity.definition, entity.attributes);
+        if (!definition.ok()) return definition.error();
+        Result<std::unique_ptr<GrainBodies>> grains = GrainBodies::create(*world, definition.value());
+        if (!grains.ok()) return grains.error();
+        entity.grains = std::move(grains).value();
+        finest_grain = std::min(finest_grain, definition.value().diameter);
+        return apply_settings();
+    }
+
+    Result<void> put(LiveEntity& entity) {
+        return is_granular(entity.attributes) ? put_grains(entity) : put_body(entity);
+    }
+
+    void take_out(LiveEntity& entity) {
+        entity.grains.reset();
+        if (entity.body.is_null()) return;
+        // It is in the world, which does not refuse.
+        (void)world->destroy_body(entity.body).ok();
+        give_shape_back(entity);
+    }
+
+    // Heaps of small grains need finer steps than the document asks for.
+    Result<void> apply_settings() {
+        physics::WorldSettings finer = settings;
+        if (finest_grain < 1e300) finer.substeps = physics::substeps_for_grains(finest_grain, settings);
+        return finer.substeps == world->settings().substeps ? Result<void>{} : world->set_settings(finer);
     }
 
     Result<void> add(const Entity& entity) {
         if (live.contains(entity.index)) return of_entity(entity, {"index", "is in the world already"});
-        physics::BodyDefinition body;
-        Result<LiveEntity> prepared = prepare(entity, body);
-        if (!prepared.ok()) return prepared.error();
-        const Result<BodyHandle> handle = world->create_body(body);
-        if (!handle.ok()) {
-            give_shape_back(prepared.value());
-            return of_entity(entity, handle.error());
-        }
-        prepared.value().body = handle.value();
-        live.emplace(entity.index, std::move(prepared).value());
+        Result<LiveEntity> described = describe(entity);
+        if (!described.ok()) return of_entity(entity, described.error());
+        if (const Result<void> placed = put(described.value()); !placed.ok()) return of_entity(entity, placed.error());
+        live.emplace(entity.index, std::move(described).value());
         indices.insert(std::lower_bound(indices.begin(), indices.end(), entity.index), entity.index);
+        return {};
+    }
+
+    [[nodiscard]] Transform pose_of(const LiveEntity& entity) const {
+        return entity.points() ? entity.frame : world->pose(entity.body);
+    }
+
+    // The same body takes the new definition.
+    Result<void> update_body(LiveEntity& before, LiveEntity& after, bool keep_motion) {
+        Result<physics::BodyDefinition> body = prepare_body(after);
+        if (!body.ok()) return body.error();
+        after.body = before.body;
+        if (keep_motion) {
+            const Transform pose = world->pose(before.body);
+            body.value().position = pose.position;
+            body.value().rotation = pose.rotation;
+            body.value().linear_velocity = world->linear_velocity(before.body);
+            body.value().angular_velocity = world->angular_velocity(before.body);
+            body.value().start_asleep = false;
+        }
+        if (const Result<void> changed = world->set_body(before.body, body.value()); !changed.ok()) {
+            give_shape_back(after);
+            return changed.error();
+        }
+        give_shape_back(before);
+        return {};
+    }
+
+    // The same grains go on with other friction, mass and the like.
+    Result<void> update_grains(LiveEntity& before, LiveEntity& after) {
+        const Result<GrainDefinition> definition = bodies.grains(after.definition, after.attributes);
+        if (!definition.ok()) return definition.error();
+        if (Result<void> set = before.grains->set_body(definition.value().body); !set.ok()) return set;
+        after.grains = std::move(before.grains);
+        after.frame = before.frame;
+        return {};
+    }
+
+    // Another kind, or other grains: made anew where it is.
+    Result<void> replace(LiveEntity& before, LiveEntity& after, bool keep_motion) {
+        const EntityIndex index = before.definition.index;
+        const auto holds = [index](const auto& item) {
+            const SceneJoint& joint = item.second.definition;
+            return joint.entity_b == index || joint.entity_a == index;
+        };
+        if (after.attributes.word("kind", "") == "granular" && std::ranges::any_of(joints, holds))
+            return Error{"attributes.kind", "grains cannot be held by a joint", "remove the joint first"};
+        const Entity document = after.definition;
+        if (keep_motion) {
+            after.definition.pose = after.frame = pose_of(before);
+            if (!before.points()) {
+                after.definition.linear_velocity = world->linear_velocity(before.body);
+                after.definition.angular_velocity = world->angular_velocity(before.body);
+            }
+        }
+        const Result<void> placed = put(after);
+        after.definition = document;
+        if (!placed.ok()) return placed;
+        take_out(before);
         return {};
     }
 
@@ -139,24 +271,17 @@ struct Simulation::State {
         const auto found = live.find(entity.index);
         if (found == live.end()) return of_entity(entity, {"index", "is not in the world"});
         LiveEntity& before = found->second;
-        physics::BodyDefinition body;
-        Result<LiveEntity> prepared = prepare(entity, body);
-        if (!prepared.ok()) return prepared.error();
-        prepared.value().body = before.body;
-        if (keep_motion) {
-            const Transform pose = world->pose(before.body);
-            body.position = pose.position;
-            body.rotation = pose.rotation;
-            body.linear_velocity = world->linear_velocity(before.body);
-            body.angular_velocity = world->angular_velocity(before.body);
-            body.start_asleep = false;
-        }
-        if (const Result<void> changed = world->set_body(before.body, body); !changed.ok()) {
-            give_shape_back(prepared.value());
-            return of_entity(entity, changed.error());
-        }
-        give_shape_back(before);
-        before = std::move(prepared).value();
+        Result<LiveEntity> described = describe(entity);
+        if (!described.ok()) return of_entity(entity, described.error());
+        LiveEntity& after = described.value();
+        const bool same_grains =
+            before.grains && !after.filling.empty() && after.filling == before.filling && keep_motion;
+        const bool both_bodies = !before.points() && !is_granular(after.attributes);
+        const Result<void> updated = both_bodies   ? update_body(before, after, keep_motion)
+                                     : same_grains ? update_grains(before, after)
+                                                   : replace(before, after, keep_motion);
+        if (!updated.ok()) return of_entity(entity, updated.error());
+        before = std::move(after);
         return {};
     }
 
@@ -167,12 +292,23 @@ struct Simulation::State {
             const SceneJoint& joint = item.second.definition;
             return joint.entity_b == entity || joint.entity_a == entity;
         });
-        if (const Result<void> gone = world->destroy_body(found->second.body); !gone.ok()) return gone.error();
-        give_shape_back(found->second);
+        take_out(found->second);
         live.erase(found);
         indices.erase(std::lower_bound(indices.begin(), indices.end(), entity));
         std::erase_if(timed_forces, [entity](const TimedForce& push) { return push.entity == entity; });
         return {};
+    }
+
+    Result<void> place(LiveEntity& entity, const Transform& pose) {
+        if (!entity.points()) return world->set_pose(entity.body, pose);
+        if (Result<void> moved = entity.points()->move(pose * inverse(entity.frame)); !moved.ok()) return moved;
+        entity.frame = pose;
+        return {};
+    }
+
+    Result<void> set_velocity(LiveEntity& entity, Vec3 linear, Vec3 angular) {
+        return entity.points() ? entity.points()->set_velocity(linear, angular)
+                               : world->set_velocity(entity.body, linear, angular);
     }
 
     Result<void> add_joint(const SceneJoint& joint) {
@@ -181,11 +317,13 @@ struct Simulation::State {
         physics::JointDefinition definition = joint.definition;
         const auto b = live.find(joint.entity_b);
         if (b == live.end()) return Error{who + ": entity_b", "is not in the world"};
+        if (b->second.points()) return Error{who + ": entity_b", "is no single body", "joints need a rigid thing"};
         definition.body_b = b->second.body;
         definition.body_a = {};
         if (joint.entity_a) {
             const auto a = live.find(*joint.entity_a);
             if (a == live.end()) return Error{who + ": entity_a", "is not in the world"};
+            if (a->second.points()) return Error{who + ": entity_a", "is no single body", "joints need a rigid thing"};
             definition.body_a = a->second.body;
         }
         const Result<JointHandle> handle = world->create_joint(definition);
@@ -213,13 +351,15 @@ struct Simulation::State {
         LiveEntity& entity = found->second;
         if (const auto* set = std::get_if<SetAttribute>(&effect)) return set_attribute(entity, *set);
         if (const auto* impulse = std::get_if<ApplyImpulse>(&effect))
-            return world->apply_impulse(entity.body, impulse->impulse, impulse->at);
+            return entity.points() ? entity.points()->apply_impulse(impulse->impulse)
+                                   : world->apply_impulse(entity.body, impulse->impulse, impulse->at);
         if (const auto* force = std::get_if<ApplyForce>(&effect)) return push(entity, *force);
         if (const auto* velocity = std::get_if<SetVelocity>(&effect))
-            return world->set_velocity(entity.body, velocity->linear, velocity->angular);
+            return set_velocity(entity, velocity->linear, velocity->angular);
         if (const auto* enable = std::get_if<SetEnabled>(&effect)) {
             entity.definition.enabled = enable->enabled;
-            return world->set_enabled(entity.body, enable->enabled);
+            return entity.points() ? entity.points()->set_enabled(enable->enabled)
+                                   : world->set_enabled(entity.body, enable->enabled);
         }
         Result<void> removed = remove(index);
         if (removed.ok()) despawned.push_back(index);
@@ -260,6 +400,10 @@ struct Simulation::State {
         return entity.definition.category.empty() ? entity.attributes.word("category", "") : entity.definition.category;
     }
 
+    [[nodiscard]] Vec3 center_of_mass(const LiveEntity& entity) const {
+        return entity.points() ? entity.points()->center_of_mass() : world->center_of_mass(entity.body);
+    }
+
     [[nodiscard]] std::vector<EntityIndex> meant(const Target& target) const {
         std::vector<EntityIndex> found;
         for (const auto& [index, entity] : templates) {
@@ -278,7 +422,7 @@ struct Simulation::State {
         face.entities = [this]() -> const std::vector<EntityIndex>& { return indices; };
         face.definition = [this](EntityIndex index) { return definition(index); };
         face.category = [this](EntityIndex index) { return category(index); };
-        face.center_of_mass = [this](EntityIndex index) { return world->center_of_mass(live.at(index).body); };
+        face.center_of_mass = [this](EntityIndex index) { return center_of_mass(live.at(index)); };
         face.change = [this](EntityIndex index, const Effect& effect) { return change(index, effect); };
         face.spawn = [this](EntityIndex like, const Spawn& what) { return spawn(like, what); };
         face.templates = [this](const Target& target) { return meant(target); };
@@ -291,7 +435,9 @@ struct Simulation::State {
         for (const TimedForce& push : timed_forces) {
             const auto found = live.find(push.entity);
             if (found == live.end()) continue;
-            const Result<void> pushed = world->apply_force(found->second.body, push.force);
+            const LiveEntity& entity = found->second;
+            const Result<void> pushed = entity.points() ? entity.points()->apply_force(push.force)
+                                                        : world->apply_force(entity.body, push.force);
             if (!pushed.ok()) actions->problems.push_back(pushed.error());
         }
         const double next = time + world->settings().time_step;
@@ -309,6 +455,7 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document,
     Result<std::unique_ptr<physics::World>> world = physics::World::create(document.settings);
     if (!world.ok()) return Error{"settings." + world.error().where, world.error().why, world.error().remedy};
     state.world = std::move(world).value();
+    state.settings = document.settings;
     if (catalog != nullptr) {
         Result<void> set = state.world->set_surface_pairs(catalog->taxonomy().surfaces().table());
         if (!set.ok()) return set.error();
@@ -337,9 +484,8 @@ const physics::StepReport& Simulation::step() {
     state.actions->before_step(state.world->last_report().time);
     state.apply_timed_forces();
     const physics::StepReport& report = state.world->step();
-    const auto contacts = state.world->contact_events();
     const auto sleeps = state.world->sleep_events();
-    state.actions->after_step({contacts.begin(), contacts.end()}, {sleeps.begin(), sleeps.end()});
+    state.actions->after_step(contacts_between_entities(*state.world), {sleeps.begin(), sleeps.end()});
     return report;
 }
 
@@ -357,9 +503,65 @@ physics::World& Simulation::world() { return *state_->world; }
 const physics::World& Simulation::world() const { return *state_->world; }
 const std::vector<EntityIndex>& Simulation::entities() const { return state_->indices; }
 
+Result<void> Simulation::set_settings(const physics::WorldSettings& settings) {
+    const physics::WorldSettings before = std::exchange(state_->settings, settings);
+    Result<void> set = state_->world->set_settings(settings);
+    if (set.ok()) return state_->apply_settings();
+    state_->settings = before;
+    return set;
+}
+
+bool Simulation::contains(EntityIndex entity) const { return state_->live.contains(entity); }
+
 BodyHandle Simulation::body(EntityIndex entity) const {
     const auto found = state_->live.find(entity);
     return found == state_->live.end() ? BodyHandle{} : found->second.body;
+}
+
+BodyHandle Simulation::body_at(EntityIndex entity, Vec3 position) const {
+    const MovingPoints* its = points(entity);
+    return its ? its->nearest_body(position) : body(entity);
+}
+
+const MovingPoints* Simulation::points(EntityIndex entity) const {
+    const auto found = state_->live.find(entity);
+    return found == state_->live.end() ? nullptr : found->second.points();
+}
+
+Transform Simulation::pose(EntityIndex entity) const {
+    const auto found = state_->live.find(entity);
+    return found == state_->live.end() ? Transform{} : state_->pose_of(found->second);
+}
+
+Bounds Simulation::bounds(EntityIndex entity) const {
+    const MovingPoints* its = points(entity);
+    return its ? its->bounds() : state_->world->bounds(body(entity));
+}
+
+std::optional<double> Simulation::drop_distance(EntityIndex entity, double most) const {
+    const MovingPoints* its = points(entity);
+    return its ? its->drop_distance(most) : state_->world->drop_distance(body(entity), most);
+}
+
+bool Simulation::is_movable(EntityIndex entity) const {
+    return points(entity) != nullptr || std::isfinite(state_->world->mass(body(entity)));
+}
+
+physics::SleepState Simulation::sleep_state(EntityIndex entity) const {
+    const MovingPoints* its = points(entity);
+    return its ? its->state() : state_->world->sleep_state(body(entity));
+}
+
+Result<void> Simulation::set_pose(EntityIndex entity, const Transform& pose) {
+    const auto found = state_->live.find(entity);
+    if (found == state_->live.end()) return Error{"index", "entity " + std::to_string(entity) + " is not in the world"};
+    return state_->place(found->second, pose);
+}
+
+Result<void> Simulation::set_velocity(EntityIndex entity, Vec3 linear, Vec3 angular) {
+    const auto found = state_->live.find(entity);
+    if (found == state_->live.end()) return Error{"index", "entity " + std::to_string(entity) + " is not in the world"};
+    return state_->set_velocity(found->second, linear, angular);
 }
 
 EntityIndex Simulation::entity(BodyHandle body) const {

@@ -12,6 +12,7 @@
 #include "foundation/result.h"
 #include "physics/inter/world.h"
 #include "scene/document.h"
+#include "scene/moving_points.h"
 
 namespace embody::scene {
 
@@ -46,8 +47,22 @@ public:
     [[nodiscard]] const physics::World& world() const;
     /// Entities that are in the world now, spawned ones too, ascending.
     [[nodiscard]] const std::vector<EntityIndex>& entities() const;
-    /// Null for an entity that is not (any more) in the world.
+    [[nodiscard]] bool contains(EntityIndex entity) const;
+    /// Null for an entity that is not (any more) in the world, and for one that has points.
     [[nodiscard]] physics::BodyHandle body(EntityIndex entity) const;
+    /// The body of it, or of its points, that is nearest to a place in the world; may be null.
+    [[nodiscard]] physics::BodyHandle body_at(EntityIndex entity, Vec3 position) const;
+    /// What stands for an entity that is not one body: grains. Null for others; valid until an edit.
+    [[nodiscard]] const MovingPoints* points(EntityIndex entity) const;
+    /// Of the entity's frame: its body's; of points where they were put.
+    [[nodiscard]] Transform pose(EntityIndex entity) const;
+    /// World bounds of what collides; empty where nothing does.
+    [[nodiscard]] Bounds bounds(EntityIndex entity) const;
+    /// How far it can move down until it touches another, m; nothing if it meets none within `most`.
+    [[nodiscard]] std::optional<double> drop_distance(EntityIndex entity, double most) const;
+    [[nodiscard]] bool is_movable(EntityIndex entity) const;
+    /// Of points, that of the most awake.
+    [[nodiscard]] physics::SleepState sleep_state(EntityIndex entity) const;
     [[nodiscard]] EntityIndex entity(physics::BodyHandle body) const;  ///< 0 if none
     /// The entity as it is now, but for pose and velocities; null for one that is not in the world.
     [[nodiscard]] const Entity* definition(EntityIndex entity) const;
@@ -64,6 +79,11 @@ public:
     /// tried; the error is the first.
     Result<void> renew_models(const std::set<std::string>& keys, bool keep_motion);
     Result<void> remove(EntityIndex entity);  ///< its joints go with it
+    /// Puts its frame there; points are carried along and are at rest then.
+    Result<void> set_pose(EntityIndex entity, const Transform& pose);
+    Result<void> set_velocity(EntityIndex entity, Vec3 linear, Vec3 angular);
+    /// Small grains are solved in finer steps than these settings say.
+    Result<void> set_settings(const physics::WorldSettings& settings);
     Result<void> add_joint(const SceneJoint& joint);
     Result<void> remove_joint(std::uint32_t joint);
     /// Actions that were there go on where they are; new ones start.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "server/state_frame.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 namespace embody::server {
@@ -10,9 +12,11 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "frames are little-endian and written as they lie in memory");
 
 constexpr std::uint32_t frame_magic = 0x46424D45;  // "EMBF"
-constexpr std::uint16_t frame_version = 1;
+constexpr std::uint16_t frame_version = 2;
 constexpr std::size_t header_bytes = 32;
 constexpr std::size_t record_bytes = 36;
+constexpr std::size_t points_head_bytes = 40;
+constexpr std::uint8_t asleep = 2;
 
 template <class T>
 void append(std::string& frame, T value) {
@@ -21,12 +25,41 @@ void append(std::string& frame, T value) {
     frame.append(bytes, sizeof(T));
 }
 
-void append_record(std::string& frame, const scene::EntityState& state) {
+void append_record(std::string& frame, const scene::EntityState& state, bool has_points) {
     append(frame, state.entity);
     const Vec3 p = state.pose.position;
     const Quat q = state.pose.rotation;
     for (const double number : {p.x, p.y, p.z, q.x, q.y, q.z, q.w}) append(frame, static_cast<float>(number));
-    append(frame, std::uint32_t{state.state});
+    append(frame, state.state);
+    append(frame, static_cast<std::uint8_t>(has_points ? 1 : 0));
+    append(frame, std::uint16_t{0});
+}
+
+// Positions in 65535ths of the box around them: of a heap of a metre, in steps of 15 µm.
+std::string points_record(scene::EntityIndex entity, const std::vector<Vec3>& positions, double radius) {
+    constexpr double steps = 65535;
+    Bounds bounds;
+    for (const Vec3 p : positions) bounds.add(p);
+    if (bounds.is_empty()) bounds = {{}, {}};
+    std::string record;
+    record.reserve(points_head_bytes + 6 * positions.size() + 2);
+    append(record, entity);
+    append(record, static_cast<std::uint32_t>(positions.size()));
+    const Vec3f lower = to_vec3f(bounds.lower), size = to_vec3f(bounds.size());
+    for (const float number : {lower.x, lower.y, lower.z, size.x, size.y, size.z, static_cast<float>(radius)})
+        append(record, number);
+    append(record, std::uint32_t{0});
+    const auto quantised = [&](double position, float from, float extent) {
+        if (!(extent > 0)) return std::uint16_t{0};
+        return static_cast<std::uint16_t>(std::lround(std::clamp((position - from) / extent, 0.0, 1.0) * steps));
+    };
+    for (const Vec3 p : positions) {
+        append(record, quantised(p.x, lower.x, size.x));
+        append(record, quantised(p.y, lower.y, size.y));
+        append(record, quantised(p.z, lower.z, size.z));
+    }
+    if (positions.size() % 2 != 0) append(record, std::uint16_t{0});
+    return record;
 }
 
 bool same(const scene::EntityState& a, const scene::EntityState& b) { return a.pose == b.pose && a.state == b.state; }
@@ -39,29 +72,53 @@ void StateBoard::publish(const std::vector<scene::EntityState>& states, double t
     time_ = time;
     step_ = step;
     std::map<scene::EntityIndex, Row> next;
-    for (const scene::EntityState& state : states) {
-        const auto known = rows_.find(state.entity);
-        const bool changed = all_changed || known == rows_.end() || !same(known->second.state, state);
-        next.emplace(state.entity, Row{state, changed ? version_ : known->second.changed});
-    }
+    for (const scene::EntityState& state : states) next.emplace(state.entity, next_row(state, all_changed));
     rows_ = std::move(next);
 }
 
+StateBoard::Row StateBoard::next_row(const scene::EntityState& state, bool all_changed) {
+    const auto found = rows_.find(state.entity);
+    const Row* known = found == rows_.end() || all_changed ? nullptr : &found->second;
+    const bool has_points = state.points != nullptr;
+    const bool is_same = known != nullptr && same(known->state, state) && known->points.empty() != has_points;
+    Row row{state, is_same ? known->changed : version_, {}, version_};
+    row.state.points = nullptr;
+    if (state.points == nullptr) return row;
+
+    // What slept and still does has not moved; of the rest the bytes tell.
+    if (is_same && state.state == asleep && !known->points.empty()) {
+        row.points = known->points;
+        row.points_changed = known->points_changed;
+        return row;
+    }
+    state.points->read(scratch_);
+    row.points = points_record(state.entity, scratch_, state.points->radius());
+    if (known != nullptr && known->points == row.points) row.points_changed = known->points_changed;
+    return row;
+}
+
 std::string StateBoard::frame_since(std::uint64_t seen) const {
-    std::uint32_t count = 0;
-    for (const auto& [entity, row] : rows_) count += row.changed > seen;
-    if (count == 0) return {};
+    std::uint32_t count = 0, sets = 0;
+    std::size_t bytes = header_bytes;
+    for (const auto& [entity, row] : rows_) {
+        if (row.changed > seen) ++count, bytes += record_bytes;
+        if (row.points_changed > seen && !row.points.empty()) ++sets, bytes += row.points.size();
+    }
+    if (count == 0 && sets == 0) return {};
     std::string frame;
-    frame.reserve(header_bytes + count * record_bytes);
+    frame.reserve(bytes);
     append(frame, frame_magic);
     append(frame, frame_version);
     append(frame, std::uint16_t{0});
     append(frame, count);
-    append(frame, std::uint32_t{0});
+    append(frame, sets);
     append(frame, time_);
     append(frame, step_);
     for (const auto& [entity, row] : rows_) {
-        if (row.changed > seen) append_record(frame, row.state);
+        if (row.changed > seen) append_record(frame, row.state, !row.points.empty());
+    }
+    for (const auto& [entity, row] : rows_) {
+        if (row.points_changed > seen) frame += row.points;
     }
     return frame;
 }

@@ -24,13 +24,18 @@ public:
 
 private:
     struct Row {
-        scene::EntityState state;
+        scene::EntityState state;  ///< without its points
         std::uint64_t changed = 0;
+        std::string points;                ///< their record of the frame; empty: it has none
+        std::uint64_t points_changed = 0;  ///< and when they last moved
     };
+    [[nodiscard]] Row next_row(const scene::EntityState& state, bool all_changed);
+
     std::map<scene::EntityIndex, Row> rows_;
     std::uint64_t version_ = 0;
     double time_ = 0;
     std::uint64_t step_ = 0;
+    std::vector<Vec3> scratch_;
 };
 
 }  // namespace embody::server

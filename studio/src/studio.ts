@@ -113,6 +113,9 @@ export class Studio {
       this.view.invalidate();
     });
     this.entities.loaded.on(() => this.view.outline.show(this.selection.indices));
+    this.entities.pointed.on((index) => {
+      if (this.selection.has(index)) this.view.outline.show(this.selection.indices);
+    });
     this.entities.failed.on(({ index, reason }) => {
       const entity = this.document.entity(index);
       this.notice.emit({ level: "warning", text: `“${entity?.name ?? index}” cannot be drawn: ${reason}` });
@@ -139,6 +142,7 @@ export class Studio {
       // It may be another server now. Frames may come before the answer to hello, so that only here all poses are old.
       this.models.forgetSummaries();
       this.motion.clear();
+      this.entities.clouds.clear();
       void this.greet();
     });
     this.connection.closed.on(() => this.connectionChanged.emit());
@@ -146,6 +150,7 @@ export class Studio {
     this.connection.event.on((event) => this.take(event));
     this.connection.frame.on((frame) => {
       this.motion.take(frame, performance.now(), this.playing);
+      this.entities.takePoints(frame, performance.now(), this.playing);
       this.simulation.time = frame.time;
       this.simulation.step = frame.step;
       this.view.invalidate();
@@ -248,7 +253,10 @@ export class Studio {
   private takeDocument(event: DocumentEvent): void {
     const isOther = event.changes.some((change) => change.op === "reset");
     // Every pose of the new scene follows in a frame.
-    if (isOther) this.motion.clear();
+    if (isOther) {
+      this.motion.clear();
+      this.entities.clouds.clear();
+    }
     this.document.apply(event);
     if (isOther) this.openCamera();
   }

@@ -19,6 +19,8 @@ export interface TestHook {
   seenAt(index: number): { x: number; y: number } | null;
   /** Red, green, blue and amount of the state colour an entity is drawn with. */
   tintOf(index: number): number[];
+  /** Points that an entity is drawn as, and the box around them; null where it is drawn as a thing. */
+  points(index: number): { count: number; lower: number[]; upper: number[] } | null;
   /** Parts of collision shapes that are drawn over the selection. */
   collisionParts(): number;
   pick(x: number, y: number): number | null;
@@ -55,6 +57,10 @@ export function offerTestHook(studio: Studio): void {
       return { x, y };
     },
     tintOf: (index) => studio.entities.tintOf(index),
+    points: (index) => {
+      const cloud = studio.entities.clouds.of(index);
+      return cloud ? { count: cloud.count, lower: cloud.bounds.min.toArray(), upper: cloud.bounds.max.toArray() } : null;
+    },
     collisionParts: () => studio.view.collision.parts,
     pick: (x, y) => studio.view.pick(x, y)?.index ?? null,
     halt: () => studio.view.halt(),

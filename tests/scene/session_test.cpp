@@ -93,7 +93,7 @@ TEST_F(SessionTest, RefusesWrongCommandsByName) {
 TEST_F(SessionTest, GreetsWithEverythingAClientNeeds) {
     const json hello = run("hello");
     EXPECT_EQ(hello["scene"], document());
-    EXPECT_EQ(hello["frame_version"], 1);
+    EXPECT_EQ(hello["frame_version"], 2);
     EXPECT_EQ(hello["simulation"]["state"], "stopped");
     EXPECT_TRUE(hello.contains("version") && hello.contains("revision"));
 }

@@ -29,7 +29,7 @@ TEST(StateFrame, HasTheLayoutOfTheProtocol) {
     const std::string frame = board.frame_since(0);
     ASSERT_EQ(frame.size(), 32u + 36u);
     EXPECT_EQ(frame.substr(0, 4), "EMBF");
-    EXPECT_EQ(read<std::uint16_t>(frame, 4), 1);
+    EXPECT_EQ(read<std::uint16_t>(frame, 4), 2);
     EXPECT_EQ(read<std::uint32_t>(frame, 8), 1u);
     EXPECT_EQ(read<double>(frame, 16), 0.25);
     EXPECT_EQ(read<std::uint64_t>(frame, 24), 15u);
@@ -66,6 +66,90 @@ TEST(StateFrame, AResetSendsEverything) {
     const std::uint64_t seen = board.version();
     board.publish({entity(1, 0, 0), entity(2, 0, 0)}, 0, 0, true);
     EXPECT_EQ(read<std::uint32_t>(board.frame_since(seen), 8), 2u);
+}
+
+/// Points that stay where the test puts them.
+struct SamplePoints final : scene::MovingPoints {
+    std::vector<Vec3> at;
+    void read(std::vector<Vec3>& positions) const override { positions = at; }
+    [[nodiscard]] double radius() const override { return 0.01; }
+    [[nodiscard]] physics::SleepState state() const override { return physics::SleepState::active; }
+    [[nodiscard]] Vec3 center_of_mass() const override { return {}; }
+    [[nodiscard]] double mass() const override { return 1; }
+    [[nodiscard]] Bounds bounds() const override { return {}; }
+    [[nodiscard]] std::optional<double> drop_distance(double) const override { return std::nullopt; }
+    [[nodiscard]] physics::BodyHandle nearest_body(Vec3) const override { return {}; }
+    Result<void> move(const Transform&) override { return {}; }
+    Result<void> set_velocity(Vec3, Vec3) override { return {}; }
+    Result<void> apply_impulse(Vec3) override { return {}; }
+    Result<void> apply_force(Vec3) override { return {}; }
+    Result<void> set_enabled(bool) override { return {}; }
+};
+
+scene::EntityState pointed(scene::EntityIndex index, const SamplePoints& points, std::uint8_t state) {
+    scene::EntityState made = entity(index, 0, state);
+    made.points = &points;
+    return made;
+}
+
+TEST(PointSets, HaveTheLayoutOfTheProtocolAndLoseLessThanAStep) {
+    SamplePoints points;
+    points.at = {{-1, 0.5, 2}, {1, 0.75, 2}, {0.3, 0.6, 2}};
+    StateBoard board;
+    board.publish({pointed(9, points, 0)}, 0, 0, false);
+    const std::string frame = board.frame_since(0);
+    const std::size_t set = 32 + 36;
+    ASSERT_EQ(frame.size(), set + 40 + 3 * 6 + 2);
+    EXPECT_EQ(read<std::uint32_t>(frame, 12), 1u);
+    EXPECT_EQ(read<std::uint8_t>(frame, 32 + 33), 1);
+    EXPECT_EQ(read<std::uint32_t>(frame, set), 9u);
+    EXPECT_EQ(read<std::uint32_t>(frame, set + 4), 3u);
+    EXPECT_FLOAT_EQ(read<float>(frame, set + 32), 0.01f);
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const float lower = read<float>(frame, set + 8 + 4 * axis), size = read<float>(frame, set + 20 + 4 * axis);
+            const double q = read<std::uint16_t>(frame, set + 40 + 6 * i + 2 * axis) / 65535.0;
+            EXPECT_NEAR(lower + q * size, points.at[i][static_cast<int>(axis)], 2.0 / 65535);
+        }
+    }
+}
+
+TEST(PointSets, AreSentWhereSomethingMovedAndToWhoComesLater) {
+    SamplePoints points;
+    points.at = {{0, 0, 0}, {1, 1, 1}};
+    StateBoard board;
+    board.publish({pointed(1, points, 0)}, 0, 0, false);
+    std::uint64_t seen = board.version();
+    board.publish({pointed(1, points, 0)}, 0.1, 1, false);
+    EXPECT_EQ(board.frame_since(seen), "");
+    points.at[1].x = 1.5;
+    board.publish({pointed(1, points, 0)}, 0.2, 2, false);
+    const std::string moved = board.frame_since(seen);
+    EXPECT_EQ(read<std::uint32_t>(moved, 8), 0u);
+    EXPECT_EQ(read<std::uint32_t>(moved, 12), 1u);
+
+    // Asleep: one last frame with the new state, then nothing.
+    seen = board.version();
+    board.publish({pointed(1, points, 2)}, 0.3, 3, false);
+    EXPECT_EQ(read<std::uint32_t>(board.frame_since(seen), 12), 0u);
+    seen = board.version();
+    board.publish({pointed(1, points, 2)}, 0.4, 4, false);
+    EXPECT_EQ(board.frame_since(seen), "");
+    EXPECT_EQ(read<std::uint32_t>(board.frame_since(0), 12), 1u);
+
+    // One body again.
+    board.publish({entity(1, 0, 2)}, 0.5, 5, false);
+    const std::string solid = board.frame_since(seen);
+    EXPECT_EQ(read<std::uint32_t>(solid, 12), 0u);
+    EXPECT_EQ(read<std::uint8_t>(solid, 32 + 33), 0);
+}
+
+TEST(PointSets, OfFiveThousandGrainsTakeThirtyKilobytesAFrame) {
+    SamplePoints points;
+    points.at.resize(5000, {1, 2, 3});
+    StateBoard board;
+    board.publish({pointed(1, points, 0)}, 0, 0, false);
+    EXPECT_EQ(board.frame_since(0).size(), 32u + 36 + 40 + 30000);
 }
 
 }  // namespace

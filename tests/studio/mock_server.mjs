@@ -129,7 +129,7 @@ export class MockServer {
 
   // Commands by name; each returns its result and may edit the scene.
   commands = {
-    hello: () => ({ version: "0.0-mock", scene: this.scene, revision: 1, simulation: this.simulation, frame_version: 1, undo: null, redo: null, unsaved: false, name: "", client: 7, spawned: [], despawned: [] }),
+    hello: () => ({ version: "0.0-mock", scene: this.scene, revision: 1, simulation: this.simulation, frame_version: 2, undo: null, redo: null, unsaved: false, name: "", client: 7, spawned: [], despawned: [] }),
     "catalog.categories": () => ({ categories: NOUNS.map((category) => ({ category, models: Math.ceil(this.models / NOUNS.length) })) }),
     "catalog.model": ({ key }) => ({ model: this.model(Number(key.split("/")[1])), attributes: [] }),
     "catalog.search": ({ words = "", category = "", limit = 50, offset = 0 }) => {
@@ -287,7 +287,7 @@ export class MockServer {
   sendFrame() {
     const frame = Buffer.alloc(32 + 36 * this.bodies.size);
     frame.writeUInt32LE(0x46424d45, 0);
-    frame.writeUInt16LE(1, 4);
+    frame.writeUInt16LE(2, 4);
     frame.writeUInt32LE(this.bodies.size, 8);
     frame.writeDoubleLE(this.simulation.time, 16);
     frame.writeBigUInt64LE(BigInt(this.simulation.step), 24);

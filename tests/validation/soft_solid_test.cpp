@@ -168,11 +168,84 @@ TEST(SoftSolid, ACushionCarriesABox) {
     run(*world, 3);
     EXPECT_LT(length(world->linear_velocity(box)), 0.005);
     // It sinks in by about p L / E, a tenth of which the part around the box bears.
-    const double sunk = 0.15 - (world->pose(box).position.y - 0.05);
+    const double sunk = 0.15 + 2 * cushion.contact_radius - (world->pose(box).position.y - 0.05);
     const double one_dimensional = 10 * g / (0.4 * 0.4) / 2e4 * 0.15;
     EXPECT_GT(sunk, 0.6 * one_dimensional);
     EXPECT_LT(sunk, 1.1 * one_dimensional);
     for (const Vec3 p : world->node_positions(handle)) EXPECT_GT(p.y, -1e-3);
+}
+
+// From light to a thousand times the cushion's mass, from what dents it to what squashes it flat.
+TEST(SoftSolid, ACushionBearsMassesUpToAThousandTimesItsOwn) {
+    struct Case {
+        double mass, youngs_modulus;
+    };
+    for (const auto [mass, youngs_modulus] : {Case{0.05, 2e4}, {100, 2e4}, {10, 2e6}, {1500, 5e5}, {1500, 2e4}}) {
+        DeformableDefinition cushion = brick({0.5, 0.15, 0.5}, {5, 2, 5}, 40, youngs_modulus, 0.2, 0.02);
+        cushion.pose.position = {-0.25, 0.002, -0.25};
+        const auto world = make_world({});
+        add_plane(*world, {});
+        const BodyHandle box = add_box(*world, {0.2, 0.05, 0.2}, {0, 0.25, 0}, mass);
+        const DeformableHandle handle = world->create_deformable(cushion).value();
+        double fastest = 0;
+        for (int i = 0; i < 240; ++i) {
+            world->step();
+            for (const Vec3 v : world->node_velocities(handle)) fastest = std::max(fastest, length(v));
+        }
+        // It cannot come to more speed than the box had, but where it slips out of what squashes it.
+        EXPECT_LT(fastest, 15) << mass << " kg on " << youngs_modulus << " Pa";
+        EXPECT_LT(length(world->linear_velocity(box)), 0.02) << mass << " kg on " << youngs_modulus << " Pa";
+        EXPECT_TRUE(world->is_asleep(handle)) << mass << " kg on " << youngs_modulus << " Pa";
+        // One-dimensional compression, of which the part around the box bears up to a third; no more than there is.
+        const double strain = mass * g / (0.4 * 0.4) / youngs_modulus;
+        const double sunk = 0.15 - (world->pose(box).position.y - 0.05 - 2 * cushion.contact_radius);
+        EXPECT_GT(sunk, std::min(0.6 * 0.15 * strain, 0.14) - 0.001) << mass << " kg on " << youngs_modulus << " Pa";
+        EXPECT_LT(sunk, std::min(1.1 * 0.15 * strain, 0.151) + 0.001) << mass << " kg on " << youngs_modulus << " Pa";
+    }
+}
+
+TEST(SoftSolid, TurnedInsideOutOrFlatItComesBack) {
+    for (const bool is_flat : {false, true}) {
+        DeformableDefinition block = brick({0.4, 0.2, 0.2}, {4, 2, 2}, 1000, 1e5, 0.3, 0.02);
+        WorldSettings settings;
+        settings.gravity = {};
+        const auto world = make_world(settings);
+        const DeformableHandle handle = world->create_deformable(block).value();
+        std::vector<Vec3> thrown;
+        for (std::size_t i = 0; i < block.nodes.size(); ++i) {
+            const double k = static_cast<double>(i);
+            thrown.push_back({0.2 + 0.2 * std::sin(12.9 * k), is_flat ? 0.0 : 0.1 + 0.2 * std::sin(78.2 * k),
+                              0.1 + 0.2 * std::sin(37.7 * k)});
+        }
+        ASSERT_TRUE(world->set_nodes(handle, thrown, std::vector<Vec3>(thrown.size())).ok());
+        run(*world, 4);
+        const auto positions = world->node_positions(handle);
+        for (const auto& corners : std::get<SoftSolid>(block.matter).tetrahedra) {
+            const auto volume = [&](auto at) {
+                const Vec3 origin = at(corners[0]);
+                return dot(at(corners[1]) - origin, cross(at(corners[2]) - origin, at(corners[3]) - origin));
+            };
+            const double rest = volume([&](std::uint32_t i) { return block.nodes[i]; });
+            EXPECT_GT(volume([&](std::uint32_t i) { return positions[i]; }) / rest, 0.5) << is_flat;
+        }
+    }
+}
+
+TEST(SoftSolid, TheSameBitsForAnyNumberOfWorkers) {
+    std::uint64_t first = 0;
+    for (const int workers : {1, 2, 3, 4}) {
+        WorldSettings settings;
+        settings.workers = workers;
+        const auto world = make_world(settings);
+        add_plane(*world, {});
+        add_box(*world, {0.2, 0.05, 0.2}, {0, 0.25, 0}, 10);
+        DeformableDefinition cushion = brick({0.5, 0.15, 0.5}, {10, 3, 10}, 40, 2e4, 0.2, 0.02);
+        cushion.pose.position = {-0.25, 0.002, -0.25};
+        ASSERT_TRUE(world->create_deformable(cushion).ok());
+        run(*world, 0.5);
+        if (workers == 1) first = world->state_hash();
+        EXPECT_EQ(world->state_hash(), first) << workers;
+    }
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ constexpr double most_margin = 0.05;
 // Worlds with fewer changed bodies look for pairs on one thread.
 constexpr std::uint32_t fewest_shared = 500;
 // As many pairs are always kept; beyond, as many as a body may have partners.
-constexpr std::size_t always_kept_pairs = 20000;
+constexpr std::size_t always_kept_pairs = 100000;
 
 double margin_of(const Bounds& bounds) {
     const Vec3 size = bounds.size();

@@ -16,10 +16,12 @@ public:
     /// `definition` is valid and its matter is cloth.
     explicit ClothSheet(const DeformableDefinition& definition);
 
-    /// One substep. `attachment_bodies`: where the definition's attachments hold in `bodies`. Pushes the bodies.
+    /// One substep. `attachment_bodies`: where the attachments hold in `bodies`. Pushes the bodies.
     void advance(const Substep& substep, std::span<const NodeContact> contacts,
                  std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies, TaskPool& workers);
 
+    /// Instead of the definition's.
+    void set_attachments(const std::vector<Attachment>& attachments) { springs_.attachments = attachments; }
     [[nodiscard]] Nodes& nodes() { return nodes_; }
     [[nodiscard]] const Nodes& nodes() const { return nodes_; }
     [[nodiscard]] const std::vector<ClothTriangle>& triangles() const { return triangles_; }

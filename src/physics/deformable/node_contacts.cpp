@@ -3,15 +3,10 @@
 
 namespace embody::physics {
 
-namespace {
-
-// How far a body's surface goes within the step, at most.
 double way_of(const TouchedBody& body, double time_step) {
     const Vec3 local_center = rotate(conjugate(body.start.rotation), body.start_center - body.start.position);
     return (length(body.path_velocity) + length(body.path_spin) * body.shape->radius_about(local_center)) * time_step;
 }
-
-}  // namespace
 
 void find_node_contacts(const Nodes& nodes, std::span<const std::uint32_t> candidates, const CollisionShape& node_ball,
                         double radius, std::span<const TouchedBody> bodies, double time_step, Vec3 gravity,

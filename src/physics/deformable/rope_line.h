@@ -16,11 +16,13 @@ public:
     /// `definition` is valid and its matter is a rope.
     explicit RopeLine(const DeformableDefinition& definition);
 
-    /// One substep. `attachment_bodies`: where the definition's attachments hold in `bodies`. Pushes the bodies.
+    /// One substep. `attachment_bodies`: where the attachments hold in `bodies`. Pushes the bodies.
     void advance(const Substep& substep, std::span<const NodeContact> contacts,
                  std::span<const SegmentContact> segment_contacts, std::span<const std::uint32_t> attachment_bodies,
                  std::span<TouchedBody> bodies);
 
+    /// Instead of the definition's.
+    void set_attachments(const std::vector<Attachment>& attachments) { springs_.attachments = attachments; }
     [[nodiscard]] Nodes& nodes() { return nodes_; }
     [[nodiscard]] const Nodes& nodes() const { return nodes_; }
     /// Of each segment, from node k to k + 1, N; below zero: pressed. 0 where it is broken.

@@ -45,6 +45,7 @@ public:
                TaskPool& workers);
 
 private:
+    enum class State : std::uint8_t { open, sticks, slides, holds };
     /// A contact in this substep, in world axes.
     struct Active {
         SolidContact* contact = nullptr;
@@ -54,15 +55,26 @@ private:
         Vec3 slid;                             ///< relative motion in the substep, free, m
         Vec3 shift, turn;                      ///< of the body when `gap` was taken
         Mat3 give = Mat3::zero();              ///< relative motion by a force on it, m/N
+        State state = State::open;
+        Vec3 change, direction;   ///< of the force, N: by conjugate gradients
+        Vec3 residual, response;  ///< m
     };
     /// The touched nodes of a solid.
     struct Touched {
         std::vector<std::uint32_t> nodes;
         std::vector<std::uint32_t> local_of;  ///< by node; only those in `nodes` count
         std::vector<Quat> rotation;
-        std::vector<Mat3> compliance;  ///< rows one after the other
-        std::vector<Vec3> moved;       ///< by forces of this solve, in the nodes' axes at rest, m
-        std::vector<Vec3> force;       ///< of this solve, world, N
+        std::size_t stride = 0;  ///< numbers from one row to the next
+        std::vector<float>
+            compliance;            ///< of node j nine rows over all nodes i: element (r, c) of W(i, j) in row 3 c + r
+        std::vector<float> moved;  ///< by forces of this solve, in the nodes' axes at rest, m: rows x, y, z
+        std::vector<Vec3> force;   ///< of this solve, world, N
+        [[nodiscard]] Mat3 block(std::size_t i, std::size_t j) const;
+        std::vector<float> probe;       ///< as `moved`, by probe_force
+        std::vector<Vec3> probe_force;  ///< N
+        [[nodiscard]] Vec3 move_of(std::size_t i, std::span<const float> moves) const;
+        void push(std::size_t j, Vec3 force);
+        void add_moves(std::size_t j, Vec3 force, std::span<float> moves) const;
     };
     void gather(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h, double time);
     void gather_nodes(Solids solids);
@@ -70,9 +82,16 @@ private:
     [[nodiscard]] Vec3 moved(const Active& active, const TouchedBody& body) const;
     void apply(const Active& active, TouchedBody& body, Vec3 force, double h);
     double relax(Active& active, TouchedBody& body, double h);
+    double sweep(std::span<TouchedBody> bodies, double h, bool forwards);
+    void solve_together(std::span<TouchedBody> bodies, double h);
+    void respond(std::span<const TouchedBody> bodies, double h);
+    [[nodiscard]] Vec3 missing(const Active& active, const TouchedBody& body) const;
+    static void find_state(Active& active);
+    [[nodiscard]] static Vec3 free_part(const Active& active, Vec3 v);
 
     std::vector<Active> active_;
     std::vector<Touched> touched_;
+    std::vector<Vec3> probe_forces_, probe_torques_;  // by body, N and N m
 };
 
 }  // namespace embody::physics

@@ -9,19 +9,8 @@ namespace embody::physics {
 
 namespace {
 
-constexpr float tolerance = 1e-3f;  // of the residual, in the preconditioner's norm
-constexpr int most_rounds = 60;
-
-double dot(std::span<const Vec3f> a, std::span<const Vec3f> b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += embody::dot(to_vec3(a[i]), to_vec3(b[i]));
-    return sum;
-}
-
-void add_scaled(std::span<Vec3f> to, float factor, std::span<const Vec3f> what) {
-    for (std::size_t i = 0; i < to.size(); ++i)
-        to[i] = {to[i].x + factor * what[i].x, to[i].y + factor * what[i].y, to[i].z + factor * what[i].z};
-}
+// Of the true stiffness along a move over the metric's.
+constexpr double stiffest_ratio = 1.3;
 
 }  // namespace
 
@@ -33,8 +22,8 @@ SolidDeformable::SolidDeformable(const DeformableDefinition& definition)
     find_surface();
     elements_.reset_rotations(normalized(definition.pose.rotation));
     const std::size_t count = nodes_.size();
-    for (auto* vector : {&start_, &pushes_, &unsettled_, &force_}) vector->resize(count);
-    for (auto* vector : {&residual_, &move_, &direction_, &product_, &correction_}) vector->resize(count);
+    for (auto* vector : {&start_, &pushes_, &unsettled_, &force_, &rate_, &move_}) vector->resize(count);
+    for (auto* vector : {&turned_, &product_}) vector->resize(count);
     touched_place_.assign(count, untouched);
     factor_.analyse(rest_, elements_.edges());
 }
@@ -78,11 +67,12 @@ Bounds SolidDeformable::bounds() const {
     return bounds;
 }
 
-// H₀ = M/h² + (1 + β/h) K; pinned nodes stand apart.
+// P = M/h² + (1 + β/h) K of the tetrahedra as they are turned now; pinned nodes stand apart.
 void SolidDeformable::make_factor(double h) {
     factor_h_ = h;
     std::vector<Mat3> diagonal(nodes_.size(), Mat3::zero()), blocks(elements_.edges().size(), Mat3::zero());
-    elements_.add_rest_stiffness(1 + damping_ / h, diagonal, blocks);
+    elements_.add_stiffness_blocks(1 + damping_ / h, diagonal, blocks);
+    factor_rotations_ = elements_.node_rotations();
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const double inertia = nodes_.mass[i] / (h * h);
         diagonal[i] += Mat3::diagonal({inertia, inertia, inertia});
@@ -116,68 +106,54 @@ void SolidDeformable::push(std::uint32_t node, Vec3 force) {
     unsettled_[node] += force;
 }
 
-// correction = Q L⁻ᵀ L⁻¹ Qᵀ residual
-void SolidDeformable::precondition(TaskPool& workers) {
-    const auto& rotations = elements_.node_rotations();
-    for (std::size_t i = 0; i < nodes_.size(); ++i)
-        correction_[i] = to_vec3f(rotate_inverse(rotations[i], to_vec3(residual_[i])));
-    factor_.solve(correction_, workers);
+void SolidDeformable::solve(TaskPool& workers) {
+    // r = M (x_old + h u + h² g - x)/h² + f(x, (x - x_old)/h) + pushes
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        correction_[i] = nodes_.inverse_mass[i] > 0 ? to_vec3f(rotate(rotations[i], to_vec3(correction_[i]))) : Vec3f{};
-    }
-}
-
-int SolidDeformable::solve(TaskPool& workers) {
-    // With x = x_old + h u the inertial force leaves gravity alone: r = M g + pushes + f(x, u).
-    for (std::size_t i = 0; i < nodes_.size(); ++i) force_[i] = nodes_.mass[i] * gravity_ + pushes_[i];
-    elements_.linearise(nodes_.position, nodes_.mean_velocity, force_);
-    const bool is_pinned = !is_free_;
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        residual_[i] = is_pinned && !(nodes_.inverse_mass[i] > 0) ? Vec3f{} : to_vec3f(force_[i]);
-        move_[i] = {};
+        rate_[i] = (nodes_.position[i] - start_[i]) / h_;
+        force_[i] = nodes_.mass[i] * (gravity_ + (nodes_.mean_velocity[i] - rate_[i]) / h_) + pushes_[i];
         unsettled_[i] = {};
     }
-
-    // (M/h² + (1 + β/h) K_R) d = r by conjugate gradients.
-    const auto stiffness_factor = static_cast<float>(1 + damping_ / h_);
-    precondition(workers);
-    direction_ = correction_;
-    double size = dot(residual_, correction_);
-    const double enough = size * static_cast<double>(tolerance * tolerance);
-    int round = 0;
-    for (; round < most_rounds && size > enough && size > 0; ++round) {
-        for (std::size_t i = 0; i < nodes_.size(); ++i) {
-            const auto inertia = static_cast<float>(nodes_.mass[i] / (h_ * h_));
-            product_[i] = {inertia * direction_[i].x, inertia * direction_[i].y, inertia * direction_[i].z};
-        }
-        elements_.add_stiffness(stiffness_factor, direction_, product_);
-        if (is_pinned) {
-            for (std::size_t i = 0; i < nodes_.size(); ++i) {
-                if (!(nodes_.inverse_mass[i] > 0)) product_[i] = {};
-            }
-        }
-        const double curvature = dot(direction_, product_);
-        if (!(curvature > 0)) break;
-        const auto step = static_cast<float>(size / curvature);
-        add_scaled(move_, step, direction_);
-        add_scaled(residual_, -step, product_);
-        precondition(workers);
-        const double next = dot(residual_, correction_);
-        add_scaled(correction_, static_cast<float>(next / size), direction_);
-        std::swap(direction_, correction_);
-        size = next;
+    elements_.linearise(nodes_.position, rate_, force_);
+    quasi_newton_move(force_, workers);
+    // The metric must not be softer than what it stands for along the move, or moves grow from substep to substep.
+    stretch_ = 1;
+    double ratio = stiffness_ratio();
+    if (ratio > stiffest_ratio) {
+        make_factor(h_);
+        quasi_newton_move(force_, workers);
+        ratio = stiffness_ratio();
     }
-    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += to_vec3(move_[i]);
-    return round;
+    stretch_ = std::max(1.0, ratio / stiffest_ratio);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += move_[i] / stretch_;
 }
 
 void SolidDeformable::settle(TaskPool& workers) {
-    for (std::size_t i = 0; i < nodes_.size(); ++i) residual_[i] = to_vec3f(unsettled_[i]);
-    precondition(workers);
+    quasi_newton_move(unsettled_, workers);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += move_[i] / stretch_;
+    std::ranges::fill(unsettled_, Vec3{});
+}
+
+// d = Q L⁻ᵀ L⁻¹ Qᵀ r
+void SolidDeformable::quasi_newton_move(std::span<const Vec3> force, TaskPool& workers) {
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+        turned_[i] = nodes_.inverse_mass[i] > 0 ? to_vec3f(rotate_inverse(turn(i), force[i])) : Vec3f{};
+    factor_.solve(turned_, workers);
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+        move_[i] = nodes_.inverse_mass[i] > 0 ? rotate(turn(i), to_vec3(turned_[i])) : Vec3{};
+}
+
+// dᵀ H d / dᵀ P d for the move d that the forces make.
+double SolidDeformable::stiffness_ratio() {
+    double metric = 0, true_one = 0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        nodes_.position[i] += to_vec3(correction_[i]);
-        unsettled_[i] = {};
+        turned_[i] = to_vec3f(move_[i]);
+        product_[i] = {};
+        metric += dot(move_[i], force_[i]);
+        true_one += nodes_.mass[i] / (h_ * h_) * length_squared(move_[i]);
     }
+    elements_.add_stiffness(static_cast<float>(1 + damping_ / h_), turned_, product_);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) true_one += dot(move_[i], to_vec3(product_[i]));
+    return metric > 0 ? true_one / metric : 0;
 }
 
 Mat3 SolidDeformable::compliance(std::uint32_t i, std::uint32_t j) {
@@ -195,11 +171,11 @@ Mat3 SolidDeformable::compliance(std::uint32_t i, std::uint32_t j) {
         return touched_place_[node];
     };
     const std::uint32_t a = place_of(i), b = place_of(j);
-    return a >= b ? touched_[a].blocks[b] : transpose(touched_[b].blocks[a]);
+    return (1 / stretch_) * (a >= b ? touched_[a].blocks[b] : transpose(touched_[b].blocks[a]));
 }
 
 void SolidDeformable::finish() {
-    if (is_free_) keep_momenta();
+    if (is_free_ && std::ranges::all_of(pushes_, [](Vec3 push) { return push == Vec3{}; })) keep_momenta();
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const Vec3 mean = (nodes_.position[i] - start_[i]) / h_, last = nodes_.mean_velocity[i];
         nodes_.velocity[i] = mean + 0.5 * (mean - last);
@@ -207,30 +183,31 @@ void SolidDeformable::finish() {
     }
 }
 
-// Inner forces neither move nor turn the whole. A solve that ends early does, and so do forces that are found where the
-// nodes come to but act where they came from; a small move and turn of the whole takes that back.
+// Inner forces neither move nor turn the whole, and outer ones turn it by their arms where the nodes come to. Rounding
+// and steps by rotations that lag do otherwise, and backward Euler slows every turn, as Σ m x × u changes with the arms
+// of the step's end; a small move and turn of the whole gives that back.
 void SolidDeformable::keep_momenta() {
-    Vec3 center, wanted, wanted_turning;
+    Vec3 center, new_center;
     double whole = 0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         center += nodes_.mass[i] * start_[i];
+        new_center += nodes_.mass[i] * nodes_.position[i];
         whole += nodes_.mass[i];
     }
     center = center / whole;
-    Vec3 has, has_turning;  // h times the momenta
+    new_center = new_center / whole;
+    Vec3 missing, missing_turning;  // h times the momenta
     Mat3 inertia = Mat3::zero();
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const double mass = nodes_.mass[i];
-        const Vec3 arm = start_[i] - center, way = nodes_.position[i] - start_[i];
-        const Vec3 free_way = h_ * nodes_.mean_velocity[i] + (h_ * h_) * (gravity_ + pushes_[i] / mass);
-        has += mass * way;
-        wanted += mass * free_way;
-        has_turning += mass * cross(arm, way);
-        wanted_turning += mass * cross(arm, free_way);
+        const Vec3 arm = start_[i] - center, new_arm = nodes_.position[i] - new_center;
+        const Vec3 gone_on = h_ * nodes_.mean_velocity[i] - (nodes_.position[i] - start_[i]);
+        missing += mass * (gone_on + (h_ * h_) * gravity_) + (h_ * h_) * pushes_[i];
+        missing_turning += mass * cross(arm, gone_on) + (h_ * h_) * cross(new_arm, pushes_[i]);
         inertia += mass * (length_squared(arm) * Mat3::identity() - outer(arm, arm));
     }
-    const Vec3 shift = (wanted - has) / whole;
-    const Vec3 turn = embody::solve(inertia, wanted_turning - has_turning);
+    const Vec3 shift = missing / whole;
+    const Vec3 turn = embody::solve(inertia, missing_turning);
     for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += shift + cross(turn, start_[i] - center);
 }
 

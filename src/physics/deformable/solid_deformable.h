@@ -26,9 +26,9 @@ public:
     void begin_substep(double h, Vec3 gravity);
     /// Lets a force (N) act on a node for this substep; counts in the next solve() or settle().
     void push(std::uint32_t node, Vec3 force);
-    /// Moves the nodes to where elastic, damping and inertial forces balance what acts on them: one round of Newton's
-    /// method. Returns the rounds of conjugate gradients.
-    int solve(TaskPool& workers);
+    /// Moves the nodes to where elastic, damping and inertial forces balance what acts on them: one round of a
+    /// quasi-Newton method.
+    void solve(TaskPool& workers);
     /// Moves the nodes by what the pushes since solve() do, as the compliance says.
     void settle(TaskPool& workers);
     /// Velocities of what the substep has come to.
@@ -36,9 +36,13 @@ public:
 
     /// Where a node was when the substep began, m.
     [[nodiscard]] Vec3 start(std::uint32_t node) const { return start_[node]; }
-    /// How node i moves by a force on node j in this substep, in the axes of both at rest, m/N: i turns it by its
-    /// rotation, j the force against its own. Kept, so that asking again is cheap.
+    /// How node i moves by a force on node j in this substep, m/N: i turns it by its turn(), j the force
+    /// against its own. Kept, so that asking again is cheap.
     [[nodiscard]] Mat3 compliance(std::uint32_t i, std::uint32_t j);
+    [[nodiscard]] Quat turn(std::size_t node) const {
+        return elements_.node_rotations()[node] * conjugate(factor_rotations_[node]);
+    }
+    /// The rotation around a node since it was at rest.
     [[nodiscard]] Quat rotation(std::uint32_t node) const { return elements_.node_rotations()[node]; }
 
     /// Places its nodes and gives them these velocities; pinned ones rest. `rotation` is about that of the whole.
@@ -56,7 +60,8 @@ private:
     void place_nodes(const DeformableDefinition& definition);
     void find_surface();
     void make_factor(double h);
-    void precondition(TaskPool& workers);
+    void quasi_newton_move(std::span<const Vec3> force, TaskPool& workers);
+    [[nodiscard]] double stiffness_ratio();
     void keep_momenta();
 
     SolidElements elements_;
@@ -73,12 +78,15 @@ private:
     Vec3 gravity_;
     std::vector<Vec3> start_, pushes_;  // m; N, all of the substep
     std::vector<Vec3> unsettled_;       // N, since the last solve
-    std::vector<Vec3> force_;           // N
-    std::vector<Vec3f> residual_, move_, direction_, product_, correction_;
+    std::vector<Vec3> rate_, force_;    // m/s, N
+    std::vector<Vec3> move_;            // m
+    std::vector<Vec3f> turned_, product_;
+    double stretch_ = 1;  // the metric of this substep is so many times P
 
     // The factor of the matrix at rest, for substeps of factor_h_ seconds, and what is known of its inverse.
     DissectedCholesky factor_;
     double factor_h_ = 0;
+    std::vector<Quat> factor_rotations_;  // around the nodes when it was made
     struct TouchedNode {
         DissectedCholesky::Columns columns;
         std::vector<Mat3> blocks;  ///< with the nodes that were touched before it, and itself

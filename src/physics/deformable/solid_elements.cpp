@@ -79,10 +79,11 @@ void SolidElements::find_edges() {
     edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
 }
 
-void SolidElements::add_rest_stiffness(double factor, std::span<Mat3> diagonal, std::span<Mat3> blocks) const {
+void SolidElements::add_stiffness_blocks(double factor, std::span<Mat3> diagonal, std::span<Mat3> blocks) const {
     for (std::size_t e = 0; e < size(); ++e) {
         const auto& [g1, g2, g3] = gradient_[e];
-        const std::array<Vec3, 4> g{-(g1 + g2 + g3), g1, g2, g3};
+        std::array<Vec3, 4> g{-(g1 + g2 + g3), g1, g2, g3};
+        for (Vec3& slope : g) slope = rotate(rotation_[e], slope);
         for (std::size_t a = 0; a < 4; ++a) {
             for (std::size_t b = 0; b < 4; ++b) {
                 const std::uint32_t row = corners_[e][a], column = corners_[e][b];

@@ -29,8 +29,9 @@ public:
     [[nodiscard]] const std::vector<double>& node_volumes() const { return node_volume_; }
     /// Pairs of nodes of a common tetrahedron, each once, the smaller first.
     [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& edges() const { return edges_; }
-    /// Adds the stiffness of the tetrahedra at rest, times `factor`: a block a node, and one an edge (row: edge[0]).
-    void add_rest_stiffness(double factor, std::span<Mat3> diagonal, std::span<Mat3> blocks) const;
+    /// Adds the stiffness of the tetrahedra alone as they are turned now, times `factor`: a block a node, and one an
+    /// edge (row: edge[0]).
+    void add_stiffness_blocks(double factor, std::span<Mat3> diagonal, std::span<Mat3> blocks) const;
 
     /// Linearises at these positions (m) and velocities (m/s): finds the rotations and adds elastic and damping forces,
     /// N.

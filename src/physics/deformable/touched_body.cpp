@@ -5,7 +5,16 @@
 
 namespace embody::physics {
 
-Mat3 TouchedBody::rotation_at(double time) const { return to_matrix(cayley(time * path_turn + turn)); }
+Mat3 TouchedBody::rotation_at(double time) const {
+    return to_matrix(cayley(time * path_turn + bend(time) * path_spin_up + turn));
+}
+
+Vec3 TouchedBody::way(double h, double time, Vec3 arm) const {
+    const double off = time - (step_time + h) / 2;
+    const Vec3 linear = path_velocity + off * path_acceleration + velocity;
+    const Vec3 angular = path_spin + off * path_spin_up + spin;
+    return h * (linear + cross(angular, arm));
+}
 
 void TouchedBody::enter_substep(double h) {
     velocity -= (inverse_mass * h) * expected_force;

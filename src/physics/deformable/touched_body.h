@@ -15,12 +15,15 @@ namespace embody::physics {
 struct TouchedBody {
     std::uint32_t body = 0;  ///< slot
     const CollisionShape* shape = nullptr;
-    double friction = 0;  ///< Coulomb coefficient of its surface
-    Transform start;      ///< pose of the shape's frame when the step began
-    Vec3 start_center;    ///< of mass, when the step began, m
-    Vec3 path_velocity;   ///< mean over the step, m/s
-    Vec3 path_spin;       ///< mean over the step, rad/s
-    Vec3 path_turn;       ///< the turn of the step as cayley() takes it, over the step's time, 1/s
+    double friction = 0;     ///< Coulomb coefficient of its surface
+    Transform start;         ///< pose of the shape's frame when the step began
+    Vec3 start_center;       ///< of mass, when the step began, m
+    double step_time = 0;    ///< of the whole step, s
+    Vec3 path_velocity;      ///< mean over the step, m/s
+    Vec3 path_acceleration;  ///< mean over the step, m/s²: the path is a parabola
+    Vec3 path_spin;          ///< mean over the step, rad/s
+    Vec3 path_spin_up;       ///< mean over the step, rad/s²
+    Vec3 path_turn;          ///< the turn of the step as cayley() takes it, over the step's time, 1/s
     double inverse_mass = 0;
     Mat3 inverse_inertia = Mat3::zero();   ///< world axes
     Vec3 expected_force, expected_torque;  ///< pushes of the last step, which the path has in it already, N and N m
@@ -30,13 +33,21 @@ struct TouchedBody {
     Vec3 impulse, angular_impulse;  ///< pushes of this step so far, N s and N m s about the centre of mass
 
     /// Where the body is `time` (s) after the step began, pushes counted.
-    [[nodiscard]] Vec3 center_at(double time) const { return start_center + time * path_velocity + shift; }
+    [[nodiscard]] Vec3 center_at(double time) const {
+        return start_center + time * path_velocity + bend(time) * path_acceleration + shift;
+    }
     /// What turns directions of the start to those then.
     [[nodiscard]] Mat3 rotation_at(double time) const;
+    /// How far the point at `arm` from its centre goes in the substep of h seconds that ends at `time`, m.
+    [[nodiscard]] Vec3 way(double h, double time, Vec3 arm) const;
     /// Moves it into a substep of h seconds: takes off what the path has in it already, goes on with the rest.
     void enter_substep(double h);
     /// Impulse (N s) at `arm` (m) from its centre of mass, in a substep of h seconds: moves it too.
     void push(Vec3 impulse, Vec3 arm, double h);
+
+private:
+    // A path of constant acceleration is off the straight one by this times the acceleration, s².
+    [[nodiscard]] double bend(double time) const { return time * (time - step_time) / 2; }
 };
 
 }  // namespace embody::physics

@@ -165,7 +165,7 @@ Conserved World::conserved() const {
     for (const DeformableHandle handle : deformables()) {
         const DeformableRecord& record = state_->deformables.at(handle.index);
         if (!record.definition.enabled) continue;
-        const Conserved own = record.solid->conserved(state_->settings.gravity * record.definition.gravity_factor);
+        const Conserved own = record.conserved(state_->settings.gravity * record.definition.gravity_factor);
         sum.kinetic_energy += own.kinetic_energy;
         sum.potential_energy += own.potential_energy;
         sum.linear_momentum += own.linear_momentum;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -51,6 +52,8 @@ public:
     Result<BodyHandle> create_body(const BodyDefinition& definition);
     /// Its joints go with it.
     Result<void> destroy_body(BodyHandle body);
+    /// The same for many, each named once: as quick as for one. All or none.
+    Result<void> destroy_bodies(std::span<const BodyHandle> bodies);
     [[nodiscard]] bool contains(BodyHandle body) const;
     [[nodiscard]] std::vector<BodyHandle> bodies() const;
 
@@ -58,6 +61,8 @@ public:
     [[nodiscard]] std::optional<BodyDefinition> body(BodyHandle body) const;
     /// Replaces everything but the handle (kind, shape, mass, material, pose, …) and wakes what it touches.
     Result<void> set_body(BodyHandle body, const BodyDefinition& definition);
+    /// The same for many, each named once: `change` is given each one's definition as it stands now. All or none.
+    Result<void> change_bodies(std::span<const BodyHandle> bodies, const std::function<void(BodyDefinition&)>& change);
 
     /// Cheap reads for streaming; identity, zero and asleep for a stale handle.
     [[nodiscard]] Transform pose(BodyHandle body) const;
@@ -154,8 +159,9 @@ public:
     /// World bounds of a body's shape; empty for a body without one.
     [[nodiscard]] Bounds bounds(BodyHandle body) const;
     /// How far the body can move down (-Y) until it touches another; std::nullopt if it meets nothing in
-    /// `max_distance`. The body may overlap nothing at its start.
-    [[nodiscard]] std::optional<double> drop_distance(BodyHandle body, double max_distance) const;
+    /// `max_distance`. The body may overlap nothing at its start. It passes through what `ignores` (if given) names.
+    [[nodiscard]] std::optional<double> drop_distance(BodyHandle body, double max_distance,
+                                                      const std::function<bool(BodyHandle)>& ignores = {}) const;
 
     /// Equal iff the states of all bodies are bit for bit equal.
     [[nodiscard]] std::uint64_t state_hash() const;

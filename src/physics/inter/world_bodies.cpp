@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <limits>
 
 #include "physics/inter/definitions/field_check.h"
@@ -11,6 +12,16 @@ namespace embody::physics {
 namespace {
 
 Error stale_body() { return {"body", "is not a body of this world"}; }
+
+Result<std::vector<std::uint32_t>> slots_of(const WorldState& world, std::span<const BodyHandle> bodies) {
+    std::vector<std::uint32_t> slots;
+    slots.reserve(bodies.size());
+    for (const BodyHandle body : bodies) {
+        if (!world.bodies.contains(body)) return stale_body();
+        slots.push_back(body.index);
+    }
+    return slots;
+}
 
 // Counts who uses a shape, so that it is not destroyed under a body.
 void change_users(WorldState& world, ShapeHandle shape, int change) {
@@ -38,17 +49,25 @@ Result<BodyHandle> World::create_body(const BodyDefinition& definition) {
     return handle;
 }
 
-Result<void> World::destroy_body(BodyHandle body) {
-    if (!contains(body)) return stale_body();
-    lift_body(*state_, body.index);
+Result<void> World::destroy_body(BodyHandle body) { return destroy_bodies({&body, 1}); }
+
+Result<void> World::destroy_bodies(std::span<const BodyHandle> bodies) {
+    const auto slots = slots_of(*state_, bodies);
+    if (!slots) return slots.error();
+    lift_bodies(*state_, slots.value());
     for (const JointHandle joint : joints()) {
         const JointDefinition& definition = state_->joints.find(joint)->definition;
-        if (definition.body_a == body || definition.body_b == body) state_->joints.remove(joint);
+        if (std::ranges::any_of(bodies,
+                                [&](BodyHandle b) { return definition.body_a == b || definition.body_b == b; })) {
+            state_->joints.remove(joint);
+        }
     }
     list_jointed_pairs(*state_);
-    change_users(*state_, state_->record(body.index).definition.shape, -1);
-    state_->motion[body.index] = {};
-    state_->bodies.remove(body);
+    for (const BodyHandle body : bodies) {
+        change_users(*state_, state_->record(body.index).definition.shape, -1);
+        state_->motion[body.index] = {};
+        state_->bodies.remove(body);
+    }
     return {};
 }
 
@@ -68,14 +87,30 @@ std::optional<BodyDefinition> World::body(BodyHandle body) const {
 }
 
 Result<void> World::set_body(BodyHandle body, const BodyDefinition& definition) {
-    if (!contains(body)) return stale_body();
-    auto setup = set_up_body(*state_, definition);
-    if (!setup) return setup.error();
-    lift_body(*state_, body.index);
-    change_users(*state_, state_->record(body.index).definition.shape, -1);
-    place_body(*state_, body.index, std::move(setup).value());
-    change_users(*state_, definition.shape, 1);
-    set_up_joints_of(*state_, body);
+    return change_bodies({&body, 1}, [&](BodyDefinition& present) { present = definition; });
+}
+
+Result<void> World::change_bodies(std::span<const BodyHandle> bodies,
+                                  const std::function<void(BodyDefinition&)>& change) {
+    const auto slots = slots_of(*state_, bodies);
+    if (!slots) return slots.error();
+    std::vector<BodySetup> setups;
+    setups.reserve(bodies.size());
+    for (const BodyHandle body : bodies) {
+        BodyDefinition definition = current_definition(*state_, body.index);
+        change(definition);
+        auto setup = set_up_body(*state_, definition);
+        if (!setup) return setup.error();
+        setups.push_back(std::move(setup).value());
+    }
+    lift_bodies(*state_, slots.value());
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const ShapeHandle shape = setups[i].record.definition.shape;
+        change_users(*state_, state_->record(bodies[i].index).definition.shape, -1);
+        place_body(*state_, bodies[i].index, std::move(setups[i]));
+        change_users(*state_, shape, 1);
+        set_up_joints_of(*state_, bodies[i]);
+    }
     return {};
 }
 

@@ -22,14 +22,7 @@ Result<void> check_attachments(const World& world, const std::vector<Attachment>
 Result<DeformableRecord> make_record(const World& world, const DeformableDefinition& definition) {
     if (auto result = validate(definition); !result) return result.error();
     if (auto result = check_attachments(world, definition.attachments); !result) return result.error();
-    auto ball = CollisionShape::create(SphereShape{definition.contact_radius});
-    if (!ball) return ball.error();
-    DeformableRecord record;
-    record.definition = definition;
-    record.solid = std::make_unique<SolidDeformable>(definition);
-    record.node_ball = std::move(*ball);
-    record.last_positions = record.solid->nodes().position;
-    return record;
+    return make_deformable_record(definition);
 }
 
 Vec3 center_of(const Nodes& nodes) {
@@ -44,7 +37,7 @@ Vec3 center_of(const Nodes& nodes) {
 
 // The rotation R and shift nearest to x = R X + t of all nodes: A = Σ m (x - c)(X - C)ᵀ, max tr(Rᵀ A).
 Transform nearest_rigid_motion(const DeformableRecord& record) {
-    const Nodes& nodes = record.solid->nodes();
+    const Nodes& nodes = record.nodes();
     const std::vector<Vec3>& rest = record.definition.nodes;
     const Vec3 center = center_of(nodes);
     Vec3 rest_center;
@@ -61,7 +54,7 @@ Transform nearest_rigid_motion(const DeformableRecord& record) {
         moments += nodes.mass[i] * outer(nodes.position[i] - center, arm);
         size += nodes.mass[i] * length_squared(arm);
     }
-    Quat rotation = record.solid->rotation(0);  // not far from the whole's
+    Quat rotation = record.rotation();
     if (size > 0) follow_rotation((3 / size) * moments, rotation);
     return {center - rotate(rotation, rest_center), rotation};
 }
@@ -107,12 +100,12 @@ const DeformableDefinition* World::deformable(DeformableHandle deformable) const
 
 std::span<const Vec3> World::node_positions(DeformableHandle deformable) const {
     const DeformableRecord* record = state_->deformables.find(deformable);
-    return record != nullptr ? std::span<const Vec3>(record->solid->nodes().position) : std::span<const Vec3>();
+    return record != nullptr ? std::span<const Vec3>(record->nodes().position) : std::span<const Vec3>();
 }
 
 std::span<const Vec3> World::node_velocities(DeformableHandle deformable) const {
     const DeformableRecord* record = state_->deformables.find(deformable);
-    return record != nullptr ? std::span<const Vec3>(record->solid->nodes().velocity) : std::span<const Vec3>();
+    return record != nullptr ? std::span<const Vec3>(record->nodes().velocity) : std::span<const Vec3>();
 }
 
 bool World::is_asleep(DeformableHandle deformable) const {
@@ -129,14 +122,14 @@ double World::mass(DeformableHandle deformable) const {
     const DeformableRecord* record = state_->deformables.find(deformable);
     double sum = 0;
     if (record != nullptr) {
-        for (const double mass : record->solid->nodes().mass) sum += mass;
+        for (const double mass : record->nodes().mass) sum += mass;
     }
     return sum;
 }
 
 Vec3 World::center_of_mass(DeformableHandle deformable) const {
     const DeformableRecord* record = state_->deformables.find(deformable);
-    return record != nullptr ? center_of(record->solid->nodes()) : Vec3{};
+    return record != nullptr ? center_of(record->nodes()) : Vec3{};
 }
 
 Result<void> World::wake(DeformableHandle deformable) {
@@ -157,9 +150,9 @@ Result<void> World::set_nodes(DeformableHandle deformable, std::span<const Vec3>
             return Error{field, "must be finite numbers"};
     }
     // Placed first: the turn of the whole follows from where the nodes are.
-    record->solid->set_motion(positions, velocities, record->definition.pose.rotation);
-    record->solid->set_motion(positions, velocities, nearest_rigid_motion(*record).rotation);
-    record->last_positions = record->solid->nodes().position;
+    record->set_motion(positions, velocities, record->definition.pose.rotation);
+    record->set_motion(positions, velocities, nearest_rigid_motion(*record).rotation);
+    record->last_positions = record->nodes().position;
     record->contacts.clear();
     wake_up(*record);
     return {};
@@ -172,8 +165,8 @@ Result<void> World::set_deformable(DeformableHandle deformable, const Deformable
     if (!changed) return changed.error();
     if (definition.nodes.size() != record->definition.nodes.size())
         return Error{"nodes", "are not as many as before", "make another deformable in its place"};
-    const Nodes& nodes = record->solid->nodes();
-    changed->solid->set_motion(nodes.position, nodes.velocity, nearest_rigid_motion(*record).rotation);
+    const Nodes& nodes = record->nodes();
+    changed->set_motion(nodes.position, nodes.velocity, nearest_rigid_motion(*record).rotation);
     changed->last_positions = nodes.position;
     changed->contacts = std::move(record->contacts);
     changed->touched_bodies = std::move(record->touched_bodies);

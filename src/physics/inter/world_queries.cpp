@@ -17,9 +17,10 @@ Bounds World::bounds(BodyHandle body) const {
     return state_->record(body.index).shape->bounds(state_->pose(body.index));
 }
 
-std::optional<double> World::drop_distance(BodyHandle body, double max_distance) const {
+std::optional<double> World::drop_distance(BodyHandle body, double max_distance,
+                                           const std::function<bool(BodyHandle)>& ignores) const {
     if (!contains(body)) return std::nullopt;
-    return physics::drop_distance(*state_, body.index, max_distance);
+    return physics::drop_distance(*state_, body.index, max_distance, ignores);
 }
 
 }  // namespace embody::physics

@@ -35,8 +35,10 @@ void set_up_sizes(BodySetup& setup) {
     setup.record.inner_radius = std::min({half.x, half.y, half.z});
 }
 
-void remove_contacts_of(std::vector<Contact>& contacts, std::uint32_t body) {
-    std::erase_if(contacts, [&](const Contact& c) { return c.a == body || c.b == body; });
+void remove_contacts_of(WorldState& world, std::span<const std::uint32_t> bodies) {
+    std::vector<bool> is_meant(world.bodies.slot_count());
+    for (const std::uint32_t body : bodies) is_meant[body] = true;
+    std::erase_if(world.contacts, [&](const Contact& c) { return is_meant[c.a] || is_meant[c.b]; });
 }
 
 }  // namespace
@@ -108,17 +110,21 @@ void place_body(WorldState& world, std::uint32_t body, BodySetup setup) {
     }
 }
 
-void lift_body(WorldState& world, std::uint32_t body) {
+void lift_bodies(WorldState& world, std::span<const std::uint32_t> bodies) {
     world.awake_changed = true;
-    wake_around(world, body);
-    wake_group_of(world, body);
+    for (const std::uint32_t body : bodies) {
+        wake_around(world, body);
+        wake_group_of(world, body);
+    }
     for (const std::uint32_t other : std::vector<std::uint32_t>(world.to_wake)) {
         if (world.is_used(other)) wake_group_of(world, other);
     }
-    remove_contacts_of(world.contacts, body);
+    remove_contacts_of(world, bodies);
     world.contact_glances.clear();
     world.touch_memory.is_laid_out = false;
-    if (world.record(body).shape && world.record(body).definition.enabled) world.broad_phase.remove(body);
+    for (const std::uint32_t body : bodies) {
+        if (world.record(body).shape && world.record(body).definition.enabled) world.broad_phase.remove(body);
+    }
 }
 
 Result<void> choose_lanes(WorldState& world, int lanes) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <span>
+
 #include "physics/step/world_state.h"
 
 namespace embody::physics {
@@ -20,8 +22,8 @@ Result<BodySetup> set_up_body(const WorldState& world, const BodyDefinition& def
 /// Puts a set-up body into the slot's arrays and the broad phase.
 void place_body(WorldState& world, std::uint32_t body, BodySetup setup);
 
-/// Takes it out of the broad phase, its sleeping group and the contact lists; wakes what touched it.
-void lift_body(WorldState& world, std::uint32_t body);
+/// Takes them (each once) out of the broad phase, their sleeping groups and the contact lists; wakes what touched them.
+void lift_bodies(WorldState& world, std::span<const std::uint32_t> bodies);
 
 /// The width of the contact solver; 0: the widest. Fails where the processor cannot.
 Result<void> choose_lanes(WorldState& world, int lanes);

@@ -6,6 +6,7 @@
 
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/step/step.h"
+#include "physics/step/thin_deformables.h"
 
 namespace embody::physics {
 
@@ -23,14 +24,14 @@ bool may_collide(const DeformableDefinition& deformable, const BodyDefinition& b
 // How far its nodes may come within a step, and a little more.
 double reach_of(const WorldState& world, const DeformableRecord& record) {
     double fastest = 0;
-    for (const Vec3 v : record.solid->nodes().mean_velocity) fastest = std::max(fastest, length(v));
+    for (const Vec3 v : record.nodes().mean_velocity) fastest = std::max(fastest, length(v));
     const double dt = world.settings.time_step;
     return 2 * record.definition.contact_radius + (fastest + length(world.settings.gravity) * dt) * dt;
 }
 
 template <class Visit>
 void for_each_body_near(const WorldState& world, const DeformableRecord& record, Visit visit) {
-    world.broad_phase.query(enlarged(record.solid->bounds(), reach_of(world, record)), [&](std::uint32_t slot) {
+    world.broad_phase.query(enlarged(record.bounds(), reach_of(world, record)), [&](std::uint32_t slot) {
         if (world.record(slot).shape && may_collide(record.definition, world.record(slot).definition)) visit(slot);
     });
 }
@@ -52,6 +53,11 @@ TouchedBody touched(const WorldState& world, std::uint32_t slot) {
     const Quat turn = state.rotation * conjugate(rotation);
     const Vec3 half_sine = (turn.w < 0 ? -1.0 : 1.0) * Vec3{turn.x, turn.y, turn.z};
     const double half_cosine = std::fabs(turn.w), sine = length(half_sine);
+    body.step_time = dt;
+    if (world.is_dynamic(slot)) {
+        body.path_acceleration = (state.linear_velocity - record.start_linear_velocity) / dt;
+        body.path_spin_up = (state.angular_velocity - record.start_angular_velocity) / dt;
+    }
     body.path_velocity = (state.center - body.start_center) / dt;
     body.path_spin = sine > 0 ? (2 * std::asin(std::min(sine, 1.0)) / (sine * dt)) * half_sine : Vec3{};
     body.path_turn = (2 / (std::max(half_cosine, 1e-3) * dt)) * half_sine;
@@ -81,9 +87,11 @@ bool is_disturbed(const WorldState& world, const DeformableRecord& record) {
 /// All deformables that move in this step, with the bodies that they may touch.
 struct MovingDeformables {
     std::vector<DeformableRecord*> records;
-    std::vector<SolidDeformable*> solids;  ///< of the records, in their order
-    std::vector<TouchedBody> bodies;       ///< by slot
-    std::vector<SolidContact> contacts;    ///< record after record
+    std::vector<DeformableRecord*> solid_records;  ///< those of solids
+    std::vector<SolidDeformable*> solids;          ///< of these, in their order
+    std::vector<ThinDeformable> thin;              ///< sheets and ropes
+    std::vector<TouchedBody> bodies;               ///< by slot
+    std::vector<SolidContact> contacts;            ///< solid after solid
     [[nodiscard]] std::uint32_t index_of(std::uint32_t slot) const {
         return static_cast<std::uint32_t>(std::ranges::lower_bound(bodies, slot, {}, &TouchedBody::body) -
                                           bodies.begin());
@@ -108,7 +116,7 @@ void gather_bodies(const WorldState& world, MovingDeformables& moving) {
 
 // Contacts of one deformable, with what is remembered of their forces.
 void find_contacts_of(const WorldState& world, std::uint32_t index, MovingDeformables& moving) {
-    DeformableRecord& record = *moving.records[index];
+    DeformableRecord& record = *moving.solid_records[index];
     std::vector<TouchedBody> colliding;
     for (const TouchedBody& body : moving.bodies) {
         if (body.shape && may_collide(record.definition, world.record(body.body).definition)) colliding.push_back(body);
@@ -151,17 +159,47 @@ void find_contacts_of(const WorldState& world, std::uint32_t index, MovingDeform
     moving.contacts.insert(moving.contacts.end(), contacts.begin(), contacts.end());
 }
 
+// The same of a sheet or rope.
+void find_contacts_of(const WorldState& world, const MovingDeformables& moving, ThinDeformable& thin) {
+    std::vector<bool> colliding;
+    for (const TouchedBody& body : moving.bodies) {
+        colliding.push_back(body.shape && may_collide(thin.record->definition, world.record(body.body).definition));
+    }
+    for (const Attachment& attachment : thin.record->definition.attachments) {
+        const bool is_there = world.bodies.find(attachment.body) != nullptr;
+        thin.attachment_bodies.push_back(is_there ? moving.index_of(attachment.body.index) : no_body);
+    }
+    find_thin_contacts(moving.bodies, colliding, world.settings.time_step, world.settings.gravity, thin);
+}
+
+// Ropes in each substep; cloth, whose solve is dear, once for the whole step after the last of the others.
+void advance_thin_ones(const WorldState& world, MovingDeformables& moving, int k) {
+    const int substeps = world.settings.deformable_substeps;
+    const double step = world.settings.time_step, h = step / substeps;
+    for (ThinDeformable& thin : moving.thin) {
+        if (thin.record->cloth && k < substeps) continue;
+        Substep substep{.h = h, .time = (k - 1) * h};
+        if (thin.record->cloth) substep = {.h = step, .time = 0};
+        substep.gravity = thin.record->definition.gravity_factor * world.settings.gravity;
+        substep.wind = world.settings.wind;
+        substep.air_density = world.settings.air_density;
+        advance_thin(thin, substep, moving.bodies, *world.workers);
+    }
+}
+
 void run_substeps(WorldState& world, MovingDeformables& moving) {
     const int substeps = world.settings.deformable_substeps;
     const double h = world.settings.time_step / substeps;
     for (int k = 1; k <= substeps; ++k) {
         for (std::size_t i = 0; i < moving.solids.size(); ++i)
-            moving.solids[i]->begin_substep(h, moving.records[i]->definition.gravity_factor * world.settings.gravity);
+            moving.solids[i]->begin_substep(
+                h, moving.solid_records[i]->definition.gravity_factor * world.settings.gravity);
         for (TouchedBody& body : moving.bodies) body.enter_substep(h);
         SolidContacts::begin(moving.contacts, moving.solids, moving.bodies, h);
         for (SolidDeformable* solid : moving.solids) solid->solve(*world.workers);
         world.solid_contacts.solve(moving.contacts, moving.solids, moving.bodies, h, k * h, *world.workers);
         for (SolidDeformable* solid : moving.solids) solid->finish();
+        advance_thin_ones(world, moving, k);
     }
 }
 
@@ -198,19 +236,20 @@ void put_back_bodies(WorldState& world, const MovingDeformables& moving) {
 void finish(WorldState& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.records) record->contacts.clear();
     for (const SolidContact& contact : moving.contacts) {
-        if (contact.force != Vec3{}) moving.records[contact.point.solid]->contacts.push_back(contact);
+        if (contact.force != Vec3{}) moving.solid_records[contact.point.solid]->contacts.push_back(contact);
     }
     for (DeformableRecord* record : moving.records) {
         record->touched_bodies.clear();
         for (const SolidContact& contact : record->contacts) record->touched_bodies.push_back(contact.slot);
+        if (!record->solid) record->touched_bodies = bodies_pushed_by(*record, moving.bodies);
         auto& touched = record->touched_bodies;
         touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-        if (!record->solid->is_finite()) {
-            record->solid->stop_at(record->last_positions);
+        if (!record->is_finite()) {
+            record->stop_at(record->last_positions);
             record->definition.enabled = false;
             world.report.limits |= static_cast<std::uint32_t>(StepLimit::not_finite_deformable_frozen);
         }
-        record->last_positions = record->solid->nodes().position;
+        record->last_positions = record->nodes().position;
     }
 }
 
@@ -218,7 +257,7 @@ void finish(WorldState& world, MovingDeformables& moving) {
 void put_to_sleep(WorldState& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.records) {
         double fastest = 0;
-        for (const Vec3 v : record->solid->nodes().velocity) fastest = std::max(fastest, length(v));
+        for (const Vec3 v : record->nodes().velocity) fastest = std::max(fastest, length(v));
         record->quiet_time = fastest < quiet_speed ? record->quiet_time + world.settings.time_step : 0;
         bool all_sleep = true;
         for (const std::uint32_t slot : record->touched_bodies) {
@@ -228,7 +267,7 @@ void put_to_sleep(WorldState& world, MovingDeformables& moving) {
             sleep.quiet_time = std::min(sleep.quiet_time, record->quiet_time);
         }
         record->is_asleep = world.settings.sleeping && all_sleep && record->quiet_time >= world.settings.time_to_sleep;
-        if (record->is_asleep) record->solid->rest();
+        if (record->is_asleep) record->rest();
     }
 }
 
@@ -246,10 +285,16 @@ void advance_deformables(WorldState& world) {
         }
         if (record.is_asleep) continue;
         moving.records.push_back(&record);
-        moving.solids.push_back(record.solid.get());
+        if (record.solid) {
+            moving.solid_records.push_back(&record);
+            moving.solids.push_back(record.solid.get());
+        } else {
+            moving.thin.push_back({&record, {}, {}, {}});
+        }
     }
     gather_bodies(world, moving);
-    for (std::uint32_t i = 0; i < moving.records.size(); ++i) find_contacts_of(world, i, moving);
+    for (std::uint32_t i = 0; i < moving.solids.size(); ++i) find_contacts_of(world, i, moving);
+    for (ThinDeformable& thin : moving.thin) find_contacts_of(world, moving, thin);
     run_substeps(world, moving);
     put_back_bodies(world, moving);
     finish(world, moving);

@@ -61,14 +61,15 @@ std::optional<double> drop_onto(const WorldState& world, std::uint32_t body, std
 
 }  // namespace
 
-std::optional<double> drop_distance(const WorldState& world, std::uint32_t body, double max_distance) {
+std::optional<double> drop_distance(const WorldState& world, std::uint32_t body, double max_distance,
+                                    const std::function<bool(BodyHandle)>& ignores) {
     const BodyRecord& record = world.record(body);
     if (!record.shape || is_static_only(record.shape->definition()) || !(max_distance > 0)) return std::nullopt;
     Bounds swept = record.shape->bounds(world.pose(body));
     swept.lower.y -= max_distance;
     std::optional<double> least;
     world.broad_phase.query(swept, [&](std::uint32_t other) {
-        if (other == body) return;
+        if (other == body || (ignores && ignores(world.bodies.handle_at(other)))) return;
         const auto distance = drop_onto(world, body, other, least ? *least : max_distance);
         if (distance && (!least || *distance < *least)) least = distance;
     });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,7 @@ std::optional<RayHit> cast_ray(const WorldState& world, Vec3 origin, Vec3 direct
 std::vector<BodyHandle> overlap_box(const WorldState& world, const Bounds& box);
 
 /// How far a body can move down; see World::drop_distance().
-std::optional<double> drop_distance(const WorldState& world, std::uint32_t body, double max_distance);
+std::optional<double> drop_distance(const WorldState& world, std::uint32_t body, double max_distance,
+                                    const std::function<bool(BodyHandle)>& ignores);
 
 }  // namespace embody::physics

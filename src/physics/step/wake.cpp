@@ -38,7 +38,11 @@ void list_awake(WorldState& world) {
 
 // Gravity and forces of the coming step.
 void refresh_forces(WorldState& world, std::uint32_t body) {
-    const BodyRecord& record = world.record(body);
+    BodyRecord& record = world.record(body);
+    if (world.deformables.count() > 0) {
+        record.start_linear_velocity = world.motion[body].linear_velocity;
+        record.start_angular_velocity = world.motion[body].angular_velocity;
+    }
     BodyConstants& constants = world.constants[body];
     const double inverse_mass = world.motion[body].inverse_mass;
     constants.acceleration =

@@ -21,6 +21,7 @@
 #include "physics/optimization/island_sleep.h"
 #include "physics/optimization/islands.h"
 #include "physics/optimization/solve_schedule.h"
+#include "physics/step/deformable_record.h"
 #include "physics/step/fluids.h"
 #include "physics/step/impact_memory.h"
 #include "physics/step/touch_memory.h"
@@ -42,27 +43,16 @@ struct BodyRecord {
     std::uint32_t version = 0;     ///< another one after each change of the body's shape, kind or pose by the user
     double inner_radius = 0;       ///< half the thinnest extent: a body that moves farther in a step may tunnel, m
     Vec3 next_force, next_torque;  ///< for the next step only, cleared by report; N, N m about the centre of mass
-    Vec3 deformable_force, deformable_torque;  ///< pushes of deformables in the last step, N, N m
-    Vec3 fluid_force, fluid_torque;            ///< of fluids in this step, N, N m
-    Vec3 last_center;                          ///< last finite pose, to freeze the body at
+    Vec3 start_linear_velocity, start_angular_velocity;  ///< when the step began, where there are deformables
+    Vec3 deformable_force, deformable_torque;            ///< pushes of deformables in the last step, N, N m
+    Vec3 fluid_force, fluid_torque;                      ///< of fluids in this step, N, N m
+    Vec3 last_center;                                    ///< last finite pose, to freeze the body at
     Quat last_rotation;
 };
 
 struct JointRecord {
     JointDefinition definition;
     Joint constraint;  ///< written by substeps; sleeps with its bodies
-};
-
-/// A deformable with what its contacts and its sleep need.
-struct DeformableRecord {
-    DeformableDefinition definition;
-    std::unique_ptr<SolidDeformable> solid;
-    std::unique_ptr<CollisionShape> node_ball;  ///< of its contact radius
-    std::vector<SolidContact> contacts;         ///< of the last step
-    std::vector<std::uint32_t> touched_bodies;  ///< slots: those that it pushed in the last step
-    double quiet_time = 0;                      ///< s
-    bool is_asleep = false;
-    std::vector<Vec3> last_positions;  ///< last finite ones, to freeze it at
 };
 
 /// An island that sleeps: its bodies and the contacts that it fell asleep with.

@@ -164,8 +164,7 @@ Result<json> duplicate(SessionState& state, const json& params) {
     if (!offset) {
         Bounds all;
         for (const EntityIndex index : indices) {
-            const physics::BodyHandle body = state.simulation->body(index);
-            const Bounds bounds = state.simulation->world().bounds(body);
+            const Bounds bounds = state.simulation->bounds(index);
             if (!bounds.is_empty() && is_finite(bounds.size())) all.add(bounds);
         }
         offset = Vec3{all.is_empty() ? 1 : all.size().x + 0.1, 0, 0};

@@ -23,6 +23,9 @@ public:
     static Result<void> put(SessionState& state, const Entity& entity, std::optional<Probe>& probe) {
         Entity still = entity;
         still.enabled = true;
+        // What flows is put down as the solid thing that it fills.
+        const Result<attributes::AttributeSet> set = state.bodies.attributes(entity);
+        if (set.ok() && set.value().word("kind", "") == "granular") still.attributes["kind"] = std::string("rigid");
         if (Result<void> added = state.simulation->add(still); !added.ok()) return added;
         probe.emplace(state, entity.index);
         return {};
@@ -120,19 +123,18 @@ Result<json> drop_to_floor(SessionState& state, const json& params) {
     if (!reader.finish()) return *error;
 
     // The lowest first: what lies on it follows.
-    physics::World& world = state.simulation->world();
-    const auto bottom = [&](EntityIndex index) { return world.bounds(state.simulation->body(index)).lower.y; };
+    Simulation& simulation = *state.simulation;
+    const auto bottom = [&](EntityIndex index) { return simulation.bounds(index).lower.y; };
     std::stable_sort(indices.begin(), indices.end(),
                      [&](EntityIndex a, EntityIndex b) { return bottom(a) < bottom(b); });
     Edit edit = state.start_edit("Drop " + state.called(indices));
     for (const EntityIndex index : indices) {
-        const physics::BodyHandle body = state.simulation->body(index);
-        if (body.is_null()) continue;
-        Transform pose = world.pose(body);
-        const std::optional<double> drop = world.drop_distance(body, farthest);
+        if (!simulation.contains(index)) continue;
+        Transform pose = simulation.pose(index);
+        const std::optional<double> drop = simulation.drop_distance(index, farthest);
         if (!drop || *drop <= clearance) continue;
         pose.position.y -= *drop - clearance;
-        if (Result<void> moved = world.set_pose(body, pose); !moved.ok()) return moved.error();
+        if (Result<void> moved = simulation.set_pose(index, pose); !moved.ok()) return moved.error();
         edit.changes.emplace_back(PoseChange{index, state.document.find(index)->pose, pose});
     }
     return done(state.commit(std::move(edit)));

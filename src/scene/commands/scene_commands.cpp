@@ -14,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int frame_version = 1;
+constexpr int frame_version = 2;
 
 // Everything that a client needs to draw the scene and go on from there.
 Result<json> hello(SessionState& state, const json& params) {
@@ -26,7 +26,7 @@ Result<json> hello(SessionState& state, const json& params) {
     for (const EntityIndex index : state.simulation->entities())
         if (!state.document.find(index)) spawned.push_back(entity_to_json(*state.simulation->definition(index)));
     for (const Entity& entity : state.document.entities)
-        if (state.simulation->body(entity.index).is_null()) despawned.push_back(entity.index);
+        if (!state.simulation->contains(entity.index)) despawned.push_back(entity.index);
     return json{{"version", version_text},
                 {"scene", document_to_json(state.document)},
                 {"revision", state.revision},

@@ -64,9 +64,8 @@ Result<json> keep(SessionState& state, const json& params) {
     if (Result<void> read = read_nothing(params); !read.ok()) return read.error();
     Edit edit = state.start_edit("Keep poses");
     for (const Entity& entity : state.document.entities) {
-        const physics::BodyHandle body = state.simulation->body(entity.index);
-        if (body.is_null()) continue;
-        const Transform pose = state.simulation->world().pose(body);
+        if (!state.simulation->contains(entity.index)) continue;
+        const Transform pose = state.simulation->pose(entity.index);
         if (pose != entity.pose) edit.changes.emplace_back(PoseChange{entity.index, entity.pose, pose});
     }
 
@@ -90,7 +89,7 @@ Result<json> grab(SessionState& state, const json& params) {
     if (!reader.finish()) return *error;
     if (state.play_state == PlayState::stopped)
         return Error{"simulation.grab", "the simulation is stopped", "play first; to move things use entity.transform"};
-    const physics::BodyHandle body = state.simulation->body(index);
+    const physics::BodyHandle body = state.simulation->body_at(index, point);
     if (body.is_null()) return Error{"index", "entity " + std::to_string(index) + " is not in the world"};
     state.grab = Grab{body, inverse_transform_point(state.simulation->world().pose(body), point), target};
     return json::object();

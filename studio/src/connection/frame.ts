@@ -2,9 +2,10 @@
 // State frames: docs/protocol.md, "Server → client: state frames".
 
 const MAGIC = 0x46424d45; // "EMBF"
-const VERSION = 1;
+const VERSION = 2;
 const HEADER_BYTES = 32;
 const RECORD_BYTES = 36;
+const SET_HEAD_BYTES = 40;
 
 /** What the records of a frame say about one entity, seven floats each in `poses`: position x y z, rotation x y z w. */
 export interface Frame {
@@ -13,6 +14,22 @@ export interface Frame {
   indices: Uint32Array;
   poses: Float32Array;
   states: Uint8Array;
+  /** 1 where the entity has points. */
+  pointed: Uint8Array;
+  /** Points of entities that are not one body, where some moved. */
+  sets: PointSet[];
+}
+
+/** Points of one entity: grains. */
+export interface PointSet {
+  index: number;
+  /** Least corner and size of the box around them, m, world. */
+  lower: [number, number, number];
+  size: [number, number, number];
+  /** Of the ball at each, m. */
+  radius: number;
+  /** Three numbers each, in 65535ths of the box. */
+  positions: Uint16Array;
 }
 
 export const POSE_FLOATS = 7;
@@ -33,6 +50,8 @@ export function decodeFrame(buffer: ArrayBuffer): Frame {
     indices: new Uint32Array(count),
     poses: new Float32Array(count * POSE_FLOATS),
     states: new Uint8Array(count),
+    pointed: new Uint8Array(count),
+    sets: decodeSets(buffer, HEADER_BYTES + count * RECORD_BYTES, view.getUint32(12, true)),
   };
   for (let record = 0; record < count; ++record) {
     const at = HEADER_BYTES + record * RECORD_BYTES;
@@ -40,13 +59,38 @@ export function decodeFrame(buffer: ArrayBuffer): Frame {
     for (let number = 0; number < POSE_FLOATS; ++number)
       frame.poses[record * POSE_FLOATS + number] = view.getFloat32(at + 4 + 4 * number, true);
     frame.states[record] = view.getUint8(at + 32);
+    frame.pointed[record] = view.getUint8(at + 33);
   }
   return frame;
 }
 
+function decodeSets(buffer: ArrayBuffer, start: number, count: number): PointSet[] {
+  const view = new DataView(buffer);
+  const sets: PointSet[] = [];
+  let at = start;
+  for (let set = 0; set < count; ++set) {
+    if (buffer.byteLength < at + SET_HEAD_BYTES) throw new Error("state frame cut short");
+    const number = (which: number) => view.getFloat32(at + 8 + 4 * which, true);
+    const points = view.getUint32(at + 4, true);
+    const first = at + SET_HEAD_BYTES;
+    const end = first + 6 * points;
+    if (buffer.byteLength < end) throw new Error("state frame cut short");
+    sets.push({
+      index: view.getUint32(at, true),
+      lower: [number(0), number(1), number(2)],
+      size: [number(3), number(4), number(5)],
+      radius: number(6),
+      positions: new Uint16Array(buffer.slice(first, end)),
+    });
+    at = end + (end % 4);
+  }
+  return sets;
+}
+
 /** Gathers frames that nobody has looked at yet into one: per entity only the newest pose is kept. */
 export class NewestFrame {
-  private readonly records = new Map<number, { pose: Float32Array; state: number }>();
+  private readonly records = new Map<number, { pose: Float32Array; state: number; pointed: number }>();
+  private readonly sets = new Map<number, PointSet>();
   private time = 0;
   private step = 0;
   private any = false;
@@ -57,8 +101,10 @@ export class NewestFrame {
     this.step = frame.step;
     for (let record = 0; record < frame.indices.length; ++record) {
       const pose = frame.poses.subarray(record * POSE_FLOATS, (record + 1) * POSE_FLOATS);
-      this.records.set(frame.indices[record]!, { pose, state: frame.states[record]! });
+      this.records.set(frame.indices[record]!, { pose, state: frame.states[record]!, pointed: frame.pointed[record]! });
+      if (!frame.pointed[record]) this.sets.delete(frame.indices[record]!);
     }
+    for (const set of frame.sets) this.sets.set(set.index, set);
   }
 
   /** The gathered frame, or null when none came since the last call. */
@@ -71,15 +117,19 @@ export class NewestFrame {
       indices: new Uint32Array(count),
       poses: new Float32Array(count * POSE_FLOATS),
       states: new Uint8Array(count),
+      pointed: new Uint8Array(count),
+      sets: [...this.sets.values()],
     };
     let at = 0;
     for (const [index, record] of this.records) {
       frame.indices[at] = index;
       frame.poses.set(record.pose, at * POSE_FLOATS);
       frame.states[at] = record.state;
+      frame.pointed[at] = record.pointed;
       ++at;
     }
     this.records.clear();
+    this.sets.clear();
     this.any = false;
     return frame;
   }

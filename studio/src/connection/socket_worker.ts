@@ -31,7 +31,13 @@ function flushFrame(): void {
   const frame = newest.take();
   if (!frame) return;
   pageIsReady = false;
-  tell({ kind: "frame", frame }, [frame.indices.buffer, frame.poses.buffer, frame.states.buffer]);
+  tell({ kind: "frame", frame }, [
+    frame.indices.buffer,
+    frame.poses.buffer,
+    frame.states.buffer,
+    frame.pointed.buffer,
+    ...frame.sets.map((set) => set.positions.buffer),
+  ]);
 }
 
 function receive(data: unknown): void {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import { Box3, type BufferGeometry, type Material, Matrix4 } from "three";
+import { Box3, type BufferGeometry, Color, type Material, Matrix4, type MeshStandardMaterial, SRGBColorSpace } from "three";
 
 /** One mesh of a drawable; `matrix` places it in the entity's frame. */
 export interface DrawablePart {
@@ -30,4 +30,27 @@ export function disposeDrawable(drawable: Drawable): void {
     part.geometry.dispose();
     part.material.dispose();
   }
+}
+
+/** The mean of the parts' colours, textures included: of what a thing is drawn in where its form is lost. */
+export function averageColor(drawable: Drawable): Color {
+  const sum = new Color(0, 0, 0);
+  for (const { material } of drawable.parts) {
+    const { color, map } = material as MeshStandardMaterial;
+    const own = color?.clone() ?? new Color(1, 1, 1);
+    if (map?.image) own.multiply(averageOf(map.image as CanvasImageSource));
+    sum.add(own);
+  }
+  return sum.multiplyScalar(1 / Math.max(1, drawable.parts.length));
+}
+
+function averageOf(image: CanvasImageSource): Color {
+  const canvas = document.createElement("canvas");
+  canvas.width = canvas.height = 1;
+  const context = canvas.getContext("2d");
+  if (!context) return new Color(1, 1, 1);
+  context.imageSmoothingQuality = "high";
+  context.drawImage(image, 0, 0, 1, 1);
+  const [red, green, blue] = context.getImageData(0, 0, 1, 1).data;
+  return new Color().setRGB(red! / 255, green! / 255, blue! / 255, SRGBColorSpace);
 }

@@ -4,14 +4,18 @@ import { type Motion } from "../document/motion";
 import { type Changed, positionOf, rotationOf, type SceneDocument } from "../document/scene_document";
 import type { Entity } from "../document/scene_types";
 import { Signal } from "../signal";
+import type { Frame } from "../connection/frame";
 import { Batch } from "./batch";
-import { disposeDrawable, type Drawable } from "./drawable";
+import { averageColor, disposeDrawable, type Drawable } from "./drawable";
 import type { ModelStore } from "./model_store";
+import { PointClouds } from "./point_cloud";
 import { drawShape, shapeKey } from "./shapes";
 import { type Quality, STATE_TINT } from "./tint";
 
 const WHITE = new Color(1, 1, 1);
 const STILL_COLOR = new Color(0.115, 0.12, 0.13);
+/** Of grains that nobody gave a colour. */
+const SAND = new Color(0.68, 0.5, 0.29);
 const PLACEHOLDER = shapeDrawable({ index: 0, shape: { type: "box", half_extents: [0.15, 0.15, 0.15] } });
 
 function shapeDrawable(entity: Entity): Drawable {
@@ -32,11 +36,15 @@ export class EntityView {
   /** A model's picture arrived or could not be had. */
   readonly loaded = new Signal<void>();
   readonly failed = new Signal<{ index: number; reason: string }>();
+  /** An entity began or ceased to be drawn as points. */
+  readonly pointed = new Signal<number>();
   tinted = true;
   /** While something is dragged, where the user has it, and its scale; wins over what the server said. */
   readonly held = new Map<number, { position: Vector3; rotation: Quaternion; scale: number }>();
   /** Something was moved, added or removed since the shadows were drawn. */
   shadowsAreOld = true;
+  /** Entities that are not one body: grains. */
+  readonly clouds: PointClouds;
   private readonly batches = new Map<string, Batch>();
   private readonly batchOf = new Map<number, { key: string; batch: Batch; entity: Entity }>();
   private pending = 0;
@@ -51,7 +59,10 @@ export class EntityView {
     private readonly motion: Motion,
     private readonly models: ModelStore,
     private quality: Quality,
-  ) {}
+  ) {
+    this.clouds = new PointClouds(quality);
+    this.group.add(this.clouds.group);
+  }
 
   /** Models on their way. */
   get loading(): number {
@@ -64,12 +75,27 @@ export class EntityView {
       for (const index of this.known()) this.put(index);
       return;
     }
-    for (const index of changed.removed) this.take(index);
+    for (const index of changed.removed) {
+      this.take(index);
+      this.clouds.drop(index);
+    }
     for (const index of changed.entities) this.put(index);
+  }
+
+  /** Points of a frame; what has some is drawn as them. */
+  takePoints(frame: Frame, now: number, smooth: boolean): void {
+    if (frame.sets.length > 0) this.shadowsAreOld = true;
+    for (const index of this.clouds.take(frame, now, smooth)) {
+      this.colorCloud(index);
+      this.tint(index);
+      this.place(index, now);
+      this.pointed.emit(index);
+    }
   }
 
   setQuality(quality: Quality): void {
     this.quality = quality;
+    this.clouds.setQuality(quality);
     for (const index of [...this.batchOf.keys()]) this.take(index);
     for (const index of this.known()) this.put(index);
   }
@@ -105,7 +131,7 @@ export class EntityView {
 
   /** Red, green and blue of the state colour as it is drawn, and how much it covers. */
   tintOf(index: number): number[] {
-    return this.batchOf.get(index)?.batch.tintOf(index) ?? [];
+    return this.clouds.of(index)?.tint() ?? this.batchOf.get(index)?.batch.tintOf(index) ?? [];
   }
 
   /** The box around the entities; endless planes count as a point. Empty when none is drawn. */
@@ -113,7 +139,9 @@ export class EntityView {
     const bounds = new Box3();
     const matrix = new Matrix4();
     for (const index of indices) {
-      const shown = this.batchOf.get(index);
+      const cloud = this.clouds.of(index);
+      if (cloud) bounds.union(cloud.bounds);
+      const shown = cloud ? undefined : this.batchOf.get(index);
       if (!shown || shown.entity.shape?.type === "plane" || !this.matrixOf(index, now, matrix)) continue;
       bounds.union(shown.batch.drawable.bounds.clone().applyMatrix4(matrix));
     }
@@ -169,6 +197,7 @@ export class EntityView {
     if (shown?.key !== key) return false;
     shown.entity = entity;
     shown.batch.setColor(entity.index, colorOf(entity));
+    this.colorCloud(entity.index);
     this.motion.moved.add(entity.index);
     return true;
   }
@@ -182,6 +211,7 @@ export class EntityView {
     }
     batch.add(entity.index, colorOf(entity));
     this.batchOf.set(entity.index, { key, batch, entity });
+    this.colorCloud(entity.index);
     this.motion.moved.add(entity.index);
     this.motion.restated.add(entity.index);
   }
@@ -199,12 +229,26 @@ export class EntityView {
     if (!shown.entity.model && shown.batch.drawable !== PLACEHOLDER) disposeDrawable(shown.batch.drawable);
   }
 
+  private colorCloud(index: number): void {
+    const cloud = this.clouds.of(index);
+    const shown = this.batchOf.get(index);
+    if (!cloud || !shown) return;
+    const { entity } = shown;
+    if (entity.model) cloud.setColor(averageColor(shown.batch.drawable));
+    else cloud.setColor(entity.color ? colorOf(entity) : SAND);
+  }
+
   private place(index: number, now: number): void {
-    if (this.matrixOf(index, now, this.matrix)) this.batchOf.get(index)!.batch.setMatrix(index, this.matrix);
+    const isDrawn = this.matrixOf(index, now, this.matrix);
+    // What is drawn as points is not drawn as the thing that they filled.
+    if (this.clouds.of(index)) this.matrix.makeScale(0, 0, 0);
+    if (isDrawn) this.batchOf.get(index)!.batch.setMatrix(index, this.matrix);
   }
 
   private tint(index: number): void {
     const state = this.motion.state(index);
-    this.batchOf.get(index)?.batch.setTint(index, this.tinted ? STATE_TINT[state] : [0, 0, 0, 0]);
+    const tint = this.tinted ? STATE_TINT[state] : [0, 0, 0, 0];
+    this.batchOf.get(index)?.batch.setTint(index, tint);
+    this.clouds.of(index)?.setTint(tint);
   }
 }

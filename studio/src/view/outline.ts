@@ -12,6 +12,7 @@ import {
   NotEqualStencilFunc,
   ReplaceStencilOp,
   ShaderMaterial,
+  Uniform,
   Vector2,
 } from "three";
 import type { EntityView } from "./entity_view";
@@ -37,31 +38,42 @@ export class Outline {
     stencilZPass: ReplaceStencilOp,
   });
   private readonly rim = rimMaterial();
-  private shown: { index: number; meshes: Mesh[] }[] = [];
+  private readonly cloudRim = new Uniform(0);
+  private shown: { index: number; meshes: Mesh[]; ofCloud: boolean }[] = [];
   private readonly matrix = new Matrix4();
 
   constructor(private readonly entities: EntityView) {}
 
   /** Outlines these entities, as they are drawn now, and no others. */
   show(indices: readonly number[]): void {
-    for (const { meshes } of this.shown) for (const mesh of meshes) mesh.geometry.dispose();
+    for (const { meshes, ofCloud } of this.shown)
+      for (const mesh of meshes) ofCloud ? (mesh.material as MeshBasicMaterial).dispose() : mesh.geometry.dispose();
     this.group.clear();
     this.shown = [];
     for (const index of indices) {
+      const cloud = this.entities.clouds.of(index);
+      if (cloud) {
+        const mask = this.prepared(cloud.twin(this.mask.clone(), new Uniform(0)), 998);
+        const rim = this.prepared(cloud.twin(cloudRimMaterial(), this.cloudRim), 999);
+        this.shown.push({ index, meshes: [mask, rim], ofCloud: true });
+        continue;
+      }
       const drawable = this.entities.drawableOf(index);
       if (!drawable?.castsShadow) continue;
       const meshes = drawable.parts.flatMap((part) => [
         this.mesh(maskGeometry(part.geometry), this.mask, 998),
         this.mesh(rimGeometry(part.geometry), this.rim, 999),
       ]);
-      this.shown.push({ index, meshes });
+      this.shown.push({ index, meshes, ofCloud: false });
     }
   }
 
   /** Follows the entities; `size` is the canvas's in pixels. */
   update(now: number, size: Vector2): void {
     (this.rim.uniforms["shift"]!.value as Vector2).set((2 * WIDTH_PIXELS) / size.x, (2 * WIDTH_PIXELS) / size.y);
-    for (const { index, meshes } of this.shown) {
+    this.cloudRim.value = (2 * WIDTH_PIXELS) / size.y;
+    for (const { index, meshes, ofCloud } of this.shown) {
+      if (ofCloud) continue;
       const drawable = this.entities.drawableOf(index);
       const drawn = drawable !== undefined && this.entities.matrixOf(index, now, this.matrix);
       meshes.forEach((mesh, at) => {
@@ -73,7 +85,10 @@ export class Outline {
   }
 
   private mesh(geometry: BufferGeometry, material: MeshBasicMaterial | ShaderMaterial, order: number): Mesh {
-    const mesh = new Mesh(geometry, material);
+    return this.prepared(new Mesh(geometry, material), order);
+  }
+
+  private prepared(mesh: Mesh, order: number): Mesh {
     mesh.matrixAutoUpdate = false;
     mesh.matrixWorldAutoUpdate = false;
     mesh.frustumCulled = false;
@@ -97,6 +112,20 @@ function rimGeometry(original: BufferGeometry): BufferGeometry {
   geometry.setAttribute("position", original.getAttribute("position"));
   geometry.instanceCount = COPIES;
   return geometry;
+}
+
+function cloudRimMaterial(): MeshBasicMaterial {
+  return new MeshBasicMaterial({
+    color: OUTLINE_COLOR,
+    depthTest: false,
+    depthWrite: false,
+    transparent: true,
+    toneMapped: false,
+    stencilWrite: true,
+    stencilRef: 1,
+    stencilFunc: NotEqualStencilFunc,
+    stencilZPass: KeepStencilOp,
+  });
 }
 
 function rimMaterial(): ShaderMaterial {

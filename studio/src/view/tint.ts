@@ -13,7 +13,7 @@ export const STATE_TINT: Record<BodyState, readonly [number, number, number, num
 export type Quality = "high" | "low";
 
 // The state gives the hue, the entity's own colour how light it is, so that textures can still be made out.
-const MIX = `
+export const MIX = `
 float ownLight = dot(diffuseColor.rgb, vec3(0.2126, 0.7152, 0.0722));
 diffuseColor.rgb = mix(diffuseColor.rgb, vTint.rgb * (0.45 + 0.9 * ownLight), vTint.a);
 #include <alphatest_fragment>`;

@@ -125,7 +125,7 @@ export class View {
     this.aim(clientX, clientY);
     const hits: Intersection[] = this.raycaster.intersectObject(this.entities.group, true);
     for (const hit of hits) {
-      const batch = hit.object.userData["batch"] as Batch | undefined;
+      const batch = hit.object.userData["batch"] as Pick<Batch, "entityAt"> | undefined;
       const index = batch?.entityAt(hit.instanceId ?? -1);
       if (index === undefined || ignore?.has(index)) continue;
       return { index, point: hit.point, normal: this.worldNormal(hit), distance: hit.distance };
@@ -160,7 +160,7 @@ export class View {
     this.watchPace(now - this.lastFrame);
     this.lastFrame = now;
     const flying = this.rig.advance(now, seconds);
-    const moving = this.motion.advance(now);
+    const moving = [this.motion.advance(now), this.entities.clouds.advance(now)].includes(true);
     this.beforeFrame.emit(now);
     this.entities.update(now);
     this.collision.update(now);
@@ -201,6 +201,7 @@ export class View {
 
   private worldNormal(hit: Intersection): Vector3 {
     const mesh = hit.object as InstancedMesh;
+    if (!mesh.isInstancedMesh) return hit.normal?.clone() ?? new Vector3(0, 1, 0);
     mesh.getMatrixAt(hit.instanceId ?? 0, this.instance);
     return (hit.face?.normal.clone() ?? new Vector3(0, 1, 0)).transformDirection(this.instance);
   }

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+
+#include "math/bounds.h"
+#include "physics/deformable/cloth_sheet.h"
+#include "physics/deformable/rope_line.h"
+#include "physics/deformable/solid_contacts.h"
+#include "physics/inter/definitions/step_report.h"
+
+namespace embody::physics {
+
+/// A deformable with what its contacts and its sleep need.
+struct DeformableRecord {
+    DeformableDefinition definition;
+    std::unique_ptr<SolidDeformable> solid;  ///< one of these three
+    std::unique_ptr<ClothSheet> cloth;
+    std::unique_ptr<RopeLine> rope;
+    std::unique_ptr<CollisionShape> node_ball;              ///< of its contact radius
+    std::vector<std::unique_ptr<CollisionShape>> capsules;  ///< of a rope's segments at rest, one a length
+    std::vector<std::uint32_t> segment_capsule;             ///< by segment: index of its capsule
+    std::vector<SolidContact> contacts;                     ///< a solid's of the last step
+    std::vector<std::uint32_t> touched_bodies;              ///< slots: those that it pushed in the last step
+    double quiet_time = 0;                                  ///< s
+    bool is_asleep = false;
+    std::vector<Vec3> last_positions;  ///< last finite ones, to freeze it at
+
+    [[nodiscard]] const Nodes& nodes() const;
+    [[nodiscard]] Bounds bounds() const;
+    [[nodiscard]] bool is_finite() const;
+    [[nodiscard]] Conserved conserved(Vec3 gravity) const;
+    /// Not far from how the whole is turned.
+    [[nodiscard]] Quat rotation() const;
+    /// Puts its nodes to places (m) with velocities (m/s), one a node; `rotation` as above. Pinned ones get no
+    /// velocity.
+    void set_motion(std::span<const Vec3> positions, std::span<const Vec3> velocities, Quat rotation);
+    /// Takes all velocities away.
+    void rest();
+    /// Takes it back to where its nodes were, at rest.
+    void stop_at(std::span<const Vec3> positions);
+};
+
+/// Of a valid definition. Fails where a shape for its contacts cannot be made.
+Result<DeformableRecord> make_deformable_record(const DeformableDefinition& definition);
+
+}  // namespace embody::physics

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "foundation/result.h"
+#include "physics/inter/definitions/shape_definition.h"
+
+namespace embody::scene {
+
+/// Centres of balls of this diameter (m) that fill a shape as loosely as poured grains lie, in the shape's frame, from
+/// the lowest layer upwards, at most `most`. The same seed gives the same places. The error says why none fits.
+Result<std::vector<Vec3>> fill_with_grains(const physics::ShapeDefinition& shape, double diameter, std::size_t most,
+                                           std::uint64_t seed);
+
+}  // namespace embody::scene

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// Grains in the Studio: drawn as points, poured, chosen, changed, and there for who comes later.
+import assert from "node:assert/strict";
+import { after, before, beforeEach, describe, it } from "node:test";
+import { openBrowser, openStudio } from "./browser.mjs";
+import { findProgram, prepareDatabase, RealServer } from "./real_server.mjs";
+
+const ASLEEP = 2;
+const SAND = 2;
+const SANDBOX = {
+  embody_scene: 1,
+  title: "Sandbox",
+  entities: [
+    { index: 1, name: "Floor", shape: { type: "plane", normal: [0, 1, 0], offset: 0 }, attributes: { kind: "static" } },
+    {
+      index: SAND,
+      name: "Sand",
+      shape: { type: "cylinder", radius: 0.1, half_height: 0.1 },
+      pose: { position: [0, 0.101, 0] },
+      attributes: { kind: "granular", grain_budget: 600 },
+    },
+  ],
+  camera: { position: [0.5, 0.4, 0.7], target: [0, 0.08, 0] },
+};
+
+describe("grains in the Studio", { timeout: 600000 }, () => {
+  let browser, server, page, address;
+
+  before(async () => {
+    const program = findProgram();
+    assert.ok(program, "the program embody is not built: build it, or set EMBODY_PROGRAM");
+    server = new RealServer(program, prepareDatabase(program));
+    address = await server.start(SANDBOX);
+    browser = await openBrowser();
+  });
+  after(async () => {
+    await browser?.close();
+    await server?.discard();
+  });
+  beforeEach(async () => {
+    await page?.context().close();
+    page = await openStudio(browser, address);
+    await command("scene.load", { scene: SANDBOX });
+    await page.waitForFunction((sand) => window.embody.points(sand), SAND);
+  });
+
+  // As another client of the same server would.
+  async function command(name, params) {
+    await page.evaluate(
+      async ([name, params]) => {
+        const socket = new WebSocket(`ws://${location.host}/ws`);
+        await new Promise((opened) => (socket.onopen = opened));
+        socket.send(JSON.stringify({ id: 1, command: name, params }));
+        const reply = await new Promise((got) => {
+          socket.onmessage = (event) => typeof event.data === "string" && event.data.includes('"ok"') && got(JSON.parse(event.data));
+        });
+        socket.close();
+        if (!reply.ok) throw new Error(JSON.stringify(reply.error));
+      },
+      [name, params],
+    );
+  }
+  const points = (from = page) => from.evaluate((sand) => window.embody.points(sand), SAND);
+  const state = () => page.evaluate((sand) => window.embody.entities().find((entity) => entity.index === sand).state, SAND);
+
+  it("fills the cylinder, lets it collapse and come to rest, in the same place for every page", async () => {
+    const filled = await points();
+    assert.ok(filled.count > 300 && filled.count <= 600, `${filled.count} grains`);
+    assert.ok(filled.upper[0] < 0.101 && filled.lower[1] > -0.001, JSON.stringify(filled));
+
+    await command("simulation.step", { count: 240 });
+    await page.waitForFunction((sand) => window.embody.points(sand).upper[0] > 0.12, SAND);
+    assert.equal(await state(), ASLEEP);
+    const heap = await points();
+    assert.equal(heap.count, filled.count);
+    assert.ok(heap.upper[1] < filled.upper[1]);
+
+    // Nothing moves any more, yet who comes later sees the heap.
+    const later = await openStudio(browser, address);
+    await later.waitForFunction((sand) => window.embody.points(sand), SAND);
+    assert.deepEqual(await points(later), heap);
+    await later.context().close();
+
+    await command("simulation.reset", {});
+    await page.waitForFunction((upper) => window.embody.points(2).upper[1] === upper, filled.upper[1]);
+    assert.deepEqual(page.faults, []);
+  });
+
+  it("is chosen as one thing by a click on a grain, and told apart by its outline", async () => {
+    await command("simulation.step", { count: 200 });
+    await page.waitForFunction((sand) => window.embody.points(sand).upper[0] > 0.12, SAND);
+    const seen = await page.evaluate((sand) => window.embody.seenAt(sand), SAND);
+    await page.mouse.click(seen.x, seen.y);
+    assert.deepEqual(await page.evaluate(() => window.embody.selection()), [SAND]);
+    await page.locator("[data-testid=attribute-simulated_diameter]").first().waitFor();
+    const said = await page.locator("[data-testid=attribute-simulated_diameter]").first().innerText();
+    assert.match(said, /stands for/);
+    assert.deepEqual(page.faults, []);
+  });
+
+  it("becomes a solid thing and grains again while it runs, without a further click", async () => {
+    await command("simulation.step", { count: 20 });
+    await command("entity.set_attribute", { indices: [SAND], name: "kind", value: "rigid" });
+    await page.waitForFunction((sand) => !window.embody.points(sand), SAND);
+    await command("entity.set_attribute", { indices: [SAND], name: "kind", value: "granular" });
+    await page.waitForFunction((sand) => window.embody.points(sand), SAND);
+    await command("entity.remove", { indices: [SAND] });
+    await page.waitForFunction((sand) => !window.embody.points(sand), SAND);
+    await command("edit.undo", {});
+    await page.waitForFunction((sand) => window.embody.points(sand), SAND);
+    assert.deepEqual(page.faults, []);
+  });
+});
