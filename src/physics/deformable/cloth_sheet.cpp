@@ -82,6 +82,7 @@ ClothSheet::ClothSheet(const DeformableDefinition& definition)
     springs_.friction = definition.friction;
     springs_.attachments = definition.attachments;
     make_pattern(bending_);
+    layers_.emplace(cloth_.triangles, definition.nodes);
 }
 
 // Blocks between corners of a triangle, numbers between the nodes that only bending joins.
@@ -280,9 +281,57 @@ void ClothSheet::keep_momentum(const Substep& substep) {
     keep_momenta(nodes_, given, h, moves_);
 }
 
+// Layers lie as far from each other as two of them from a body between. What lies on a body gives way last.
+void ClothSheet::part_layers(TaskPool& workers) {
+    constexpr double give_on_body = 0.05;
+    std::vector<double> give = nodes_.inverse_mass;
+    for (const TouchSpring& spring : springs_.springs()) {
+        if (spring.acts) give[spring.node[0]] *= give_on_body;
+    }
+    const double apart = std::max(cloth_.thickness, 2 * springs_.radius);
+    layers_->part(nodes_, apart, springs_.friction, give, moves_, workers);
+}
+
+// Layers are kept apart reliably where they move by no more than half an edge: faster cloth takes more parts.
+int ClothSheet::parts_of(double h) const {
+    constexpr int most_parts = 4;
+    Vec3 mean;
+    double mass = 0, fastest = 0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        mean += nodes_.mass[i] * nodes_.mean_velocity[i];
+        mass += nodes_.mass[i];
+    }
+    for (const Vec3 velocity : nodes_.mean_velocity) fastest = std::max(fastest, length(velocity - mean / mass));
+    return static_cast<int>(std::clamp(std::ceil(2 * h * fastest / layers_->edge_length()), 1.0, double{most_parts}));
+}
+
 void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> contacts,
                          std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies,
                          TaskPool& workers) {
+    std::vector<std::pair<Vec3, Vec3>> velocities;
+    for (const TouchedBody& body : bodies) velocities.emplace_back(body.velocity, body.spin);
+    const int parts = parts_of(substep.h);
+    int rounds = 0, solves = 0;
+    for (int part = 0; part < parts; ++part) {
+        Substep own = substep;
+        own.h = substep.h / parts;
+        own.time = substep.time + part * own.h;
+        // What earlier parts have pushed goes on in this one.
+        for (std::size_t b = 0; b < bodies.size() && part > 0; ++b) {
+            bodies[b].shift += own.h * (bodies[b].velocity - velocities[b].first);
+            bodies[b].turn += own.h * (bodies[b].spin - velocities[b].second);
+        }
+        advance_part(own, contacts, attachment_bodies, bodies, workers);
+        rounds += rounds_;
+        solves += solves_;
+    }
+    rounds_ = rounds;
+    solves_ = solves;
+}
+
+void ClothSheet::advance_part(const Substep& substep, std::span<const NodeContact> contacts,
+                              std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies,
+                              TaskPool& workers) {
     if (is_frozen_) return;
     find_strains(substep, workers);
     fill_rows(substep, workers);
@@ -297,6 +346,7 @@ void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> co
     const bool is_held = std::any_of(fixed_.begin(), fixed_.end(), [](std::uint8_t f) { return f != 0; });
     if (!is_held && std::none_of(springs_.springs().begin(), springs_.springs().end(), acts)) keep_momentum(substep);
     springs_.finish(moves_, body_moves_, substep, bodies);
+    part_layers(workers);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const Vec3 mean = moves_[i] / substep.h;
         nodes_.velocity[i] = mean + 0.5 * (mean - nodes_.mean_velocity[i]);

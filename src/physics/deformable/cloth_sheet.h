@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+
 #include "foundation/task_pool.h"
+#include "physics/deformable/cloth_layers.h"
 #include "physics/deformable/cloth_mesh.h"
 #include "physics/deformable/cloth_solver.h"
 #include "physics/deformable/nodes.h"
@@ -16,7 +19,8 @@ public:
     /// `definition` is valid and its matter is cloth.
     explicit ClothSheet(const DeformableDefinition& definition);
 
-    /// One substep. `attachment_bodies`: where the attachments hold in `bodies`. Pushes the bodies.
+    /// One substep, in parts where layers of it move fast. `attachment_bodies`: where the attachments hold in `bodies`.
+    /// Pushes the bodies.
     void advance(const Substep& substep, std::span<const NodeContact> contacts,
                  std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies, TaskPool& workers);
 
@@ -58,6 +62,11 @@ private:
     void fill_row(std::size_t i, const Substep& substep);
     bool solve_moves(const Substep& substep, std::span<const TouchedBody> bodies, TaskPool& workers);
     void keep_momentum(const Substep& substep);
+    void part_layers(TaskPool& workers);
+    [[nodiscard]] int parts_of(double h) const;
+    void advance_part(const Substep& substep, std::span<const NodeContact> contacts,
+                      std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies,
+                      TaskPool& workers);
 
     Cloth cloth_;
     Nodes nodes_;
@@ -68,6 +77,7 @@ private:
     std::vector<Corner> corners_;
     std::vector<double> near_bending_;  // of the blocks between neighbours
     TouchSprings springs_;
+    std::optional<ClothLayers> layers_;
     std::vector<std::uint8_t> fixed_;
 
     // Of the substep.

@@ -34,7 +34,7 @@ struct SegmentContact {
     NodeContact plane;       ///< `node` does not count
 };
 
-/// What holds a point of a deformable, Σ weight x, off or to a plane, another point of it or a body's anchor: the force
+/// What holds a point of a deformable, Σ weight x, off a plane or to an anchor of a body: the force
 ///   load - matrix s
 /// on the point, where s is how far it moves in the substep on top of what the touched body's pushes move it.
 struct TouchSpring {
@@ -75,8 +75,6 @@ public:
     /// After begin(): one of a point of a line.
     void add(const Nodes& nodes, const SegmentContact& contact, std::span<const TouchedBody> bodies,
              const Substep& substep, std::span<const double> node_stiffness);
-    /// One between points of the deformable itself, without memory.
-    void add(const TouchSpring& spring) { springs_.push_back(spring); }
     /// Which springs act, and how friction does, for these moves. True where that has changed by more than a solve is
     /// worth. `is_foretold`: of moves by inertia alone, no measure of forces: those of the last substep are.
     bool choose(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, bool is_foretold);

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: MIT
+#include "physics/deformable/cloth_layers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "math/bounds.h"
+
+namespace embody::physics {
+
+namespace {
+
+constexpr double cell_share = 1.5;  // cells over mean edge
+
+struct Cell {
+    int x = 0, y = 0, z = 0;
+};
+
+Cell cell_of(Vec3 p, double size) {
+    return {static_cast<int>(std::floor(p.x / size)), static_cast<int>(std::floor(p.y / size)),
+            static_cast<int>(std::floor(p.z / size))};
+}
+
+// Teschner and others, "Optimized spatial hashing for collision detection of deformable objects" (2003).
+std::size_t bucket_of(int x, int y, int z, std::size_t buckets) {
+    const auto part = [](int value, std::uint32_t factor) { return static_cast<std::uint32_t>(value) * factor; };
+    return (part(x, 73856093u) ^ part(y, 19349663u) ^ part(z, 83492791u)) & (buckets - 1);
+}
+
+template <class Visit>
+void for_each_bucket(const Bounds& box, double size, std::size_t buckets, Visit visit) {
+    const Cell low = cell_of(box.lower, size), high = cell_of(box.upper, size);
+    for (int z = low.z; z <= high.z; ++z) {
+        for (int y = low.y; y <= high.y; ++y) {
+            for (int x = low.x; x <= high.x; ++x) visit(bucket_of(x, y, z, buckets));
+        }
+    }
+}
+
+// Barycentric weights of the triangle's point nearest to p (C. Ericson, Real-Time Collision Detection, 5.1.5).
+std::array<double, 3> nearest_weights(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
+    const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+    const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
+    const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+    if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
+    const double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
+    const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+    if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
+    const double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
+    const double va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+        const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return {0, 1 - w, w};
+    }
+    const double sum = va + vb + vc;
+    return {va / sum, vb / sum, vc / sum};
+}
+
+// Where between two segments the nearest points lie, 0 … 1 each; false where either is at an end, or they are parallel.
+bool nearest_inside(Vec3 a, Vec3 b, Vec3 c, Vec3 d, double& s, double& t) {
+    const Vec3 u = b - a, v = d - c, w = a - c;
+    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w), vw = dot(v, w);
+    const double spread = uu * vv - uv * uv;
+    if (!(spread > 1e-6 * uu * vv)) return false;
+    s = (uv * vw - vv * uw) / spread;
+    t = (uu * vw - uv * uw) / spread;
+    return s > 0 && s < 1 && t > 0 && t < 1;
+}
+
+}  // namespace
+
+struct ClothLayers::Search {
+    const Nodes& nodes;
+    std::span<const Vec3> moves;
+    double thickness = 0;
+
+    // Adds it if it may come nearer than twice the thickness.
+    void add(LayerContact contact, Vec3 away, std::vector<LayerContact>& found) const {
+        contact.distance = length(away);
+        if (contact.distance < 1e-9) return;
+        contact.normal = away / contact.distance;
+        double end = contact.distance;
+        for (std::size_t k = 0; k < 4; ++k) end += contact.weight[k] * dot(contact.normal, moves[contact.node[k]]);
+        if (end < 2 * thickness) found.push_back(contact);
+    }
+};
+
+ClothLayers::ClothLayers(const std::vector<std::array<std::uint32_t, 3>>& triangles, const std::vector<Vec3>& nodes)
+    : triangles_(triangles) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
+    std::vector<std::vector<std::uint32_t>> around(nodes.size());
+    for (const auto& triangle : triangles_) {
+        std::array<std::uint32_t, 3> own{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto [a, b] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
+            const auto [at, is_new] = known.try_emplace({a, b}, static_cast<std::uint32_t>(edges_.size()));
+            own[k] = at->second;
+            if (!is_new) continue;
+            edges_.push_back({a, b});
+            around[a].push_back(b);
+            around[b].push_back(a);
+            edge_length_ += length(nodes[b] - nodes[a]);
+        }
+        edges_of_triangle_.push_back(own);
+    }
+    edge_length_ /= static_cast<double>(edges_.size());
+    neighbour_start_.push_back(0);
+    for (const auto& of_node : around) {
+        neighbours_.insert(neighbours_.end(), of_node.begin(), of_node.end());
+        neighbour_start_.push_back(static_cast<std::uint32_t>(neighbours_.size()));
+    }
+}
+
+bool ClothLayers::are_neighbours(std::uint32_t a, std::uint32_t b) const {
+    if (a == b) return true;
+    for (std::uint32_t k = neighbour_start_[a]; k < neighbour_start_[a + 1]; ++k) {
+        if (neighbours_[k] == b) return true;
+    }
+    return false;
+}
+
+// Counting sort of the triangles into the cells that they may reach.
+void ClothLayers::fill_grid(const Nodes& nodes) {
+    std::size_t buckets = 1;
+    while (buckets < 2 * triangles_.size()) buckets *= 2;
+    const double size = cell_share * edge_length_;
+    const auto box_of = [&](const std::array<std::uint32_t, 3>& triangle) {
+        Bounds box;
+        double reach = 0;
+        for (const std::uint32_t corner : triangle) {
+            box.add(nodes.position[corner]);
+            reach = std::max(reach, reach_[corner]);
+        }
+        return enlarged(box, reach);
+    };
+    cell_start_.assign(buckets + 1, 0);
+    for (const auto& triangle : triangles_)
+        for_each_bucket(box_of(triangle), size, buckets, [&](std::size_t b) { ++cell_start_[b + 1]; });
+    for (std::size_t b = 0; b < buckets; ++b) cell_start_[b + 1] += cell_start_[b];
+    cell_triangles_.resize(cell_start_.back());
+    std::vector<std::uint32_t> next(cell_start_.begin(), cell_start_.end() - 1);
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+        for_each_bucket(box_of(triangles_[t]), size, buckets, [&](std::size_t b) { cell_triangles_[next[b]++] = t; });
+}
+
+void ClothLayers::search_node(const Search& search, std::uint32_t node, std::vector<std::uint32_t>& seen,
+                              std::vector<LayerContact>& found) const {
+    const std::vector<Vec3>& x = search.nodes.position;
+    const double own_reach = reach_[node] + search.thickness;
+    const Bounds box = enlarged(Bounds{x[node], x[node]}, own_reach);
+    const std::size_t first_found = found.size();
+    // Where neighbours lie nearer than layers may.
+    const bool is_fine = edge_length_ < 4 * search.thickness;
+    const auto is_near = [&](std::uint32_t p, std::uint32_t q, std::uint32_t r) {
+        return are_neighbours(node, p) || are_neighbours(node, q) || are_neighbours(node, r);
+    };
+    for_each_bucket(box, cell_share * edge_length_, cell_start_.size() - 1, [&](std::size_t b) {
+        for (std::uint32_t k = cell_start_[b]; k < cell_start_[b + 1]; ++k) {
+            const std::uint32_t t = cell_triangles_[k];
+            if (seen[t] == node) continue;
+            seen[t] = node;
+            const auto [p, q, r] = triangles_[t];
+            const double reach = own_reach + std::max({reach_[p], reach_[q], reach_[r]});
+            const Bounds around{min(x[p], min(x[q], x[r])), max(x[p], max(x[q], x[r]))};
+            if (!contains(enlarged(around, reach), x[node])) continue;
+            const auto weight = nearest_weights(x[node], x[p], x[q], x[r]);
+            const Vec3 away = x[node] - (weight[0] * x[p] + weight[1] * x[q] + weight[2] * x[r]);
+            if (length_squared(away) > reach * reach) continue;
+            if (node == p || node == q || node == r || (is_fine && is_near(p, q, r))) continue;
+            search.add({{node, p, q, r}, {1, -weight[0], -weight[1], -weight[2]}, {}, 0}, away, found);
+        }
+    });
+    // Whatever the order of the cells.
+    const auto order = [](const LayerContact& a, const LayerContact& b) { return a.node < b.node; };
+    std::sort(found.begin() + static_cast<std::ptrdiff_t>(first_found), found.end(), order);
+}
+
+void ClothLayers::search_edge(const Search& search, std::uint32_t edge, std::vector<std::uint32_t>& seen,
+                              std::vector<LayerContact>& found) const {
+    const std::vector<Vec3>& x = search.nodes.position;
+    const auto [a, b] = edges_[edge];
+    const double own_reach = std::max(reach_[a], reach_[b]) + search.thickness;
+    const Bounds box = enlarged(Bounds{min(x[a], x[b]), max(x[a], x[b])}, own_reach);
+    const std::size_t first_found = found.size();
+    for_each_bucket(box, cell_share * edge_length_, cell_start_.size() - 1, [&](std::size_t bucket) {
+        for (std::uint32_t k = cell_start_[bucket]; k < cell_start_[bucket + 1]; ++k) {
+            for (const std::uint32_t other : edges_of_triangle_[cell_triangles_[k]]) {
+                if (other <= edge || seen[other] == edge) continue;
+                seen[other] = edge;
+                const auto [c, d] = edges_[other];
+                const double reach = own_reach + std::max(reach_[c], reach_[d]);
+                if (!overlaps(enlarged(Bounds{min(x[c], x[d]), max(x[c], x[d])}, reach), box)) continue;
+                double s = 0, t = 0;
+                if (!nearest_inside(x[a], x[b], x[c], x[d], s, t)) continue;
+                const Vec3 away = (1 - s) * x[a] + s * x[b] - (1 - t) * x[c] - t * x[d];
+                if (length_squared(away) > reach * reach || a == c || a == d || b == c || b == d) continue;
+                search.add({{a, b, c, d}, {1 - s, s, t - 1, -t}, {}, 0}, away, found);
+            }
+        }
+    });
+    const auto order = [](const LayerContact& p, const LayerContact& q) { return p.node < q.node; };
+    std::sort(found.begin() + static_cast<std::ptrdiff_t>(first_found), found.end(), order);
+}
+
+void ClothLayers::find(const Nodes& nodes, double thickness, std::span<const Vec3> moves, TaskPool& workers) {
+    const std::size_t count = nodes.size();
+    Vec3 mean;
+    double mass = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        mean += nodes.mass[i] * moves[i];
+        mass += nodes.mass[i];
+    }
+    mean = mean / mass;
+    reach_.resize(count);
+    for (std::size_t i = 0; i < count; ++i) reach_[i] = std::min(length(moves[i] - mean), 2 * edge_length_);
+    fill_grid(nodes);
+    const Search search{nodes, moves, thickness};
+    const int number = std::max(1, workers.workers());
+    std::vector<std::vector<LayerContact>> of_nodes(static_cast<std::size_t>(number)), of_edges(of_nodes);
+    share_among(workers, count, count >= 1000, [&](int worker, Share share) {
+        std::vector<std::uint32_t> seen(triangles_.size(), 0xFFFFFFFFu);
+        for (std::size_t i = share.first; i < share.last; ++i)
+            search_node(search, static_cast<std::uint32_t>(i), seen, of_nodes[static_cast<std::size_t>(worker)]);
+    });
+    share_among(workers, edges_.size(), count >= 1000, [&](int worker, Share share) {
+        std::vector<std::uint32_t> seen(edges_.size(), 0xFFFFFFFFu);
+        for (std::size_t e = share.first; e < share.last; ++e)
+            search_edge(search, static_cast<std::uint32_t>(e), seen, of_edges[static_cast<std::size_t>(worker)]);
+    });
+    contacts_.clear();
+    for (const auto* lists : {&of_nodes, &of_edges}) {
+        for (const auto& list : *lists) contacts_.insert(contacts_.end(), list.begin(), list.end());
+    }
+}
+
+namespace {
+
+Vec3 way_of(const LayerContact& contact, std::span<const Vec3> moves) {
+    Vec3 way;
+    for (std::size_t k = 0; k < 4; ++k) way += contact.weight[k] * moves[contact.node[k]];
+    return way;
+}
+
+double give_of(const LayerContact& contact, std::span<const double> give) {
+    double sum = 0;
+    for (std::size_t k = 0; k < 4; ++k) sum += contact.weight[k] * contact.weight[k] * give[contact.node[k]];
+    return sum;
+}
+
+void push(const LayerContact& contact, Vec3 by, std::span<const double> give, std::span<Vec3> moves) {
+    for (std::size_t k = 0; k < 4; ++k) moves[contact.node[k]] += (contact.weight[k] * give[contact.node[k]]) * by;
+}
+
+// Where pushes did not part them all: nodes that would pass through each other go together for this substep, with the
+// mean of their moves (X. Provot, "Collision and self-collision handling in cloth model", 1997).
+void join(std::span<const LayerContact> contacts, double thickness, std::span<const double> give,
+          std::span<Vec3> moves) {
+    constexpr double least_share = 0.2;
+    constexpr int most_rounds = 20;
+    std::vector<std::uint32_t> zone(moves.size());
+    for (std::uint32_t i = 0; i < zone.size(); ++i) zone[i] = i;
+    const auto root_of = [&](std::uint32_t i) {
+        while (zone[i] != i) i = zone[i] = zone[zone[i]];
+        return i;
+    };
+    for (int round = 0; round < most_rounds; ++round) {
+        bool has_joined = false;
+        for (const LayerContact& contact : contacts) {
+            const double end = contact.distance + dot(contact.normal, way_of(contact, moves));
+            if (end >= least_share * std::min(thickness, contact.distance)) continue;
+            for (std::size_t k = 1; k < 4; ++k) {
+                const std::uint32_t a = root_of(contact.node[0]), b = root_of(contact.node[k]);
+                if (a == b) continue;
+                has_joined = true;
+                zone[std::max(a, b)] = std::min(a, b);
+            }
+        }
+        if (!has_joined) return;
+        std::vector<double> weight(moves.size(), 0);
+        std::vector<Vec3> sum(moves.size());
+        std::vector<bool> is_held(moves.size(), false), is_joined(moves.size(), false);
+        for (std::uint32_t i = 0; i < moves.size(); ++i) {
+            const std::uint32_t root = root_of(i);
+            if (root != i) is_joined[root] = true;
+            if (give[i] == 0) {
+                is_held[root] = true;
+                continue;
+            }
+            weight[root] += 1 / give[i];
+            sum[root] += (1 / give[i]) * moves[i];
+        }
+        for (std::uint32_t i = 0; i < moves.size(); ++i) {
+            const std::uint32_t root = root_of(i);
+            if (is_joined[root] && give[i] > 0) moves[i] = is_held[root] ? Vec3{} : sum[root] / weight[root];
+        }
+    }
+}
+
+}  // namespace
+
+void ClothLayers::part(const Nodes& nodes, double thickness, double friction, std::span<const double> give,
+                       std::span<Vec3> moves, TaskPool& workers) {
+    constexpr int rounds = 10;
+    find(nodes, thickness, moves, workers);
+    std::vector<double> pushed(contacts_.size(), 0);  // m kg, so far
+    for (int round = 0; round < rounds; ++round) {
+        bool is_parted = true;
+        for (std::size_t c = 0; c < contacts_.size(); ++c) {
+            const LayerContact& contact = contacts_[c];
+            const double sum = give_of(contact, give), target = std::min(thickness, contact.distance);
+            const double distance = contact.distance + dot(contact.normal, way_of(contact, moves));
+            if (distance >= target || sum == 0) continue;
+            is_parted = false;
+            pushed[c] += (target - distance) / sum;
+            push(contact, ((target - distance) / sum) * contact.normal, give, moves);
+        }
+        if (is_parted) break;
+    }
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+        if (pushed[c] == 0) continue;
+        const LayerContact& contact = contacts_[c];
+        const Vec3 way = way_of(contact, moves), sliding = way - dot(way, contact.normal) * contact.normal;
+        const double size = length(sliding);
+        if (size == 0) continue;
+        push(contact, (-std::min(friction * pushed[c], size / give_of(contact, give)) / size) * sliding, give, moves);
+    }
+    join(contacts_, thickness, give, moves);
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "foundation/task_pool.h"
+#include "physics/deformable/nodes.h"
+
+namespace embody::physics {
+
+/// A node over a triangle of the same sheet, or two of its edges that cross: Σ weight x is the way between their
+/// nearest points when the substep began, `distance` (m) long along the unit `normal`.
+struct LayerContact {
+    std::array<std::uint32_t, 4> node{};
+    std::array<double, 4> weight{};
+    Vec3 normal;
+    double distance = 0;
+};
+
+/// Keeps the layers of a sheet apart: after the solve, as a correction of its moves.
+class ClothLayers {
+public:
+    ClothLayers(const std::vector<std::array<std::uint32_t, 3>>& triangles, const std::vector<Vec3>& nodes);
+
+    /// Changes `moves` (m) so that what would come nearer than `thickness` (m) along the line between them stays that
+    /// far apart, or as near as it was: the nodes give way by `give` (1/kg, 0: not at all), sliding is braked by
+    /// friction. Momentum is kept. What moves by more than two edges relative to the rest in one substep may be missed.
+    void part(const Nodes& nodes, double thickness, double friction, std::span<const double> give,
+              std::span<Vec3> moves, TaskPool& workers);
+    /// Mean, m.
+    [[nodiscard]] double edge_length() const { return edge_length_; }
+    /// Of the last call.
+    [[nodiscard]] std::span<const LayerContact> contacts() const { return contacts_; }
+
+private:
+    struct Search;
+    void find(const Nodes& nodes, double thickness, std::span<const Vec3> moves, TaskPool& workers);
+    void fill_grid(const Nodes& nodes);
+    void search_node(const Search& search, std::uint32_t node, std::vector<std::uint32_t>& seen,
+                     std::vector<LayerContact>& found) const;
+    void search_edge(const Search& search, std::uint32_t edge, std::vector<std::uint32_t>& seen,
+                     std::vector<LayerContact>& found) const;
+    [[nodiscard]] bool are_neighbours(std::uint32_t a, std::uint32_t b) const;
+
+    std::vector<std::array<std::uint32_t, 3>> triangles_;
+    std::vector<std::array<std::uint32_t, 3>> edges_of_triangle_;
+    std::vector<std::array<std::uint32_t, 2>> edges_;
+    std::vector<std::uint32_t> neighbour_start_, neighbours_;  // of nodes
+    double edge_length_ = 0;                                   // mean, m
+
+    // Of the substep: triangles by the cells of a grid that they may reach, cells by a hash.
+    std::vector<double> reach_;  // how far a node goes relative to the whole, m
+    std::vector<std::uint32_t> cell_start_, cell_triangles_;
+    std::vector<LayerContact> contacts_;
+};
+
+}  // namespace embody::physics
