@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// A poured heap comes to rest at the material's friction angle, whatever the size and number of the grains (one to a
+// few thousand: single heaps of the same kind differ by a degree).
+#include <gtest/gtest.h>
+
+#include "physics/inter/definitions/grain_material.h"
+#include "scenes/structures/grain_heap.h"
+
+namespace embody::physics {
+namespace {
+
+constexpr double tolerance = 2;  // degrees
+
+void expect_slope(const scenes::HeapToPour& definition) {
+    const auto heap = scenes::pour_heap(definition);
+    ASSERT_TRUE(heap.ok()) << heap.error().message();
+    EXPECT_NEAR(heap.value().angle, definition.friction_angle, tolerance)
+        << definition.grains << " grains of " << definition.diameter << " m";
+    EXPECT_TRUE(heap.value().asleep);
+    EXPECT_LT(heap.value().overlap, 0.12);
+}
+
+class GrainHeap : public testing::TestWithParam<double> {};
+
+TEST_P(GrainHeap, HasTheFrictionAngleAsItsSlope) { expect_slope({.friction_angle = GetParam()}); }
+INSTANTIATE_TEST_SUITE_P(OfBeadsRiceSandAndGravel, GrainHeap, testing::Values(21, 27, 32, 38, 44));
+
+TEST(GrainHeaps, SlopeTheSameForGrainsOfFiveMillimetres) { expect_slope({.diameter = 0.005}); }
+TEST(GrainHeaps, SlopeTheSameForGrainsOfThreeCentimetres) { expect_slope({.diameter = 0.03}); }
+TEST(GrainHeaps, SlopeTheSameForTwiceAsMany) { expect_slope({.grains = 3000}); }
+
+TEST(GrainMaterial, GrowsRougherWithTheAngleAndInProportionToTheSize) {
+    Material last = grain_material(0, 0.01);
+    for (double angle = 1; angle <= 80; angle += 1) {
+        const Material material = grain_material(angle, 0.01);
+        EXPECT_TRUE(validate(material).ok());
+        EXPECT_GE(material.friction_dynamic, last.friction_dynamic);
+        EXPECT_GE(material.friction_rolling, last.friction_rolling);
+        EXPECT_NEAR(grain_material(angle, 0.02).friction_rolling, 2 * material.friction_rolling, 1e-12);
+        last = material;
+    }
+}
+
+TEST(GrainSteps, AreFinerForSmallerGrainsAndNeverCoarserThanAskedFor) {
+    const WorldSettings settings;
+    EXPECT_EQ(substeps_for_grains(0.1, settings), settings.substeps);
+    EXPECT_GT(substeps_for_grains(0.003, settings), substeps_for_grains(0.01, settings));
+    WorldSettings fine;
+    fine.substeps = 64;
+    EXPECT_EQ(substeps_for_grains(0.003, fine), 64);
+    WorldSettings weightless;
+    weightless.gravity = {};
+    EXPECT_EQ(substeps_for_grains(0.01, weightless), weightless.substeps);
+}
+
+}  // namespace
+}  // namespace embody::physics
