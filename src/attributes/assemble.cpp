@@ -105,10 +105,15 @@ void put_simulated_grains(AttributeSet& set, const GeometryFacts& facts, const F
     const double largest = std::max(*range.low, 0.6 * std::min({form.size.x, form.size.y, form.size.z}));
     const double diameter = std::min(std::max({grain, least, *range.low}), largest);
     const double stands_for = std::pow(diameter / grain, 3);
+    // Three digits are enough of what is counted by the thousand.
+    const auto counted = [](double count) {
+        const double step = std::pow(10, std::max(0.0, std::floor(std::log10(count)) - 2));
+        return std::to_string(std::llround(count / step) * std::llround(step));
+    };
     const std::string source = stands_for < 1.5 ? "of a grain"
-                                                : "each ball stands for " + short_number(stands_for) +
-                                                      " grains, so that " + short_number(budget) +
-                                                      " fill its volume of " + short_number(volume * 1000) + " litres";
+                                                : "each ball stands for " + counted(stands_for) + " grains, so that " +
+                                                      counted(budget) + " fill its volume of " +
+                                                      short_number(volume * 1000) + " litres";
     put_number(set, "simulated_diameter", diameter, source, AttributeLevel::model);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import {
   type Color,
+  FrontSide,
   Group,
   InstancedBufferAttribute,
   InstancedBufferGeometry,
@@ -30,7 +31,7 @@ const VERTEX_HEAD = `
 attribute vec3 from;
 attribute vec3 to;
 uniform vec3 fromLower, fromSize, toLower, toSize;
-uniform float part, radius, rim;
+uniform float part, radius, rim, sink;
 varying vec2 vCorner;
 varying vec3 vShade;
 vec3 shadeOf(float seed) {
@@ -42,7 +43,8 @@ vec3 centre = mix(fromLower + fromSize * from, toLower + toSize * to, part);
 vec3 across = vec3(viewMatrix[0][0], viewMatrix[1][0], viewMatrix[2][0]);
 vec3 upwards = vec3(viewMatrix[0][1], viewMatrix[1][1], viewMatrix[2][1]);
 float own = radius - rim * (viewMatrix * vec4(centre, 1.0)).z / projectionMatrix[1][1];
-vec3 transformed = centre + own * (across * position.x + upwards * position.y);
+vec3 towards = vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2]);
+vec3 transformed = centre + own * (across * position.x + upwards * position.y) - sink * radius * towards;
 vCorner = position.xy;
 vShade = shadeOf(float(gl_InstanceID));`;
 const FRAGMENT_HEAD = `
@@ -84,6 +86,7 @@ export class PointCloud {
     part: new Uniform(1),
     radius: new Uniform(0),
     rim: new Uniform(0),
+    sink: new Uniform(0),
     stateTint: new Uniform(new Vector4(0, 0, 0, 0)),
   };
   private older: InstancedBufferAttribute;
@@ -104,7 +107,9 @@ export class PointCloud {
     this.older = new InstancedBufferAttribute(set.positions.slice(), 3, true);
     this.newer = new InstancedBufferAttribute(set.positions.slice(), 3, true);
     this.mesh = new Mesh(geometry, this.material(quality));
-    this.mesh.customDepthMaterial = placed(new MeshDepthMaterial(), this.uniforms, FRAGMENT_HEAD, [["#include <alphatest_fragment>", CUT]]);
+    // The disc that throws a shadow lies at the far side of the ball, so that a grain's own one does not fall on it.
+    const sunk = { ...this.uniforms, sink: new Uniform(1) };
+    this.mesh.customDepthMaterial = placed(new MeshDepthMaterial(), sunk, FRAGMENT_HEAD, [["#include <alphatest_fragment>", CUT]]);
     this.mesh.castShadow = this.mesh.receiveShadow = true;
     this.mesh.frustumCulled = false;
     this.mesh.userData["batch"] = { entityAt: () => index };
@@ -179,6 +184,7 @@ export class PointCloud {
 
   private material(quality: Quality): Material {
     const material = quality === "low" ? new MeshLambertMaterial() : new MeshStandardMaterial({ roughness: 0.85, metalness: 0 });
+    material.shadowSide = FrontSide;
     const lit = placed(material, this.uniforms, FRAGMENT_HEAD, [
       ["#include <alphatest_fragment>", `${CUT}\ndiffuseColor.rgb *= vShade;\nvec4 vTint = stateTint;${MIX}`],
       ["#include <normal_fragment_begin>", FRAGMENT_NORMAL],
