@@ -29,6 +29,15 @@ struct ModelReference {
     friend bool operator==(const ModelReference&, const ModelReference&) = default;
 };
 
+/// Where a thing that changes its form is held: its points within a distance of a place stay where they are, in the
+/// world or in another entity.
+struct Pin {
+    Vec3 position;                  ///< in the entity's frame, m
+    double radius = 0.01;           ///< m; where it catches no point, the nearest is held
+    std::optional<EntityIndex> to;  ///< a rigid entity; open: the world
+    friend bool operator==(const Pin&, const Pin&) = default;
+};
+
 /// The paper's VSEle = {index, GeomAttr, PhyAttr} (definition 2): what it looks like, what it is made of, where it is.
 struct Entity {
     EntityIndex index = 0;
@@ -49,6 +58,7 @@ struct Entity {
     std::string category;                        ///< of primitives, for actions; models bring theirs
     std::optional<std::array<double, 3>> color;  ///< of primitives, linear RGB 0 … 1
     double scale = 1;                            ///< of a model, uniform, > 0
+    std::vector<Pin> pins;                       ///< of one of kind soft
 };
 
 /// A joint between two entities, or an entity and the world.

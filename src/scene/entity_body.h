@@ -10,6 +10,7 @@
 #include "catalog/catalog.h"
 #include "foundation/result.h"
 #include "physics/inter/definitions/body_definition.h"
+#include "physics/inter/definitions/deformable_definition.h"
 #include "physics/inter/definitions/shape_definition.h"
 #include "scene/document.h"
 #include "scene/grain_bodies.h"
@@ -35,6 +36,11 @@ public:
     Result<physics::ShapeDefinition> shape(const Entity& entity, const attributes::AttributeSet& attributes);
     /// Balls for an entity of kind granular, of the shape that they fill.
     Result<GrainDefinition> grains(const Entity& entity, const attributes::AttributeSet& attributes);
+    /// The tetrahedra of an entity of kind soft, without its scale; the error says why it cannot be soft. Valid until
+    /// the next call.
+    Result<const catalog::SoftMesh*> soft_mesh(const Entity& entity);
+    /// Everything but what its pins hold to other entities.
+    Result<physics::DeformableDefinition> soft(const Entity& entity, const attributes::AttributeSet& attributes);
     /// Entities with the same key have the same shape; empty: nobody else has it.
     static std::string shape_key(const Entity& entity, const attributes::AttributeSet& attributes);
     /// The model's summary; fails for what is not a model.
@@ -44,7 +50,10 @@ public:
     [[nodiscard]] const attributes::Taxonomy* taxonomy() const;
 
     /// Forgets a model whose attributes were changed.
-    void forget(const std::string& key) { models_.erase(key); }
+    void forget(const std::string& key) {
+        models_.erase(key);
+        soft_meshes_.erase(key);
+    }
 
 private:
     struct Model {
@@ -56,13 +65,18 @@ private:
     [[nodiscard]] attributes::AttributeSet lay_over(const attributes::AttributeSet& automatic,
                                                     const std::vector<attributes::AttributeEntry>& own,
                                                     const attributes::ModelFacts& facts) const;
+    Result<catalog::SoftMesh> make_soft_mesh(const Entity& entity);
     const attributes::ModelFacts& primitive(const physics::ShapeDefinition& shape);
 
     catalog::Catalog* catalog_;
     std::map<std::string, Model> models_;
-    std::map<std::string, attributes::ModelFacts> primitives_;  ///< by their text
-    attributes::ModelFacts last_primitive_;                     ///< of one without a short text
+    std::map<std::string, attributes::ModelFacts> primitives_;      ///< by their text
+    attributes::ModelFacts last_primitive_;                         ///< of one without a short text
+    std::map<std::string, Result<catalog::SoftMesh>> soft_meshes_;  ///< by model or text; "": the last without one
 };
+
+/// Nodes at rest that the pin holds: those within its radius, or the nearest.
+std::vector<std::uint32_t> pinned_nodes(const Pin& pin, const std::vector<Vec3>& nodes);
 
 /// The value of an attribute of an entity that is drawn at `scale`, as the model itself has it.
 attributes::AttributeValue value_of_model(const std::string& name, const attributes::AttributeValue& value,

@@ -90,7 +90,7 @@ std::optional<double> GrainBodies::drop_distance(double most) const {
     return least;
 }
 
-BodyHandle GrainBodies::nearest_body(Vec3 position) const {
+BodyHandle GrainBodies::hold(Vec3 position) {
     return *std::ranges::min_element(
         balls_, {}, [&](BodyHandle ball) { return length_squared(world_.center_of_mass(ball) - position); });
 }

@@ -34,7 +34,7 @@ public:
     [[nodiscard]] double mass() const override;
     [[nodiscard]] Bounds bounds() const override;
     [[nodiscard]] std::optional<double> drop_distance(double most) const override;
-    [[nodiscard]] physics::BodyHandle nearest_body(Vec3 position) const override;
+    [[nodiscard]] physics::BodyHandle hold(Vec3 position) override;
     Result<void> move(const Transform& motion) override;
     Result<void> set_velocity(Vec3 linear, Vec3 angular) override;
     Result<void> apply_impulse(Vec3 impulse) override;

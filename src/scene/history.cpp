@@ -68,6 +68,7 @@ Entity without_geometry(const Entity& entity) {
     out.category = entity.category;
     out.color = entity.color;
     out.scale = entity.scale;
+    out.pins = entity.pins;
     return out;
 }
 

@@ -8,8 +8,15 @@
 #include "math/bounds.h"
 #include "math/transform.h"
 #include "physics/inter/definitions/body_definition.h"
+#include "physics/inter/definitions/deformable_definition.h"
 
 namespace embody::scene {
+
+/// Where a ray meets a surface.
+struct SurfaceHit {
+    double distance = 0;  ///< m along the ray
+    Vec3 normal;          ///< unit, outwards
+};
 
 /// What stands for an entity that is not one body: many points, whatever physics moves them. The world that they are in
 /// outlives them; the destructor takes them out of it.
@@ -22,8 +29,12 @@ public:
 
     /// Where they are now, world, m: always as many, in the same order.
     virtual void read(std::vector<Vec3>& positions) const = 0;
-    /// Of the ball that is drawn at each, m.
+    /// Of the ball that is drawn at each, m; 0: they carry the thing's own drawn form.
     [[nodiscard]] virtual double radius() const = 0;
+    /// What carries a drawn form, at rest; null where nothing does.
+    [[nodiscard]] virtual const physics::DeformableDefinition* deformable() const { return nullptr; }
+    /// Of the entity's frame, where they are a thing that still has one.
+    [[nodiscard]] virtual std::optional<Transform> pose() const { return std::nullopt; }
     /// Of the most awake of them.
     [[nodiscard]] virtual physics::SleepState state() const = 0;
     [[nodiscard]] virtual Vec3 center_of_mass() const = 0;
@@ -32,8 +43,13 @@ public:
     [[nodiscard]] virtual Bounds bounds() const = 0;
     /// How far they can move down together until one touches something else, m; nothing if none does within `most`.
     [[nodiscard]] virtual std::optional<double> drop_distance(double most) const = 0;
-    /// The body nearest to a place, to pull at; null where they have none.
-    [[nodiscard]] virtual physics::BodyHandle nearest_body(Vec3 position) const = 0;
+    /// Where a ray (unit direction) meets the surface of what is no body in the world; nothing where bodies are all
+    /// there is.
+    [[nodiscard]] virtual std::optional<SurfaceHit> cast_ray(Vec3, Vec3, double) const { return std::nullopt; }
+    /// A body to pull at, at or near a place: one of theirs, or a hand that is there until let_go(). Null where there
+    /// is none.
+    [[nodiscard]] virtual physics::BodyHandle hold(Vec3 position) = 0;
+    virtual void let_go() {}
 
     /// Carries all of them along as one rigid thing; they are at rest then.
     virtual Result<void> move(const Transform& motion) = 0;

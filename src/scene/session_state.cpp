@@ -23,7 +23,7 @@ struct LimitText {
     physics::StepLimit limit;
     const char* text;
 };
-constexpr std::array<LimitText, 6> limit_texts = {{
+constexpr std::array<LimitText, 7> limit_texts = {{
     {physics::StepLimit::linear_speed_clamped,
      "Something was faster than the scene's greatest speed and was slowed down."},
     {physics::StepLimit::angular_speed_clamped,
@@ -31,6 +31,8 @@ constexpr std::array<LimitText, 6> limit_texts = {{
     {physics::StepLimit::too_many_pairs, "So many things are in each other that some do not see each other."},
     {physics::StepLimit::not_finite_body_frozen,
      "Something's motion left the finite numbers; it was frozen where it was."},
+    {physics::StepLimit::not_finite_deformable_frozen,
+     "A soft thing's motion left the finite numbers; it was frozen where it was."},
     {physics::StepLimit::impact_rounds_exhausted,
      "An impact was too complicated for one step; a smaller time step helps."},
     {physics::StepLimit::deep_penetration, "Things overlap deeply; place them apart or use a smaller time step."},
@@ -149,6 +151,12 @@ void SessionState::tell_document(json changes) {
           {"redo", label(history.redoable())},
           {"unsaved", !history.is_saved()},
           {"name", name}});
+    tell_notes();
+}
+
+void SessionState::tell_notes() {
+    for (const std::string& note : simulation->notes())
+        if (told_notes.insert(note).second) tell_message("warning", note);
 }
 
 json SessionState::change_json(const Change& change) const {
@@ -314,6 +322,7 @@ Result<void> SessionState::open(Document opened, std::string opened_name) {
     grab.reset();
     told_limits = 0;
     told_problems.clear();
+    told_notes.clear();
     history.clear();
     play_state = PlayState::stopped;
     step_times.clear();

@@ -44,6 +44,7 @@ struct SessionState {
     std::deque<std::chrono::steady_clock::time_point> step_times;  ///< of the last steps
     std::uint32_t told_limits = 0;                                 ///< of this run
     std::set<std::string> told_problems;
+    std::set<std::string> told_notes;  ///< of this document
 
     Events events;
 
@@ -83,6 +84,7 @@ private:
     Result<void> run_changes(const std::vector<Change>& changes);
     Result<void> insist_on_changes(const std::vector<Change>& changes);
     void tell_step();
+    void tell_notes();
     [[nodiscard]] nlohmann::json change_json(const Change& change) const;
 };
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
+#include <tuple>
 #include <utility>
 
 #include "attributes/surfaces.h"
@@ -11,6 +13,7 @@
 #include "scene/action_runner.h"
 #include "scene/entity_body.h"
 #include "scene/grain_bodies.h"
+#include "scene/soft_nodes.h"
 
 namespace embody::scene {
 
@@ -40,13 +43,24 @@ struct LiveEntity {
     ShapeHandle shape;
     std::string shape_key;
     std::unique_ptr<GrainBodies> grains;  // of a granular one
-    std::string filling;                  // what it was filled with: the same, the same places
-    Transform frame;                      // of its points: where they were put, or moved to by hand
+    std::unique_ptr<SoftNodes> soft;      // of a soft one
+    bool is_soft = false;                 // its kind says so, and tetrahedra could be made
+    std::string filling;                  // what points were made of: the same, the same places
+    Transform frame;                      // of grains: where they were put, or moved to by hand
+    std::string note;                     // why it is not what its kind says; empty: it is
 
-    [[nodiscard]] MovingPoints* points() const { return grains.get(); }
+    [[nodiscard]] MovingPoints* points() const {
+        return grains ? static_cast<MovingPoints*>(grains.get()) : soft.get();
+    }
 };
 
 bool is_granular(const AttributeSet& attributes) { return attributes.word("kind", "") == "granular"; }
+
+// Equal where the form of a soft thing is.
+std::string form_of(const Entity& entity, const AttributeSet& attributes) {
+    const std::string key = EntityBodies::shape_key(entity, attributes);
+    return key.empty() ? key : key + '\n' + std::to_string(entity.scale);
+}
 
 // Equal where geometry and size of the grains are.
 std::string filling_of(const Entity& entity, const AttributeSet& attributes) {
@@ -93,6 +107,7 @@ struct Simulation::State {
     std::vector<EntityIndex> indices;
     std::map<std::string, SharedShape> shared_shapes;
     std::map<std::uint32_t, LiveJoint> joints;
+    std::set<EntityIndex> to_be_held;  // entities that joints or pins need as one body, before these are there
     std::vector<TimedForce> timed_forces;
     std::vector<EntityIndex> spawned, despawned;
     EntityIndex next_spawned = last_document_index + 1;
@@ -141,11 +156,40 @@ struct Simulation::State {
         if (!set.ok()) return set.error();
         described.attributes = std::move(set).value();
         described.frame = entity.pose;
+        find_form(described);
         if (is_granular(described.attributes))
             described.filling = filling_of(entity, described.attributes);
+        else if (described.is_soft)
+            described.filling = form_of(entity, described.attributes);
         else
             described.shape_key = EntityBodies::shape_key(entity, described.attributes);
         return described;
+    }
+
+    // Whether a joint holds it or something is pinned to it.
+    [[nodiscard]] bool is_held_as_body(EntityIndex index) const {
+        if (to_be_held.contains(index)) return true;
+        const auto joins = [index](const auto& item) {
+            const SceneJoint& joint = item.second.definition;
+            return joint.entity_b == index || joint.entity_a == index;
+        };
+        const auto is_pinned_to_it = [index](const auto& item) {
+            const std::vector<Pin>& pins = item.second.definition.pins;
+            return std::ranges::any_of(pins, [index](const Pin& pin) { return pin.to == index; });
+        };
+        return std::ranges::any_of(joints, joins) || std::ranges::any_of(live, is_pinned_to_it);
+    }
+
+    // What cannot be soft is rigid, with a note why.
+    void find_form(LiveEntity& entity) {
+        if (entity.attributes.word("kind", "") != "soft") return;
+        if (is_held_as_body(entity.definition.index)) {
+            entity.note = "is simulated as rigid, because a joint or a pin holds on to it";
+            return;
+        }
+        const Result<const catalog::SoftMesh*> mesh = bodies.soft_mesh(entity.definition);
+        entity.is_soft = mesh.ok();
+        if (!mesh.ok()) entity.note = "is simulated as rigid, because " + mesh.error().why;
     }
 
     // With its shape; the body's definition lacks nothing then.
@@ -180,11 +224,61 @@ struct Simulation::State {
     }
 
     Result<void> put(LiveEntity& entity) {
-        return is_granular(entity.attributes) ? put_grains(entity) : put_body(entity);
+        if (is_granular(entity.attributes)) return put_grains(entity);
+        return entity.is_soft ? put_soft(entity) : put_body(entity);
+    }
+
+    Result<void> put_soft(LiveEntity& entity) {
+        const Result<physics::DeformableDefinition> definition = bodies.soft(entity.definition, entity.attributes);
+        if (!definition.ok()) return definition.error();
+        Result<std::unique_ptr<SoftNodes>> soft = SoftNodes::create(*world, definition.value());
+        if (!soft.ok()) return soft.error();
+        entity.soft = std::move(soft).value();
+        return {};
+    }
+
+    // Holds what its pins say to where that is now on other entities.
+    Result<void> fasten(const LiveEntity& entity) {
+        if (!entity.soft) return {};
+        std::vector<physics::Attachment> attachments;
+        std::vector<bool> is_held(entity.soft->deformable()->nodes.size(), false);
+        for (const std::uint32_t node : entity.soft->deformable()->pinned) is_held[node] = true;
+        std::vector<Vec3> positions;
+        entity.soft->read(positions);
+        for (std::size_t i = 0; i < entity.definition.pins.size(); ++i) {
+            const Pin& pin = entity.definition.pins[i];
+            if (!pin.to) continue;
+            const auto other = live.find(*pin.to);
+            const std::string where = "pins[" + std::to_string(i) + "].to";
+            if (other == live.end())
+                return of_entity(entity.definition, {where, "entity " + std::to_string(*pin.to) + " is not there"});
+            if (other->second.points())
+                return of_entity(entity.definition, {where, "is no single body", "pin it to a rigid or static thing"});
+            for (const std::uint32_t node : pinned_nodes(pin, entity.soft->deformable()->nodes)) {
+                if (is_held[node]) continue;
+                is_held[node] = true;
+                const Transform pose = world->pose(other->second.body);
+                attachments.push_back({node, other->second.body, inverse_transform_point(pose, positions[node])});
+            }
+        }
+        return entity.soft->attach(std::move(attachments));
+    }
+
+    // An entity that came, and those whose pins waited for it; without one: all.
+    Result<void> fasten_all(std::optional<EntityIndex> came) {
+        for (const auto& [index, entity] : live) {
+            const bool is_meant =
+                !came || index == *came ||
+                std::ranges::any_of(entity.definition.pins, [&](const Pin& p) { return p.to == came; });
+            if (!is_meant) continue;
+            if (Result<void> held = fasten(entity); !held.ok()) return held;
+        }
+        return {};
     }
 
     void take_out(LiveEntity& entity) {
         entity.grains.reset();
+        entity.soft.reset();
         if (entity.body.is_null()) return;
         // It is in the world, which does not refuse.
         (void)world->destroy_body(entity.body).ok();
@@ -209,7 +303,14 @@ struct Simulation::State {
     }
 
     [[nodiscard]] Transform pose_of(const LiveEntity& entity) const {
-        return entity.points() ? entity.frame : world->pose(entity.body);
+        return entity.points() ? entity.points()->pose().value_or(entity.frame) : world->pose(entity.body);
+    }
+
+    // Of its centre of mass, and its spin; grains have none in common.
+    [[nodiscard]] std::pair<Vec3, Vec3> motion_of(const LiveEntity& entity) const {
+        if (entity.soft) return {entity.soft->linear_velocity(), entity.soft->angular_velocity()};
+        if (entity.points()) return {};
+        return {world->linear_velocity(entity.body), world->angular_velocity(entity.body)};
     }
 
     // The same body takes the new definition.
@@ -243,26 +344,34 @@ struct Simulation::State {
         return {};
     }
 
+    // The same nodes go on with other matter; what its pins hold to others stays held where it is.
+    Result<void> update_soft(LiveEntity& before, LiveEntity& after) {
+        Result<physics::DeformableDefinition> definition = bodies.soft(after.definition, after.attributes);
+        if (!definition.ok()) return definition.error();
+        if (before.definition.pins == after.definition.pins)
+            definition.value().attachments = before.soft->attachments();
+        if (Result<void> set = before.soft->set_definition(definition.value()); !set.ok()) return set;
+        after.soft = std::move(before.soft);
+        return before.definition.pins == after.definition.pins ? Result<void>{} : fasten(after);
+    }
+
     // Another kind, or other grains: made anew where it is.
     Result<void> replace(LiveEntity& before, LiveEntity& after, bool keep_motion) {
-        const EntityIndex index = before.definition.index;
-        const auto holds = [index](const auto& item) {
-            const SceneJoint& joint = item.second.definition;
-            return joint.entity_b == index || joint.entity_a == index;
-        };
-        if (after.attributes.word("kind", "") == "granular" && std::ranges::any_of(joints, holds))
+        if (is_granular(after.attributes) && is_held_as_body(before.definition.index))
             return Error{"attributes.kind", "grains cannot be held by a joint", "remove the joint first"};
         const Entity document = after.definition;
         if (keep_motion) {
             after.definition.pose = after.frame = pose_of(before);
-            if (!before.points()) {
-                after.definition.linear_velocity = world->linear_velocity(before.body);
-                after.definition.angular_velocity = world->angular_velocity(before.body);
-            }
+            if (!before.grains)
+                std::tie(after.definition.linear_velocity, after.definition.angular_velocity) = motion_of(before);
         }
-        const Result<void> placed = put(after);
+        Result<void> placed = put(after);
+        if (placed.ok()) placed = fasten(after);
         after.definition = document;
-        if (!placed.ok()) return placed;
+        if (!placed.ok()) {
+            take_out(after);
+            return placed;
+        }
         take_out(before);
         return {};
     }
@@ -276,9 +385,12 @@ struct Simulation::State {
         LiveEntity& after = described.value();
         const bool same_grains =
             before.grains && !after.filling.empty() && after.filling == before.filling && keep_motion;
-        const bool both_bodies = !before.points() && !is_granular(after.attributes);
+        const bool same_soft =
+            before.soft && after.is_soft && !after.filling.empty() && after.filling == before.filling && keep_motion;
+        const bool both_bodies = !before.points() && !after.is_soft && !is_granular(after.attributes);
         const Result<void> updated = both_bodies   ? update_body(before, after, keep_motion)
                                      : same_grains ? update_grains(before, after)
+                                     : same_soft   ? update_soft(before, after)
                                                    : replace(before, after, keep_motion);
         if (!updated.ok()) return of_entity(entity, updated.error());
         before = std::move(after);
@@ -301,7 +413,7 @@ struct Simulation::State {
 
     Result<void> place(LiveEntity& entity, const Transform& pose) {
         if (!entity.points()) return world->set_pose(entity.body, pose);
-        if (Result<void> moved = entity.points()->move(pose * inverse(entity.frame)); !moved.ok()) return moved;
+        if (Result<void> moved = entity.points()->move(pose * inverse(pose_of(entity))); !moved.ok()) return moved;
         entity.frame = pose;
         return {};
     }
@@ -311,10 +423,34 @@ struct Simulation::State {
                                : world->set_velocity(entity.body, linear, angular);
     }
 
+    // Soft ends of a joint are rigid as long as it is there.
+    Result<void> make_bodies_of(const SceneJoint& joint) {
+        for (const EntityIndex index : {joint.entity_b, joint.entity_a.value_or(0)}) {
+            const auto found = live.find(index);
+            if (found == live.end() || !found->second.soft) continue;
+            to_be_held.insert(index);
+            Result<void> made = update(found->second.definition, true);
+            to_be_held.erase(index);
+            if (!made.ok()) return made;
+        }
+        return {};
+    }
+
+    // What a joint held may be soft again.
+    Result<void> soften_ends(const SceneJoint& joint) {
+        for (const EntityIndex index : {joint.entity_b, joint.entity_a.value_or(0)}) {
+            const auto found = live.find(index);
+            if (found == live.end() || found->second.note.empty() || is_held_as_body(index)) continue;
+            if (Result<void> made = update(found->second.definition, true); !made.ok()) return made;
+        }
+        return {};
+    }
+
     Result<void> add_joint(const SceneJoint& joint) {
         const std::string who = "joint " + std::to_string(joint.index);
         if (joints.contains(joint.index)) return Error{who, "is in the world already"};
         physics::JointDefinition definition = joint.definition;
+        if (Result<void> made = make_bodies_of(joint); !made.ok()) return made;
         const auto b = live.find(joint.entity_b);
         if (b == live.end()) return Error{who + ": entity_b", "is not in the world"};
         if (b->second.points()) return Error{who + ": entity_b", "is no single body", "joints need a rigid thing"};
@@ -461,13 +597,21 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document,
         if (!set.ok()) return set.error();
     }
 
+    // What joints and pins need as one body is made as one at once.
+    for (const SceneJoint& joint : document.joints)
+        state.to_be_held.insert({joint.entity_b, joint.entity_a.value_or(0)});
+    for (const Entity& entity : document.entities)
+        for (const Pin& pin : entity.pins) state.to_be_held.insert(pin.to.value_or(0));
+
     // In the document's order, so that the same document is the same world.
     for (const Entity& entity : document.entities) {
         state.templates[entity.index] = entity;
         if (Result<void> added = state.add(entity); !added.ok()) return added.error();
     }
+    if (Result<void> held = state.fasten_all({}); !held.ok()) return held.error();
     for (const SceneJoint& joint : document.joints)
         if (Result<void> added = state.add_joint(joint); !added.ok()) return added.error();
+    state.to_be_held.clear();
     state.start_actions(document.actions);
     return simulation;
 }
@@ -518,9 +662,26 @@ BodyHandle Simulation::body(EntityIndex entity) const {
     return found == state_->live.end() ? BodyHandle{} : found->second.body;
 }
 
-BodyHandle Simulation::body_at(EntityIndex entity, Vec3 position) const {
-    const MovingPoints* its = points(entity);
-    return its ? its->nearest_body(position) : body(entity);
+BodyHandle Simulation::hold(EntityIndex entity, Vec3 position) {
+    let_go();
+    const auto found = state_->live.find(entity);
+    if (found == state_->live.end()) return {};
+    return found->second.points() ? found->second.points()->hold(position) : found->second.body;
+}
+
+void Simulation::let_go() {
+    for (auto& [index, entity] : state_->live)
+        if (entity.points()) entity.points()->let_go();
+}
+
+std::vector<std::string> Simulation::notes() const {
+    std::vector<std::string> notes;
+    for (const auto& [index, entity] : state_->live) {
+        if (entity.note.empty()) continue;
+        const std::string& name = entity.definition.name;
+        notes.push_back((name.empty() ? "Entity " + std::to_string(index) : name) + " " + entity.note + ".");
+    }
+    return notes;
 }
 
 const MovingPoints* Simulation::points(EntityIndex entity) const {
@@ -541,6 +702,19 @@ Bounds Simulation::bounds(EntityIndex entity) const {
 std::optional<double> Simulation::drop_distance(EntityIndex entity, double most) const {
     const MovingPoints* its = points(entity);
     return its ? its->drop_distance(most) : state_->world->drop_distance(body(entity), most);
+}
+
+std::optional<Simulation::RayHit> Simulation::cast_ray(Vec3 origin, Vec3 direction, double most,
+                                                       EntityIndex ignore) const {
+    std::optional<RayHit> nearest;
+    if (const auto hit = state_->world->cast_ray(origin, direction, most, body(ignore)))
+        nearest = RayHit{entity(hit->body), hit->position, hit->normal, hit->distance};
+    for (const auto& [index, live] : state_->live) {
+        if (!live.points() || index == ignore) continue;
+        const auto hit = live.points()->cast_ray(origin, direction, nearest ? nearest->distance : most);
+        if (hit) nearest = RayHit{index, origin + hit->distance * direction, hit->normal, hit->distance};
+    }
+    return nearest;
 }
 
 bool Simulation::is_movable(EntityIndex entity) const {
@@ -584,6 +758,10 @@ Result<AttributeSet> Simulation::attributes(EntityIndex entity) const {
 
 Result<void> Simulation::add(const Entity& entity) {
     if (Result<void> added = state_->add(entity); !added.ok()) return added;
+    if (Result<void> held = state_->fasten_all(entity.index); !held.ok()) {
+        (void)state_->remove(entity.index).ok();
+        return held;
+    }
     state_->templates[entity.index] = entity;
     return {};
 }
@@ -620,8 +798,9 @@ Result<void> Simulation::remove_joint(std::uint32_t joint) {
     const auto found = state_->joints.find(joint);
     if (found == state_->joints.end()) return Error{"index", "joint " + std::to_string(joint) + " is not in the world"};
     Result<void> removed = state_->world->destroy_joint(found->second.joint);
+    const SceneJoint definition = found->second.definition;
     state_->joints.erase(found);
-    return removed;
+    return removed.ok() ? state_->soften_ends(definition) : removed;
 }
 
 void Simulation::set_actions(const std::vector<Action>& actions) { state_->actions->set_actions(actions); }

@@ -50,8 +50,12 @@ public:
     [[nodiscard]] bool contains(EntityIndex entity) const;
     /// Null for an entity that is not (any more) in the world, and for one that has points.
     [[nodiscard]] physics::BodyHandle body(EntityIndex entity) const;
-    /// The body of it, or of its points, that is nearest to a place in the world; may be null.
-    [[nodiscard]] physics::BodyHandle body_at(EntityIndex entity, Vec3 position) const;
+    /// A body to pull it at, at or near a place in the world: its own, one of its points', or a hand that is there
+    /// until let_go(). May be null.
+    [[nodiscard]] physics::BodyHandle hold(EntityIndex entity, Vec3 position);
+    void let_go();
+    /// What is not simulated as its kind says, and why: "Towel is simulated as rigid, because …".
+    [[nodiscard]] std::vector<std::string> notes() const;
     /// What stands for an entity that is not one body: grains. Null for others; valid until an edit.
     [[nodiscard]] const MovingPoints* points(EntityIndex entity) const;
     /// Of the entity's frame: its body's; of points where they were put.
@@ -60,6 +64,14 @@ public:
     [[nodiscard]] Bounds bounds(EntityIndex entity) const;
     /// How far it can move down until it touches another, m; nothing if it meets none within `most`.
     [[nodiscard]] std::optional<double> drop_distance(EntityIndex entity, double most) const;
+    /// What a ray (unit direction) meets first within `most`, m.
+    struct RayHit {
+        EntityIndex entity = 0;
+        Vec3 position, normal;
+        double distance = 0;
+    };
+    [[nodiscard]] std::optional<RayHit> cast_ray(Vec3 origin, Vec3 direction, double most,
+                                                 EntityIndex ignore = 0) const;
     [[nodiscard]] bool is_movable(EntityIndex entity) const;
     /// Of points, that of the most awake.
     [[nodiscard]] physics::SleepState sleep_state(EntityIndex entity) const;

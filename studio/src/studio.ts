@@ -41,7 +41,7 @@ export class Studio {
   found: Found = { models: { all: true }, text: "all models" };
   readonly motion = new Motion();
   readonly models = new ModelStore(this.connection);
-  readonly entities = new EntityView(this.document, this.motion, this.models, this.preferences.get("quality"));
+  readonly entities = new EntityView(this.document, this.motion, this.models, this.connection, this.preferences.get("quality"));
   readonly view: View;
 
   simulation: Simulation = { state: "stopped", time: 0, step: 0 };
@@ -142,7 +142,7 @@ export class Studio {
       // It may be another server now. Frames may come before the answer to hello, so that only here all poses are old.
       this.models.forgetSummaries();
       this.motion.clear();
-      this.entities.clouds.clear();
+      this.entities.forgetPoints();
       void this.greet();
     });
     this.connection.closed.on(() => this.connectionChanged.emit());
@@ -255,7 +255,7 @@ export class Studio {
     // Every pose of the new scene follows in a frame.
     if (isOther) {
       this.motion.clear();
-      this.entities.clouds.clear();
+      this.entities.forgetPoints();
     }
     this.document.apply(event);
     if (isOther) this.openCamera();

@@ -21,6 +21,8 @@ export interface TestHook {
   tintOf(index: number): number[];
   /** Points that an entity is drawn as, and the box around them; null where it is drawn as a thing. */
   points(index: number): { count: number; lower: number[]; upper: number[] } | null;
+  /** Size of the box around a soft thing's drawn form in its own frame, its vertices and the mean length of their normals; null for others. */
+  bent(index: number): { size: number[]; vertices: number; normals: number } | null;
   /** Parts of collision shapes that are drawn over the selection. */
   collisionParts(): number;
   pick(x: number, y: number): number | null;
@@ -61,6 +63,7 @@ export function offerTestHook(studio: Studio): void {
       const cloud = studio.entities.clouds.of(index);
       return cloud ? { count: cloud.count, lower: cloud.bounds.min.toArray(), upper: cloud.bounds.max.toArray() } : null;
     },
+    bent: (index) => studio.entities.softs.skinOf(index)?.measure() ?? null,
     collisionParts: () => studio.view.collision.parts,
     pick: (x, y) => studio.view.pick(x, y)?.index ?? null,
     halt: () => studio.view.halt(),

@@ -78,7 +78,7 @@ struct SamplePoints final : scene::MovingPoints {
     [[nodiscard]] double mass() const override { return 1; }
     [[nodiscard]] Bounds bounds() const override { return {}; }
     [[nodiscard]] std::optional<double> drop_distance(double) const override { return std::nullopt; }
-    [[nodiscard]] physics::BodyHandle nearest_body(Vec3) const override { return {}; }
+    [[nodiscard]] physics::BodyHandle hold(Vec3) override { return {}; }
     Result<void> move(const Transform&) override { return {}; }
     Result<void> set_velocity(Vec3, Vec3) override { return {}; }
     Result<void> apply_impulse(Vec3) override { return {}; }

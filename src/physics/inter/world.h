@@ -109,6 +109,7 @@ public:
     /// World positions (m) and velocities (m/s) of its nodes; empty if stale. Valid until the next step or change.
     [[nodiscard]] std::span<const Vec3> node_positions(DeformableHandle deformable) const;
     [[nodiscard]] std::span<const Vec3> node_velocities(DeformableHandle deformable) const;
+    [[nodiscard]] std::span<const double> node_masses(DeformableHandle deformable) const;  ///< kg
     /// Where its frame would be if it had kept its form: the rigid motion nearest to that of its nodes, by mass.
     [[nodiscard]] Transform pose(DeformableHandle deformable) const;
     [[nodiscard]] double mass(DeformableHandle deformable) const;  ///< kg, pinned nodes too

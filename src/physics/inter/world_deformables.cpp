@@ -108,6 +108,11 @@ std::span<const Vec3> World::node_velocities(DeformableHandle deformable) const 
     return record != nullptr ? std::span<const Vec3>(record->nodes().velocity) : std::span<const Vec3>();
 }
 
+std::span<const double> World::node_masses(DeformableHandle deformable) const {
+    const DeformableRecord* record = state_->deformables.find(deformable);
+    return record != nullptr ? std::span<const double>(record->nodes().mass) : std::span<const double>();
+}
+
 bool World::is_asleep(DeformableHandle deformable) const {
     const DeformableRecord* record = state_->deformables.find(deformable);
     return record == nullptr || record->is_asleep;

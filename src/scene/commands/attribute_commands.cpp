@@ -151,10 +151,30 @@ Result<json> tell_collision_shape(SessionState& state, const json& params) {
     return json{{"shape", physics::is_static_only(shape.value()) ? json(nullptr) : shape_to_json(shape.value())}};
 }
 
+// What carries the drawn form of an entity that changes it.
+Result<json> tell_simulation_mesh(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    EntityIndex index = 0;
+    need_index(reader, "index", index);
+    if (!reader.finish()) return *error;
+    const MovingPoints* points = state.simulation->points(index);
+    const physics::DeformableDefinition* form = points ? points->deformable() : nullptr;
+    const auto* solid = form ? std::get_if<physics::SoftSolid>(&form->matter) : nullptr;
+    if (!solid) return json{{"mesh", nullptr}};
+    json nodes = json::array(), tetrahedra = json::array();
+    for (const Vec3 node : form->nodes)
+        for (const double number : {node.x, node.y, node.z}) nodes.push_back(number);
+    for (const auto& tetrahedron : solid->tetrahedra)
+        for (const std::uint32_t node : tetrahedron) tetrahedra.push_back(node);
+    return json{{"mesh", {{"nodes", std::move(nodes)}, {"tetrahedra", std::move(tetrahedra)}}}};
+}
+
 constexpr Command commands[] = {{"entity.set_attribute", set_attribute},
                                 {"entity.reset_attribute", reset_attribute},
                                 {"entity.attributes", list_attributes},
-                                {"entity.collision_shape", tell_collision_shape}};
+                                {"entity.collision_shape", tell_collision_shape},
+                                {"entity.simulation_mesh", tell_simulation_mesh}};
 
 }  // namespace
 

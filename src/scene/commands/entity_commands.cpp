@@ -86,7 +86,7 @@ Result<json> remove(SessionState& state, const json& params) {
     need_indices(reader, state, indices);
     if (!reader.finish()) return *error;
 
-    // Joints first: undo runs backwards and needs their ends there.
+    // Joints and pins first: undo runs backwards and needs their ends there.
     Edit edit = state.start_edit("Delete " + state.called(indices));
     const auto goes = [&indices](EntityIndex index) {
         return std::binary_search(indices.begin(), indices.end(), index);
@@ -94,6 +94,13 @@ Result<json> remove(SessionState& state, const json& params) {
     for (const SceneJoint& joint : state.document.joints)
         if (goes(joint.entity_b) || (joint.entity_a && goes(*joint.entity_a)))
             edit.changes.emplace_back(JointChange{joint, std::nullopt});
+    for (const Entity& entity : state.document.entities) {
+        const auto loses = [&goes](const Pin& pin) { return pin.to && goes(*pin.to); };
+        if (goes(entity.index) || std::none_of(entity.pins.begin(), entity.pins.end(), loses)) continue;
+        Entity unpinned = entity;
+        std::erase_if(unpinned.pins, loses);
+        edit.changes.emplace_back(change_of(entity, unpinned));
+    }
     for (const EntityIndex index : indices)
         edit.changes.emplace_back(EntityChange{*state.document.find(index), std::nullopt});
     return done(state.commit(std::move(edit)));

@@ -23,9 +23,10 @@ public:
     static Result<void> put(SessionState& state, const Entity& entity, std::optional<Probe>& probe) {
         Entity still = entity;
         still.enabled = true;
-        // What flows is put down as the solid thing that it fills.
+        // What flows or bends is put down as the solid thing that it would be.
         const Result<attributes::AttributeSet> set = state.bodies.attributes(entity);
-        if (set.ok() && set.value().word("kind", "") == "granular") still.attributes["kind"] = std::string("rigid");
+        const std::string kind = set.ok() ? set.value().word("kind", "") : "";
+        if (kind == "granular" || kind == "soft") still.attributes["kind"] = std::string("rigid");
         if (Result<void> added = state.simulation->add(still); !added.ok()) return added;
         probe.emplace(state, entity.index);
         return {};
@@ -52,8 +53,8 @@ struct Surface {
     Vec3 normal{0, 1, 0};
 };
 
-Surface find_surface(const physics::World& world, Vec3 origin, Vec3 direction) {
-    if (const auto hit = world.cast_ray(origin, direction, farthest)) return {hit->position, hit->normal};
+Surface find_surface(const Simulation& simulation, Vec3 origin, Vec3 direction) {
+    if (const auto hit = simulation.cast_ray(origin, direction, farthest)) return {hit->position, hit->normal};
     const double to_ground = direction.y < -1e-3 ? -origin.y / direction.y : -1;
     if (to_ground > 0 && to_ground < 100) return {origin + direction * to_ground};
     return {origin + direction * 5};
@@ -82,7 +83,7 @@ Transform lower_until_touching(SessionState& state, Probe& probe, Transform pose
 
 Result<Transform> place_on_ray(SessionState& state, const Entity& entity, Vec3 origin, Vec3 direction) {
     if (length(direction) < 1e-9) return Error{"drop.direction", "must not be zero"};
-    const Surface surface = find_surface(state.simulation->world(), origin, normalized(direction));
+    const Surface surface = find_surface(*state.simulation, origin, normalized(direction));
     std::optional<Probe> probe;
     if (Result<void> put = Probe::put(state, entity, probe); !put.ok()) return put.error();
     Transform pose = entity.pose;
@@ -152,10 +153,10 @@ Result<json> pick(SessionState& state, const json& params) {
     if (length(direction) < 1e-9) return Error{"direction", "must not be zero"};
 
     const Simulation& simulation = *state.simulation;
-    const auto hit = simulation.world().cast_ray(origin, normalized(direction), farthest, simulation.body(ignored));
+    const auto hit = simulation.cast_ray(origin, normalized(direction), farthest, ignored);
     if (!hit) return json{{"hit", nullptr}};
     return json{{"hit",
-                 {{"index", simulation.entity(hit->body)},
+                 {{"index", hit->entity},
                   {"position", vector_to_json(hit->position)},
                   {"normal", vector_to_json(hit->normal)},
                   {"distance", hit->distance}}}};

@@ -89,7 +89,7 @@ Result<json> grab(SessionState& state, const json& params) {
     if (!reader.finish()) return *error;
     if (state.play_state == PlayState::stopped)
         return Error{"simulation.grab", "the simulation is stopped", "play first; to move things use entity.transform"};
-    const physics::BodyHandle body = state.simulation->body_at(index, point);
+    const physics::BodyHandle body = state.simulation->hold(index, point);
     if (body.is_null()) return Error{"index", "entity " + std::to_string(index) + " is not in the world"};
     state.grab = Grab{body, inverse_transform_point(state.simulation->world().pose(body), point), target};
     return json::object();
@@ -109,6 +109,7 @@ Result<json> move_grab(SessionState& state, const json& params) {
 Result<json> release(SessionState& state, const json& params) {
     if (Result<void> read = read_nothing(params); !read.ok()) return read.error();
     state.grab.reset();
+    state.simulation->let_go();
     return json::object();
 }
 

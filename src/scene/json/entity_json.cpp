@@ -62,6 +62,35 @@ void read_color(FieldReader& reader, Entity& entity) {
     entity.color = color;
 }
 
+// All pins at once, as attributes are.
+void read_pins(FieldReader& reader, Entity& entity) {
+    const json* field = reader.take("pins");
+    if (!field || !reader.ok()) return;
+    const std::string where = reader.path("pins");
+    if (!read_array(*field, where, reader.error())) return;
+    entity.pins.clear();
+    for (std::size_t i = 0; i < field->size() && reader.ok(); ++i) {
+        FieldReader item((*field)[i], element_path(where, i), reader.error());
+        Pin pin;
+        item.need("position", "the place that is held, in the entity's frame");
+        item.vector("position", pin.position);
+        item.number("radius", pin.radius, {0, 1e4});
+        std::uint32_t to = 0;
+        if (item.whole("to", to, 1, last_document_index)) pin.to = to;
+        if (pin.to == entity.index && entity.index != 0) reader.fail(item.path("to"), "must be another entity");
+        if (item.finish()) entity.pins.push_back(pin);
+    }
+}
+
+json pins_to_json(const std::vector<Pin>& pins) {
+    json out = json::array();
+    for (const Pin& pin : pins) {
+        out.push_back({{"position", vector_to_json(pin.position)}, {"radius", pin.radius}});
+        if (pin.to) out.back()["to"] = *pin.to;
+    }
+    return out;
+}
+
 }  // namespace
 
 Result<void> change_entity_from_json(Entity& entity, const json& value, const std::string& where, bool is_new) {
@@ -85,6 +114,7 @@ Result<void> change_entity_from_json(Entity& entity, const json& value, const st
     reader.number("scale", changed.scale, {1e-4, 1e4});
     std::uint32_t index = entity.index;
     if (reader.whole("index", index, 1, last_document_index) && is_new) changed.index = index;
+    read_pins(reader, changed);
     if (!reader.finish()) return *error;
     // Last, so that a slip in the field's name is told as such.
     if (is_new && !has_geometry) return Error{reader.path("model"), "is missing: an entity needs a model or a shape"};
@@ -128,6 +158,7 @@ json entity_to_json(const Entity& entity) {
     if (!entity.category.empty()) out["category"] = entity.category;
     if (entity.color) out["color"] = *entity.color;
     if (entity.scale != plain.scale) out["scale"] = entity.scale;
+    if (!entity.pins.empty()) out["pins"] = pins_to_json(entity.pins);
     return out;
 }
 

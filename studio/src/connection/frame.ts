@@ -20,13 +20,13 @@ export interface Frame {
   sets: PointSet[];
 }
 
-/** Points of one entity: grains. */
+/** Points of one entity: grains, or nodes of what changes its form. */
 export interface PointSet {
   index: number;
   /** Least corner and size of the box around them, m, world. */
   lower: [number, number, number];
   size: [number, number, number];
-  /** Of the ball at each, m. */
+  /** Of the ball at each, m; 0: they carry the entity's drawn form. */
   radius: number;
   /** Three numbers each, in 65535ths of the box. */
   positions: Uint16Array;

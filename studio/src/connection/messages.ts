@@ -148,6 +148,14 @@ export interface Hello {
   despawned: number[];
 }
 
+/** What carries the drawn form of an entity that changes it, at rest, in the entity's frame with its scale in it. */
+export interface SimulationMesh {
+  /** x, y, z each, m. */
+  nodes: number[];
+  /** Four nodes each. */
+  tetrahedra: number[];
+}
+
 /** Each command's parameters and result. */
 export interface Commands {
   hello: [Record<string, never>, Hello];
@@ -179,6 +187,7 @@ export interface Commands {
   "entity.drop_to_floor": [{ indices: number[] }, unknown];
   "entity.attributes": [{ index: number }, { attributes: AttributeEntry[] }];
   "entity.collision_shape": [{ index: number }, { shape: Shape | null }];
+  "entity.simulation_mesh": [{ index: number }, { mesh: SimulationMesh | null }];
   "edit.undo": [Record<string, never>, { undone: string | null }];
   "edit.redo": [Record<string, never>, { redone: string | null }];
   "simulation.play": [Record<string, never>, unknown];

@@ -25,6 +25,11 @@ export function drawable(parts: DrawablePart[], castsShadow = true): Drawable {
   return { parts, bounds, castsShadow };
 }
 
+/** Of a drawable whose materials are those of another. */
+export function disposeGeometries(drawable: Drawable): void {
+  for (const part of drawable.parts) part.geometry.dispose();
+}
+
 export function disposeDrawable(drawable: Drawable): void {
   for (const part of drawable.parts) {
     part.geometry.dispose();

@@ -4,12 +4,14 @@ import { type Motion } from "../document/motion";
 import { type Changed, positionOf, rotationOf, type SceneDocument } from "../document/scene_document";
 import type { Entity } from "../document/scene_types";
 import { Signal } from "../signal";
+import type { Connection } from "../connection/connection";
 import type { Frame } from "../connection/frame";
 import { Batch } from "./batch";
-import { averageColor, disposeDrawable, type Drawable } from "./drawable";
+import { averageColor, disposeDrawable, disposeGeometries, type Drawable } from "./drawable";
 import type { ModelStore } from "./model_store";
 import { PointClouds } from "./point_cloud";
 import { drawShape, shapeKey } from "./shapes";
+import { SoftBodies } from "./soft_bodies";
 import { type Quality, STATE_TINT } from "./tint";
 
 const WHITE = new Color(1, 1, 1);
@@ -43,8 +45,9 @@ export class EntityView {
   readonly held = new Map<number, { position: Vector3; rotation: Quaternion; scale: number }>();
   /** Something was moved, added or removed since the shadows were drawn. */
   shadowsAreOld = true;
-  /** Entities that are not one body: grains. */
+  /** Entities that are not one body: grains, and those whose nodes carry what is drawn. */
   readonly clouds: PointClouds;
+  readonly softs: SoftBodies;
   private readonly batches = new Map<string, Batch>();
   private readonly batchOf = new Map<number, { key: string; batch: Batch; entity: Entity }>();
   private pending = 0;
@@ -58,8 +61,10 @@ export class EntityView {
     private readonly document: SceneDocument,
     private readonly motion: Motion,
     private readonly models: ModelStore,
+    connection: Connection,
     private quality: Quality,
   ) {
+    this.softs = new SoftBodies(connection);
     this.clouds = new PointClouds(quality);
     this.group.add(this.clouds.group);
   }
@@ -78,6 +83,7 @@ export class EntityView {
     for (const index of changed.removed) {
       this.take(index);
       this.clouds.drop(index);
+      this.softs.drop(index);
     }
     for (const index of changed.entities) this.put(index);
   }
@@ -91,6 +97,18 @@ export class EntityView {
       this.place(index, now);
       this.pointed.emit(index);
     }
+    for (const index of this.softs.take(frame, now, smooth)) this.put(index);
+  }
+
+  /** All points are those of another scene. */
+  forgetPoints(): void {
+    this.clouds.clear();
+    this.softs.clear();
+  }
+
+  /** Moves points on; returns whether any are still on their way. */
+  advance(now: number): boolean {
+    return [this.clouds.advance(now), this.softs.advance(now, this.motion.moved)].includes(true);
   }
 
   setQuality(quality: Quality): void {
@@ -161,7 +179,8 @@ export class EntityView {
       this.take(index);
       return;
     }
-    if (entity.model) void this.putModel(entity, entity.model);
+    if (this.softs.has(index)) void this.putSoft(entity);
+    else if (entity.model) void this.putModel(entity, entity.model);
     else if (entity.shape) this.putShape(entity);
   }
 
@@ -186,6 +205,28 @@ export class EntityView {
     } catch (error) {
       if (this.document.entity(entity.index) === entity) this.join(entity, "placeholder", () => PLACEHOLDER);
       this.failed.emit({ index: entity.index, reason: (error as Error).message });
+    }
+    --this.pending;
+    this.loaded.emit();
+  }
+
+  private async putSoft(entity: Entity): Promise<void> {
+    const { index, model, scale } = entity;
+    const key = `soft ${index} ${scale ?? 1} ${model ?? shapeKey(entity.shape!)}`;
+    if (this.softs.skinOf(index) && this.keep(entity, key)) return;
+    ++this.pending;
+    try {
+      const plain = model ? await this.models.drawable(model) : shapeDrawable(entity);
+      const skin = await this.softs.dress(index, plain, scale ?? 1);
+      // It may have become another thing while the mesh was on its way.
+      if (skin && this.document.entity(index) === entity && this.softs.skinOf(index) === skin) {
+        this.join(entity, key, () => skin.drawable);
+        this.pointed.emit(index);
+      } else if (skin) {
+        this.discard(entity, skin.drawable);
+      }
+    } catch (error) {
+      this.failed.emit({ index, reason: (error as Error).message });
     }
     --this.pending;
     this.loaded.emit();
@@ -225,8 +266,14 @@ export class EntityView {
     if (!shown.batch.empty) return;
     shown.batch.dispose();
     this.batches.delete(shown.key);
-    // Models stay in the store, the placeholder is one for all.
-    if (!shown.entity.model && shown.batch.drawable !== PLACEHOLDER) disposeDrawable(shown.batch.drawable);
+    if (shown.key.startsWith("soft ") || !shown.entity.model) this.discard(shown.entity, shown.batch.drawable);
+  }
+
+  // Models stay in the store, the placeholder is one for all.
+  private discard(entity: Entity, drawable: Drawable): void {
+    if (drawable === PLACEHOLDER) return;
+    if (entity.model) disposeGeometries(drawable);
+    else disposeDrawable(drawable);
   }
 
   private colorCloud(index: number): void {
@@ -240,6 +287,8 @@ export class EntityView {
 
   private place(index: number, now: number): void {
     const isDrawn = this.matrixOf(index, now, this.matrix);
+    if (this.softs.skinOf(index) && this.motion.pose(index, now, this.position, this.rotation))
+      this.softs.bend(index, now, this.position, this.rotation, this.batchOf.get(index)?.entity.scale ?? 1);
     // What is drawn as points is not drawn as the thing that they filled.
     if (this.clouds.of(index)) this.matrix.makeScale(0, 0, 0);
     if (isDrawn) this.batchOf.get(index)!.batch.setMatrix(index, this.matrix);

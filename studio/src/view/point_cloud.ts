@@ -239,6 +239,11 @@ export class PointClouds {
     const duration = smooth ? Math.min(now - this.lastFrame, LONGEST_BLEND_MS) : 0;
     this.lastFrame = now;
     for (const set of frame.sets) {
+      // Points without a size carry what is drawn otherwise.
+      if (!(set.radius > 0)) {
+        if (this.drop(set.index)) changed.push(set.index);
+        continue;
+      }
       const known = this.clouds.get(set.index);
       if (known?.count === set.positions.length / 3) {
         known.take(set, now, duration);

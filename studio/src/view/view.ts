@@ -160,7 +160,7 @@ export class View {
     this.watchPace(now - this.lastFrame);
     this.lastFrame = now;
     const flying = this.rig.advance(now, seconds);
-    const moving = [this.motion.advance(now), this.entities.clouds.advance(now)].includes(true);
+    const moving = [this.motion.advance(now), this.entities.advance(now)].includes(true);
     this.beforeFrame.emit(now);
     this.entities.update(now);
     this.collision.update(now);

@@ -113,6 +113,28 @@ TEST_F(DeformableChanges, OtherMatterGoesOnWhereTheOldOneWas) {
     EXPECT_LT(length(after.angular_momentum - before.angular_momentum), 1e-2 * length(before.angular_momentum));
 }
 
+TEST_F(DeformableChanges, AHandHoldsItByAttachmentsThatComeAndGo) {
+    const DeformableHandle brick = add(soft_brick());
+    BodyDefinition hand;
+    hand.kind = BodyKind::kinematic_body;
+    hand.shape = world_->create_shape(SphereShape{0.01}).value();
+    hand.collision_mask = 0;
+    hand.position = {0.2, 0.2, 0.15};
+    const BodyHandle body = world_->create_body(hand).value();
+    std::vector<Attachment> attachments;
+    const auto& nodes = world_->deformable(brick)->nodes;
+    for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+        if (nodes[i].y > 0.19) attachments.push_back({i, body, nodes[i] - hand.position});
+    }
+    ASSERT_TRUE(world_->set_attachments(brick, attachments));
+    run(240);
+    EXPECT_LT(world_->center_of_mass(brick).y, 0.1) << "it sags";
+    EXPECT_GT(world_->center_of_mass(brick).y, 0.05) << "but does not fall";
+    ASSERT_TRUE(world_->set_attachments(brick, {}));
+    run(60);
+    EXPECT_LT(world_->center_of_mass(brick).y, -4);
+}
+
 TEST_F(DeformableChanges, WrongOnesAreRefusedAndNothingChanges) {
     const DeformableHandle brick = add(soft_brick());
     const std::uint64_t hash = world_->state_hash();

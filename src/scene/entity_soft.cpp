@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "attributes/to_physics.h"
+#include "scene/entity_body.h"
+#include "scene/shape_surface.h"
+
+namespace embody::scene {
+
+namespace {
+
+// Of the cells: thin beside what is drawn, wide beside rounding.
+constexpr double radius_share = 0.02, least_radius = 5e-4, greatest_radius = 5e-3;
+
+}  // namespace
+
+std::vector<std::uint32_t> pinned_nodes(const Pin& pin, const std::vector<Vec3>& nodes) {
+    std::vector<std::uint32_t> near;
+    std::uint32_t nearest = 0;
+    for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+        const double distance = length(nodes[i] - pin.position);
+        if (distance <= pin.radius) near.push_back(i);
+        if (distance < length(nodes[nearest] - pin.position)) nearest = i;
+    }
+    if (near.empty()) near.push_back(nearest);
+    return near;
+}
+
+Result<const catalog::SoftMesh*> EntityBodies::soft_mesh(const Entity& entity) {
+    const auto* model = std::get_if<ModelReference>(&entity.geometry);
+    const std::string key = model ? model->key : shape_key(entity, {});
+    auto found = soft_meshes_.find(key);
+    if (key.empty() || found == soft_meshes_.end()) {
+        found = soft_meshes_.insert_or_assign(key, make_soft_mesh(entity)).first;
+    }
+    if (!found->second.ok()) return found->second.error();
+    return &found->second.value();
+}
+
+Result<catalog::SoftMesh> EntityBodies::make_soft_mesh(const Entity& entity) {
+    if (const auto* model = std::get_if<ModelReference>(&entity.geometry)) {
+        const Result<const Model*> known = find(model->key);
+        if (!known.ok()) return known.error();
+        return catalog_->soft_mesh(known.value()->summary.id);
+    }
+    const auto surface = surface_of(std::get<physics::ShapeDefinition>(entity.geometry));
+    if (!surface) return surface.error();
+    return catalog::make_soft_mesh(*surface);
+}
+
+Result<physics::DeformableDefinition> EntityBodies::soft(const Entity& entity,
+                                                         const attributes::AttributeSet& attributes) {
+    const Result<const catalog::SoftMesh*> mesh = soft_mesh(entity);
+    if (!mesh.ok()) return mesh.error();
+    geometry::TetrahedralMesh scaled = mesh.value()->mesh;
+    for (Vec3& node : scaled.nodes) node *= entity.scale;
+    Result<physics::DeformableDefinition> made = attributes::soft_solid_from_attributes(attributes, scaled);
+    if (!made.ok()) return Error{"attributes: " + made.error().where, made.error().why, made.error().remedy};
+    physics::DeformableDefinition soft = std::move(made).value();
+    soft.pose = entity.pose;
+    soft.linear_velocity = entity.linear_velocity;
+    soft.angular_velocity = entity.angular_velocity;
+    soft.enabled = entity.enabled;
+    soft.contact_radius = std::clamp(radius_share * mesh.value()->cell * entity.scale, least_radius, greatest_radius);
+    soft.user_data = entity.index;
+    for (const Pin& pin : entity.pins) {
+        if (pin.to) continue;
+        const std::vector<std::uint32_t> held = pinned_nodes(pin, soft.nodes);
+        soft.pinned.insert(soft.pinned.end(), held.begin(), held.end());
+    }
+    std::ranges::sort(soft.pinned);
+    soft.pinned.erase(std::unique(soft.pinned.begin(), soft.pinned.end()), soft.pinned.end());
+    return soft;
+}
+
+}  // namespace embody::scene

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include "scene/soft_nodes.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "geometry/tetrahedra/tetrahedral_mesh.h"
+#include "math/mat3.h"
+
+namespace embody::scene {
+
+using physics::Attachment;
+using physics::BodyHandle;
+using physics::DeformableDefinition;
+
+namespace {
+
+constexpr double hand_share = 0.12;   // of the greatest extent: how far around a place a hand holds
+constexpr double hand_radius = 1e-3;  // m; it collides with nothing
+
+std::vector<std::array<std::uint32_t, 3>> outer_faces(const DeformableDefinition& definition) {
+    std::vector<std::array<std::uint32_t, 3>> faces;
+    if (const auto* solid = std::get_if<physics::SoftSolid>(&definition.matter)) {
+        for (const auto& face : geometry::find_tetrahedral_topology(solid->tetrahedra).outer_faces)
+            faces.push_back(face.corners);
+    }
+    return faces;
+}
+
+std::vector<std::uint32_t> nodes_of(const std::vector<std::array<std::uint32_t, 3>>& faces) {
+    std::vector<std::uint32_t> nodes;
+    for (const auto& face : faces) nodes.insert(nodes.end(), face.begin(), face.end());
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    return nodes;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<SoftNodes>> SoftNodes::create(physics::World& world, const DeformableDefinition& definition) {
+    const auto handle = world.create_deformable(definition);
+    if (!handle) return handle.error();
+    std::unique_ptr<SoftNodes> nodes(new SoftNodes(world, *handle));
+    nodes->faces_ = outer_faces(definition);
+    nodes->surface_ = nodes_of(nodes->faces_);
+    nodes->attachments_ = definition.attachments;
+    return nodes;
+}
+
+SoftNodes::~SoftNodes() {
+    let_go();
+    // It is in the world, which does not refuse.
+    (void)world_.destroy_deformable(handle_).ok();
+}
+
+Result<void> SoftNodes::set_definition(const DeformableDefinition& definition) {
+    let_go();
+    if (auto set = world_.set_deformable(handle_, definition); !set) return set;
+    attachments_ = definition.attachments;
+    return {};
+}
+
+Result<void> SoftNodes::attach(std::vector<Attachment> attachments) {
+    attachments_ = std::move(attachments);
+    return apply_attachments();
+}
+
+std::vector<Attachment> SoftNodes::attachments() const {
+    std::vector<Attachment> there = attachments_;
+    std::erase_if(there, [this](const Attachment& attachment) { return !world_.contains(attachment.body); });
+    return there;
+}
+
+// What is held by the hand is not held by anything else meanwhile.
+Result<void> SoftNodes::apply_attachments() {
+    std::vector<Attachment> all = held_;
+    for (const Attachment& attachment : attachments()) {
+        if (std::ranges::find(held_, attachment.node, &Attachment::node) == held_.end()) all.push_back(attachment);
+    }
+    return world_.set_attachments(handle_, all);
+}
+
+const DeformableDefinition* SoftNodes::deformable() const { return world_.deformable(handle_); }
+
+void SoftNodes::read(std::vector<Vec3>& positions) const {
+    const auto nodes = world_.node_positions(handle_);
+    positions.assign(nodes.begin(), nodes.end());
+}
+
+physics::SleepState SoftNodes::state() const {
+    return world_.is_asleep(handle_) ? physics::SleepState::asleep : physics::SleepState::active;
+}
+
+Bounds SoftNodes::bounds() const {
+    Bounds bounds;
+    for (const Vec3 p : world_.node_positions(handle_)) bounds.add(p);
+    return bounds;
+}
+
+// A ray down from each node of the surface that others do not cover.
+std::optional<double> SoftNodes::drop_distance(double most) const {
+    const auto positions = world_.node_positions(handle_);
+    const double clearance = deformable()->contact_radius;
+    std::optional<double> least;
+    for (const std::uint32_t node : surface_) {
+        const auto hit = world_.cast_ray(positions[node], {0, -1, 0}, most + clearance);
+        if (hit && (!least || hit->distance < *least)) least = hit->distance;
+    }
+    if (least) *least = std::max(0.0, *least - clearance);
+    return least;
+}
+
+// T. Möller, B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, for each face that is met from
+// outside.
+std::optional<SurfaceHit> SoftNodes::cast_ray(Vec3 origin, Vec3 direction, double most) const {
+    const auto positions = world_.node_positions(handle_);
+    std::optional<SurfaceHit> nearest;
+    for (const auto& face : faces_) {
+        const Vec3 a = positions[face[0]], along = positions[face[1]] - a, across = positions[face[2]] - a;
+        const Vec3 p = cross(direction, across);
+        const double facing = dot(along, p);
+        if (!(facing > 0)) continue;
+        const Vec3 from = origin - a, q = cross(from, along);
+        const double u = dot(from, p), v = dot(direction, q);
+        if (u < 0 || v < 0 || u + v > facing) continue;
+        const double distance = dot(across, q) / facing;
+        if (distance < 0 || distance > most || (nearest && distance >= nearest->distance)) continue;
+        nearest = SurfaceHit{distance, normalized(cross(along, across))};
+    }
+    return nearest;
+}
+
+BodyHandle SoftNodes::hold(Vec3 position) {
+    let_go();
+    const auto positions = world_.node_positions(handle_);
+    const Vec3 size = bounds().size();
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t node : surface_) nearest = std::min(nearest, length(positions[node] - position));
+    const double reach = nearest + hand_share * std::max({size.x, size.y, size.z});
+
+    const auto shape = world_.create_shape(physics::SphereShape{hand_radius});
+    if (!shape) return {};
+    physics::BodyDefinition hand;
+    hand.shape = hand_shape_ = *shape;
+    hand.position = position;
+    hand.mass.mass = mass();
+    // As hard to turn as a ball of the thing's mass and half its size.
+    const double spread = 0.1 * hand.mass.mass.value_or(1) * length_squared(0.5 * size);
+    hand.mass.inertia = Mat3::diagonal({spread, spread, spread});
+    hand.gravity_factor = 0;
+    hand.collision_group = hand.collision_mask = 0;
+    hand.allow_sleep = false;
+    hand.user_data = deformable()->user_data;
+    const auto body = world_.create_body(hand);
+    if (body) {
+        hand_ = *body;
+        const auto& pinned = deformable()->pinned;
+        for (const std::uint32_t node : surface_) {
+            if (length(positions[node] - position) > reach || std::ranges::find(pinned, node) != pinned.end()) continue;
+            held_.push_back({node, hand_, positions[node] - position});
+        }
+        if (apply_attachments()) return hand_;
+    }
+    let_go();
+    return {};
+}
+
+void SoftNodes::let_go() {
+    held_.clear();
+    if (!hand_.is_null()) {
+        // Both are in the world, which does not refuse.
+        (void)apply_attachments().ok();
+        (void)world_.destroy_body(hand_).ok();
+        hand_ = {};
+    }
+    if (!hand_shape_.is_null()) (void)world_.destroy_shape(hand_shape_).ok();
+    hand_shape_ = {};
+}
+
+Result<void> SoftNodes::move(const Transform& motion) {
+    std::vector<Vec3> positions;
+    read(positions);
+    for (Vec3& position : positions) position = transform_point(motion, position);
+    return world_.set_nodes(handle_, positions, std::vector<Vec3>(positions.size()));
+}
+
+Result<void> SoftNodes::set_velocity(Vec3 linear, Vec3 angular) {
+    std::vector<Vec3> positions;
+    read(positions);
+    std::vector<Vec3> velocities;
+    const Vec3 center = center_of_mass();
+    for (const Vec3 position : positions) velocities.push_back(linear + cross(angular, position - center));
+    return world_.set_nodes(handle_, positions, velocities);
+}
+
+Result<void> SoftNodes::apply_impulse(Vec3 impulse) {
+    const auto positions = world_.node_positions(handle_), before = world_.node_velocities(handle_);
+    std::vector<Vec3> velocities(before.begin(), before.end());
+    for (Vec3& velocity : velocities) velocity += impulse / mass();
+    return world_.set_nodes(handle_, std::vector<Vec3>(positions.begin(), positions.end()), velocities);
+}
+
+Result<void> SoftNodes::apply_force(Vec3 force) { return apply_impulse(world_.settings().time_step * force); }
+
+Result<void> SoftNodes::set_enabled(bool enabled) {
+    DeformableDefinition changed = *deformable();
+    changed.enabled = enabled;
+    changed.attachments = attachments();
+    return set_definition(changed);
+}
+
+Vec3 SoftNodes::linear_velocity() const {
+    Vec3 momentum;
+    double whole = 0;
+    const auto masses = world_.node_masses(handle_);
+    const auto velocities = world_.node_velocities(handle_);
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+        momentum += masses[i] * velocities[i];
+        whole += masses[i];
+    }
+    return whole > 0 ? momentum / whole : Vec3{};
+}
+
+Vec3 SoftNodes::angular_velocity() const {
+    const auto masses = world_.node_masses(handle_);
+    const auto velocities = world_.node_velocities(handle_), positions = world_.node_positions(handle_);
+    const Vec3 center = center_of_mass();
+    Vec3 momentum;
+    Mat3 inertia = Mat3::zero();
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+        const Vec3 arm = positions[i] - center;
+        momentum += masses[i] * cross(arm, velocities[i]);
+        inertia += masses[i] * (length_squared(arm) * Mat3::identity() - outer(arm, arm));
+    }
+    return inverse_or_zero(inertia) * momentum;
+}
+
+}  // namespace embody::scene

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+
+#include "physics/inter/world.h"
+#include "scene/moving_points.h"
+
+namespace embody::scene {
+
+/// The nodes of a deformable of the physics: they carry what is drawn.
+class SoftNodes final : public MovingPoints {
+public:
+    /// `world` outlives them.
+    static Result<std::unique_ptr<SoftNodes>> create(physics::World& world,
+                                                     const physics::DeformableDefinition& definition);
+    ~SoftNodes() override;
+
+    /// Other matter, pins and the like of the same nodes; they stay where they are and go on as they move.
+    Result<void> set_definition(const physics::DeformableDefinition& definition);
+    /// Holds nodes to bodies, besides those that a hand holds.
+    Result<void> attach(std::vector<physics::Attachment> attachments);
+    /// To bodies that are still there; not those of a hand.
+    [[nodiscard]] std::vector<physics::Attachment> attachments() const;
+    [[nodiscard]] Vec3 linear_velocity() const;   ///< of the centre of mass, m/s
+    [[nodiscard]] Vec3 angular_velocity() const;  ///< of the rigid thing with as much angular momentum, rad/s
+
+    void read(std::vector<Vec3>& positions) const override;
+    [[nodiscard]] double radius() const override { return 0; }
+    [[nodiscard]] const physics::DeformableDefinition* deformable() const override;
+    [[nodiscard]] std::optional<Transform> pose() const override { return world_.pose(handle_); }
+    [[nodiscard]] physics::SleepState state() const override;
+    [[nodiscard]] Vec3 center_of_mass() const override { return world_.center_of_mass(handle_); }
+    [[nodiscard]] double mass() const override { return world_.mass(handle_); }
+    [[nodiscard]] Bounds bounds() const override;
+    [[nodiscard]] std::optional<double> drop_distance(double most) const override;
+    [[nodiscard]] std::optional<SurfaceHit> cast_ray(Vec3 origin, Vec3 direction, double most) const override;
+    /// A hand that holds the nodes around the place: a body without weight that collides with nothing.
+    [[nodiscard]] physics::BodyHandle hold(Vec3 position) override;
+    void let_go() override;
+    Result<void> move(const Transform& motion) override;
+    Result<void> set_velocity(Vec3 linear, Vec3 angular) override;
+    Result<void> apply_impulse(Vec3 impulse) override;
+    Result<void> apply_force(Vec3 force) override;
+    Result<void> set_enabled(bool enabled) override;
+
+private:
+    SoftNodes(physics::World& world, physics::DeformableHandle handle) : world_(world), handle_(handle) {}
+    Result<void> apply_attachments();
+
+    physics::World& world_;
+    physics::DeformableHandle handle_;
+    std::vector<std::array<std::uint32_t, 3>> faces_;  ///< outer ones, counter-clockwise from outside
+    std::vector<std::uint32_t> surface_;               ///< their nodes, ascending
+    std::vector<physics::Attachment> attachments_, held_;
+    physics::BodyHandle hand_;
+    physics::ShapeHandle hand_shape_;
+};
+
+}  // namespace embody::scene

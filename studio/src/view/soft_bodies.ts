@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+import { Quaternion, Vector3 } from "three";
+import type { Connection } from "../connection/connection";
+import type { Frame, PointSet } from "../connection/frame";
+import type { Drawable } from "./drawable";
+import { SoftForm, SoftSkin } from "./soft_form";
+
+/** Longest time in which nodes go on to where a frame has them, ms; as of poses. */
+const LONGEST_BLEND_MS = 120;
+
+interface Nodes {
+  from: Float32Array;
+  to: Float32Array;
+  now: Float32Array;
+  start: number;
+  duration: number;
+  skin: SoftSkin | null;
+}
+
+/** Entities whose nodes carry their drawn form, and where these are. */
+export class SoftBodies {
+  private readonly all = new Map<number, Nodes>();
+  private readonly moving = new Set<number>();
+  private lastFrame = 0;
+  private readonly vector = new Vector3();
+  private readonly back = new Quaternion();
+
+  constructor(private readonly connection: Connection) {}
+
+  has(index: number): boolean {
+    return this.all.has(index);
+  }
+
+  skinOf(index: number): SoftSkin | null {
+    return this.all.get(index)?.skin ?? null;
+  }
+
+  /** Takes a frame's nodes; tells which entities began or ceased to be soft, or became others. */
+  take(frame: Frame, now: number, smooth: boolean): number[] {
+    const changed: number[] = [];
+    frame.indices.forEach((index, record) => {
+      if (!frame.pointed[record] && this.drop(index)) changed.push(index);
+    });
+    const duration = smooth ? Math.min(now - this.lastFrame, LONGEST_BLEND_MS) : 0;
+    this.lastFrame = now;
+    for (const set of frame.sets) {
+      if (set.radius > 0) {
+        if (this.drop(set.index)) changed.push(set.index);
+        continue;
+      }
+      let nodes = this.all.get(set.index);
+      if (nodes?.to.length !== set.positions.length) {
+        this.drop(set.index);
+        const places = placesOf(set, new Float32Array(set.positions.length));
+        nodes = { from: places.slice(), to: places, now: places.slice(), start: now, duration: 0, skin: null };
+        this.all.set(set.index, nodes);
+        changed.push(set.index);
+      } else {
+        this.blend(nodes, now);
+        nodes.from.set(nodes.now);
+        placesOf(set, nodes.to);
+        nodes.start = now;
+        nodes.duration = duration;
+      }
+      this.moving.add(set.index);
+    }
+    return changed;
+  }
+
+  /** Marks as moved what is on its way; returns whether anything still is afterwards. */
+  advance(now: number, moved: Set<number>): boolean {
+    for (const index of this.moving) {
+      moved.add(index);
+      const nodes = this.all.get(index);
+      if (!nodes || now >= nodes.start + nodes.duration) this.moving.delete(index);
+    }
+    return this.moving.size > 0;
+  }
+
+  /**
+   * A drawable that bends with the entity's nodes, made of what it looks like at rest; its geometries are for the caller to
+   * dispose of. Null where the entity is not soft (any more).
+   */
+  async dress(index: number, plain: Drawable, scale: number): Promise<SoftSkin | null> {
+    const { mesh } = await this.connection.request("entity.simulation_mesh", { index });
+    const nodes = this.all.get(index);
+    if (!mesh || nodes?.to.length !== mesh.nodes.length) return null;
+    nodes.skin = new SoftSkin(new SoftForm(mesh, scale), plain);
+    this.moving.add(index);
+    return nodes.skin;
+  }
+
+  /** Bends the entity's skin as its nodes are now, seen from its frame there. */
+  bend(index: number, now: number, position: Vector3, rotation: Quaternion, scale: number): void {
+    const nodes = this.all.get(index);
+    if (!nodes?.skin) return;
+    this.blend(nodes, now);
+    const { now: places } = nodes;
+    const local = new Float32Array(places.length);
+    this.back.copy(rotation).invert();
+    for (let at = 0; at < places.length; at += 3)
+      this.vector.fromArray(places, at).sub(position).applyQuaternion(this.back).divideScalar(scale).toArray(local, at);
+    nodes.skin.follow(local);
+  }
+
+  drop(index: number): boolean {
+    this.moving.delete(index);
+    return this.all.delete(index);
+  }
+
+  clear(): void {
+    for (const index of [...this.all.keys()]) this.drop(index);
+  }
+
+  private blend(nodes: Nodes, now: number): void {
+    const part = nodes.duration > 0 ? Math.min((now - nodes.start) / nodes.duration, 1) : 1;
+    const { from, to, now: places } = nodes;
+    for (let at = 0; at < places.length; ++at) places[at] = from[at]! + part * (to[at]! - from[at]!);
+  }
+}
+
+function placesOf(set: PointSet, places: Float32Array): Float32Array {
+  for (let at = 0; at < places.length; ++at)
+    places[at] = set.lower[at % 3]! + (set.size[at % 3]! * set.positions[at]!) / 65535;
+  return places;
+}
