@@ -114,7 +114,7 @@ double cone_angle(std::vector<Vec3> places) {
     return std::atan(4 * height / std::sqrt(spread * 10 / 3)) * 180 / std::numbers::pi;
 }
 
-// Slope of the surface along X between a fifth and four fifths of its height: a line through the mean of the three
+// Slope of the front flank along X, from a fifth to two thirds of the height: a line through the mean of the three
 // highest grains of each column a diameter wide.
 double surface_angle(const std::vector<Vec3>& places, double diameter) {
     std::vector<std::vector<double>> columns;
@@ -136,8 +136,10 @@ double surface_angle(const std::vector<Vec3>& places, double diameter) {
         top = std::max(top, mean);
     }
     double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-    for (const auto& [x, y] : surface) {
-        if (y < 0.2 * top || y > 0.8 * top) continue;
+    for (auto column = surface.rbegin(); column != surface.rend(); ++column) {
+        const auto [x, y] = *column;
+        if (y > 0.65 * top) break;
+        if (y < 0.2 * top) continue;
         n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
     }
     return -std::atan((n * sxy - sx * sy) / (n * sxx - sx * sx)) * 180 / std::numbers::pi;

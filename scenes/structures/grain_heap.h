@@ -30,7 +30,7 @@ struct Heap {
 Result<Heap> pour_heap(const HeapToPour& definition);
 
 /// Grains that fill a trench of 25 × 8 diameters with smooth side walls; then its end wall is drawn away at
-/// 0.3 √(g d), slowly enough that the slope follows it. The slope of the surface that is left, degrees.
+/// 0.3 √(g d). The slope of the front that is left, degrees.
 Result<double> draw_wall_away(const HeapToPour& definition);
 
 /// A slab of grains, 20 diameters wide and as long, that collapses on a plate: milliseconds of a step over the first
