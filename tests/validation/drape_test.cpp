@@ -68,6 +68,8 @@ TEST(Drape, FallsWithTheBendingLengthFromOneToNothing) {
     for (const double stiffness : {1e-3, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 1e-7}) {
         const double coefficient = drape_coefficient(stiffness, 0.015);
         EXPECT_LT(coefficient, before) << stiffness;
+        RecordProperty("drape_at_" + std::to_string(static_cast<int>(std::lround(1e9 * stiffness))) + "_nNm",
+                       std::to_string(coefficient));
         before = coefficient;
     }
     EXPECT_LT(before, 0.2);
@@ -77,8 +79,9 @@ TEST(Drape, OfCottonIsThatOfCotton) {
     // 150 g/m² with a bending length of 20 mm.
     const auto reference = reference_case("drape");
     const double stiffness = 0.15 * gravity * 8e-6;
-    for (const double edge : {0.015, 0.01}) {
+    for (const double edge : {0.015, 0.01, 0.0075}) {
         const double coefficient = drape_coefficient(stiffness, edge);
+        RecordProperty("drape_at_edge_" + std::to_string(edge), std::to_string(coefficient));
         EXPECT_GT(coefficient, static_cast<double>(reference["expected"]["DC_cotton_range"][0])) << edge;
         EXPECT_LT(coefficient, static_cast<double>(reference["expected"]["DC_cotton_range"][1])) << edge;
     }

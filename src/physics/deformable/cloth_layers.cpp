@@ -5,8 +5,6 @@
 #include <cmath>
 #include <map>
 
-#include "math/bounds.h"
-
 namespace embody::physics {
 
 namespace {
@@ -123,35 +121,51 @@ bool ClothLayers::are_neighbours(std::uint32_t a, std::uint32_t b) const {
     return false;
 }
 
+// The whole's own move is left out: what falls together does not meet.
+void ClothLayers::find_boxes(const Search& search) {
+    const Nodes& nodes = search.nodes;
+    Vec3 mean;
+    double mass = 0;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        mean += nodes.mass[i] * search.moves[i];
+        mass += nodes.mass[i];
+    }
+    mean = mean / mass;
+    node_boxes_.resize(nodes.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const Vec3 start = nodes.position[i], end = start + search.moves[i] - mean;
+        node_boxes_[i] = enlarged(Bounds{min(start, end), max(start, end)}, search.thickness);
+    }
+    const auto joined = [&](const auto& corners) {
+        Bounds box;
+        for (const std::uint32_t corner : corners) box.add(node_boxes_[corner]);
+        return box;
+    };
+    edge_boxes_.resize(edges_.size());
+    triangle_boxes_.resize(triangles_.size());
+    for (std::size_t e = 0; e < edges_.size(); ++e) edge_boxes_[e] = joined(edges_[e]);
+    for (std::size_t t = 0; t < triangles_.size(); ++t) triangle_boxes_[t] = joined(triangles_[t]);
+}
+
 // Counting sort of the triangles into the cells that they may reach.
-void ClothLayers::fill_grid(const Nodes& nodes) {
+void ClothLayers::fill_grid() {
     std::size_t buckets = 1;
     while (buckets < 2 * triangles_.size()) buckets *= 2;
     const double size = cell_share * edge_length_;
-    const auto box_of = [&](const std::array<std::uint32_t, 3>& triangle) {
-        Bounds box;
-        double reach = 0;
-        for (const std::uint32_t corner : triangle) {
-            box.add(nodes.position[corner]);
-            reach = std::max(reach, reach_[corner]);
-        }
-        return enlarged(box, reach);
-    };
     cell_start_.assign(buckets + 1, 0);
-    for (const auto& triangle : triangles_)
-        for_each_bucket(box_of(triangle), size, buckets, [&](std::size_t b) { ++cell_start_[b + 1]; });
+    for (const Bounds& box : triangle_boxes_)
+        for_each_bucket(box, size, buckets, [&](std::size_t b) { ++cell_start_[b + 1]; });
     for (std::size_t b = 0; b < buckets; ++b) cell_start_[b + 1] += cell_start_[b];
     cell_triangles_.resize(cell_start_.back());
     std::vector<std::uint32_t> next(cell_start_.begin(), cell_start_.end() - 1);
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-        for_each_bucket(box_of(triangles_[t]), size, buckets, [&](std::size_t b) { cell_triangles_[next[b]++] = t; });
+        for_each_bucket(triangle_boxes_[t], size, buckets, [&](std::size_t b) { cell_triangles_[next[b]++] = t; });
 }
 
 void ClothLayers::search_node(const Search& search, std::uint32_t node, std::vector<std::uint32_t>& seen,
                               std::vector<LayerContact>& found) const {
     const std::vector<Vec3>& x = search.nodes.position;
-    const double own_reach = reach_[node] + search.thickness;
-    const Bounds box = enlarged(Bounds{x[node], x[node]}, own_reach);
+    const Bounds& box = node_boxes_[node];
     const std::size_t first_found = found.size();
     // Where neighbours lie nearer than layers may.
     const bool is_fine = edge_length_ < 4 * search.thickness;
@@ -161,16 +175,12 @@ void ClothLayers::search_node(const Search& search, std::uint32_t node, std::vec
     for_each_bucket(box, cell_share * edge_length_, cell_start_.size() - 1, [&](std::size_t b) {
         for (std::uint32_t k = cell_start_[b]; k < cell_start_[b + 1]; ++k) {
             const std::uint32_t t = cell_triangles_[k];
-            if (seen[t] == node) continue;
+            if (!overlaps(triangle_boxes_[t], box) || seen[t] == node) continue;
             seen[t] = node;
             const auto [p, q, r] = triangles_[t];
-            const double reach = own_reach + std::max({reach_[p], reach_[q], reach_[r]});
-            const Bounds around{min(x[p], min(x[q], x[r])), max(x[p], max(x[q], x[r]))};
-            if (!contains(enlarged(around, reach), x[node])) continue;
+            if (node == p || node == q || node == r || (is_fine && is_near(p, q, r))) continue;
             const auto weight = nearest_weights(x[node], x[p], x[q], x[r]);
             const Vec3 away = x[node] - (weight[0] * x[p] + weight[1] * x[q] + weight[2] * x[r]);
-            if (length_squared(away) > reach * reach) continue;
-            if (node == p || node == q || node == r || (is_fine && is_near(p, q, r))) continue;
             search.add({{node, p, q, r}, {1, -weight[0], -weight[1], -weight[2]}, {}, 0}, away, found);
         }
     });
@@ -183,22 +193,21 @@ void ClothLayers::search_edge(const Search& search, std::uint32_t edge, std::vec
                               std::vector<LayerContact>& found) const {
     const std::vector<Vec3>& x = search.nodes.position;
     const auto [a, b] = edges_[edge];
-    const double own_reach = std::max(reach_[a], reach_[b]) + search.thickness;
-    const Bounds box = enlarged(Bounds{min(x[a], x[b]), max(x[a], x[b])}, own_reach);
+    const Bounds& box = edge_boxes_[edge];
     const std::size_t first_found = found.size();
     for_each_bucket(box, cell_share * edge_length_, cell_start_.size() - 1, [&](std::size_t bucket) {
         for (std::uint32_t k = cell_start_[bucket]; k < cell_start_[bucket + 1]; ++k) {
-            for (const std::uint32_t other : edges_of_triangle_[cell_triangles_[k]]) {
+            const std::uint32_t t = cell_triangles_[k];
+            if (!overlaps(triangle_boxes_[t], box)) continue;
+            for (const std::uint32_t other : edges_of_triangle_[t]) {
                 if (other <= edge || seen[other] == edge) continue;
                 seen[other] = edge;
                 const auto [c, d] = edges_[other];
-                const double reach = own_reach + std::max(reach_[c], reach_[d]);
-                if (!overlaps(enlarged(Bounds{min(x[c], x[d]), max(x[c], x[d])}, reach), box)) continue;
-                double s = 0, t = 0;
-                if (!nearest_inside(x[a], x[b], x[c], x[d], s, t)) continue;
-                const Vec3 away = (1 - s) * x[a] + s * x[b] - (1 - t) * x[c] - t * x[d];
-                if (length_squared(away) > reach * reach || a == c || a == d || b == c || b == d) continue;
-                search.add({{a, b, c, d}, {1 - s, s, t - 1, -t}, {}, 0}, away, found);
+                if (a == c || a == d || b == c || b == d || !overlaps(edge_boxes_[other], box)) continue;
+                double s = 0, u = 0;
+                if (!nearest_inside(x[a], x[b], x[c], x[d], s, u)) continue;
+                const Vec3 away = (1 - s) * x[a] + s * x[b] - (1 - u) * x[c] - u * x[d];
+                search.add({{a, b, c, d}, {1 - s, s, u - 1, -u}, {}, 0}, away, found);
             }
         }
     });
@@ -208,17 +217,9 @@ void ClothLayers::search_edge(const Search& search, std::uint32_t edge, std::vec
 
 void ClothLayers::find(const Nodes& nodes, double thickness, std::span<const Vec3> moves, TaskPool& workers) {
     const std::size_t count = nodes.size();
-    Vec3 mean;
-    double mass = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        mean += nodes.mass[i] * moves[i];
-        mass += nodes.mass[i];
-    }
-    mean = mean / mass;
-    reach_.resize(count);
-    for (std::size_t i = 0; i < count; ++i) reach_[i] = std::min(length(moves[i] - mean), 2 * edge_length_);
-    fill_grid(nodes);
     const Search search{nodes, moves, thickness};
+    find_boxes(search);
+    fill_grid();
     const int number = std::max(1, workers.workers());
     std::vector<std::vector<LayerContact>> of_nodes(static_cast<std::size_t>(number)), of_edges(of_nodes);
     share_among(workers, count, count >= 1000, [&](int worker, Share share) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "foundation/task_pool.h"
+#include "math/bounds.h"
 #include "physics/deformable/nodes.h"
 
 namespace embody::physics {
@@ -27,7 +28,8 @@ public:
 
     /// Changes `moves` (m) so that what would come nearer than `thickness` (m) along the line between them stays that
     /// far apart, or as near as it was: the nodes give way by `give` (1/kg, 0: not at all), sliding is braked by
-    /// friction. Momentum is kept. What moves by more than two edges relative to the rest in one substep may be missed.
+    /// friction. Momentum is kept. What moves by more than about half an edge against another layer in one substep may
+    /// be missed.
     void part(const Nodes& nodes, double thickness, double friction, std::span<const double> give,
               std::span<Vec3> moves, TaskPool& workers);
     /// Mean, m.
@@ -38,7 +40,8 @@ public:
 private:
     struct Search;
     void find(const Nodes& nodes, double thickness, std::span<const Vec3> moves, TaskPool& workers);
-    void fill_grid(const Nodes& nodes);
+    void find_boxes(const Search& search);
+    void fill_grid();
     void search_node(const Search& search, std::uint32_t node, std::vector<std::uint32_t>& seen,
                      std::vector<LayerContact>& found) const;
     void search_edge(const Search& search, std::uint32_t edge, std::vector<std::uint32_t>& seen,
@@ -51,8 +54,9 @@ private:
     std::vector<std::uint32_t> neighbour_start_, neighbours_;  // of nodes
     double edge_length_ = 0;                                   // mean, m
 
-    // Of the substep: triangles by the cells of a grid that they may reach, cells by a hash.
-    std::vector<double> reach_;  // how far a node goes relative to the whole, m
+    // Of the substep. Boxes hold the way that something goes, without that of the whole, and the thickness around it;
+    // triangles are kept by the cells of a grid that theirs reach, cells by a hash.
+    std::vector<Bounds> node_boxes_, edge_boxes_, triangle_boxes_;
     std::vector<std::uint32_t> cell_start_, cell_triangles_;
     std::vector<LayerContact> contacts_;
 };
