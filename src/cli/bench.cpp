@@ -8,6 +8,7 @@
 #include "cli/bench_catalogue.h"
 #include "cli/bench_cloth.h"
 #include "cli/bench_decomposition.h"
+#include "cli/bench_fluid.h"
 #include "cli/bench_grains.h"
 #include "cli/bench_race.h"
 #include "cli/bench_scaling.h"
@@ -54,6 +55,7 @@ int run_bench(const BenchArguments& arguments) {
     if (arguments.suite == "scaling") return run_scaling(arguments);
     if (arguments.suite == "decomposition") return run_decomposition(arguments);
     if (arguments.suite == "cloth") return run_cloth(arguments);
+    if (arguments.suite == "fluid") return run_fluid(arguments);
     if (arguments.suite == "grains") return run_grains(arguments);
     if (arguments.suite == "tetrahedra") return run_tetrahedra(arguments);
     if (arguments.suite == "catalogue") return run_catalogue_bench(arguments);

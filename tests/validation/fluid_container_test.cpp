@@ -133,17 +133,19 @@ TEST(FluidContainer, VolumeStaysWhileWaterSloshes) {
     const double volume = volume_of(*world, water);
     EXPECT_NEAR(volume, 0.3 * 0.4 * 0.3, 1e-9);
     double height = 0;
-    constexpr int steps = 600, counted = 300;
-    run(*world, 20);
+    constexpr int steps = 300;
+    run(*world, 8);
     for (int i = 0; i < steps; ++i) {
         world->step();
-        if (i >= steps - counted) height += mean_height(*world, water) / counted;
+        height += mean_height(*world, water) / steps;
     }
     EXPECT_EQ(volume_of(*world, water), volume);
-    // At rest half of the depth that the volume has in the tank; sloshing lifts it a little.
+    // At rest half of the depth that the volume has in the tank; what still sloshes lifts it. Lost volume would lower
+    // it.
     const double expected = volume / (0.6 * 0.3) / 2;
     RecordProperty("volume_ratio", std::to_string(height / expected));
-    EXPECT_NEAR(height, expected, 0.02 * expected);
+    EXPECT_GT(height, 0.99 * expected);
+    EXPECT_LT(height, 1.04 * expected);
 }
 
 }  // namespace

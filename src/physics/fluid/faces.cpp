@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "physics/fluid/transfer.h"
 
@@ -22,24 +23,42 @@ Vec3 face_center(const FluidGrid& grid, int axis, const Cell& c) {
     return center;
 }
 
+// The flags of a row of eight faces at once.
+std::uint64_t row_of(const std::vector<std::uint8_t>& known, int first) {
+    static_assert(FluidGrid::tile[0] == sizeof(std::uint64_t));
+    std::uint64_t flags = 0;
+    std::memcpy(&flags, &known[static_cast<std::size_t>(first)], sizeof flags);
+    return flags;
+}
+
 // Means of the known neighbours of unknown faces in a tile.
 void list_next_layer(const FluidGrid& grid, const std::array<std::vector<float>, 3>& field, const Cell& corner,
                      std::vector<FaceValue>& found) {
-    const int strides[3] = {grid.stride(0), grid.stride(1), grid.stride(2)};
+    constexpr std::uint64_t all = 0x0101010101010101;
+    const int dy = grid.stride(1), dz = grid.stride(2);
+    const int strides[3] = {1, dy, dz};
     for (int axis = 0; axis < 3; ++axis) {
         const std::vector<std::uint8_t>& known = grid.known[axis];
-        grid.for_cells(corner, [&](int cell, const Cell&) {
-            if (known[cell]) return;
-            float sum = 0;
-            int count = 0;
-            for (const int stride : strides) {
-                for (const int other : {cell - stride, cell + stride}) {
-                    if (!known[other]) continue;
-                    sum += field[axis][other];
-                    ++count;
+        grid.for_rows(corner, [&](int first, const Cell&) {
+            // Most rows are wholly known or far from all that is.
+            const std::uint64_t own = row_of(known, first);
+            if (own == all) return;
+            const std::uint64_t beside = row_of(known, first - dy) | row_of(known, first + dy) |
+                                         row_of(known, first - dz) | row_of(known, first + dz);
+            if (own == 0 && beside == 0 && !known[first - 1] && !known[first + FluidGrid::tile[0]]) return;
+            for (int cell = first; cell < first + FluidGrid::tile[0]; ++cell) {
+                if (known[cell]) continue;
+                float sum = 0;
+                int count = 0;
+                for (const int stride : strides) {
+                    for (const int other : {cell - stride, cell + stride}) {
+                        if (!known[other]) continue;
+                        sum += field[axis][other];
+                        ++count;
+                    }
                 }
+                if (count > 0) found.push_back({axis, cell, sum / static_cast<float>(count)});
             }
-            if (count > 0) found.push_back({axis, cell, sum / static_cast<float>(count)});
         });
     }
 }

@@ -59,17 +59,37 @@ void look_around(const FluidGrid& grid, int cell, bool and_narrow, std::vector<M
     if (!is_narrow && liquid > 0 && dry == 0) marked.push_back({cell, -0.05f});
 }
 
-void mark_beside_liquid(FluidGrid& grid, bool and_narrow, TaskPool& workers) {
+void mark(FluidGrid& grid, const std::vector<MarkedCell>& marked) {
+    for (const MarkedCell& cell : marked) grid.surface[cell.cell] = cell.surface;
+}
+
+// Narrow cells are liquid beside liquid, those in corners beside such ones; holes with liquid all around are none.
+void mark_beside_liquid(FluidGrid& grid, TaskPool& workers) {
     const auto tiles = grid.tiles();
-    std::vector<std::vector<MarkedCell>> marked(static_cast<std::size_t>(workers.workers()));
+    struct Found {
+        std::vector<MarkedCell> marked;
+        std::vector<int> narrow;
+    };
+    std::vector<Found> found(static_cast<std::size_t>(workers.workers()));
     share_among(workers, tiles.size(), tiles.size() > 16, [&](int worker, Share share) {
-        auto& list = marked[static_cast<std::size_t>(worker)];
+        Found& own = found[static_cast<std::size_t>(worker)];
         for (std::size_t i = share.first; i < share.last; ++i) {
-            grid.for_cells(tiles[i], [&](int cell, const Cell&) { look_around(grid, cell, and_narrow, list); });
+            grid.for_cells(tiles[i], [&](int cell, const Cell&) {
+                const std::size_t before = own.marked.size();
+                look_around(grid, cell, false, own.marked);
+                const bool is_dry = own.marked.size() == before && grid.surface[cell] >= 0;
+                if (is_dry && grid.room[cell] < least_room && grid.solid[cell] > -1) own.narrow.push_back(cell);
+            });
         }
     });
-    for (const auto& list : marked) {
-        for (const MarkedCell& cell : list) grid.surface[cell.cell] = cell.surface;
+    for (const Found& own : found) mark(grid, own.marked);
+    constexpr int passes = 2;
+    for (int pass = 0; pass < passes; ++pass) {
+        std::vector<MarkedCell> marked;
+        for (const Found& own : found) {
+            for (const int cell : own.narrow) look_around(grid, cell, true, marked);
+        }
+        mark(grid, marked);
     }
 }
 
@@ -83,10 +103,7 @@ int mark_liquid(FluidGrid& grid, TaskPool& workers) {
         });
     });
 
-    // Narrow cells are liquid beside liquid, those in corners beside such ones; holes with liquid all around are none.
-    constexpr int passes = 3;
-    for (int pass = 0; pass < passes; ++pass) mark_beside_liquid(grid, pass > 0, workers);
-
+    mark_beside_liquid(grid, workers);
     int rows = 0;
     for (const Cell& corner : grid.tiles()) {
         grid.for_cells(corner, [&](int cell, const Cell&) {

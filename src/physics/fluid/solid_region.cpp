@@ -76,7 +76,7 @@ bool SolidRegion::add(SolidProbe& probe) {
 // outside, and walls around a centre that end before the next one.
 void SolidRegion::shut_thin(const SolidProbe& probe) {
     const double h = grid_->cell_size();
-    constexpr double thickness = 1.2;  // cells
+    constexpr double thickness = 1.9;  // cells: nothing is left open of the faces beside a wall of two
     constexpr float on_surface = 1e-3f;
     const auto shut = [&](int axis, int cell) {
         share_[axis][cell] = 1;
@@ -91,7 +91,7 @@ void SolidRegion::shut_thin(const SolidProbe& probe) {
                 const Vec3 center = grid_->center({x + lower_[0] - 1, y + lower_[1] - 1, z + lower_[2] - 1});
                 const Cell place{x, y, z};
                 if (here < on_surface) {
-                    if (!probe.is_thinner(center, probe.nearest(center).normal, thickness * h)) continue;
+                    if (!probe.is_thinner(center, probe.nearest(center).normal, (thickness + here) * h)) continue;
                     for (int axis = 0; axis < 3; ++axis) {
                         shut(axis, cell);
                         if (place[axis] + 1 < size_[axis]) shut(axis, cell + stride(axis));

@@ -56,8 +56,6 @@ FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidSolid>
     FluidOutcome outcome;
     for (FluidSolid& solid : solids) solid.impulse = solid.angular_impulse = {};
     if (particles_.empty()) return outcome;
-    const std::vector<FluidParticle> before = particles_;
-
     speed_ = usual_speed();
     const double cells = (speed_ + length(gravity) * dt) * dt / (longest_way * grid_.cell_size());
     outcome.parts = static_cast<int>(std::clamp(std::ceil(cells), 1.0, static_cast<double>(most_parts)));
@@ -66,14 +64,14 @@ FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidSolid>
     const double part = dt / outcome.parts;
     for (int i = 0; i < outcome.parts && !particles_.empty(); ++i) advance_part(part, gravity, outcome, workers);
 
-    // Numbers that are none: back to where it was, and no solid learns of them.
+    // Numbers that are none: no solid learns of them.
     for (const FluidSolid& solid : solids) {
         outcome.is_finite =
             outcome.is_finite && embody::is_finite(solid.impulse) && embody::is_finite(solid.angular_impulse);
     }
-    for (const FluidParticle& particle : particles_) outcome.is_finite = outcome.is_finite && is_finite(particle);
+    outcome.is_finite = outcome.is_finite && std::all_of(particles_.begin(), particles_.end(),
+                                                         [](const FluidParticle& p) { return is_finite(p); });
     if (outcome.is_finite) return outcome;
-    particles_ = before;
     for (FluidSolid& solid : solids) solid.impulse = solid.angular_impulse = {};
     return outcome;
 }
@@ -82,6 +80,14 @@ void FluidSolver::stop() {
     for (FluidParticle& particle : particles_) {
         std::fill_n(particle.velocity, 3, 0.0f);
         for (auto& row : particle.affine) std::fill_n(row, 3, 0.0f);
+    }
+}
+
+void FluidSolver::put_at_rest(std::span<const Vec3f> positions, std::span<const std::uint32_t> ids) {
+    particles_.assign(positions.size(), {});
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const Vec3f p = positions[i];
+        particles_[i] = {.position = {p.x, p.y, p.z}, .id = ids[i]};
     }
 }
 

@@ -24,7 +24,7 @@ struct FluidOutcome {
     int parts = 0;                                          ///< the step was solved in
     int pressure_iterations = 0, viscosity_iterations = 0;  ///< over all parts
     std::size_t lost = 0;                                   ///< particles that flew out of reach
-    bool is_finite = true;                                  ///< false: nothing was changed
+    bool is_finite = true;                                  ///< false: the particles are of no use; no solid was pushed
     bool is_solved = true;                                  ///< false: a solve ended early
     bool is_slowed = false;                                 ///< particles were faster than the parts allow
 };
@@ -55,6 +55,8 @@ public:
     [[nodiscard]] double usual_speed() const;
     /// Stops all motion.
     void stop();
+    /// The particles are at these places, and stand.
+    void put_at_rest(std::span<const Vec3f> positions, std::span<const std::uint32_t> ids);
     /// Pressure at a place of the fluid's frame, Pa; 0 outside the liquid.
     [[nodiscard]] double pressure_at(Vec3 p) const;
 

@@ -178,7 +178,7 @@ void note_outcome(WorldState& world, FluidRecord& fluid, const FluidOutcome& out
     if (!outcome.is_finite) {
         report_limit(world, StepLimit::not_finite_fluid_frozen);
         fluid.is_frozen = true;
-        fluid.solver->stop();
+        fluid.solver->put_at_rest(fluid.positions, fluid.ids);
     }
 }
 
