@@ -31,6 +31,9 @@ def main() -> int:
             names = {entity["index"]: entity["name"] for entity in lines[0]["entities"]}
             moving = [names.get(e["index"], e["index"]) for e in lines[-1]["entities"] if any(e["linear_velocity"])]
             wrong.append(f"{name}: did not come to rest within 12 s: {moving}")
+        restless = [e["index"] for e in lines[-1]["entities"] if e["state"] == "active" and "points" in e]
+        if restless:
+            wrong.append(f"{name}: entities {restless} are awake after 12 s")
         if report["limits"]:
             wrong.append(f"{name}: limits {report['limits']} were reached")
     for line in wrong:

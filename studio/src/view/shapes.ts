@@ -14,12 +14,15 @@ import {
   Vector3,
 } from "three";
 import { ConvexGeometry } from "three/examples/jsm/geometries/ConvexGeometry.js";
+import { toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.js";
 import { positionOf, rotationOf } from "../document/scene_document";
 import type { Shape } from "../document/scene_types";
 import { type Drawable, type DrawablePart, drawable } from "./drawable";
 
 /** Half the side of the square that stands for an endless plane, m. */
 const PLANE_REACH = 500;
+/** Faces of a hull that meet at less than this are drawn as one round surface, rad. */
+const CREASE = 0.6;
 const UP = new Vector3(0, 1, 0);
 const ONE = new Vector3(1, 1, 1);
 const NONE = new Vector3();
@@ -64,7 +67,7 @@ function shapeParts(shape: Shape): DrawablePart[] {
     case "cone":
       return [part(new ConeGeometry(1, 2, 40), scaled(shape.radius, shape.half_height, shape.radius))];
     case "hull":
-      return [part(new ConvexGeometry(shape.points.map((point) => new Vector3(...point))))];
+      return [part(toCreasedNormals(new ConvexGeometry(shape.points.map((point) => new Vector3(...point))), CREASE))];
     case "plane":
       return [planePart(shape.normal ?? [0, 1, 0], shape.offset ?? 0)];
     case "heightfield":
