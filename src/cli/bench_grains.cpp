@@ -20,7 +20,7 @@ struct Size {
     int grains;
 };
 constexpr double angles[] = {21, 27, 32, 34, 38, 44};
-constexpr Size sizes[] = {{0.005, 2000}, {0.01, 500}, {0.01, 2000}, {0.01, 4000}, {0.03, 2000}};
+constexpr Size sizes[] = {{0.005, 1500}, {0.01, 1500}, {0.01, 3000}, {0.03, 1500}};
 constexpr int slabs[] = {1000, 2000, 5000};
 
 /// Rows of the report, and whether all heaps were right.
