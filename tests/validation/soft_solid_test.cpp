@@ -204,6 +204,26 @@ TEST(SoftSolid, ACushionBearsMassesUpToAThousandTimesItsOwn) {
     }
 }
 
+TEST(SoftSolid, CushionsLieOnEachOther) {
+    const auto world = make_world({});
+    add_plane(*world, {});
+    std::vector<DeformableHandle> cushions;
+    for (int i = 0; i < 3; ++i) {
+        DeformableDefinition cushion = brick({0.4, 0.12, 0.4}, {5, 2, 5}, 60, 3e4, 0.2, 0.03);
+        cushion.pose.position = {-0.2 + 0.03 * i, 0.01 + 0.16 * i, -0.2 - 0.02 * i};
+        cushions.push_back(world->create_deformable(cushion).value());
+    }
+    run(*world, 4);
+    for (std::size_t i = 0; i < cushions.size(); ++i) {
+        EXPECT_TRUE(world->is_asleep(cushions[i])) << i;
+        const double middle = world->center_of_mass(cushions[i]).y;
+        // Their weight of 11 N presses those below by less than a tenth of a millimetre each.
+        EXPECT_NEAR(middle, 0.001 + 0.06 + 0.122 * static_cast<double>(i), 0.002) << i;
+    }
+    // Friction holds them where they are.
+    EXPECT_NEAR(world->center_of_mass(cushions[2]).x, 0.06, 0.01);
+}
+
 TEST(SoftSolid, TurnedInsideOutOrFlatItComesBack) {
     for (const bool is_flat : {false, true}) {
         DeformableDefinition block = brick({0.4, 0.2, 0.2}, {4, 2, 2}, 1000, 1e5, 0.3, 0.02);

@@ -8,21 +8,32 @@ namespace embody::physics {
 
 namespace {
 
-constexpr int most_rounds = 12, sweeps_a_round = 2, most_gradient_rounds = 40;
-constexpr double close_enough = 1e-6;      // m: no contact moves by more in the last sweep
-constexpr double recovery_speed = 0.5;     // m/s: what overlaps is parted no faster
+constexpr int most_rounds = 10, sweeps_a_round = 4, most_gradient_rounds = 40, most_leaning_sweeps = 60;
+constexpr double close_enough = 2e-6;   // m: no contact moves by more in the last sweep
+constexpr double recovery_speed = 0.5;  // m/s: what overlaps is parted no faster
+// Of a contact's own compliance along the normal: where contacts say the same of a place, all bear a part.
+constexpr double softness = 0.01;
 constexpr double reach_beyond_radius = 1;  // contacts farther than this many radii stay out of the sweeps
 
-Vec3 position(const CarriedPoint& point, std::span<const Vec3> nodes) {
+Vec3 position(const CarriedPoint& point, SolidContacts::Solids solids) {
     Vec3 sum;
-    for (std::size_t k = 0; k < point.count; ++k) sum += point.weight[k] * nodes[point.node[k]];
+    for (std::size_t k = 0; k < point.count; ++k)
+        sum += point.weight[k] * solids[point.solid]->nodes().position[point.node[k]];
     return sum;
 }
 
-Vec3 start_position(const CarriedPoint& point, const SolidDeformable& solid) {
+Vec3 start_position(const CarriedPoint& point, SolidContacts::Solids solids) {
     Vec3 sum;
-    for (std::size_t k = 0; k < point.count; ++k) sum += point.weight[k] * solid.start(point.node[k]);
+    for (std::size_t k = 0; k < point.count; ++k) sum += point.weight[k] * solids[point.solid]->start(point.node[k]);
     return sum;
+}
+
+// The nearest force that Coulomb's cone about the normal allows.
+Vec3 within_cone(Vec3 force, Vec3 normal, double friction) {
+    const double along = std::max(0.0, dot(force, normal)), most = friction * along;
+    const Vec3 across = force - dot(force, normal) * normal;
+    const double sideways = length(across);
+    return along * normal + (sideways > most ? (most / sideways) * across : across);
 }
 
 }  // namespace
@@ -31,32 +42,75 @@ void SolidContacts::begin(std::span<const SolidContact> contacts, Solids solids,
                           double h) {
     for (const SolidContact& contact : contacts) {
         if (contact.force == Vec3{}) continue;
-        const CarriedPoint& point = contact.point;
-        for (std::size_t k = 0; k < point.count; ++k)
-            solids[point.solid]->push(point.node[k], point.weight[k] * contact.force);
-        TouchedBody& body = bodies[contact.body];
-        body.push(-h * contact.force, contact.anchor, h);
+        const auto push = [&](const CarriedPoint& point, double sign) {
+            for (std::size_t k = 0; k < point.count; ++k)
+                solids[point.solid]->push(point.node[k], sign * point.weight[k] * contact.force);
+        };
+        push(contact.point, 1);
+        push(contact.other, -1);
+        if (contact.has_body()) bodies[contact.body].push(-h * contact.force, contact.anchor, h);
     }
 }
 
 void SolidContacts::solve(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h,
                           double time, TaskPool& workers) {
     gather(contacts, solids, bodies, h, time);
-    gather_nodes(solids);
-    for (Active& active : active_) find_give(active, bodies[active.contact->body], h);
-    // Sweeps find which contacts hold, stick and slide; conjugate gradients solve for the forces of these at once
-    // (M. Silcowitz, S. Niebe, K. Erleben, "Projected Gauss-Seidel subspace minimization method", 2010).
-    for (int round = 0; round < most_rounds; ++round) {
-        double moved = 0;
-        for (int k = 0; k < sweeps_a_round; ++k) moved = sweep(bodies, h, k % 2 == 0);
-        if (!(moved > close_enough) || round + 1 == most_rounds) break;
-        solve_together(bodies, h);
-    }
+    for (std::size_t s = 0; s < solids.size(); ++s) touched_[s].fetch_compliance(*solids[s]);
+    for (Active& active : active_) find_give(active, h);
+    find_forces(bodies, h);
     for (std::size_t s = 0; s < solids.size(); ++s) {
-        const Touched& touched = touched_[s];
-        if (touched.nodes.empty()) continue;
-        for (std::size_t k = 0; k < touched.nodes.size(); ++k) solids[s]->push(touched.nodes[k], touched.force[k]);
+        const TouchedNodes& touched = touched_[s];
+        if (touched.nodes().empty()) continue;
+        for (std::size_t k = 0; k < touched.nodes().size(); ++k)
+            solids[s]->push(touched.nodes()[k], touched.forces()[k]);
         solids[s]->settle(workers);
+    }
+}
+
+// Sweeps find which contacts hold, stick and slide; conjugate gradients solve for the forces of these at once
+// (M. Silcowitz, S. Niebe, K. Erleben, "Projected Gauss-Seidel subspace minimization method", 2010), as long as that
+// helps. Where many contacts say nearly the same, sweeps that lean on the last ones go on (by the same, "A nonsmooth
+// nonlinear conjugate gradient method for interactive contact force problems", 2010).
+void SolidContacts::find_forces(std::span<TouchedBody> bodies, double h) {
+    const auto sweeps = [&] {
+        double moved = 0;
+        for (int k = 0; k < sweeps_a_round && (k == 0 || moved > close_enough); ++k) moved = sweep(h, k % 2 == 0);
+        return moved;
+    };
+    double moved = sweeps(), best = moved;
+    const auto keep = [&] {
+        for (Active& active : active_) active.best = active.contact->force;
+    };
+    keep();
+    for (int round = 0; round < most_rounds && moved > close_enough; ++round) {
+        solve_together(bodies, h);
+        moved = sweeps();
+        if (!(moved < best)) continue;
+        best = moved;
+        keep();
+    }
+    if (moved > best) {
+        for (const Active& active : active_) apply(active, active.best - active.contact->force, h);
+        moved = best;
+    }
+    double last = 0;
+    for (int k = 0; k < most_leaning_sweeps && moved > close_enough; ++k) {
+        for (Active& active : active_) active.before = active.contact->force;
+        moved = sweep(h, k % 2 == 0);
+        double size = 0;
+        for (const Active& active : active_) size += length_squared(active.contact->force - active.before);
+        const double factor = k > 0 && size < last ? size / last : 0;
+        last = size;
+        if (k + 1 < most_leaning_sweeps && moved > close_enough) lean_on(factor, h);
+    }
+}
+
+// p ← β p + change of the sweep;  force ← force + β p
+void SolidContacts::lean_on(double factor, double h) {
+    for (Active& active : active_) {
+        const Vec3 along = factor * active.direction;
+        active.direction = along + active.contact->force - active.before;
+        if (along != Vec3{}) apply(active, along, h);
     }
 }
 
@@ -64,158 +118,146 @@ void SolidContacts::solve(std::span<SolidContact> contacts, Solids solids, std::
 void SolidContacts::gather(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h,
                            double time) {
     active_.clear();
+    touched_.resize(solids.size());
+    for (std::size_t s = 0; s < solids.size(); ++s) touched_[s].begin(*solids[s]);
     for (SolidContact& contact : contacts) {
-        const SolidDeformable& solid = *solids[contact.point.solid];
-        const TouchedBody& body = bodies[contact.body];
-        const Mat3 rotation = body.rotation_at(time);
         Active active;
         active.contact = &contact;
-        active.normal = rotation * contact.normal;
-        const Vec3 center = body.center_at(time), anchor = rotation * contact.anchor;
-        const Vec3 at = position(contact.point, solid.nodes().position);
-        const Vec3 was = start_position(contact.point, solid);
-        const Vec3 apart = at - center - anchor;
-        active.gap = dot(apart, active.normal) - contact.radius;
-        // The body's surface under the point, and how far it has gone in the substep.
-        active.arm = contact.holds ? anchor : at - (contact.radius + active.gap) * active.normal - center;
-        const Vec3 body_way = body.way(h, time, active.arm);
-        active.slid = contact.holds ? apart : at - was - body_way;
+        const Vec3 at = position(contact.point, solids), was = start_position(contact.point, solids);
+        if (contact.has_body()) {
+            active.body = &bodies[contact.body];
+            place_against_body(active, at, was, h, time);
+        } else {
+            const Vec3 other = position(contact.other, solids);
+            active.normal = contact.normal;
+            active.gap = dot(at - other, contact.normal) - contact.radius;
+            active.slid = at - was - (other - start_position(contact.other, solids));
+        }
         if (!contact.holds && contact.force == Vec3{} && active.gap > reach_beyond_radius * contact.radius) continue;
         const double gap_before = active.gap - dot(active.slid, active.normal);
         active.target = std::min(0.0, gap_before + recovery_speed * h);
-        active.shift = body.shift;
-        active.turn = body.turn;
+        add_terms(active, contact.point, 1);
+        add_terms(active, contact.other, -1);
         active_.push_back(active);
     }
 }
 
-void SolidContacts::gather_nodes(Solids solids) {
-    touched_.resize(solids.size());
-    constexpr std::uint32_t none = 0xFFFFFFFF;
-    for (std::size_t s = 0; s < solids.size(); ++s) {
-        touched_[s].nodes.clear();
-        touched_[s].local_of.assign(solids[s]->nodes().size(), none);
-    }
-    for (Active& active : active_) {
-        const CarriedPoint& point = active.contact->point;
-        Touched& touched = touched_[point.solid];
-        for (std::size_t k = 0; k < point.count; ++k) {
-            std::uint32_t& local = touched.local_of[point.node[k]];
-            if (local == none) {
-                local = static_cast<std::uint32_t>(touched.nodes.size());
-                touched.nodes.push_back(point.node[k]);
-            }
-            active.local[k] = local;
-        }
-    }
-    for (std::size_t s = 0; s < solids.size(); ++s) {
-        Touched& touched = touched_[s];
-        const std::size_t count = touched.nodes.size();
-        touched.stride = (count + 15) / 16 * 16;
-        touched.rotation.resize(count);
-        touched.compliance.assign(9 * count * touched.stride, 0.0f);
-        touched.moved.assign(3 * touched.stride, 0.0f);
-        touched.probe.assign(3 * touched.stride, 0.0f);
-        touched.probe_force.assign(count, {});
-        touched.force.assign(count, {});
-        for (std::size_t a = 0; a < count; ++a) {
-            touched.rotation[a] = solids[s]->turn(touched.nodes[a]);
-            for (std::size_t b = 0; b < count; ++b) {
-                const Mat3 block = solids[s]->compliance(touched.nodes[a], touched.nodes[b]);
-                float* to = touched.compliance.data() + 9 * b * touched.stride + a;
-                for (int k = 0; k < 9; ++k, to += touched.stride) *to = static_cast<float>(block(k % 3, k / 3));
-            }
-        }
+void SolidContacts::place_against_body(Active& active, Vec3 at, Vec3 was, double h, double time) const {
+    const SolidContact& contact = *active.contact;
+    const TouchedBody& body = *active.body;
+    const Mat3 rotation = body.rotation_at(time);
+    active.normal = rotation * contact.normal;
+    const Vec3 center = body.center_at(time), anchor = rotation * contact.anchor, apart = at - center - anchor;
+    active.gap = dot(apart, active.normal) - contact.radius;
+    // The body's surface under the point, and how far it has gone in the substep.
+    active.arm = contact.holds ? anchor : at - (contact.radius + active.gap) * active.normal - center;
+    active.slid = contact.holds ? apart : at - was - body.way(h, time, active.arm);
+    active.shift = body.shift;
+    active.turn = body.turn;
+}
+
+void SolidContacts::add_terms(Active& active, const CarriedPoint& point, double sign) {
+    for (std::size_t k = 0; k < point.count; ++k) {
+        active.terms[active.term_count++] = {point.solid, touched_[point.solid].number_of(point.node[k]),
+                                             sign * point.weight[k]};
     }
 }
 
-void SolidContacts::find_give(Active& active, const TouchedBody& body, double h) const {
-    // Of the solid: Σ wₐ w_b Qₐ Wₐ_b Q_bᵀ
-    const CarriedPoint& point = active.contact->point;
-    const Touched& touched = touched_[point.solid];
-    for (std::size_t a = 0; a < point.count; ++a) {
-        const Mat3 to_world = to_matrix(touched.rotation[active.local[a]]);
-        for (std::size_t b = 0; b < point.count; ++b) {
-            const Mat3 from_world = transpose(to_matrix(touched.rotation[active.local[b]]));
-            active.give += (point.weight[a] * point.weight[b]) *
-                           (to_world * touched.block(active.local[a], active.local[b]) * from_world);
+void SolidContacts::find_give(Active& active, double h) const {
+    // Of the solids: Σ wₐ w_b W_ab
+    for (std::size_t a = 0; a < active.term_count; ++a) {
+        for (std::size_t b = 0; b < active.term_count; ++b) {
+            const Term &one = active.terms[a], &two = active.terms[b];
+            if (one.solid != two.solid) continue;
+            active.give += (one.weight * two.weight) * touched_[one.solid].block(one.number, two.number);
         }
     }
+    if (active.body == nullptr) return;
     // Of the body: h² (1/m - [arm] I⁻¹ [arm])
     const Mat3 arm = skew(active.arm);
-    active.give += (h * h) * (Mat3::diagonal({body.inverse_mass, body.inverse_mass, body.inverse_mass}) -
-                              arm * body.inverse_inertia * arm);
-}
-
-Mat3 SolidContacts::Touched::block(std::size_t i, std::size_t j) const {
-    Mat3 block;
-    for (int k = 0; k < 9; ++k)
-        block(k % 3, k / 3) = static_cast<double>(compliance[(9 * j + static_cast<std::size_t>(k)) * stride + i]);
-    return block;
-}
-
-Vec3 SolidContacts::Touched::move_of(std::size_t i, std::span<const float> moves) const {
-    return to_vec3(Vec3f{moves[i], moves[stride + i], moves[2 * stride + i]});
-}
-
-void SolidContacts::Touched::push(std::size_t j, Vec3 given) {
-    force[j] += given;
-    add_moves(j, given, moved);
-}
-
-void SolidContacts::Touched::add_moves(std::size_t j, Vec3 given, std::span<float> moves) const {
-    const Vec3f own = to_vec3f(rotate_inverse(rotation[j], given));
-    const float* w = compliance.data() + 9 * j * stride;
-    float *x = moves.data(), *y = x + stride, *z = y + stride;
-    for (std::size_t i = 0; i < stride; ++i) {
-        x[i] += w[i] * own.x + w[3 * stride + i] * own.y + w[6 * stride + i] * own.z;
-        y[i] += w[stride + i] * own.x + w[4 * stride + i] * own.y + w[7 * stride + i] * own.z;
-        z[i] += w[2 * stride + i] * own.x + w[5 * stride + i] * own.y + w[8 * stride + i] * own.z;
-    }
+    const double inverse_mass = active.body->inverse_mass;
+    active.give += (h * h) * (Mat3::diagonal({inverse_mass, inverse_mass, inverse_mass}) -
+                              arm * active.body->inverse_inertia * arm);
 }
 
 // How far the two have moved from each other by forces of this solve.
-Vec3 SolidContacts::moved(const Active& active, const TouchedBody& body) const {
-    const CarriedPoint& point = active.contact->point;
-    const Touched& touched = touched_[point.solid];
-    Vec3 sum = -(body.shift - active.shift) - cross(body.turn - active.turn, active.arm);
-    for (std::size_t k = 0; k < point.count; ++k)
-        sum += point.weight[k] *
-               rotate(touched.rotation[active.local[k]], touched.move_of(active.local[k], touched.moved));
+Vec3 SolidContacts::moved(const Active& active) const {
+    Vec3 sum;
+    if (active.body != nullptr)
+        sum = -(active.body->shift - active.shift) - cross(active.body->turn - active.turn, active.arm);
+    for (std::size_t k = 0; k < active.term_count; ++k) {
+        const Term& term = active.terms[k];
+        sum += term.weight * touched_[term.solid].moved(term.number);
+    }
     return sum;
 }
 
-void SolidContacts::apply(const Active& active, TouchedBody& body, Vec3 force, double h) {
-    const CarriedPoint& point = active.contact->point;
-    Touched& touched = touched_[point.solid];
-    for (std::size_t k = 0; k < point.count; ++k) touched.push(active.local[k], point.weight[k] * force);
-    body.push(-h * force, active.arm, h);
+void SolidContacts::apply(const Active& active, Vec3 force, double h) {
+    for (std::size_t k = 0; k < active.term_count; ++k) {
+        const Term& term = active.terms[k];
+        touched_[term.solid].push(term.number, term.weight * force);
+    }
+    if (active.body != nullptr) active.body->push(-h * force, active.arm, h);
     active.contact->force += force;
 }
 
-double SolidContacts::sweep(std::span<TouchedBody> bodies, double h, bool forwards) {
+double SolidContacts::sweep(double h, bool forwards) {
     double moved = 0;
-    for (std::size_t k = 0; k < active_.size(); ++k) {
-        Active& active = active_[forwards ? k : active_.size() - 1 - k];
-        moved = std::max(moved, relax(active, bodies[active.contact->body], h));
-    }
+    for (std::size_t k = 0; k < active_.size(); ++k)
+        moved = std::max(moved, relax(active_[forwards ? k : active_.size() - 1 - k], h));
     return moved;
 }
 
+// One contact to where it wants to be with the others as they are; returns how far it had to move.
+double SolidContacts::relax(Active& active, double h) {
+    const SolidContact& contact = *active.contact;
+    if (contact.holds) {
+        const Vec3 off = active.slid + moved(active) + soft_part(active, contact.force);
+        apply(active, (-1 / (1 + softness)) * embody::solve(active.give, off), h);
+        return length(off);
+    }
+
+    // Along the normal: force where there is no gap, none where there is one.
+    const Vec3 n = active.normal;
+    const double give = dot(n, active.give * n);
+    if (!(give > 0)) return 0;
+    const double before = dot(contact.force, n);
+    const double missing =
+        active.target - active.gap - dot(n, moved(active)) - dot(n, soft_part(active, contact.force));
+    const double after = std::max(0.0, before + missing / ((1 + softness) * give));
+    const double moved_along = std::fabs(after - before) * give;
+    if (after != before) apply(active, (after - before) * n, h);
+
+    // Against sliding, within Coulomb's cone. The larger of the two tangential compliances is at most their sum.
+    const double tangential_give = trace(active.give) - give;
+    const Vec3 relative = active.slid + moved(active) + soft_part(active, contact.force);
+    const Vec3 sliding = relative - dot(relative, n) * n;
+    const Vec3 wanted = within_cone(contact.force - sliding / tangential_give, n, contact.friction);
+    const Vec3 change = wanted - contact.force, across = change - dot(change, n) * n;
+    if (across != Vec3{}) apply(active, across, h);
+    return std::max(moved_along, length(across) * tangential_give);
+}
+
+// By how much a contact gives way to a force beyond what bodies and solids do, m.
+Vec3 SolidContacts::soft_part(const Active& active, Vec3 force) {
+    if (active.contact->holds) return softness * (active.give * force);
+    const Vec3 n = active.normal;
+    return (softness * dot(n, active.give * n) * dot(force, n)) * n;
+}
+
 // What is left of the way to where the contact wants to be, in the directions that its force may change in.
-Vec3 SolidContacts::missing(const Active& active, const TouchedBody& body) const {
-    const Vec3 n = active.normal, relative = active.slid + moved(active, body);
+Vec3 SolidContacts::missing(const Active& active) const {
+    const Vec3 n = active.normal, gone = moved(active) + soft_part(active, active.contact->force);
+    const Vec3 relative = active.slid + gone, along = (active.target - active.gap - dot(n, gone)) * n;
     switch (active.state) {
         case State::open:
             return {};
         case State::holds:
             return -relative;
-        case State::sticks: {
-            const double along = active.target - active.gap - dot(n, relative - active.slid);
-            return along * n - (relative - dot(relative, n) * n);
-        }
+        case State::sticks:
+            return along - (relative - dot(relative, n) * n);
         case State::slides:
-            return (active.target - active.gap - dot(n, relative - active.slid)) * n;
+            return along;
     }
     return {};
 }
@@ -243,44 +285,41 @@ Vec3 SolidContacts::free_part(const Active& active, Vec3 v) {
 }
 
 // Relative motion of each contact by its `direction` and those of all others, into `response`.
-void SolidContacts::respond(std::span<const TouchedBody> bodies, double h) {
-    for (Touched& touched : touched_) {
-        std::ranges::fill(touched.probe, 0.0f);
-        std::ranges::fill(touched.probe_force, Vec3{});
-    }
+void SolidContacts::respond(std::span<TouchedBody> bodies, double h) {
+    for (TouchedNodes& touched : touched_) touched.clear_probe();
     probe_forces_.assign(bodies.size(), {});
     probe_torques_.assign(bodies.size(), {});
     for (const Active& active : active_) {
-        const CarriedPoint& point = active.contact->point;
-        for (std::size_t k = 0; k < point.count; ++k)
-            touched_[point.solid].probe_force[active.local[k]] += point.weight[k] * active.direction;
+        for (std::size_t k = 0; k < active.term_count; ++k) {
+            const Term& term = active.terms[k];
+            touched_[term.solid].add_to_probe(term.number, term.weight * active.direction);
+        }
+        if (active.body == nullptr) continue;
         probe_forces_[active.contact->body] -= active.direction;
         probe_torques_[active.contact->body] -= cross(active.arm, active.direction);
     }
-    for (Touched& touched : touched_) {
-        for (std::size_t j = 0; j < touched.nodes.size(); ++j) {
-            if (touched.probe_force[j] != Vec3{}) touched.add_moves(j, touched.probe_force[j], touched.probe);
-        }
-    }
+    for (TouchedNodes& touched : touched_) touched.run_probe();
     for (Active& active : active_) {
-        const CarriedPoint& point = active.contact->point;
-        const Touched& touched = touched_[point.solid];
-        const TouchedBody& body = bodies[active.contact->body];
-        const Vec3 turn = body.inverse_inertia * probe_torques_[active.contact->body];
-        Vec3 sum = -(h * h) * (body.inverse_mass * probe_forces_[active.contact->body] + cross(turn, active.arm));
-        for (std::size_t k = 0; k < point.count; ++k) {
-            const std::uint32_t node = active.local[k];
-            sum += point.weight[k] * rotate(touched.rotation[node], touched.move_of(node, touched.probe));
+        Vec3 sum;
+        if (active.body != nullptr) {
+            const Vec3 turn = active.body->inverse_inertia * probe_torques_[active.contact->body];
+            sum =
+                -(h * h) * (active.body->inverse_mass * probe_forces_[active.contact->body] + cross(turn, active.arm));
         }
-        active.response = sum;
+        for (std::size_t k = 0; k < active.term_count; ++k) {
+            const Term& term = active.terms[k];
+            sum += term.weight * touched_[term.solid].probe_move(term.number);
+        }
+        active.response = sum + soft_part(active, active.direction);
     }
 }
 
+// The forces of contacts that hold, stick and slide at once, as if they went on doing so; then as far as each may.
 void SolidContacts::solve_together(std::span<TouchedBody> bodies, double h) {
     double size = 0;
     for (Active& active : active_) {
         find_state(active);
-        active.residual = missing(active, bodies[active.contact->body]);
+        active.residual = missing(active);
         active.direction = free_part(active, embody::solve(active.give, active.residual));
         active.change = {};
         size += dot(active.residual, active.direction);
@@ -303,53 +342,12 @@ void SolidContacts::solve_together(std::span<TouchedBody> bodies, double h) {
         }
         size = next;
     }
-    // As far as each contact may.
     for (Active& active : active_) {
         if (active.state == State::open) continue;
-        SolidContact& contact = *active.contact;
-        Vec3 force = contact.force + active.change;
-        if (!contact.holds) {
-            const double along = std::max(0.0, dot(force, active.normal)), most = contact.friction * along;
-            Vec3 across = force - dot(force, active.normal) * active.normal;
-            const double sideways = length(across);
-            if (sideways > most) across = sideways > 0 ? (most / sideways) * across : Vec3{};
-            force = along * active.normal + across;
-        }
-        apply(active, bodies[contact.body], force - contact.force, h);
+        const SolidContact& contact = *active.contact;
+        const Vec3 force = contact.force + active.change;
+        apply(active, (contact.holds ? force : within_cone(force, active.normal, contact.friction)) - contact.force, h);
     }
-}
-
-// One contact to where it wants to be with the others as they are; returns how far it had to move.
-double SolidContacts::relax(Active& active, TouchedBody& body, double h) {
-    SolidContact& contact = *active.contact;
-    if (contact.holds) {
-        const Vec3 off = active.slid + moved(active, body);
-        apply(active, body, -embody::solve(active.give, off), h);
-        return length(off);
-    }
-
-    // Along the normal: force where there is no gap, none where there is one.
-    const Vec3 n = active.normal;
-    const double give = dot(n, active.give * n);
-    if (!(give > 0)) return 0;
-    const double before = dot(contact.force, n);
-    const double missing = active.target - active.gap - dot(n, moved(active, body));
-    const double after = std::max(0.0, before + missing / give);
-    double moved_by = std::fabs(after - before) * give;
-    if (after != before) apply(active, body, (after - before) * n, h);
-
-    // Against sliding, within Coulomb's cone. The larger of the two tangential compliances is at most their sum.
-    const Vec3 relative = active.slid + moved(active, body);
-    const Vec3 sliding = relative - dot(relative, n) * n;
-    const double tangential_give = trace(active.give) - give;
-    const Vec3 held = contact.force - dot(contact.force, n) * n;
-    Vec3 holds = held - sliding / tangential_give;
-    const double most = contact.friction * after, size = length(holds);
-    if (size > most) holds = size > 0 ? (most / size) * holds : Vec3{};
-    const Vec3 change = holds - held;
-    if (change != Vec3{}) apply(active, body, change, h);
-    moved_by = std::max(moved_by, length(change) * tangential_give);
-    return moved_by;
 }
 
 }  // namespace embody::physics

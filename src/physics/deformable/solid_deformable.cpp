@@ -59,6 +59,12 @@ void SolidDeformable::find_surface() {
     }
     std::ranges::sort(surface_nodes_);
     surface_nodes_.erase(std::unique(surface_nodes_.begin(), surface_nodes_.end()), surface_nodes_.end());
+    for (const auto& [a, b, c] : surface_) {
+        middles_.push_back({0, 3, {a, b, c}, {1.0 / 3, 1.0 / 3, 1.0 / 3}});
+        for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}}) {
+            if (from < to) middles_.push_back({0, 2, {from, to, 0}, {0.5, 0.5, 0}});  // each edge has two triangles
+        }
+    }
 }
 
 Bounds SolidDeformable::bounds() const {

@@ -4,6 +4,7 @@
 #include "math/bounds.h"
 #include "physics/deformable/dissected_cholesky.h"
 #include "physics/deformable/nodes.h"
+#include "physics/deformable/solid_contact.h"
 #include "physics/deformable/solid_elements.h"
 #include "physics/inter/definitions/step_report.h"
 
@@ -20,6 +21,8 @@ public:
     /// Outer faces, counter-clockwise from outside; and their nodes, ascending: what collides.
     [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& surface() const { return surface_; }
     [[nodiscard]] const std::vector<std::uint32_t>& surface_nodes() const { return surface_nodes_; }
+    /// The middles of the surface's edges and triangles: where things finer than the mesh are noticed.
+    [[nodiscard]] const std::vector<CarriedPoint>& middles() const { return middles_; }
     [[nodiscard]] Bounds bounds() const;
 
     /// Begins a substep of h seconds: nodes go on with their velocities. `gravity` in m/s², the body's factor counted.
@@ -70,6 +73,7 @@ private:
     std::vector<Vec3> rest_;
     std::vector<std::array<std::uint32_t, 3>> surface_;
     std::vector<std::uint32_t> surface_nodes_;
+    std::vector<CarriedPoint> middles_;
     bool is_free_ = true;  // no node is pinned
     bool is_new_ = true;   // has made no substep yet
 

@@ -22,6 +22,8 @@ struct DeformableRecord {
     std::vector<std::uint32_t> segment_capsule;             ///< by segment: index of its capsule
     std::vector<SolidContact> contacts;                     ///< a solid's of the last step
     std::vector<std::uint32_t> touched_bodies;              ///< slots: those that it pushed in the last step
+    std::vector<std::uint32_t> touched_deformables;         ///< slots: a solid's
+    std::uint32_t slot = 0;                                 ///< its own, while it moves
     double quiet_time = 0;                                  ///< s
     bool is_asleep = false;
     std::vector<Vec3> last_positions;  ///< last finite ones, to freeze it at

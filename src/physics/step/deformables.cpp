@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "physics/dynamic/equations_of_motion.h"
+#include "physics/step/solid_contact_search.h"
 #include "physics/step/step.h"
 #include "physics/step/thin_deformables.h"
 
@@ -15,19 +16,6 @@ namespace {
 constexpr double quiet_speed = 0.02;     // m/s: all nodes slower than this may sleep
 constexpr double noticed_change = 0.05;  // of a sleeping body's weight: a push that differs by more wakes it
 constexpr double noticed_speed = 0.05;   // m/s: a body as fast as this wakes what it is near
-
-bool may_collide(const DeformableDefinition& deformable, const BodyDefinition& body) {
-    return body.enabled && (deformable.collision_group & body.collision_mask) != 0 &&
-           (body.collision_group & deformable.collision_mask) != 0;
-}
-
-// How far its nodes may come within a step, and a little more.
-double reach_of(const WorldState& world, const DeformableRecord& record) {
-    double fastest = 0;
-    for (const Vec3 v : record.nodes().mean_velocity) fastest = std::max(fastest, length(v));
-    const double dt = world.settings.time_step;
-    return 2 * record.definition.contact_radius + (fastest + length(world.settings.gravity) * dt) * dt;
-}
 
 template <class Visit>
 void for_each_body_near(const WorldState& world, const DeformableRecord& record, Visit visit) {
@@ -68,11 +56,20 @@ TouchedBody touched(const WorldState& world, std::uint32_t slot) {
     return body;
 }
 
+double fastest_node(const DeformableRecord& record) {
+    double fastest = 0;
+    for (const Vec3 v : record.nodes().velocity) fastest = std::max(fastest, length(v));
+    return fastest;
+}
+
 // Whether something has happened around a sleeping deformable.
 bool is_disturbed(const WorldState& world, const DeformableRecord& record) {
     for (const std::uint32_t slot : record.touched_bodies) {
         if (!world.is_used(slot)) return true;
         if (world.is_dynamic(slot) && !world.is_asleep(slot)) return true;
+    }
+    for (const std::uint32_t slot : record.touched_deformables) {
+        if (!world.deformables.used(slot) || !world.deformables.at(slot).is_asleep) return true;
     }
     bool is_disturbed = false;
     for_each_body_near(world, record, [&](std::uint32_t slot) {
@@ -81,6 +78,14 @@ bool is_disturbed(const WorldState& world, const DeformableRecord& record) {
         is_disturbed = is_disturbed || length(state.linear_velocity) > noticed_speed ||
                        length(state.angular_velocity) * world.record(slot).reach > noticed_speed;
     });
+    for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
+        if (!world.deformables.used(slot)) continue;
+        const DeformableRecord& other = world.deformables.at(slot);
+        is_disturbed = is_disturbed || (other.definition.enabled && !other.is_asleep &&
+                                        may_collide(record.definition, other.definition) &&
+                                        overlaps(enlarged(record.bounds(), reach_of(world, other)), other.bounds()) &&
+                                        fastest_node(other) > noticed_speed);
+    }
     return is_disturbed;
 }
 
@@ -114,52 +119,7 @@ void gather_bodies(const WorldState& world, MovingDeformables& moving) {
     for (const std::uint32_t slot : slots) moving.bodies.push_back(touched(world, slot));
 }
 
-// Contacts of one deformable, with what is remembered of their forces.
-void find_contacts_of(const WorldState& world, std::uint32_t index, MovingDeformables& moving) {
-    DeformableRecord& record = *moving.solid_records[index];
-    std::vector<TouchedBody> colliding;
-    for (const TouchedBody& body : moving.bodies) {
-        if (body.shape && may_collide(record.definition, world.record(body.body).definition)) colliding.push_back(body);
-    }
-    std::vector<NodeContact> found;
-    find_node_contacts(record.solid->nodes(), record.solid->surface_nodes(), *record.node_ball,
-                       record.definition.contact_radius, colliding, world.settings.time_step, world.settings.gravity,
-                       found);
-    std::vector<SolidContact> contacts;
-    for (const Attachment& attachment : record.definition.attachments) {
-        if (world.bodies.find(attachment.body) == nullptr) continue;
-        SolidContact contact;
-        contact.body = moving.index_of(attachment.body.index);
-        const TouchedBody& body = moving.bodies[contact.body];
-        contact.point = {index, 1, {attachment.node}, {1}};
-        contact.anchor = transform_point(body.start, attachment.anchor) - body.start_center;
-        contact.holds = true;
-        contacts.push_back(contact);
-    }
-    for (const NodeContact& node : found) {
-        const TouchedBody& body = colliding[node.body];
-        SolidContact contact;
-        contact.body = moving.index_of(body.body);
-        contact.point = {index, 1, {node.node}, {1}};
-        contact.anchor = node.anchor;
-        contact.normal = node.normal;
-        contact.radius = record.definition.contact_radius;
-        contact.friction = std::sqrt(body.friction * record.definition.friction);
-        contacts.push_back(contact);
-    }
-    // Contacts of a node with a body go by their order.
-    const auto key = [](const SolidContact& c) { return std::make_tuple(c.slot, c.point.node[0], !c.holds); };
-    for (SolidContact& contact : contacts) contact.slot = moving.bodies[contact.body].body;
-    std::ranges::stable_sort(contacts, {}, key);
-    auto old = record.contacts.begin();
-    for (SolidContact& contact : contacts) {
-        while (old != record.contacts.end() && key(*old) < key(contact)) ++old;
-        if (old != record.contacts.end() && key(*old) == key(contact)) contact.force = (old++)->force;
-    }
-    moving.contacts.insert(moving.contacts.end(), contacts.begin(), contacts.end());
-}
-
-// The same of a sheet or rope.
+// What a sheet or rope may touch.
 void find_contacts_of(const WorldState& world, const MovingDeformables& moving, ThinDeformable& thin) {
     std::vector<bool> colliding;
     for (const TouchedBody& body : moving.bodies) {
@@ -232,18 +192,41 @@ void put_back_bodies(WorldState& world, const MovingDeformables& moving) {
     }
 }
 
-// What each deformable remembers; those whose numbers are none are stopped where they last were.
-void finish(WorldState& world, MovingDeformables& moving) {
-    for (DeformableRecord* record : moving.records) record->contacts.clear();
+// Slots without repetition.
+void sort_out(std::vector<std::uint32_t>& slots) {
+    std::ranges::sort(slots);
+    slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
+}
+
+// What each solid remembers of its contacts.
+void keep_contacts(MovingDeformables& moving) {
+    for (DeformableRecord* record : moving.records) {
+        record->contacts.clear();
+        record->touched_bodies.clear();
+        record->touched_deformables.clear();
+    }
     for (const SolidContact& contact : moving.contacts) {
-        if (contact.force != Vec3{}) moving.solid_records[contact.point.solid]->contacts.push_back(contact);
+        if (contact.force == Vec3{}) continue;
+        DeformableRecord& record = *moving.solid_records[contact.point.solid];
+        record.contacts.push_back(contact);
+        if (contact.has_body()) {
+            record.touched_bodies.push_back(static_cast<std::uint32_t>(contact.partner));
+        } else {
+            DeformableRecord& other = *moving.solid_records[contact.other.solid];
+            record.touched_deformables.push_back(other.slot);
+            other.touched_deformables.push_back(record.slot);
+        }
     }
     for (DeformableRecord* record : moving.records) {
-        record->touched_bodies.clear();
-        for (const SolidContact& contact : record->contacts) record->touched_bodies.push_back(contact.slot);
         if (!record->solid) record->touched_bodies = bodies_pushed_by(*record, moving.bodies);
-        auto& touched = record->touched_bodies;
-        touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+        sort_out(record->touched_bodies);
+        sort_out(record->touched_deformables);
+    }
+}
+
+// Those whose numbers are none are stopped where they last were.
+void freeze_broken(WorldState& world, MovingDeformables& moving) {
+    for (DeformableRecord* record : moving.records) {
         if (!record->is_finite()) {
             record->stop_at(record->last_positions);
             record->definition.enabled = false;
@@ -253,21 +236,39 @@ void finish(WorldState& world, MovingDeformables& moving) {
     }
 }
 
-// A deformable sleeps when it is quiet and all bodies that it touches sleep; these stay awake while it is not quiet.
+// Whether it and all that it touches, directly or by others, are ready to sleep: bodies asleep, deformables quiet.
+bool may_sleep(const WorldState& world, const DeformableRecord& record, std::vector<std::uint32_t>& seen) {
+    seen.push_back(record.slot);
+    if (record.quiet_time < world.settings.time_to_sleep) return false;
+    for (const std::uint32_t slot : record.touched_bodies) {
+        if (world.is_used(slot) && world.is_dynamic(slot) && !world.is_asleep(slot)) return false;
+    }
+    return std::ranges::all_of(record.touched_deformables, [&](std::uint32_t slot) {
+        return std::ranges::find(seen, slot) != seen.end() || !world.deformables.used(slot) ||
+               may_sleep(world, world.deformables.at(slot), seen);
+    });
+}
+
+// Deformables sleep when they are quiet and so is all that they touch; bodies that they touch stay awake while they are
+// not quiet.
 void put_to_sleep(WorldState& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.records) {
-        double fastest = 0;
-        for (const Vec3 v : record->nodes().velocity) fastest = std::max(fastest, length(v));
-        record->quiet_time = fastest < quiet_speed ? record->quiet_time + world.settings.time_step : 0;
-        bool all_sleep = true;
+        const bool is_quiet = fastest_node(*record) < quiet_speed;
+        record->quiet_time = is_quiet ? record->quiet_time + world.settings.time_step : 0;
         for (const std::uint32_t slot : record->touched_bodies) {
             if (!world.is_used(slot) || !world.is_dynamic(slot)) continue;
-            all_sleep = all_sleep && world.is_asleep(slot);
-            SleepRecord& sleep = world.sleep[slot];
-            sleep.quiet_time = std::min(sleep.quiet_time, record->quiet_time);
+            world.sleep[slot].quiet_time = std::min(world.sleep[slot].quiet_time, record->quiet_time);
         }
-        record->is_asleep = world.settings.sleeping && all_sleep && record->quiet_time >= world.settings.time_to_sleep;
-        if (record->is_asleep) record->rest();
+    }
+    if (!world.settings.sleeping) return;
+    std::vector<DeformableRecord*> ready;
+    for (DeformableRecord* record : moving.records) {
+        std::vector<std::uint32_t> seen;
+        if (may_sleep(world, *record, seen)) ready.push_back(record);
+    }
+    for (DeformableRecord* record : ready) {
+        record->is_asleep = true;
+        record->rest();
     }
 }
 
@@ -284,6 +285,7 @@ void advance_deformables(WorldState& world) {
             record.quiet_time = 0;
         }
         if (record.is_asleep) continue;
+        record.slot = slot;
         moving.records.push_back(&record);
         if (record.solid) {
             moving.solid_records.push_back(&record);
@@ -293,11 +295,12 @@ void advance_deformables(WorldState& world) {
         }
     }
     gather_bodies(world, moving);
-    for (std::uint32_t i = 0; i < moving.solids.size(); ++i) find_contacts_of(world, i, moving);
+    moving.contacts = find_solid_contacts(world, moving.solid_records, moving.bodies);
     for (ThinDeformable& thin : moving.thin) find_contacts_of(world, moving, thin);
     run_substeps(world, moving);
     put_back_bodies(world, moving);
-    finish(world, moving);
+    keep_contacts(moving);
+    freeze_broken(world, moving);
     put_to_sleep(world, moving);
 }
 

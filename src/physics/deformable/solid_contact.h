@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "math/vec3.h"
+
+namespace embody::physics {
+
+/// A point that up to three nodes of a solid carry.
+struct CarriedPoint {
+    std::uint32_t solid = 0;  ///< index in the list of solids
+    std::uint32_t count = 0;  ///< of nodes; 0: no point
+    std::array<std::uint32_t, 3> node{};
+    std::array<double, 3> weight{};  ///< their sum is 1
+};
+
+/// A place where a solid may touch a body or another solid, or is held to a body.
+struct SolidContact {
+    CarriedPoint point;      ///< of the solid that `force` acts on
+    CarriedPoint other;      ///< on the surface of the other solid; none where the other is a body
+    std::uint32_t body = 0;  ///< index in the list of bodies, where there is no other solid
+    /// What the contact is known by in the next step: slot of the body, or no_body + slot of the other solid.
+    std::uint64_t partner = 0;
+    Vec3 anchor;          ///< on the body, from its centre of mass when the step began, m
+    Vec3 normal;          ///< from the other to the solid when the step began
+    double radius = 0;    ///< distance that the two keep, m
+    double friction = 0;  ///< Coulomb coefficient of the pair
+    bool holds = false;   ///< the point stays at the anchor, whatever it takes
+    Vec3 force;           ///< on the solid in the last substep, N; what the next one begins with
+    [[nodiscard]] bool has_body() const { return other.count == 0; }
+};
+
+}  // namespace embody::physics
