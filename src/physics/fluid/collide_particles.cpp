@@ -196,11 +196,4 @@ void ParticleCollider::stride(FluidParticle& particle, const float* to) {
     if (grid_.solid[grid_.index(cell_at(grid_, to))] < 1.5f) push_out(particle, before);
 }
 
-void ParticleCollider::carry(FluidParticle& particle, std::size_t moving, const Transform& jump) {
-    if (!is_near_thin(particle.position)) return;
-    const Vec3 place = to_vec(particle.position), from = transform_point(jump, place);
-    Vec3 to = place, normal;
-    if (bar(moving_[moving], from, to, normal)) set_position(particle, to);
-}
-
 }  // namespace embody::physics

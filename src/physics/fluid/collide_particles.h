@@ -18,9 +18,6 @@ public:
     std::array<float, 3> place_of(const FluidParticle& particle);
     /// Moves the particle towards `end`, a place of the fluid's frame, as far as solids let it.
     void move(FluidParticle& particle, const float* end);
-    /// Takes the particle along where a thin wall of a solid went past it: the solid went on by `jump` (a place it had
-    /// before to where that is now) since the particle was moved.
-    void carry(FluidParticle& particle, std::size_t moving, const Transform& jump);
 
 private:
     /// A wall that was met: its normal and velocity.

@@ -142,7 +142,6 @@ void FluidGrid::resize(const Cell& lower, const Cell& upper) {
 
 void FluidGrid::list_tiles() {
     active_.clear();
-    filled_.clear();
     for (auto& list : colored_) list.clear();
     for (int z = 0, i = 0; z < tiles_[2]; ++z) {
         for (int y = 0; y < tiles_[1]; ++y) {
@@ -151,7 +150,6 @@ void FluidGrid::list_tiles() {
                 const auto place = static_cast<std::uint32_t>(active_.size());
                 active_.push_back({x * tile[0], y * tile[1], z * tile[2]});
                 if (tile_state_[i] != 2) continue;
-                filled_.push_back(place);
                 colored_[(x & 1) | (y & 1) << 1 | (z & 1) << 2].push_back(place);
             }
         }

@@ -55,8 +55,6 @@ public:
     /// each other.
     [[nodiscard]] std::span<const std::uint32_t> colored(int color) const { return colored_[color]; }
     static constexpr int colors = 8;
-    /// Indices into tiles() of those with particles.
-    [[nodiscard]] std::span<const std::uint32_t> filled() const { return filled_; }
 
     /// Calls visit(index of the row's first cell, its cell) for each row of eight cells of a tile.
     template <class Visit>
@@ -113,7 +111,6 @@ private:
     Cell lower_{}, size_{}, tiles_{};
     std::vector<std::uint8_t> tile_state_;  // 0: nothing, 1: next to particles, 2: has particles
     std::vector<Cell> active_;
-    std::vector<std::uint32_t> filled_;
     std::array<std::vector<std::uint32_t>, colors> colored_;
     std::vector<std::uint32_t> cell_of_;
     std::vector<FluidParticle> sorted_;

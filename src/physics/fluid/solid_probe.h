@@ -45,7 +45,6 @@ public:
     [[nodiscard]] bool is_surface() const;
 
 private:
-    struct Near;
     struct Piece {
         const Convex* convex;
         Mat3 rotation;

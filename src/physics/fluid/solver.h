@@ -61,7 +61,6 @@ public:
     [[nodiscard]] double pressure_at(Vec3 p) const;
 
 private:
-    struct Part;
     void advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers);
     void find_places(double dt, TaskPool& workers);
     void accelerate(Vec3 change, TaskPool& workers);

@@ -77,7 +77,7 @@ void ViscositySystem::number_faces(const FluidGrid& grid, const FluidSolids& sol
     body_of_.assign(solids.moving().size(), -1);
 }
 
-// Numbers a shut face, which moves as its solid does: as −2 − its place, until all unknown ones are numbered.
+// Numbers a shut face, which moves as its solid does, after the unknown ones.
 std::int32_t ViscositySystem::fixed_face(const FluidGrid& grid, const FluidSolids& solids, int axis, int cell,
                                          const Cell& c) {
     std::int32_t& number = number_[axis][cell];
@@ -268,16 +268,9 @@ void ViscositySystem::multiply(std::vector<double>& x, std::vector<double>& y) {
     }
 }
 
-int ViscositySystem::solve(const Viscosity& liquid, double dt, int most, FluidGrid& grid, FluidSolids& solids) {
-    const double h = grid.cell_size();
-    number_faces(grid, solids);
-    measure_rates(liquid, dt, grid);
-    list_strains(grid, solids, dt / (liquid.density * h * h));
-    list_bodies(liquid, grid, solids);
-    const std::size_t free = faces_.size(), faces = free + fixed_.size(), size = faces + 6 * bodies_.size();
-    for (auto* vector : {&x_, &r_, &z_, &p_, &ap_, &diagonal_}) vector->assign(size, 0);
-
-    // What is: velocities of faces, solids and bodies; the right side is their momentum.
+// What is: velocities of faces, solids and bodies.
+void ViscositySystem::start_from(const FluidGrid& grid, const FluidSolids& solids) {
+    const std::size_t free = faces_.size(), faces = free + fixed_.size();
     for (std::size_t i = 0; i < free; ++i) x_[i] = grid.velocity[faces_[i].first][faces_[i].second];
     for (std::size_t i = 0; i < fixed_.size(); ++i) {
         if (fixed_[i].owner < 0) continue;
@@ -290,6 +283,10 @@ int ViscositySystem::solve(const Viscosity& liquid, double dt, int most, FluidGr
             x_[faces + 6 * i + 3 + static_cast<std::size_t>(k)] = bodies_[i].angular_before[k];
         }
     }
+}
+
+void ViscositySystem::fill_diagonal() {
+    const std::size_t free = faces_.size(), faces = free + fixed_.size();
     for (std::size_t i = 0; i < free; ++i) diagonal_[i] = inertia_[i];
     for (const Strain& strain : strains_) {
         for (const std::int32_t face : strain.face) {
@@ -309,8 +306,11 @@ int ViscositySystem::solve(const Viscosity& liquid, double dt, int most, FluidGr
                 diagonal_[free + i] * (k < 3 ? 1 : length_squared(fixed_[i].arm)) / 3;
         }
     }
+}
 
-    // r = M u* − A u*: what the strains do to the velocities as they are.
+// r = M u* − A u*: what the strains do to the velocities as they are.
+void ViscositySystem::fill_residual() {
+    const std::size_t free = faces_.size(), faces = free + fixed_.size();
     multiply(x_, r_);
     for (std::size_t i = 0; i < free; ++i) r_[i] = inertia_[i] * x_[i] - r_[i];
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -322,6 +322,11 @@ int ViscositySystem::solve(const Viscosity& liquid, double dt, int most, FluidGr
             row[3 + k] = spin[k] - row[3 + k];
         }
     }
+}
+
+int ViscositySystem::iterate(int most) {
+    const std::size_t free = faces_.size(), faces = free + fixed_.size();
+    const std::size_t size = x_.size();
     constexpr double tolerance = 1e-4;  // of the first residual
     const auto precondition = [&] {
         for (std::size_t i = 0; i < size; ++i) z_[i] = i >= free && i < faces ? 0 : r_[i] / diagonal_[i];
@@ -344,8 +349,23 @@ int ViscositySystem::solve(const Viscosity& liquid, double dt, int most, FluidGr
         rz = next;
         for (std::size_t i = 0; i < size; ++i) p_[i] = z_[i] + beta * p_[i];
     }
-    write_back(liquid, grid, solids);
     return iteration;
+}
+
+int ViscositySystem::solve(const Viscosity& liquid, double dt, int most, FluidGrid& grid, FluidSolids& solids) {
+    const double h = grid.cell_size();
+    number_faces(grid, solids);
+    measure_rates(liquid, dt, grid);
+    list_strains(grid, solids, dt / (liquid.density * h * h));
+    list_bodies(liquid, grid, solids);
+    const std::size_t size = faces_.size() + fixed_.size() + 6 * bodies_.size();
+    for (auto* vector : {&x_, &r_, &z_, &p_, &ap_, &diagonal_}) vector->assign(size, 0);
+    start_from(grid, solids);
+    fill_diagonal();
+    fill_residual();
+    const int iterations = iterate(most);
+    write_back(liquid, grid, solids);
+    return iterations;
 }
 
 void ViscositySystem::write_back(const Viscosity& liquid, FluidGrid& grid, FluidSolids& solids) {

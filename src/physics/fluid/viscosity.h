@@ -49,6 +49,10 @@ private:
     void list_bodies(const Viscosity& liquid, const FluidGrid& grid, const FluidSolids& solids);
     void multiply(std::vector<double>& x, std::vector<double>& y);
     void set_fixed(std::vector<double>& x) const;
+    void start_from(const FluidGrid& grid, const FluidSolids& solids);
+    void fill_diagonal();
+    void fill_residual();
+    int iterate(int most);
     void write_back(const Viscosity& liquid, FluidGrid& grid, FluidSolids& solids);
 
     /// A body that the liquid moves: its six unknowns come after the faces'.
