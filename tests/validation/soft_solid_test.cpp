@@ -204,6 +204,27 @@ TEST(SoftSolid, ACushionBearsMassesUpToAThousandTimesItsOwn) {
     }
 }
 
+// The ball is finer than the cushion's mesh: it lies between the nodes.
+TEST(SoftSolid, ABallSmallerThanItsElementsStaysOn) {
+    DeformableDefinition cushion = brick({0.5, 0.15, 0.5}, {5, 2, 5}, 40, 2e4, 0.2, 0.05);
+    cushion.pose.position = {-0.25, 0.002, -0.25};
+    const auto world = make_world({});
+    add_plane(*world, {});
+    BodyDefinition ball;
+    ball.shape = world->create_shape(SphereShape{0.02}).value();
+    ball.position = {0.03, 0.3, 0.04};
+    ball.mass.mass = 0.05;
+    ball.material.restitution = 0;
+    ball.material.friction_rolling = 0.002;
+    const BodyHandle body = world->create_body(ball).value();
+    ASSERT_TRUE(world->create_deformable(cushion).ok());
+    for (int i = 0; i < 240; ++i) {
+        world->step();
+        ASSERT_GT(world->pose(body).position.y, 0.13);
+    }
+    EXPECT_LT(length(world->linear_velocity(body)), 0.05);
+}
+
 TEST(SoftSolid, CushionsLieOnEachOther) {
     const auto world = make_world({});
     add_plane(*world, {});

@@ -23,12 +23,13 @@ struct SolidContact {
     std::uint32_t body = 0;  ///< index in the list of bodies, where there is no other solid
     /// What the contact is known by in the next step: slot of the body, or no_body + slot of the other solid.
     std::uint64_t partner = 0;
-    Vec3 anchor;          ///< on the body, from its centre of mass when the step began, m
-    Vec3 normal;          ///< from the other to the solid when the step began
-    double radius = 0;    ///< distance that the two keep, m
-    double friction = 0;  ///< Coulomb coefficient of the pair
-    bool holds = false;   ///< the point stays at the anchor, whatever it takes
-    Vec3 force;           ///< on the solid in the last substep, N; what the next one begins with
+    std::uint32_t feature = 0;  ///< 1 + which of the body's features it is; 0: a face of the body under a node
+    Vec3 anchor;                ///< on the body, from its centre of mass when the step began, m
+    Vec3 normal;                ///< from the other to the solid when the step began
+    double radius = 0;          ///< distance that the two keep, m
+    double friction = 0;        ///< Coulomb coefficient of the pair
+    bool holds = false;         ///< the point stays at the anchor, whatever it takes
+    Vec3 force;                 ///< on the solid in the last substep, N; what the next one begins with
     [[nodiscard]] bool has_body() const { return other.count == 0; }
 };
 

@@ -55,16 +55,13 @@ void SolidDeformable::find_surface() {
     std::vector<geometry::Tetrahedron> corners(elements_.corners().begin(), elements_.corners().end());
     for (const auto& face : geometry::find_tetrahedral_topology(corners).outer_faces) {
         surface_.push_back(face.corners);
+        for (std::size_t k = 0; k < 3; ++k)
+            mean_side_ += length(rest_[face.corners[k]] - rest_[face.corners[(k + 1) % 3]]) / 3;
         surface_nodes_.insert(surface_nodes_.end(), face.corners.begin(), face.corners.end());
     }
+    mean_side_ /= static_cast<double>(surface_.size());
     std::ranges::sort(surface_nodes_);
     surface_nodes_.erase(std::unique(surface_nodes_.begin(), surface_nodes_.end()), surface_nodes_.end());
-    for (const auto& [a, b, c] : surface_) {
-        middles_.push_back({0, 3, {a, b, c}, {1.0 / 3, 1.0 / 3, 1.0 / 3}});
-        for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}}) {
-            if (from < to) middles_.push_back({0, 2, {from, to, 0}, {0.5, 0.5, 0}});  // each edge has two triangles
-        }
-    }
 }
 
 Bounds SolidDeformable::bounds() const {

@@ -4,7 +4,6 @@
 #include "math/bounds.h"
 #include "physics/deformable/dissected_cholesky.h"
 #include "physics/deformable/nodes.h"
-#include "physics/deformable/solid_contact.h"
 #include "physics/deformable/solid_elements.h"
 #include "physics/inter/definitions/step_report.h"
 
@@ -21,8 +20,8 @@ public:
     /// Outer faces, counter-clockwise from outside; and their nodes, ascending: what collides.
     [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& surface() const { return surface_; }
     [[nodiscard]] const std::vector<std::uint32_t>& surface_nodes() const { return surface_nodes_; }
-    /// The middles of the surface's edges and triangles: where things finer than the mesh are noticed.
-    [[nodiscard]] const std::vector<CarriedPoint>& middles() const { return middles_; }
+    /// Mean side of the surface's triangles at rest, m.
+    [[nodiscard]] double mean_side() const { return mean_side_; }
     [[nodiscard]] Bounds bounds() const;
 
     /// Begins a substep of h seconds: nodes go on with their velocities. `gravity` in m/s², the body's factor counted.
@@ -73,7 +72,7 @@ private:
     std::vector<Vec3> rest_;
     std::vector<std::array<std::uint32_t, 3>> surface_;
     std::vector<std::uint32_t> surface_nodes_;
-    std::vector<CarriedPoint> middles_;
+    double mean_side_ = 0;
     bool is_free_ = true;  // no node is pinned
     bool is_new_ = true;   // has made no substep yet
 

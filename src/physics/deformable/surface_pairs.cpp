@@ -3,9 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-
-#include "geometry/bounding_volume_tree.h"
 
 namespace embody::physics {
 
@@ -39,64 +36,47 @@ NearestPoint nearest_point(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
     return made(vb / whole, vc / whole);
 }
 
-/// A solid's surface as it lies now.
-class PlacedSurface {
-public:
-    explicit PlacedSurface(const SolidDeformable& solid) : solid_(solid), normal_(solid.nodes().size()) {
-        std::vector<Bounds> boxes;
-        double sides = 0;
-        for (const auto& corners : solid.surface()) {
-            Bounds box;
-            for (const std::uint32_t node : corners) box.add(at(node));
-            boxes.push_back(box);
-            // Area-weighted.
-            const Vec3 normal = cross(at(corners[1]) - at(corners[0]), at(corners[2]) - at(corners[0]));
-            for (const std::uint32_t node : corners) normal_[node] += normal;
-            sides += std::sqrt(length(normal));
-        }
-        tree_ = geometry::BoundingVolumeTree(boxes);
-        deepest_ = sides / static_cast<double>(boxes.size());
-    }
-
-    /// How deep a node may be inside and still be told where it came from, m.
-    [[nodiscard]] double deepest() const { return deepest_; }
-
-    /// The surface nearest to p, where it is no farther than `reach`: fills in point, normal (outwards).
-    bool find(Vec3 p, double reach, std::uint32_t number, SolidContact& contact) const {
-        double nearest = reach * reach;
-        const std::array<std::uint32_t, 3>* triangle = nullptr;
-        NearestPoint point;
-        tree_.query(enlarged(Bounds{p, p}, reach), [&](std::uint32_t t) {
-            const auto& corners = solid_.surface()[t];
-            const NearestPoint candidate = nearest_point(p, at(corners[0]), at(corners[1]), at(corners[2]));
-            const double distance = length_squared(p - candidate.at);
-            if (!(distance < nearest)) return;
-            nearest = distance;
-            triangle = &corners;
-            point = candidate;
-        });
-        if (triangle == nullptr) return false;
-        // Which side: by the normals of the corners around the point (J. Baerentzen, H. Aanaes, "Signed distance
-        // computation using the angle weighted pseudonormal", 2005).
-        Vec3 outwards;
-        for (std::size_t k = 0; k < 3; ++k) outwards += point.weight[k] * normal_[(*triangle)[k]];
-        const Vec3 apart = p - point.at;
-        const double distance = length(apart), side = dot(apart, outwards) < 0 ? -1 : 1;
-        const Vec3 fallback = length(outwards) > 0 ? outwards / length(outwards) : Vec3{0, 1, 0};
-        contact.normal = distance > 1e-9 ? (side / distance) * apart : fallback;
-        contact.other = {number, 3, *triangle, point.weight};
-        return true;
-    }
-
-private:
-    [[nodiscard]] Vec3 at(std::uint32_t node) const { return solid_.nodes().position[node]; }
-    const SolidDeformable& solid_;
-    std::vector<Vec3> normal_;  // by node
-    geometry::BoundingVolumeTree tree_;
-    double deepest_ = 0;
-};
-
 }  // namespace
+
+PlacedSurface::PlacedSurface(const SolidDeformable& solid) : solid_(solid), normal_(solid.nodes().size()) {
+    std::vector<Bounds> boxes;
+    double sides = 0;
+    for (const auto& corners : solid.surface()) {
+        Bounds box;
+        for (const std::uint32_t node : corners) box.add(at(node));
+        boxes.push_back(box);
+        // Area-weighted.
+        const Vec3 normal = cross(at(corners[1]) - at(corners[0]), at(corners[2]) - at(corners[0]));
+        for (const std::uint32_t node : corners) normal_[node] += normal;
+        sides += std::sqrt(length(normal));
+    }
+    tree_ = geometry::BoundingVolumeTree(boxes);
+    deepest_ = sides / static_cast<double>(boxes.size());
+}
+
+std::optional<PlacedSurface::Place> PlacedSurface::find(Vec3 p, double reach) const {
+    double nearest = reach * reach;
+    const std::array<std::uint32_t, 3>* triangle = nullptr;
+    NearestPoint point;
+    tree_.query(enlarged(Bounds{p, p}, reach), [&](std::uint32_t t) {
+        const auto& corners = solid_.surface()[t];
+        const NearestPoint candidate = nearest_point(p, at(corners[0]), at(corners[1]), at(corners[2]));
+        const double distance = length_squared(p - candidate.at);
+        if (!(distance < nearest)) return;
+        nearest = distance;
+        triangle = &corners;
+        point = candidate;
+    });
+    if (triangle == nullptr) return std::nullopt;
+    // Which side: by the normals of the corners around the point (J. Baerentzen, H. Aanaes, "Signed distance
+    // computation using the angle weighted pseudonormal", 2005).
+    Vec3 outwards;
+    for (std::size_t k = 0; k < 3; ++k) outwards += point.weight[k] * normal_[(*triangle)[k]];
+    const Vec3 apart = p - point.at;
+    const double distance = length(apart), side = dot(apart, outwards) < 0 ? -1 : 1;
+    const Vec3 fallback = length(outwards) > 0 ? outwards / length(outwards) : Vec3{0, 1, 0};
+    return Place{*triangle, point.weight, distance > 1e-9 ? (side / distance) * apart : fallback, side * distance};
+}
 
 void find_surface_contacts(const SolidDeformable& one, std::uint32_t one_number, const SolidDeformable& two,
                            std::uint32_t two_number, double reach, double radius, double friction,
@@ -109,9 +89,11 @@ void find_surface_contacts(const SolidDeformable& one, std::uint32_t one_number,
     if (nodes.empty()) return;
     const PlacedSurface surface(two);
     for (const std::uint32_t node : nodes) {
+        const auto place = surface.find(one.nodes().position[node], std::max(reach + radius, surface.deepest()));
+        if (!place) continue;
         SolidContact contact;
-        const Vec3 p = one.nodes().position[node];
-        if (!surface.find(p, std::max(reach + radius, surface.deepest()), two_number, contact)) continue;
+        contact.normal = place->normal;
+        contact.other = {two_number, 3, place->triangle, place->weight};
         contact.point = {one_number, 1, {node}, {1}};
         contact.radius = radius;
         contact.friction = friction;

@@ -1,12 +1,38 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "geometry/bounding_volume_tree.h"
 #include "physics/deformable/solid_contact.h"
 #include "physics/deformable/solid_deformable.h"
 
 namespace embody::physics {
+
+/// A solid's surface as it lies now.
+class PlacedSurface {
+public:
+    explicit PlacedSurface(const SolidDeformable& solid);
+
+    struct Place {
+        std::array<std::uint32_t, 3> triangle{};
+        std::array<double, 3> weight{};  ///< of its corners in the nearest point
+        Vec3 normal;                     ///< outwards
+        double distance = 0;             ///< negative inside, m
+    };
+    /// The place nearest to p, where it is no farther than `reach` (m).
+    [[nodiscard]] std::optional<Place> find(Vec3 p, double reach) const;
+    /// How deep a point may be inside and still be told where it came from, m.
+    [[nodiscard]] double deepest() const { return deepest_; }
+
+private:
+    [[nodiscard]] Vec3 at(std::uint32_t node) const { return solid_.nodes().position[node]; }
+    const SolidDeformable& solid_;
+    std::vector<Vec3> normal_;  // by node
+    geometry::BoundingVolumeTree tree_;
+    double deepest_ = 0;
+};
 
 /// Appends a contact for every surface node of `one` that may come to the surface of `two` within a step, with the
 /// nearest triangle there. `reach` (m) is what the two may come closer in the step, `radius` the distance that they

@@ -5,12 +5,15 @@
 #include <cmath>
 #include <tuple>
 
+#include "physics/deformable/body_features.h"
 #include "physics/deformable/node_contacts.h"
 #include "physics/deformable/surface_pairs.h"
 
 namespace embody::physics {
 
 namespace {
+
+constexpr double small_body = 1.5;  // reach over the mean side of the surface's triangles
 
 std::uint32_t index_of(std::span<const TouchedBody> bodies, std::uint32_t slot) {
     return static_cast<std::uint32_t>(std::ranges::lower_bound(bodies, slot, {}, &TouchedBody::body) - bodies.begin());
@@ -41,58 +44,58 @@ public:
         }
     }
 
-    // Nodes; then, where a body is finer than the mesh, the middles of edges and triangles between nodes that do not
-    // touch it.
+    // Nodes over the faces of bodies; then corners and balls of bodies over the triangles between nodes,
+    // where the body is so small that nodes may miss it.
     void add_body_contacts(std::vector<SolidContact>& contacts) const {
-        if (colliding_.empty()) return;
         const SolidDeformable& solid = *record_.solid;
         std::vector<NodeContact> found;
-        find(solid.nodes(), solid.surface_nodes(), found);
-        std::vector<std::vector<bool>> is_near(colliding_.size(), std::vector<bool>(solid.nodes().size(), false));
+        find_node_contacts(solid.nodes(), solid.surface_nodes(), *record_.node_ball, radius(), colliding_,
+                           world_.settings.time_step, world_.settings.gravity, found);
         for (const NodeContact& node : found) {
-            is_near[node.body][node.node] = true;
-            contacts.push_back(to_contact(node, {number_, 1, {node.node}, {1}}));
+            SolidContact contact = contact_with(colliding_[node.body]);
+            contact.point = {number_, 1, {node.node}, {1}};
+            contact.anchor = node.anchor;
+            contact.normal = node.normal;
+            contacts.push_back(contact);
         }
-
-        const std::vector<CarriedPoint>& middles = solid.middles();
-        Nodes samples;
-        std::vector<std::uint32_t> all;
-        for (const CarriedPoint& point : middles) {
-            Vec3 position, velocity;
-            for (std::size_t k = 0; k < point.count; ++k) {
-                position += point.weight[k] * solid.nodes().position[point.node[k]];
-                velocity += point.weight[k] * solid.nodes().mean_velocity[point.node[k]];
-            }
-            all.push_back(static_cast<std::uint32_t>(all.size()));
-            samples.position.push_back(position);
-            samples.mean_velocity.push_back(velocity);
-        }
-        found.clear();
-        find(samples, all, found);
-        for (const NodeContact& sample : found) {
-            CarriedPoint point = middles[sample.node];
-            const bool is_seen = std::ranges::any_of(std::span(point.node).first(point.count),
-                                                     [&](std::uint32_t node) { return is_near[sample.body][node]; });
-            if (is_seen) continue;
-            point.solid = number_;
-            contacts.push_back(to_contact(sample, point));
+        std::optional<PlacedSurface> surface;
+        for (const TouchedBody& body : colliding_) {
+            if (world_.record(body.body).reach < small_body * solid.mean_side())
+                add_feature_contacts(body, surface, contacts);
         }
     }
 
 private:
-    void find(const Nodes& nodes, std::span<const std::uint32_t> candidates, std::vector<NodeContact>& found) const {
-        find_node_contacts(nodes, candidates, *record_.node_ball, record_.definition.contact_radius, colliding_,
-                           world_.settings.time_step, world_.settings.gravity, found);
+    void add_feature_contacts(const TouchedBody& body, std::optional<PlacedSurface>& surface,
+                              std::vector<SolidContact>& contacts) const {
+        const double dt = world_.settings.time_step;
+        const double body_way =
+            (length(body.path_velocity) + length(body.path_spin) * world_.record(body.body).reach) * dt;
+        const double reach = reach_of(world_, record_) + body_way + radius();
+        const Bounds bounds = record_.bounds();
+        const std::vector<BodyFeature> features = find_features(body.shape->definition());
+        for (std::uint32_t f = 0; f < features.size(); ++f) {
+            const BodyFeature& feature = features[f];
+            const Vec3 p = transform_point(body.start, feature.point);
+            if (!contains(enlarged(bounds, reach + feature.radius), p)) continue;
+            if (!surface) surface.emplace(*record_.solid);
+            const auto place = surface->find(p, std::max(reach + feature.radius, surface->deepest()));
+            if (!place) continue;
+            SolidContact contact = contact_with(body);
+            contact.feature = f + 1;
+            contact.point = {number_, 3, place->triangle, place->weight};
+            contact.anchor = p - feature.radius * place->normal - body.start_center;
+            contact.normal = -place->normal;
+            contacts.push_back(contact);
+        }
     }
 
-    [[nodiscard]] SolidContact to_contact(const NodeContact& found, const CarriedPoint& point) const {
-        const TouchedBody& body = colliding_[found.body];
+    [[nodiscard]] double radius() const { return record_.definition.contact_radius; }
+
+    [[nodiscard]] SolidContact contact_with(const TouchedBody& body) const {
         SolidContact contact;
-        contact.point = point;
         contact.body = index_of(bodies_, body.body);
-        contact.anchor = found.anchor;
-        contact.normal = found.normal;
-        contact.radius = record_.definition.contact_radius;
+        contact.radius = radius();
         contact.friction = std::sqrt(body.friction * record_.definition.friction);
         return contact;
     }
@@ -118,7 +121,11 @@ void add_pairs(const WorldState& world, std::span<DeformableRecord* const> recor
 }
 
 // What a contact is known by from step to step; several of a point with the same partner go by their order.
-auto key(const SolidContact& c) { return std::make_tuple(c.partner, c.point.node, c.point.count, !c.holds); }
+// A body's feature goes from triangle to triangle.
+auto key(const SolidContact& c) {
+    const std::uint32_t node = c.feature == 0 ? c.point.node[0] : 0;
+    return std::make_tuple(c.partner, c.feature, node, !c.holds);
+}
 
 }  // namespace
 
