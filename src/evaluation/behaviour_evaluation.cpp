@@ -122,6 +122,16 @@ std::optional<Compared> rebound_of(const Stage& stage, double extent, double gro
 
 bool is_round(const std::string& shape) { return shape == "sphere" || shape == "capsule" || shape == "cylinder"; }
 
+// Of all that can move: what bends or pours is not one body.
+double moving_mass(const physics::World& world) {
+    double sum = 0;
+    for (const physics::DeformableHandle deformable : world.deformables()) sum += world.mass(deformable);
+    for (const physics::BodyHandle body : world.bodies()) {
+        if (std::isfinite(world.mass(body))) sum += world.mass(body);
+    }
+    return sum;
+}
+
 Result<Behaviour> behaviour_of(catalog::Catalog& catalog, const catalog::ModelSummary& model,
                                const AttributeSet& attributes) {
     Behaviour behaviour{.key = model.key, .name = model.name, .category = found_category(attributes)};
@@ -130,7 +140,12 @@ Result<Behaviour> behaviour_of(catalog::Catalog& catalog, const catalog::ModelSu
     // As it stands.
     const auto standing = stage_of(catalog, model.key, 0, {});
     if (!standing) return standing.error();
-    behaviour.mass = {attributes.number("mass", 0), standing->world().mass(standing->body)};
+    behaviour.mass = {attributes.number("mass", 0), moving_mass(standing->world())};
+    if (standing->body.is_null()) {  // neither slides nor bounces as a block does
+        standing->run(5);
+        behaviour.speed = length(standing->world().conserved().linear_momentum) / behaviour.mass.measured;
+        return behaviour;
+    }
     const double placed = standing->center().y;
     standing->run(5);
     behaviour.tilt = standing->tilt();
