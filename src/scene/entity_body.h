@@ -10,12 +10,18 @@
 #include "catalog/catalog.h"
 #include "foundation/result.h"
 #include "physics/inter/definitions/body_definition.h"
-#include "physics/inter/definitions/deformable_definition.h"
 #include "physics/inter/definitions/shape_definition.h"
 #include "scene/document.h"
-#include "scene/grain_bodies.h"
+#include "scene/points_definition.h"
 
 namespace embody::scene {
+
+/// Whether an entity is one body or points.
+struct EntityForm {
+    bool has_points = false;
+    std::string points_key;  ///< the same, the same points; empty: nobody else has them
+    std::string note;        ///< why it is not what its kind says; empty: it is
+};
 
 /// Makes bodies of entities: the way from geometric and physical attributes to what the physics needs. Remembers the
 /// models it has looked up.
@@ -34,13 +40,10 @@ public:
     /// Everything but the shape's handle. What is only drawn becomes a disabled static body.
     Result<physics::BodyDefinition> body(const Entity& entity, const attributes::AttributeSet& attributes);
     Result<physics::ShapeDefinition> shape(const Entity& entity, const attributes::AttributeSet& attributes);
-    /// Balls for an entity of kind granular, of the shape that they fill.
-    Result<GrainDefinition> grains(const Entity& entity, const attributes::AttributeSet& attributes);
-    /// The tetrahedra of an entity of kind soft, without its scale; the error says why it cannot be soft. Valid until
-    /// the next call.
-    Result<const catalog::SoftMesh*> soft_mesh(const Entity& entity);
-    /// Everything but what its pins hold to other entities.
-    Result<physics::DeformableDefinition> soft(const Entity& entity, const attributes::AttributeSet& attributes);
+    /// What cannot be what its kind says is rigid, with a note why; so is what joints or pins hold as one body.
+    EntityForm form(const Entity& entity, const attributes::AttributeSet& attributes, bool is_held_as_body);
+    /// What stands for an entity whose form has points; everything but what its pins hold to other entities.
+    Result<PointsDefinition> points(const Entity& entity, const attributes::AttributeSet& attributes);
     /// Entities with the same key have the same shape; empty: nobody else has it.
     static std::string shape_key(const Entity& entity, const attributes::AttributeSet& attributes);
     /// The model's summary; fails for what is not a model.
@@ -65,7 +68,13 @@ private:
     [[nodiscard]] attributes::AttributeSet lay_over(const attributes::AttributeSet& automatic,
                                                     const std::vector<attributes::AttributeEntry>& own,
                                                     const attributes::ModelFacts& facts) const;
+    /// Balls of the shape that an entity of kind granular fills.
+    Result<GrainDefinition> grains(const Entity& entity, const attributes::AttributeSet& attributes);
+    /// The tetrahedra of an entity of kind soft, without its scale; the error says why it cannot be soft. Valid until
+    /// the next call.
+    Result<const catalog::SoftMesh*> soft_mesh(const Entity& entity);
     Result<catalog::SoftMesh> make_soft_mesh(const Entity& entity);
+    Result<physics::DeformableDefinition> soft(const Entity& entity, const attributes::AttributeSet& attributes);
     const attributes::ModelFacts& primitive(const physics::ShapeDefinition& shape);
 
     catalog::Catalog* catalog_;

@@ -34,7 +34,8 @@ GrainBodies::~GrainBodies() {
     if (!shape_.is_null()) (void)world_.destroy_shape(shape_).ok();
 }
 
-Result<void> GrainBodies::set_body(const physics::BodyDefinition& body) {
+Result<void> GrainBodies::set_definition(const PointsDefinition& definition) {
+    const physics::BodyDefinition& body = std::get<GrainDefinition>(definition).body;
     return world_.change_bodies(balls_, [&](physics::BodyDefinition& ball) {
         const physics::BodyDefinition now = ball;
         ball = body;
@@ -59,6 +60,12 @@ SleepState GrainBodies::state() const {
         if (state == SleepState::active) break;
     }
     return state;
+}
+
+Vec3 GrainBodies::linear_velocity() const {
+    Vec3 sum;
+    for (const BodyHandle ball : balls_) sum += world_.linear_velocity(ball);
+    return sum / static_cast<double>(balls_.size());
 }
 
 Vec3 GrainBodies::center_of_mass() const {

@@ -10,13 +10,6 @@
 
 namespace embody::scene {
 
-/// What grains are filled in, and of what they are.
-struct GrainDefinition {
-    std::vector<Vec3> centers;     ///< in the entity's frame, m
-    double diameter = 0.01;        ///< of a ball, m
-    physics::BodyDefinition body;  ///< of each ball but for place and shape; its pose is the entity's
-};
-
 /// Grains as balls of the rigid solver, one body each.
 class GrainBodies final : public MovingPoints {
 public:
@@ -24,17 +17,16 @@ public:
     static Result<std::unique_ptr<GrainBodies>> create(physics::World& world, const GrainDefinition& definition);
     ~GrainBodies() override;
 
-    /// Other material, mass or damping; all stay where they are and go on as they move.
-    Result<void> set_body(const physics::BodyDefinition& body);
-
     void read(std::vector<Vec3>& positions) const override;
     [[nodiscard]] double radius() const override { return radius_; }
+    [[nodiscard]] Vec3 linear_velocity() const override;
     [[nodiscard]] physics::SleepState state() const override;
     [[nodiscard]] Vec3 center_of_mass() const override;
     [[nodiscard]] double mass() const override;
     [[nodiscard]] Bounds bounds() const override;
     [[nodiscard]] std::optional<double> drop_distance(double most) const override;
     [[nodiscard]] physics::BodyHandle hold(Vec3 position) override;
+    Result<void> set_definition(const PointsDefinition& definition) override;
     Result<void> move(const Transform& motion) override;
     Result<void> set_velocity(Vec3 linear, Vec3 angular) override;
     Result<void> apply_impulse(Vec3 impulse) override;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "foundation/result.h"
 #include "math/bounds.h"
 #include "math/transform.h"
-#include "physics/inter/definitions/body_definition.h"
-#include "physics/inter/definitions/deformable_definition.h"
+#include "physics/inter/world.h"
+#include "scene/points_definition.h"
 
 namespace embody::scene {
 
@@ -35,6 +36,9 @@ public:
     [[nodiscard]] virtual const physics::DeformableDefinition* deformable() const { return nullptr; }
     /// Of the entity's frame, where they are a thing that still has one.
     [[nodiscard]] virtual std::optional<Transform> pose() const { return std::nullopt; }
+    [[nodiscard]] virtual Vec3 linear_velocity() const = 0;  ///< of the centre of mass, m/s
+    /// Of the rigid thing with as much angular momentum, rad/s.
+    [[nodiscard]] virtual Vec3 angular_velocity() const { return {}; }
     /// Of the most awake of them.
     [[nodiscard]] virtual physics::SleepState state() const = 0;
     [[nodiscard]] virtual Vec3 center_of_mass() const = 0;
@@ -51,6 +55,13 @@ public:
     [[nodiscard]] virtual physics::BodyHandle hold(Vec3 position) = 0;
     virtual void let_go() {}
 
+    /// Other matter, masses, damping and the like of the same points; they stay where they are and go on as they move.
+    /// The definition is of their own kind and has as many.
+    virtual Result<void> set_definition(const PointsDefinition& definition) = 0;
+    /// Holds some to bodies, besides those that a hand holds; only of what is deformable().
+    virtual Result<void> attach(std::vector<physics::Attachment>) { return {}; }
+    /// To bodies that are still there; not those of a hand.
+    [[nodiscard]] virtual std::vector<physics::Attachment> attachments() const { return {}; }
     /// Carries all of them along as one rigid thing; they are at rest then.
     virtual Result<void> move(const Transform& motion) = 0;
     /// As of one rigid thing that turns about its centre of mass.
@@ -61,5 +72,8 @@ public:
     virtual Result<void> apply_force(Vec3 force) = 0;
     virtual Result<void> set_enabled(bool enabled) = 0;
 };
+
+/// All of them or none. `world` outlives them.
+Result<std::unique_ptr<MovingPoints>> make_points(physics::World& world, const PointsDefinition& definition);
 
 }  // namespace embody::scene

@@ -53,10 +53,11 @@ SoftNodes::~SoftNodes() {
     (void)world_.destroy_deformable(handle_).ok();
 }
 
-Result<void> SoftNodes::set_definition(const DeformableDefinition& definition) {
+Result<void> SoftNodes::set_definition(const PointsDefinition& definition) {
+    const auto& taken = std::get<DeformableDefinition>(definition);
     let_go();
-    if (auto set = world_.set_deformable(handle_, definition); !set) return set;
-    attachments_ = definition.attachments;
+    if (auto set = world_.set_deformable(handle_, taken); !set) return set;
+    attachments_ = taken.attachments;
     return {};
 }
 

@@ -16,19 +16,12 @@ public:
                                                      const physics::DeformableDefinition& definition);
     ~SoftNodes() override;
 
-    /// Other matter, pins and the like of the same nodes; they stay where they are and go on as they move.
-    Result<void> set_definition(const physics::DeformableDefinition& definition);
-    /// Holds nodes to bodies, besides those that a hand holds.
-    Result<void> attach(std::vector<physics::Attachment> attachments);
-    /// To bodies that are still there; not those of a hand.
-    [[nodiscard]] std::vector<physics::Attachment> attachments() const;
-    [[nodiscard]] Vec3 linear_velocity() const;   ///< of the centre of mass, m/s
-    [[nodiscard]] Vec3 angular_velocity() const;  ///< of the rigid thing with as much angular momentum, rad/s
-
     void read(std::vector<Vec3>& positions) const override;
     [[nodiscard]] double radius() const override { return 0; }
     [[nodiscard]] const physics::DeformableDefinition* deformable() const override;
     [[nodiscard]] std::optional<Transform> pose() const override { return world_.pose(handle_); }
+    [[nodiscard]] Vec3 linear_velocity() const override;
+    [[nodiscard]] Vec3 angular_velocity() const override;
     [[nodiscard]] physics::SleepState state() const override;
     [[nodiscard]] Vec3 center_of_mass() const override { return world_.center_of_mass(handle_); }
     [[nodiscard]] double mass() const override { return world_.mass(handle_); }
@@ -38,6 +31,9 @@ public:
     /// A hand that holds the nodes around the place: a body without weight that collides with nothing.
     [[nodiscard]] physics::BodyHandle hold(Vec3 position) override;
     void let_go() override;
+    Result<void> set_definition(const PointsDefinition& definition) override;
+    Result<void> attach(std::vector<physics::Attachment> attachments) override;
+    [[nodiscard]] std::vector<physics::Attachment> attachments() const override;
     Result<void> move(const Transform& motion) override;
     Result<void> set_velocity(Vec3 linear, Vec3 angular) override;
     Result<void> apply_impulse(Vec3 impulse) override;

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#include "scene/moving_points.h"
+
+#include "scene/grain_bodies.h"
+#include "scene/soft_nodes.h"
+
+namespace embody::scene {
+
+namespace {
+
+template <typename Points>
+Result<std::unique_ptr<MovingPoints>> made(Result<std::unique_ptr<Points>> points) {
+    if (!points.ok()) return points.error();
+    return std::unique_ptr<MovingPoints>(std::move(points).value());
+}
+
+}  // namespace
+
+Result<std::unique_ptr<MovingPoints>> make_points(physics::World& world, const PointsDefinition& definition) {
+    if (const auto* grains = std::get_if<GrainDefinition>(&definition))
+        return made(GrainBodies::create(world, *grains));
+    return made(SoftNodes::create(world, std::get<physics::DeformableDefinition>(definition)));
+}
+
+}  // namespace embody::scene

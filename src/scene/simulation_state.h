@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/action_runner.h"
+#include "scene/entity_body.h"
+#include "scene/moving_points.h"
+#include "scene/shared_shapes.h"
+#include "scene/simulation.h"
+
+namespace embody::scene {
+
+/// An entity in the world: one body, or points.
+struct LiveEntity {
+    Entity definition;
+    attributes::AttributeSet attributes;
+    EntityForm form;
+    std::unique_ptr<MovingPoints> points;  ///< null: it is a body
+    physics::BodyHandle body;              ///< null: it has points
+    physics::ShapeHandle shape;            ///< the body's
+    std::string shape_key;
+    Transform frame;  ///< of points that have no pose of their own: where they were put, or moved to by hand
+};
+
+struct LiveJoint {
+    SceneJoint definition;
+    physics::JointHandle joint;
+};
+
+/// A push that an action gave, until a moment.
+struct TimedForce {
+    EntityIndex entity = 0;
+    Vec3 force;
+    double until = 0;
+};
+
+/// What a simulation consists of. Entities are made and changed in simulation_entities.cpp, what holds them together in
+/// simulation_holds.cpp, what actions do to them in simulation_effects.cpp.
+struct Simulation::State {
+    State(std::unique_ptr<physics::World> made, const physics::WorldSettings& asked, catalog::Catalog* catalog)
+        : world(std::move(made)), settings(asked), bodies(catalog), shapes(*world) {}
+
+    std::unique_ptr<physics::World> world;
+    physics::WorldSettings settings;  ///< the document's
+    double finest_grain = 1e300;      ///< that was ever in this world, m
+    EntityBodies bodies;
+    SharedShapes shapes;
+    std::map<EntityIndex, Entity> templates;  ///< the document's entities, for actions that spawn
+    std::map<EntityIndex, LiveEntity> live;
+    std::vector<EntityIndex> indices;
+    std::map<std::uint32_t, LiveJoint> joints;
+    std::set<EntityIndex> to_be_held;  ///< entities that joints or pins need as one body, before these are there
+    std::vector<TimedForce> timed_forces;
+    std::vector<EntityIndex> spawned, despawned;
+    EntityIndex next_spawned = last_document_index + 1;
+    std::unique_ptr<ActionRunner> actions;
+
+    // Entities -------------------------------------------------------------------------------------------------------
+
+    /// Null for an entity that is not in the world.
+    [[nodiscard]] LiveEntity* find(EntityIndex index);
+    [[nodiscard]] const LiveEntity* find(EntityIndex index) const;
+    Result<void> add(const Entity& entity);
+    Result<void> update(const Entity& entity, bool keep_motion);
+    Result<void> remove(EntityIndex index);
+    Result<void> place(LiveEntity& entity, const Transform& pose);
+    Result<void> set_velocity(LiveEntity& entity, Vec3 linear, Vec3 angular);
+    [[nodiscard]] Transform pose_of(const LiveEntity& entity) const;
+    /// Heaps of small grains need finer steps than the document asks for.
+    Result<void> apply_settings();
+
+    // What holds them together ---------------------------------------------------------------------------------------
+
+    /// Whether a joint holds it or something is pinned to it.
+    [[nodiscard]] bool is_held_as_body(EntityIndex index) const;
+    /// Holds what its pins say to where that is now on other entities.
+    Result<void> fasten(const LiveEntity& entity);
+    /// An entity that came, and those whose pins waited for it; without one: all.
+    Result<void> fasten_all(std::optional<EntityIndex> came);
+    Result<void> add_joint(const SceneJoint& joint);
+    Result<void> remove_joint(std::uint32_t index);
+
+    // What actions do ------------------------------------------------------------------------------------------------
+
+    void start_actions(const std::vector<Action>& list);
+    /// A push lasts at least one step.
+    void apply_timed_forces();
+    /// Null for an entity that is not in the world.
+    [[nodiscard]] const Entity* definition(EntityIndex index) const;
+
+private:
+    Result<LiveEntity> describe(const Entity& entity);
+    Result<physics::BodyDefinition> prepare_body(LiveEntity& entity);
+    Result<void> put(LiveEntity& entity);
+    Result<void> put_body(LiveEntity& entity);
+    Result<void> put_points(LiveEntity& entity);
+    void take_out(LiveEntity& entity);
+    [[nodiscard]] std::pair<Vec3, Vec3> motion_of(const LiveEntity& entity) const;
+    Result<void> update_body(LiveEntity& before, LiveEntity& after, bool keep_motion);
+    Result<void> update_points(LiveEntity& before, LiveEntity& after);
+    Result<void> replace(LiveEntity& before, LiveEntity& after, bool keep_motion);
+
+    Result<physics::BodyHandle> end_of(EntityIndex index, const std::string& where);
+    Result<void> make_bodies_of(const SceneJoint& joint);
+    Result<void> soften_ends(const SceneJoint& joint);
+
+    Result<void> change(EntityIndex index, const Effect& effect);
+    Result<void> set_attribute(LiveEntity& entity, const SetAttribute& set);
+    Result<EntityIndex> spawn(EntityIndex like, const Spawn& spawn);
+    [[nodiscard]] std::string category(EntityIndex index) const;
+    [[nodiscard]] Vec3 center_of_mass(const LiveEntity& entity) const;
+    [[nodiscard]] std::vector<EntityIndex> meant(const Target& target) const;
+};
+
+/// Names the entity before what is wrong with it.
+Error of_entity(const Entity& entity, Error error);
+
+}  // namespace embody::scene
