@@ -6,6 +6,7 @@
 #include <set>
 
 #include "physics/inter/definitions/deformable_primitives.h"
+#include "scenes/structures/box_stacks.h"
 
 namespace embody::scenes {
 
@@ -14,7 +15,6 @@ namespace {
 using namespace physics;
 
 constexpr double side = 1.4, table_side = 0.9, table_height = 0.7;
-constexpr int stack_height = 5;
 
 std::size_t count_edges(const Cloth& cloth) {
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
@@ -24,27 +24,8 @@ std::size_t count_edges(const Cloth& cloth) {
     return edges.size();
 }
 
-Result<BodyHandle> add_body(World& world, const ShapeDefinition& definition, Vec3 position, BodyKind kind) {
-    const auto shape = world.create_shape(definition);
-    if (!shape) return shape.error();
-    return world.create_body({.kind = kind, .shape = *shape, .position = position});
-}
-
-// Stacks in rows beside the table; the handles of their topmost boxes.
-Result<std::vector<BodyHandle>> add_stacks(World& world, int boxes) {
-    std::vector<BodyHandle> tops;
-    for (int i = 0; i < boxes; ++i) {
-        const int stack = i / stack_height, layer = i % stack_height;
-        const Vec3 position{1.5 + 0.3 * (stack % 10), 0.1 + 0.2 * layer, 0.3 * (stack / 10) - 0.6};
-        const auto box = add_body(world, BoxShape{{0.1, 0.1, 0.1}}, position, BodyKind::dynamic_body);
-        if (!box) return box.error();
-        if (layer == stack_height - 1) tops.push_back(*box);
-    }
-    return tops;
-}
-
 std::string judge(const World& world, std::span<const Vec3> before, std::span<const Vec3> now,
-                  const std::vector<BodyHandle>& tops) {
+                  const BoxStacks& stacks) {
     const Vec3 half{table_side / 2, table_height / 2, table_side / 2};
     double drift = 0, lowest = table_height;
     for (std::size_t i = 0; i < now.size(); ++i) {
@@ -59,10 +40,7 @@ std::string judge(const World& world, std::span<const Vec3> before, std::span<co
     const double overhang = (side - table_side) / 2;
     if (lowest > table_height - overhang || lowest < table_height - 1.5 * overhang)
         return "the cloth does not hang as far over as its size says";
-    for (const BodyHandle top : tops) {
-        if (std::fabs(world.pose(top).position.y - (0.2 * stack_height - 0.1)) > 0.01) return "a stack has fallen";
-    }
-    return {};
+    return stacks.stand(world) ? "" : "a stack has fallen";
 }
 
 }  // namespace
@@ -75,8 +53,8 @@ Result<TableclothCost> time_tablecloth(const TableclothScene& scene) {
     const auto table = add_body(world, BoxShape{{table_side / 2, table_height / 2, table_side / 2}},
                                 {0, table_height / 2, 0}, BodyKind::static_body);
     if (!table) return table.error();
-    const auto tops = add_stacks(world, scene.boxes);
-    if (!tops) return tops.error();
+    const auto stacks = BoxStacks::add(world, scene.boxes);
+    if (!stacks) return stacks.error();
     // Three edges a node, each node's share of area √¾ edge².
     const double edge = side / std::sqrt(std::sqrt(0.75) * scene.edges / 3.0);
     auto cloth = cloth_rectangle(side, side, edge, {.area_density = 0.2, .rayleigh_damping = 0.005});
@@ -104,7 +82,7 @@ Result<TableclothCost> time_tablecloth(const TableclothScene& scene) {
     cost.rest_ms /= std::max(1, steps - falling);
     cost.cloth_ms /= std::max(1, steps);
     cost.hash = world.state_hash();
-    cost.wrong = judge(world, before, world.node_positions(*handle), *tops);
+    cost.wrong = judge(world, before, world.node_positions(*handle), *stacks);
     return cost;
 }
 

@@ -118,7 +118,7 @@ struct SceneArguments {
     bool json = false;
 };
 struct BenchArguments {
-    /// Or "stability", "simbenchmark", "scaling", "decomposition", "tetrahedra", "grains", "cloth",
+    /// Or "stability", "simbenchmark", "scaling", "decomposition", "tetrahedra", "grains", "cloth", "soft",
     /// "catalogue", "race".
     std::string suite = "table1";
     std::filesystem::path database;       ///< of decomposition, tetrahedra and catalogue

@@ -13,6 +13,7 @@
 #include "cli/bench_race.h"
 #include "cli/bench_scaling.h"
 #include "cli/bench_simbenchmark.h"
+#include "cli/bench_soft.h"
 #include "cli/bench_stability.h"
 #include "cli/bench_tetrahedra.h"
 #include "cli/commands.h"
@@ -56,6 +57,7 @@ int run_bench(const BenchArguments& arguments) {
     if (arguments.suite == "decomposition") return run_decomposition(arguments);
     if (arguments.suite == "cloth") return run_cloth(arguments);
     if (arguments.suite == "fluid") return run_fluid(arguments);
+    if (arguments.suite == "soft") return run_soft(arguments);
     if (arguments.suite == "grains") return run_grains(arguments);
     if (arguments.suite == "tetrahedra") return run_tetrahedra(arguments);
     if (arguments.suite == "catalogue") return run_catalogue_bench(arguments);

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int most_rounds = 10, sweeps_a_round = 4, most_gradient_rounds = 40, most_leaning_sweeps = 60;
 constexpr double close_enough = 2e-6;   // m: no contact moves by more in the last sweep
+constexpr double not_worth_it = 1e-7;   // m: a contact that would move by less is left as it is
 constexpr double recovery_speed = 0.5;  // m/s: what overlaps is parted no faster
 // Of a contact's own compliance along the normal: where contacts say the same of a place, all bear a part.
 constexpr double softness = 0.01;
@@ -222,20 +223,20 @@ double SolidContacts::relax(Active& active, double h) {
     const double give = dot(n, active.give * n);
     if (!(give > 0)) return 0;
     const double before = dot(contact.force, n);
-    const double missing =
-        active.target - active.gap - dot(n, moved(active)) - dot(n, soft_part(active, contact.force));
+    Vec3 relative = active.slid + moved(active) + soft_part(active, contact.force);
+    const double missing = active.target - active.gap + dot(n, active.slid - relative);
     const double after = std::max(0.0, before + missing / ((1 + softness) * give));
-    const double moved_along = std::fabs(after - before) * give;
-    if (after != before) apply(active, (after - before) * n, h);
+    const Vec3 along = (after - before) * n;
+    relative += active.give * along;
 
     // Against sliding, within Coulomb's cone. The larger of the two tangential compliances is at most their sum.
     const double tangential_give = trace(active.give) - give;
-    const Vec3 relative = active.slid + moved(active) + soft_part(active, contact.force);
     const Vec3 sliding = relative - dot(relative, n) * n;
-    const Vec3 wanted = within_cone(contact.force - sliding / tangential_give, n, contact.friction);
+    const Vec3 wanted = within_cone(contact.force + along - sliding / tangential_give, n, contact.friction);
     const Vec3 change = wanted - contact.force, across = change - dot(change, n) * n;
-    if (across != Vec3{}) apply(active, across, h);
-    return std::max(moved_along, length(across) * tangential_give);
+    const double moved_by = std::max(std::fabs(after - before) * give, length(across) * tangential_give);
+    if (moved_by > not_worth_it) apply(active, along + across, h);
+    return moved_by;
 }
 
 // By how much a contact gives way to a force beyond what bodies and solids do, m.
