@@ -117,4 +117,19 @@ void put_simulated_grains(AttributeSet& set, const GeometryFacts& facts, const F
     put_number(set, "simulated_diameter", diameter, source, AttributeLevel::model);
 }
 
+void put_cloth_of_primitive(AttributeSet& set, const GeometryFacts& facts) {
+    if (set.word("kind", "") != "cloth") return;
+    const Vec3 size = facts.size;
+    const double thickness = std::min({size.x, size.y, size.z}), area = facts.volume / thickness;
+    put_number(set, "thickness", thickness, "thickness of the shape", AttributeLevel::measured);
+    if (is_manual(set, "mass")) {
+        put_number(set, "area_density", set.number("mass", 1) / area, "manual mass / area", AttributeLevel::model);
+        return;
+    }
+    const double usual = std::get<double>(describe("area_density")->standard);
+    put_number(set, "area_density", usual, "default", AttributeLevel::standard);
+    const double density = set.number("area_density", usual);
+    put_number(set, "mass", density * area, "area density × area of the sheet", AttributeLevel::model);
+}
+
 }  // namespace embody::attributes

@@ -42,8 +42,21 @@ void explain_mass(AttributeSet& set) {
     }
 }
 
+// Of cloth by its area, of a rope by its length.
+bool spread_mass(AttributeSet& set, const Form& form) {
+    const bool is_cloth = set.word("kind", "") == "cloth";
+    const char* name = is_cloth ? "area_density" : "linear_density";
+    if (!is_manual(set, name)) return false;
+    const double amount = is_cloth ? form.face_area : std::max({form.size.x, form.size.y, form.size.z});
+    const AttributeDescription& range = *describe("mass");
+    put_derived(set, "mass", std::clamp(set.number(name, 1) * amount, *range.low, *range.high),
+                is_cloth ? "manual area density x largest face of the box" : "manual linear density x largest extent");
+    return true;
+}
+
 void update_mass(AttributeSet& set, const Form& form) {
     if (is_manual(set, "mass")) return explain_mass(set);
+    if (spread_mass(set, form)) return;
     if (is_manual(set, "bulk_density")) {
         put_derived(set, "mass", set.number("bulk_density", 1) * form.box_volume, "manual bulk density x bounding box");
         return explain_mass(set);
@@ -125,14 +138,17 @@ AttributeSet with_manual(const Taxonomy* taxonomy, const AttributeSet& automatic
     complete_for_kind(set);
     const Form form = form_of(facts.geometry, {0.5, 0.5, 0.5});
     const double mass_before = automatic.number("mass", set.number("mass", 1));
+    const std::string kind_before = automatic.word("kind", "rigid");
 
     // From the cause to what follows: material, mass, what depends on the mass.
     if (taxonomy != nullptr) update_material(set, *taxonomy);
     update_mass(set, form);
     scale_inertia(set, mass_before);
-    if (set.number("mass", mass_before) != mass_before) put_mass_dependents(set, facts.geometry, form);
+    const std::string kind = set.word("kind", "rigid");
+    const bool is_now_thin = kind != kind_before && (kind == "cloth" || kind == "rope");
+    if (set.number("mass", mass_before) != mass_before || is_now_thin) put_mass_dependents(set, facts.geometry, form);
     order_friction(set);
-    update_collision_shape(set, facts.geometry, automatic.word("kind", "rigid"));
+    update_collision_shape(set, facts.geometry, kind_before);
     complete_for_kind(set);
     put_simulated_grains(set, facts.geometry, form);
     return set;

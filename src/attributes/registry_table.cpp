@@ -168,7 +168,7 @@ void add_motion(Rows& rows) {
     const Group group{rows, "motion"};
     group.number({"linear_damping", "RA", "Linear damping", "Share of the velocity lost a second."}, "1/s", 0, 0, 100);
     group.number({"angular_damping", "RA", "Angular damping", "Share of the spin lost a second."}, "1/s", 0.05, 0, 100);
-    group.number({"gravity_factor", "RAV", "Gravity factor", "1 falls, 0 floats, -1 rises."}, "1", 1, -10, 10);
+    group.number({"gravity_factor", "RAVCP", "Gravity factor", "1 falls, 0 floats, -1 rises."}, "1", 1, -10, 10);
     group.number(
         {"sleep_energy_per_mass", "RA", "Sleep energy", "Quieter than this for half a second may fall asleep."}, "J/kg",
         4.5e-4, 0, 1);
@@ -180,7 +180,9 @@ void add_motion(Rows& rows) {
     group.whole({"collision_mask", all_kinds, "Collides with", "Bits of the groups that it collides with."},
                 4294967295.0, 0, 4294967295.0);
     const Group later{rows, "motion", false};
-    later.number({"drag_coefficient", "RAC", "Drag coefficient", "Of the drag of the air."}, "1", 1, 0, 3);
+    group.number({"drag_coefficient", "RAC", "Drag coefficient",
+                  "Of the drag of the air; it acts on cloth, on other things not yet."},
+                 "1", 1, 0, 3);
     later.number({"drag_area", "RAC", "Drag area", "Area that meets the air."}, "m²", 1, 0, 1e8);
     later.number({"break_impulse", "RA", "Breaking impulse", "An impulse above this breaks it."}, "N s", infinity, 0,
                  infinity);
@@ -201,25 +203,36 @@ void add_soft_and_cloth(Rows& rows) {
                       0, infinity);
     soft_later.number({"internal_pressure", "VC", "Internal pressure", "Above that of the air around."}, "Pa", 0, 0,
                       1e8);
-    const Group cloth{rows, "cloth", false};
+    const Group cloth{rows, "cloth"};
     cloth.number({"area_density", "C", "Area density", "Mass of a square metre."}, "kg/m²", 0.2, 1e-4, 1e3);
-    cloth.number({"thickness", "C", "Thickness", "Of the cloth."}, "m", 5e-4, 1e-6, 0.1);
+    cloth.number({"thickness", "C", "Thickness", "Of the cloth: its layers stay that far apart."}, "m", 5e-4, 1e-6,
+                 0.1);
     cloth.number({"stretch_stiffness", "C", "Stretch stiffness", "Force per metre width and unit strain."}, "N/m", 500,
                  1e-3, 1e9);
     cloth.number({"shear_stiffness", "C", "Shear stiffness", "Force per metre width and unit shear."}, "N/m", 50, 1e-3,
                  1e9);
     cloth.number({"bend_stiffness", "C", "Bend stiffness", "Moment per metre width and curvature."}, "N m", 2e-5, 1e-9,
                  1e6);
-    cloth.number({"tear_strength", "C", "Tear strength", "Tension that tears it."}, "N/m", infinity, 0, infinity);
+    cloth.whole({"cloth_nodes", "C", "Nodes",
+                 "Points that the sheet is computed with: more fold finer and cost more. Not its real threads."},
+                1000, 20, 20000);
+    const Group cloth_later{rows, "cloth", false};
+    cloth_later.number({"tear_strength", "C", "Tear strength", "Tension that tears it."}, "N/m", infinity, 0, infinity);
 }
 
 void add_rope_fluid_and_grain(Rows& rows) {
-    const Group rope{rows, "rope", false};
+    const Group rope{rows, "rope"};
     rope.number({"linear_density", "P", "Linear density", "Mass of a metre."}, "kg/m", 0.07, 1e-6, 1e4);
     rope.number({"axial_stiffness", "P", "Axial stiffness EA", "Force per unit strain."}, "N", 1e4, 1e-3, 1e12);
     rope.number({"bend_rigidity", "P", "Bend rigidity EI", "Moment per curvature."}, "N m²", 1e-3, 1e-12, 1e9);
-    rope.number({"twist_rigidity", "P", "Twist rigidity GJ", "Moment per twist of a metre."}, "N m²", 1e-3, 1e-12, 1e9);
     rope.number({"break_tension", "P", "Breaking tension", "Tension that breaks it."}, "N", infinity, 0, infinity);
+    rope.number({"slack", "P", "Slack",
+                 "How much longer it is than the way between its ends: a slack one starts as an arc that hangs."},
+                "1", 0, 0, 10);
+    rope.whole({"rope_segments", "P", "Segments", "Straight pieces that it is computed with."}, 50, 2, 2000);
+    const Group rope_later{rows, "rope", false};
+    rope_later.number({"twist_rigidity", "P", "Twist rigidity GJ", "Moment per twist of a metre."}, "N m²", 1e-3, 1e-12,
+                      1e9);
     const Group fluid{rows, "fluid", false};
     fluid.number({"rest_density", "F", "Rest density", "Density of the liquid at rest."}, "kg/m³", 998, 0.01, 22600);
     fluid.number({"dynamic_viscosity", "F", "Viscosity", "Dynamic viscosity."}, "Pa s", 1e-3, 1e-7, 1e9);

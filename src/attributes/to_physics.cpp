@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -128,6 +129,25 @@ Result<physics::ShapeDefinition> decomposed_shape(const AttributeSet& attributes
     return physics::ShapeDefinition{std::move(compound)};
 }
 
+// The mass over the amount of what it fills (m³, m² or m), where some matter is as dense as that.
+Result<double> spread(const AttributeSet& set, const char* name, double amount, const char* unit, const char* thing) {
+    const AttributeDescription& range = *describe(name);
+    const double mass = number_or_standard(set, "mass"), density = mass / amount;
+    if (density >= *range.low && density <= *range.high) return density;
+    return Error{"mass",
+                 short_number(mass) + " kg in " + short_number(amount) + " " + unit + " are " + short_number(density) +
+                     " " + range.unit,
+                 std::string("a ") + thing + " needs " + short_number(*range.low) + " to " + short_number(*range.high) +
+                     " " + range.unit};
+}
+
+double area_of(const SheetMesh& sheet) {
+    double area = 0;
+    for (const auto& [a, b, c] : sheet.triangles)
+        area += length(cross(sheet.nodes[b] - sheet.nodes[a], sheet.nodes[c] - sheet.nodes[a])) / 2;
+    return area;
+}
+
 }  // namespace
 
 Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attributes, const Taxonomy* taxonomy) {
@@ -182,25 +202,61 @@ physics::DeformableDefinition deformable_from_attributes(const AttributeSet& att
 Result<physics::DeformableDefinition> soft_solid_from_attributes(const AttributeSet& attributes,
                                                                  const geometry::TetrahedralMesh& mesh) {
     constexpr double least_poisson = -0.9, greatest_poisson = 0.495, least_yield = 1;
-    const AttributeDescription& range = *describe("density");
-    const double mass = number_or_standard(attributes, "mass"), volume = geometry::volume(mesh);
-    const double density = mass / volume;
-    if (!(density >= *range.low && density <= *range.high))
-        return Error{"mass",
-                     short_number(mass) + " kg in " + short_number(1000 * volume) + " litres is a density of " +
-                         short_number(density) + " kg/m³",
-                     "a soft thing needs " + short_number(*range.low) + " to " + short_number(*range.high) + " kg/m³"};
+    const Result<double> density = spread(attributes, "density", geometry::volume(mesh), "m³", "soft thing");
+    if (!density) return density.error();
     physics::DeformableDefinition deformable = deformable_from_attributes(attributes);
     deformable.nodes = mesh.nodes;
     physics::SoftSolid solid;
     solid.tetrahedra = mesh.tetrahedra;
-    solid.density = density;
+    solid.density = *density;
     solid.youngs_modulus = number_or_standard(attributes, "youngs_modulus");
     solid.poisson_ratio = std::clamp(number_or_standard(attributes, "poisson_ratio"), least_poisson, greatest_poisson);
     solid.rayleigh_damping = number_or_standard(attributes, "damping_rayleigh");
     solid.yield_stress = std::max(number_or_standard(attributes, "yield_stress"), least_yield);
     solid.internal_pressure = number_or_standard(attributes, "internal_pressure");
     deformable.matter = std::move(solid);
+    return deformable;
+}
+
+Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& attributes, const SheetMesh& sheet) {
+    const double area = area_of(sheet);
+    const Result<double> area_density = spread(attributes, "area_density", area, "m²", "cloth");
+    if (!area_density) return area_density.error();
+    physics::DeformableDefinition deformable = deformable_from_attributes(attributes);
+    deformable.nodes = sheet.nodes;
+    physics::Cloth cloth;
+    cloth.triangles = sheet.triangles;
+    cloth.area_density = *area_density;
+    // Layers further apart than the nodes are could not fold.
+    const double edge = std::sqrt(area / static_cast<double>(sheet.triangles.size()) * 4 / std::sqrt(3));
+    cloth.thickness = std::min(number_or_standard(attributes, "thickness"), edge);
+    cloth.stretch_stiffness = number_or_standard(attributes, "stretch_stiffness");
+    cloth.shear_stiffness = number_or_standard(attributes, "shear_stiffness");
+    cloth.bend_stiffness = number_or_standard(attributes, "bend_stiffness");
+    cloth.rayleigh_damping = number_or_standard(attributes, "damping_rayleigh");
+    cloth.drag_coefficient = number_or_standard(attributes, "drag_coefficient");
+    deformable.matter = std::move(cloth);
+    return deformable;
+}
+
+Result<physics::DeformableDefinition> rope_from_attributes(const AttributeSet& attributes,
+                                                           const std::vector<Vec3>& nodes, double diameter) {
+    constexpr double least_diameter = 1e-4, greatest_diameter = 1, least_break = 1e-6;
+    double along = 0;
+    for (std::size_t i = 1; i < nodes.size(); ++i) along += length(nodes[i] - nodes[i - 1]);
+    const Result<double> linear_density = spread(attributes, "linear_density", along, "m", "rope");
+    if (!linear_density) return linear_density.error();
+    physics::DeformableDefinition deformable = deformable_from_attributes(attributes);
+    deformable.nodes = nodes;
+    physics::Rope rope;
+    rope.diameter = std::clamp(diameter, least_diameter, greatest_diameter);
+    rope.linear_density = *linear_density;
+    rope.axial_stiffness = number_or_standard(attributes, "axial_stiffness");
+    rope.bend_rigidity = number_or_standard(attributes, "bend_rigidity");
+    rope.twist_rigidity = number_or_standard(attributes, "twist_rigidity");
+    rope.rayleigh_damping = number_or_standard(attributes, "damping_rayleigh");
+    rope.break_tension = std::max(number_or_standard(attributes, "break_tension"), least_break);
+    deformable.matter = rope;
     return deformable;
 }
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <vector>
+
 #include "attributes/attribute.h"
 #include "attributes/model_facts.h"
 #include "attributes/resolver.h"
@@ -41,5 +45,21 @@ physics::DeformableDefinition deformable_from_attributes(const AttributeSet& att
 /// stress of 0 as one of 1 Pa. The error says where the mass gives a density that nothing has.
 Result<physics::DeformableDefinition> soft_solid_from_attributes(const AttributeSet& attributes,
                                                                  const geometry::TetrahedralMesh& mesh);
+
+/// Mesh of a sheet at rest, in the thing's frame.
+struct SheetMesh {
+    std::vector<Vec3> nodes;                              ///< m
+    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< with area
+};
+
+/// Cloth of these triangles, without pose. Its area density is the one that makes its mass that of the attributes; a
+/// thickness above the length of an edge is taken as that. The error says where the mass gives a density that no cloth
+/// has.
+Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& attributes, const SheetMesh& sheet);
+
+/// A rope along these nodes (m, each apart from the one before it), `diameter` (m) thick, without pose. Its linear
+/// density is the one that makes its mass that of the attributes. Errors as of cloth.
+Result<physics::DeformableDefinition> rope_from_attributes(const AttributeSet& attributes,
+                                                           const std::vector<Vec3>& nodes, double diameter);
 
 }  // namespace embody::attributes

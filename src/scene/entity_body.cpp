@@ -243,6 +243,7 @@ Result<AttributeSet> EntityBodies::attributes(const Entity& entity) {
         AttributeSet set = lay_over(primitive_attributes(entity, *shape, facts), own.value(), facts);
         set.erase("collision_shape");
         complete_grains(set, facts.geometry, true);
+        attributes::put_cloth_of_primitive(set, facts.geometry);
         return set;
     }
     Result<AttributeSet> automatic = automatic_attributes(entity);

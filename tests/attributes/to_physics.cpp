@@ -211,5 +211,55 @@ TEST(ToPhysics, SoftAttributesArriveWithinWhatTheSolverTakes) {
     EXPECT_EQ(too_dense.error().where, "mass");
 }
 
+TEST(ToPhysics, ClothWeighsWhatItsMassSaysOnAnySheet) {
+    SheetMesh sheet;
+    sheet.nodes = {{0, 0, 0}, {2, 0, 0}, {2, 0, 3}, {0, 0, 3}};
+    sheet.triangles = {{0, 2, 1}, {0, 3, 2}};
+    AttributeSet set = resolve(shipped_taxonomy(), closed_box("Curtain", {2, 3, 0.01}));
+    ASSERT_EQ(set.word("kind", ""), "cloth");
+    set.put({"mass", 1.5, {}, {}, "test", AttributeLevel::manual});
+    auto made = cloth_from_attributes(set, sheet);
+    ASSERT_TRUE(made.ok()) << made.error().message();
+    EXPECT_TRUE(physics::validate(*made).ok());
+    const auto& cloth = std::get<physics::Cloth>(made->matter);
+    EXPECT_DOUBLE_EQ(cloth.area_density, 1.5 / 6);
+    EXPECT_EQ(cloth.stretch_stiffness, set.number("stretch_stiffness", -1));
+    EXPECT_EQ(cloth.bend_stiffness, set.number("bend_stiffness", -1));
+    EXPECT_EQ(cloth.thickness, set.number("thickness", -1));
+    EXPECT_EQ(cloth.drag_coefficient, set.number("drag_coefficient", -1));
+    set.put({"mass", 1e4, {}, {}, "test", AttributeLevel::manual});
+    made = cloth_from_attributes(set, sheet);
+    ASSERT_FALSE(made.ok());
+    EXPECT_EQ(made.error().where, "mass");
+}
+
+TEST(ToPhysics, RopesWeighWhatTheirMassSaysAndBreakWhereTheyAreTold) {
+    AttributeSet set = resolve(shipped_taxonomy(), closed_box("Rope", {0.02, 0.02, 4}));
+    ASSERT_EQ(set.word("kind", ""), "rope");
+    set.put({"mass", 0.8, {}, {}, "test", AttributeLevel::manual});
+    set.put({"break_tension", 0.0, {}, {}, "test", AttributeLevel::manual});
+    auto made = rope_from_attributes(set, {{0, 0, 0}, {3, 0, 0}, {3, 1, 0}}, 0.02);
+    ASSERT_TRUE(made.ok()) << made.error().message();
+    EXPECT_TRUE(physics::validate(*made).ok());
+    const auto& rope = std::get<physics::Rope>(made->matter);
+    EXPECT_DOUBLE_EQ(rope.linear_density, 0.2);
+    EXPECT_EQ(rope.diameter, 0.02);
+    EXPECT_EQ(rope.axial_stiffness, set.number("axial_stiffness", -1));
+    EXPECT_LT(rope.break_tension, 1e-3) << "by the slightest pull";
+    set.put({"mass", 1e-6, {}, {}, "test", AttributeLevel::manual});
+    made = rope_from_attributes(set, {{0, 0, 0}, {3, 0, 0}}, 0.02);
+    ASSERT_FALSE(made.ok());
+    EXPECT_EQ(made.error().where, "mass");
+}
+
+TEST(ToPhysics, AnAreaDensityOfAPersonMakesTheMass) {
+    const ModelFacts facts = closed_box("Curtain", {2, 3, 0.01});
+    const AttributeSet automatic = resolve(shipped_taxonomy(), facts);
+    AttributeSet set = with_manual(automatic, {{"area_density", 0.5, {}, {}, "", AttributeLevel::manual}}, facts);
+    EXPECT_DOUBLE_EQ(set.number("mass", 0), 3);
+    set = with_manual(automatic, {{"kind", std::string("rope"), {}, {}, "", AttributeLevel::manual}}, facts);
+    EXPECT_DOUBLE_EQ(set.number("linear_density", 0), automatic.number("mass", 0) / 3) << "of the kind that it is now";
+}
+
 }  // namespace
 }  // namespace embody::attributes

@@ -140,6 +140,10 @@ Document everything() {
     document.settings.time_to_sleep = 0.75;
     document.settings.sleeping = false;
     document.settings.shock_propagation = false;
+    document.settings.wind = {3, 0, -1};
+    document.settings.gustiness = 0.3;
+    document.settings.gust_time = 1.5;
+    document.settings.air_density = 1.1;
     document.settings.max_linear_speed = 500;
     document.settings.max_angular_speed = 600;
     document.camera = {Vec3{1, 2, 3}, Vec3{0, 0.1, 0}};

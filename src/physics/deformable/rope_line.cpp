@@ -366,9 +366,13 @@ void RopeLine::break_segments() {
         if (tensions_[s] > tensions_[tightest]) tightest = s;
     }
     if (tensions_[tightest] <= rope_.break_tension) return;
+    new_breaks_.push_back({tightest, tensions_[tightest]});
     segments_[tightest].is_broken = true;
     tensions_[tightest] = 0;
-    new_breaks_.push_back(tightest);
+}
+
+void RopeLine::break_as(const RopeLine& other) {
+    for (std::size_t s = 0; s < segments_.size(); ++s) segments_[s].is_broken = other.is_broken(s);
 }
 
 void RopeLine::advance(const Substep& substep, std::span<const NodeContact> contacts,

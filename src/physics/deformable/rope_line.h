@@ -28,8 +28,14 @@ public:
     /// Of each segment, from node k to k + 1, N; below zero: pressed. 0 where it is broken.
     [[nodiscard]] std::span<const double> tensions() const { return tensions_; }
     [[nodiscard]] bool is_broken(std::size_t segment) const { return segments_[segment].is_broken; }
-    /// Segments that broke in the last substep.
-    [[nodiscard]] std::span<const std::uint32_t> new_breaks() const { return new_breaks_; }
+    /// What broke in the last substep.
+    struct Break {
+        std::uint32_t segment = 0;
+        double tension = 0;  ///< when it broke, N
+    };
+    [[nodiscard]] std::span<const Break> new_breaks() const { return new_breaks_; }
+    /// The same segments as of another rope of as many are broken.
+    void break_as(const RopeLine& other);
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_.springs(); }
     [[nodiscard]] double elastic_energy() const;
     /// True once a number was none: it stays where it last was.
@@ -76,7 +82,7 @@ private:
     std::vector<bool> fixed_;
     TouchSprings springs_;
     std::vector<double> tensions_;
-    std::vector<std::uint32_t> new_breaks_;
+    std::vector<Break> new_breaks_;
 
     // Of the substep.
     BandCholesky matrix_;

@@ -27,8 +27,11 @@ Result<void> World::set_settings(const WorldSettings& settings) {
     if (workers != state_->workers->workers()) state_->workers = std::make_unique<TaskPool>(workers);
     state_->settings = settings;
 
-    // Another gravity or no sleeping moves everything.
+    // Another gravity, wind or no sleeping moves everything.
     for (std::uint32_t body = 0; body < state_->bodies.slot_count(); ++body) state_->to_wake.push_back(body);
+    for (const DeformableHandle deformable : deformables()) {
+        if (auto woken = wake(deformable); !woken) return woken;
+    }
     return {};
 }
 
@@ -127,6 +130,7 @@ const StepReport& World::step() {
 
 const StepReport& World::last_report() const { return state_->report; }
 std::span<const ContactEvent> World::contact_events() const { return state_->contact_events; }
+std::span<const RopeBreakEvent> World::rope_break_events() const { return state_->rope_break_events; }
 std::span<const SleepEvent> World::sleep_events() const { return state_->sleep_events; }
 
 std::vector<ContactView> World::contacts() const {

@@ -124,6 +124,11 @@ public:
     Result<void> set_deformable(DeformableHandle deformable, const DeformableDefinition& definition);
     /// The attachments alone: costs nothing.
     Result<void> set_attachments(DeformableHandle deformable, const std::vector<Attachment>& attachments);
+    /// Of each segment of a rope, from node k to k + 1, N; below zero: pressed; 0 where it is broken. Empty for what is
+    /// no rope. Valid until the next step or change.
+    [[nodiscard]] std::span<const double> rope_tensions(DeformableHandle rope) const;
+    /// Segments that are broken, ascending.
+    [[nodiscard]] std::vector<std::uint32_t> broken_segments(DeformableHandle rope) const;
 
     // Fluids.
     Result<FluidHandle> create_fluid(const FluidDefinition& definition);
@@ -148,6 +153,7 @@ public:
     // What happened in the last step; valid until the next call that changes the world.
     [[nodiscard]] std::span<const ContactEvent> contact_events() const;
     [[nodiscard]] std::span<const SleepEvent> sleep_events() const;
+    [[nodiscard]] std::span<const RopeBreakEvent> rope_break_events() const;
     [[nodiscard]] std::vector<ContactView> contacts() const;
     [[nodiscard]] Conserved conserved() const;
 

@@ -175,6 +175,7 @@ Result<void> World::set_deformable(DeformableHandle deformable, const Deformable
     changed->last_positions = nodes.position;
     changed->contacts = std::move(record->contacts);
     changed->touched_bodies = std::move(record->touched_bodies);
+    if (changed->rope && record->rope) changed->rope->break_as(*record->rope);
     *record = std::move(*changed);
     return {};
 }
@@ -189,6 +190,19 @@ Result<void> World::set_attachments(DeformableHandle deformable, const std::vect
     record->definition = std::move(changed);
     wake_up(*record);
     return {};
+}
+
+std::span<const double> World::rope_tensions(DeformableHandle rope) const {
+    const DeformableRecord* record = state_->deformables.find(rope);
+    return record != nullptr && record->rope ? record->rope->tensions() : std::span<const double>();
+}
+
+std::vector<std::uint32_t> World::broken_segments(DeformableHandle rope) const {
+    std::vector<std::uint32_t> broken;
+    for (std::uint32_t s = 0; s < rope_tensions(rope).size(); ++s) {
+        if (state_->deformables.find(rope)->rope->is_broken(s)) broken.push_back(s);
+    }
+    return broken;
 }
 
 }  // namespace embody::physics

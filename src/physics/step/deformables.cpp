@@ -8,6 +8,7 @@
 #include "physics/step/solid_contact_search.h"
 #include "physics/step/step.h"
 #include "physics/step/thin_deformables.h"
+#include "physics/step/wind.h"
 
 namespace embody::physics {
 
@@ -132,18 +133,29 @@ void find_contacts_of(const WorldState& world, const MovingDeformables& moving, 
     find_thin_contacts(moving.bodies, colliding, world.settings.time_step, world.settings.gravity, thin);
 }
 
+void note_breaks(WorldState& world, const DeformableRecord& record) {
+    const std::vector<Vec3>& nodes = record.nodes().position;
+    for (const auto& [segment, tension] : record.rope->new_breaks()) {
+        const DeformableHandle rope = world.deformables.handle_at(record.slot);
+        world.rope_break_events.push_back(
+            {rope, record.definition.user_data, segment, tension, (nodes[segment] + nodes[segment + 1]) / 2});
+    }
+}
+
 // Ropes in each substep; cloth, whose solve is dear, once for the whole step after the last of the others.
-void advance_thin_ones(const WorldState& world, MovingDeformables& moving, int k) {
+void advance_thin_ones(WorldState& world, MovingDeformables& moving, int k) {
     const int substeps = world.settings.deformable_substeps;
     const double step = world.settings.time_step, h = step / substeps;
+    const Vec3 wind = wind_at(world.settings, world.report.time);
     for (ThinDeformable& thin : moving.thin) {
         if (thin.record->cloth && k < substeps) continue;
         Substep substep{.h = h, .time = (k - 1) * h};
         if (thin.record->cloth) substep = {.h = step, .time = 0};
         substep.gravity = thin.record->definition.gravity_factor * world.settings.gravity;
-        substep.wind = world.settings.wind;
+        substep.wind = wind;
         substep.air_density = world.settings.air_density;
         advance_thin(thin, substep, moving.bodies, *world.workers);
+        if (thin.record->rope) note_breaks(world, *thin.record);
     }
 }
 
@@ -253,7 +265,8 @@ bool may_sleep(const WorldState& world, const DeformableRecord& record, std::vec
 // not quiet.
 void put_to_sleep(WorldState& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.records) {
-        const bool is_quiet = fastest_node(*record) < quiet_speed;
+        const bool is_blown = record->cloth && is_gusty(world.settings);
+        const bool is_quiet = !is_blown && fastest_node(*record) < quiet_speed;
         record->quiet_time = is_quiet ? record->quiet_time + world.settings.time_step : 0;
         for (const std::uint32_t slot : record->touched_bodies) {
             if (!world.is_used(slot) || !world.is_dynamic(slot)) continue;

@@ -42,6 +42,7 @@ void step(WorldState& world) {
     constexpr double long_step = 0.2;  // ms; to wake the workers takes 0.015
     const auto start = Clock::now();
     const bool is_long = world.report.milliseconds > long_step;
+    world.rope_break_events.clear();
     world.report = {.step = world.report.step + 1, .time = world.report.time + world.settings.time_step};
     run(world, StepStage::wake, wake_bodies);       // apply commands, wake touched islands
     run(world, StepStage::fluids, advance_fluids);  // particles, and forces of their pressure on bodies

@@ -131,11 +131,12 @@ struct WorldState {
     std::uint32_t next_group = 1;                     // sleep
     std::vector<std::uint32_t> to_wake;               // face, touch: slots
 
-    std::vector<TouchingPair> touching;        // report: awake pairs that touch, sorted
-    std::vector<TouchingPair> touching_now;    // report: memory only
-    std::vector<ContactEvent> contact_events;  // report
-    std::vector<SleepEvent> sleep_events;      // wake, sleep
-    StepReport report;                         // all
+    std::vector<TouchingPair> touching;             // report: awake pairs that touch, sorted
+    std::vector<TouchingPair> touching_now;         // report: memory only
+    std::vector<ContactEvent> contact_events;       // report
+    std::vector<RopeBreakEvent> rope_break_events;  // deformables
+    std::vector<SleepEvent> sleep_events;           // wake, sleep
+    StepReport report;                              // all
 
     [[nodiscard]] bool is_used(std::uint32_t body) const { return bodies.used(body); }
     [[nodiscard]] const BodyRecord& record(std::uint32_t body) const { return bodies.at(body); }

@@ -19,6 +19,10 @@ Result<physics::WorldSettings> settings_from_json(const json& value, const std::
     reader.number("time_to_sleep", settings.time_to_sleep);
     reader.truth("sleeping", settings.sleeping);
     reader.truth("shock_propagation", settings.shock_propagation);
+    reader.vector("wind", settings.wind);
+    reader.number("gustiness", settings.gustiness);
+    reader.number("gust_time", settings.gust_time);
+    reader.number("air_density", settings.air_density);
     reader.number("max_linear_speed", settings.max_linear_speed);
     reader.number("max_angular_speed", settings.max_angular_speed);
     reader.finish();
@@ -38,6 +42,10 @@ json settings_to_json(const physics::WorldSettings& settings) {
             {"time_to_sleep", settings.time_to_sleep},
             {"sleeping", settings.sleeping},
             {"shock_propagation", settings.shock_propagation},
+            {"wind", vector_to_json(settings.wind)},
+            {"gustiness", settings.gustiness},
+            {"gust_time", settings.gust_time},
+            {"air_density", settings.air_density},
             {"max_linear_speed", settings.max_linear_speed},
             {"max_angular_speed", settings.max_angular_speed}};
 }

@@ -10,6 +10,10 @@ export const DEFAULT_SETTINGS: SceneSettings = {
   sleeping: true,
   time_to_sleep: 0.5,
   shock_propagation: true,
+  wind: [0, 0, 0],
+  gustiness: 0,
+  gust_time: 2,
+  air_density: 1.2,
 };
 
 /** What of the document is new after an event. */

@@ -66,6 +66,10 @@ export interface SceneSettings {
   sleeping: boolean;
   time_to_sleep: number;
   shock_propagation: boolean;
+  wind: Vector;
+  gustiness: number;
+  gust_time: number;
+  air_density: number;
 }
 
 export interface Scene {

@@ -12,6 +12,10 @@ export class SceneFields {
   private readonly timeStep = numberField("Time step", "s", (time_step) => this.set({ time_step }));
   private readonly substeps = numberField("Substeps", "", (substeps) => this.set({ substeps }), 1);
   private readonly sleeping = truthField("Sleeping", (sleeping) => this.set({ sleeping }));
+  private readonly wind = vectorField(["Wind x", "Wind y", "Wind z"], "m/s", (value) => this.set({ wind: value as SceneSettings["wind"] }));
+  private readonly gustiness = numberField("Gustiness", "", (gustiness) => this.set({ gustiness }));
+  private readonly gustTime = numberField("Gust time", "s", (gust_time) => this.set({ gust_time }));
+  private readonly airDensity = numberField("Air density", "kg/m³", (air_density) => this.set({ air_density }));
   private readonly contents = element("p", { class: "note", "data-testid": "scene-contents" });
 
   constructor(private readonly studio: Studio) {
@@ -31,6 +35,15 @@ export class SceneFields {
         row("Time step", this.timeStep.root, "Simulated time of one step"),
         row("Substeps", this.substeps.root, "Parts a step is solved in: more are stiffer and slower"),
         row("Sleeping", this.sleeping.root, "Bodies at rest cost nothing until they are touched"),
+      ),
+      element(
+        "details",
+        { class: "group", open: true },
+        element("summary", {}, "Air"),
+        row("Wind", this.wind.root, "Velocity of the air; it moves cloth"),
+        row("Gustiness", this.gustiness.root, "How much the wind changes: 0 is steady, 0.2 a usual wind, 1 gusts as strong as the wind"),
+        row("Gust time", this.gustTime.root, "How long a gust lasts"),
+        row("Air density", this.airDensity.root, "Of the air around cloth"),
       ),
       element("p", { class: "note" }, "Select an entity, or click on a model, to see what it is made of. Drag models in from the left; they land on what is under the pointer."),
     );
@@ -52,6 +65,10 @@ export class SceneFields {
     this.timeStep.set(scene.settings.time_step);
     this.substeps.set(scene.settings.substeps);
     this.sleeping.set(scene.settings.sleeping);
+    this.wind.set(scene.settings.wind);
+    this.gustiness.set(scene.settings.gustiness);
+    this.gustTime.set(scene.settings.gust_time);
+    this.airDensity.set(scene.settings.air_density);
     const parts = [count(scene.entities.size, "entity", "entities"), count(scene.joints.size, "joint", "joints"), count(scene.actions.size, "action", "actions")];
     setText(this.contents, [parts.join(", "), scene.description].filter(Boolean).join(". "));
   }

@@ -24,6 +24,15 @@ struct SleepEvent {
     std::uint64_t user_data = 0;
 };
 
+/// A rope broke in the last step.
+struct RopeBreakEvent {
+    DeformableHandle rope;
+    std::uint64_t user_data = 0;
+    std::uint32_t segment = 0;  ///< between its nodes of this number and the next
+    double tension = 0;         ///< that broke it, N
+    Vec3 position;              ///< of the middle of the segment, world, m
+};
+
 /// One point of a contact region after the step.
 struct ContactView {
     BodyHandle a, b;

@@ -11,6 +11,8 @@ struct WorldSettings {
     double time_step = 1.0 / 60;  ///< s, 1e-5 … 0.1
     int substeps = 4;             ///< parts a step is solved in, 1 … 64
     Vec3 wind;                    ///< velocity of the air around cloth, m/s
+    double gustiness = 0;         ///< root mean square of the wind's changes over its speed, 0 … 2
+    double gust_time = 2;         ///< how long a gust lasts, s, 0.05 … 1000
     double air_density = 1.2;     ///< kg/m³, 0 … 100
     int deformable_substeps = 2;  ///< the same for deformables, after the bodies, 1 … 64
     double time_to_sleep = 0.5;   ///< an island this long quiet falls asleep, s, 0.05 … 60
