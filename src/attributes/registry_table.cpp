@@ -198,11 +198,11 @@ void add_soft_and_cloth(Rows& rows) {
                 "1", 0.45, -0.999, 0.4999);
     soft.number({"damping_rayleigh", "VCP", "Internal damping", "Stiffness-proportional Rayleigh damping."}, "s", 0.01,
                 0, 100);
-    const Group soft_later{rows, "soft", false};
-    soft_later.number({"yield_stress", "VCP", "Yield stress", "Stress from which it stays deformed."}, "Pa", infinity,
-                      0, infinity);
-    soft_later.number({"internal_pressure", "VC", "Internal pressure", "Above that of the air around."}, "Pa", 0, 0,
-                      1e8);
+    soft.number({"yield_stress", "V", "Yield stress", "Stress (von Mises) from which it stays deformed."}, "Pa",
+                infinity, 0, infinity);
+    soft.number({"internal_pressure", "V", "Internal pressure",
+                 "Of gas inside, above that of the air around; its form is the one that it has under this pressure."},
+                "Pa", 0, 0, 1e8);
     const Group cloth{rows, "cloth"};
     cloth.number({"area_density", "C", "Area density", "Mass of a square metre."}, "kg/m²", 0.2, 1e-4, 1e3);
     cloth.number({"thickness", "C", "Thickness", "Of the cloth: its layers stay that far apart."}, "m", 5e-4, 1e-6,

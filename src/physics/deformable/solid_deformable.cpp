@@ -26,6 +26,10 @@ SolidDeformable::SolidDeformable(const DeformableDefinition& definition)
     for (auto* vector : {&turned_, &product_}) vector->resize(count);
     touched_place_.assign(count, untouched);
     factor_.analyse(rest_, elements_.edges());
+    if (const double pressure = std::get<SoftSolid>(definition.matter).internal_pressure; pressure > 0) {
+        gas_.emplace(pressure, surface_, rest_);
+        gas_move_.resize(count);
+    }
 }
 
 void SolidDeformable::place_nodes(const DeformableDefinition& definition) {
@@ -117,12 +121,15 @@ void SolidDeformable::solve(TaskPool& workers) {
         unsettled_[i] = {};
     }
     elements_.linearise(nodes_.position, rate_, force_);
+    press();
+    find_gas_move(workers);
     quasi_newton_move(force_, workers);
     // The metric must not be softer than what it stands for along the move, or moves grow from substep to substep.
     stretch_ = 1;
     double ratio = stiffness_ratio();
     if (ratio > stiffest_ratio) {
         make_factor(h_);
+        find_gas_move(workers);
         quasi_newton_move(force_, workers);
         ratio = stiffness_ratio();
     }
@@ -136,13 +143,39 @@ void SolidDeformable::settle(TaskPool& workers) {
     std::ranges::fill(unsettled_, Vec3{});
 }
 
-// d = Q L⁻ᵀ L⁻¹ Qᵀ r
+// The force of the gas on the nodes: what it presses more than at rest, along ∂V/∂x.
+void SolidDeformable::press() {
+    if (!gas_) return;
+    gas_->measure(surface_, nodes_.position);
+    for (const std::uint32_t node : surface_nodes_) force_[node] += gas_->excess() * gas_->slope()[node];
+}
+
+// Gas couples all nodes of the surface by one more term of the metric, P + k g gᵀ with g = ∂V/∂x, whose inverse is
+// (J. Sherman, W. J. Morrison, 1950) P⁻¹ - c z zᵀ with z = P⁻¹ g, c = k/(1 + k g·z).
+void SolidDeformable::find_gas_move(TaskPool& workers) {
+    if (!gas_) return;
+    metric_move(gas_->slope(), gas_move_, workers);
+    double along = 0;
+    for (const std::uint32_t node : surface_nodes_) along += dot(gas_->slope()[node], gas_move_[node]);
+    const double stiffness = gas_->stiffness();
+    gas_share_ = stiffness / (1 + stiffness * along);
+}
+
 void SolidDeformable::quasi_newton_move(std::span<const Vec3> force, TaskPool& workers) {
+    metric_move(force, move_, workers);
+    if (!gas_) return;
+    double along = 0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) along += dot(gas_move_[i], force[i]);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) move_[i] -= (gas_share_ * along) * gas_move_[i];
+}
+
+// d = Q L⁻ᵀ L⁻¹ Qᵀ r
+void SolidDeformable::metric_move(std::span<const Vec3> force, std::span<Vec3> move, TaskPool& workers) {
     for (std::size_t i = 0; i < nodes_.size(); ++i)
         turned_[i] = nodes_.inverse_mass[i] > 0 ? to_vec3f(rotate_inverse(turn(i), force[i])) : Vec3f{};
     factor_.solve(turned_, workers);
     for (std::size_t i = 0; i < nodes_.size(); ++i)
-        move_[i] = nodes_.inverse_mass[i] > 0 ? rotate(turn(i), to_vec3(turned_[i])) : Vec3{};
+        move[i] = nodes_.inverse_mass[i] > 0 ? rotate(turn(i), to_vec3(turned_[i])) : Vec3{};
 }
 
 // dᵀ H d / dᵀ P d for the move d that the forces make.
@@ -156,6 +189,11 @@ double SolidDeformable::stiffness_ratio() {
     }
     elements_.add_stiffness(static_cast<float>(1 + damping_ / h_), turned_, product_);
     for (std::size_t i = 0; i < nodes_.size(); ++i) true_one += dot(move_[i], to_vec3(product_[i]));
+    if (gas_) {
+        double along = 0;
+        for (const std::uint32_t node : surface_nodes_) along += dot(gas_->slope()[node], move_[node]);
+        true_one += gas_->stiffness() * along * along;
+    }
     return metric > 0 ? true_one / metric : 0;
 }
 
@@ -174,10 +212,15 @@ Mat3 SolidDeformable::compliance(std::uint32_t i, std::uint32_t j) {
         return touched_place_[node];
     };
     const std::uint32_t a = place_of(i), b = place_of(j);
-    return (1 / stretch_) * (a >= b ? touched_[a].blocks[b] : transpose(touched_[b].blocks[a]));
+    Mat3 block = a >= b ? touched_[a].blocks[b] : transpose(touched_[b].blocks[a]);
+    if (gas_)
+        block =
+            block - gas_share_ * outer(rotate_inverse(turn(i), gas_move_[i]), rotate_inverse(turn(j), gas_move_[j]));
+    return (1 / stretch_) * block;
 }
 
 void SolidDeformable::finish() {
+    elements_.flow(nodes_.position);
     if (is_free_ && std::ranges::all_of(pushes_, [](Vec3 push) { return push == Vec3{}; })) keep_momenta();
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const Vec3 mean = (nodes_.position[i] - start_[i]) / h_, last = nodes_.mean_velocity[i];
@@ -249,6 +292,11 @@ Conserved SolidDeformable::conserved(Vec3 gravity) const {
         sum.angular_momentum += cross(x, mass * v);
     }
     sum.potential_energy += elements_.energy(nodes_.position);
+    if (gas_) {
+        EnclosedGas gas = *gas_;
+        gas.measure(surface_, nodes_.position);
+        sum.potential_energy += gas.energy();
+    }
     return sum;
 }
 

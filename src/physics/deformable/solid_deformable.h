@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+
 #include "math/bounds.h"
 #include "physics/deformable/dissected_cholesky.h"
+#include "physics/deformable/enclosed_gas.h"
 #include "physics/deformable/nodes.h"
 #include "physics/deformable/solid_elements.h"
 #include "physics/inter/definitions/step_report.h"
@@ -49,6 +52,8 @@ public:
 
     /// Places its nodes and gives them these velocities; pinned ones rest. `rotation` is about that of the whole.
     void set_motion(std::span<const Vec3> positions, std::span<const Vec3> velocities, Quat rotation);
+    /// Goes on as deformed for good as another of as many nodes and tetrahedra.
+    void take_plastic_strain(const SolidDeformable& other) { elements_.take_plastic_strain(other.elements_); }
     /// Takes all velocities away.
     void rest();
     /// Takes it back to where its nodes were, at rest.
@@ -62,7 +67,10 @@ private:
     void place_nodes(const DeformableDefinition& definition);
     void find_surface();
     void make_factor(double h);
+    void press();
     void quasi_newton_move(std::span<const Vec3> force, TaskPool& workers);
+    void metric_move(std::span<const Vec3> force, std::span<Vec3> move, TaskPool& workers);
+    void find_gas_move(TaskPool& workers);
     [[nodiscard]] double stiffness_ratio();
     void keep_momenta();
 
@@ -85,6 +93,10 @@ private:
     std::vector<Vec3> move_;            // m
     std::vector<Vec3f> turned_, product_;
     double stretch_ = 1;  // the metric of this substep is so many times P
+
+    std::optional<EnclosedGas> gas_;
+    std::vector<Vec3> gas_move_;  // P⁻¹ ∂V/∂x, m/Pa
+    double gas_share_ = 0;        // c in (P + k g gᵀ)⁻¹ = P⁻¹ - c (P⁻¹ g)(P⁻¹ g)ᵀ
 
     // The factor of the matrix at rest, for substeps of factor_h_ seconds, and what is known of its inverse.
     DissectedCholesky factor_;

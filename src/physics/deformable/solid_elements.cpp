@@ -2,6 +2,7 @@
 #include "physics/deformable/solid_elements.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "physics/deformable/rotation_part.h"
@@ -18,12 +19,18 @@ Mat3 turned_stress(const Mat3& rotation, const Mat3& strain, double mu, double l
 
 Mat3 symmetric_part(const Mat3& m) { return 0.5 * (m + transpose(m)); }
 
+double squares(const Mat3& m) { return length_squared(m.x) + length_squared(m.y) + length_squared(m.z); }
+
+// Strain beyond which it is as if it were full: it flows no further, so that nothing is rolled out to nothing.
+constexpr double most_plastic_strain = 0.5;
+
 }  // namespace
 
 SolidElements::SolidElements(const SoftSolid& solid, std::span<const Vec3> rest)
-    : mu_(solid.youngs_modulus / (2 * (1 + solid.poisson_ratio))),
+    : mu_(solid.youngs_modulus / (2 * (1 + solid.poisson_ratio)) + solid.internal_pressure / 2),
       lambda_(solid.youngs_modulus * solid.poisson_ratio / ((1 + solid.poisson_ratio) * (1 - 2 * solid.poisson_ratio))),
-      damping_(solid.rayleigh_damping) {
+      damping_(solid.rayleigh_damping),
+      yield_stress_(solid.yield_stress) {
     for (std::array<std::uint32_t, 4> corners : solid.tetrahedra) {
         const auto sides = [&] {
             const Vec3 origin = rest[corners[0]];
@@ -37,6 +44,8 @@ SolidElements::SolidElements(const SoftSolid& solid, std::span<const Vec3> rest)
     }
     rotation_.resize(size());
     node_rotation_.resize(rest.size());
+    plastic_.assign(size(), Mat3::zero());
+    node_plastic_.assign(rest.size(), Mat3::zero());
     find_surroundings(rest.size());
     find_edges();
     deformation_.resize(size());
@@ -113,9 +122,9 @@ Mat3 SolidElements::gradient(std::size_t element, std::span<const Vec3> values) 
 }
 
 // Elastic and damping stress.
-Mat3 SolidElements::stress(const Mat3& deformation, const Mat3& rate, Quat rotation) const {
+Mat3 SolidElements::stress(const Mat3& deformation, const Mat3& rate, Quat rotation, const Mat3& plastic) const {
     const Mat3 r = to_matrix(rotation), back = transpose(r);
-    const Mat3 strain = symmetric_part(back * (deformation + damping_ * rate)) - Mat3::identity();
+    const Mat3 strain = symmetric_part(back * (deformation + damping_ * rate)) - Mat3::identity() - plastic;
     return turned_stress(r, strain, mu_, lambda_);
 }
 
@@ -136,17 +145,13 @@ void SolidElements::linearise(std::span<const Vec3> position, std::span<const Ve
     }
     // Means around the nodes.
     for (std::size_t i = 0; i < node_rotation_.size(); ++i) {
-        Mat3 deformation = Mat3::zero(), rate = Mat3::zero();
-        for (const Around& a : around(i)) {
-            deformation += a.share * deformation_[a.element];
-            rate += a.share * rate_[a.element];
-        }
+        const Mat3 deformation = mean_around(i, deformation_), rate = mean_around(i, rate_);
         follow_rotation(deformation, node_rotation_[i]);
         node_rotation_f_[i] = to_single(node_rotation_[i]);
-        node_stress_[i] = stress(deformation, rate, node_rotation_[i]);
+        node_stress_[i] = stress(deformation, rate, node_rotation_[i], node_plastic_[i]);
     }
     for (std::size_t e = 0; e < size(); ++e) {
-        Mat3 whole = (1 - share_of_nodes) * stress(deformation_[e], rate_[e], rotation_[e]);
+        Mat3 whole = (1 - share_of_nodes) * stress(deformation_[e], rate_[e], rotation_[e], plastic_[e]);
         for (const std::uint32_t node : corners_[e]) whole += (share_of_nodes / 4) * node_stress_[node];
         whole = volume_[e] * whole;
         Vec3 sum;
@@ -226,23 +231,55 @@ void SolidElements::add_stiffness(float factor, std::span<const Vec3f> move, std
 }
 
 double SolidElements::energy(std::span<const Vec3> position) const {
-    const auto density = [&](const Mat3& deformation, Quat rotation) {
-        const Mat3 w = transpose(to_matrix(rotation)) * deformation, off = w - Mat3::identity();
-        const double squares = length_squared(off.x) + length_squared(off.y) + length_squared(off.z);
-        return mu_ * squares + lambda_ / 2 * trace(off) * trace(off);
+    const auto density = [&](const Mat3& deformation, Quat rotation, const Mat3& plastic) {
+        const Mat3 off = transpose(to_matrix(rotation)) * deformation - Mat3::identity() - plastic;
+        return mu_ * squares(off) + lambda_ / 2 * trace(off) * trace(off);
     };
     double sum = 0;
     std::vector<Mat3> deformation(size());
     for (std::size_t e = 0; e < size(); ++e) {
         deformation[e] = gradient(e, position);
-        sum += (1 - share_of_nodes) * volume_[e] * density(deformation[e], rotation_[e]);
+        sum += (1 - share_of_nodes) * volume_[e] * density(deformation[e], rotation_[e], plastic_[e]);
     }
     for (std::size_t i = 0; i < node_rotation_.size(); ++i) {
-        Mat3 mean = Mat3::zero();
-        for (const Around& a : around(i)) mean += a.share * deformation[a.element];
-        sum += share_of_nodes * node_volume_[i] * density(mean, node_rotation_[i]);
+        const Mat3 mean = mean_around(i, deformation);
+        sum += share_of_nodes * node_volume_[i] * density(mean, node_rotation_[i], node_plastic_[i]);
     }
     return sum;
+}
+
+Mat3 SolidElements::mean_around(std::size_t node, std::span<const Mat3> of_elements) const {
+    Mat3 mean = Mat3::zero();
+    for (const Around& a : around(node)) mean += a.share * of_elements[a.element];
+    return mean;
+}
+
+void SolidElements::flow(std::span<const Vec3> position) {
+    if (!std::isfinite(yield_stress_)) return;
+    for (std::size_t e = 0; e < size(); ++e) {
+        deformation_[e] = gradient(e, position);
+        flow(deformation_[e], rotation_[e], plastic_[e]);
+    }
+    for (std::size_t i = 0; i < node_rotation_.size(); ++i)
+        flow(mean_around(i, deformation_), node_rotation_[i], node_plastic_[i]);
+}
+
+// Radial return (J. C. Simo, T. J. R. Hughes, "Computational Inelasticity", 1998, 3.3): stress s = 2 μ dev(ε - εᵖ) is
+// brought back to |s|² 3/2 = Y².
+void SolidElements::flow(const Mat3& deformation, Quat rotation, Mat3& plastic) const {
+    Mat3 elastic = symmetric_part(transpose(to_matrix(rotation)) * deformation) - Mat3::identity() - plastic;
+    const double third = trace(elastic) / 3;
+    elastic = elastic - Mat3::diagonal({third, third, third});
+    const double stress = 2 * mu_ * std::sqrt(1.5 * squares(elastic));
+    if (!(stress > yield_stress_)) return;
+    plastic += (1 - yield_stress_ / stress) * elastic;
+    const double strain = std::sqrt(squares(plastic));
+    if (strain > most_plastic_strain) plastic = (most_plastic_strain / strain) * plastic;
+}
+
+void SolidElements::take_plastic_strain(const SolidElements& other) {
+    plastic_ = other.plastic_;
+    node_plastic_ = other.node_plastic_;
 }
 
 void SolidElements::reset_rotations(Quat rotation) {

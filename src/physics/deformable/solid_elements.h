@@ -13,7 +13,9 @@ namespace embody::physics {
 ///
 ///   Ψ = Σ V (μ |F - R|² + λ/2 tr²(Rᵀ F - 1))
 ///
-/// with F = Σ x gᵀ the deformation and R the rotation in it. A part of the volume is told by the tetrahedra, which
+/// with F = Σ x gᵀ the deformation and R the rotation in it. Above the yield stress (von Mises) it flows: a plastic
+/// strain, taken off Rᵀ F - 1, follows at the end of each substep (flow()). Gas inside under pressure p pulls the
+/// matter taut, which resists a change of form by p/2 more in μ. A part of the volume is told by the tetrahedra, which
 /// alone bend too stiffly, the rest by the means of F around the nodes, which alone bend too softly (G. R. Liu, T.
 /// Nguyen-Thoi, K. Y. Lam, "A novel alpha finite element method", 2008). Damping is proportional to the rate of strain.
 class SolidElements {
@@ -42,6 +44,11 @@ public:
     [[nodiscard]] const std::vector<Quat>& node_rotations() const { return node_rotation_; }
     /// Elastic energy at these positions, with the rotations of the last linearise(), J.
     [[nodiscard]] double energy(std::span<const Vec3> position) const;
+    /// Lets what is stressed beyond its yield stress at these positions flow, with the rotations of the last
+    /// linearise().
+    void flow(std::span<const Vec3> position);
+    /// Goes on with the plastic strain of another of as many nodes and tetrahedra.
+    void take_plastic_strain(const SolidElements& other);
     /// Rotations for nodes that are somewhere else altogether.
     void reset_rotations(Quat rotation);
 
@@ -58,16 +65,19 @@ private:
         return {around_.data() + first_around_[node], first_around_[node + 1] - first_around_[node]};
     }
     [[nodiscard]] Mat3 gradient(std::size_t element, std::span<const Vec3> values) const;
-    [[nodiscard]] Mat3 stress(const Mat3& deformation, const Mat3& rate, Quat rotation) const;
+    [[nodiscard]] Mat3 stress(const Mat3& deformation, const Mat3& rate, Quat rotation, const Mat3& plastic) const;
+    void flow(const Mat3& deformation, Quat rotation, Mat3& plastic) const;
+    [[nodiscard]] Mat3 mean_around(std::size_t node, std::span<const Mat3> of_elements) const;
     void find_edges();
     void find_surroundings(std::size_t nodes);
 
-    double mu_, lambda_, damping_;
+    double mu_, lambda_, damping_, yield_stress_;
     std::vector<std::array<std::uint32_t, 4>> corners_;
     std::vector<std::array<Vec3, 3>> gradient_;  ///< of corners 1 to 3, 1/m; that of corner 0 is minus their sum
     std::vector<double> volume_;                 ///< m³
     std::vector<Quat> rotation_, node_rotation_;
-    std::vector<Around> around_;  ///< of node i those from first_around_[i] to first_around_[i + 1]
+    std::vector<Mat3> plastic_, node_plastic_;  ///< strains in the axes at rest, without a trace
+    std::vector<Around> around_;                ///< of node i those from first_around_[i] to first_around_[i + 1]
     std::vector<std::uint32_t> first_around_;
     std::vector<double> node_volume_;
     std::vector<std::array<std::uint32_t, 2>> edges_;

@@ -172,6 +172,7 @@ Result<void> World::set_deformable(DeformableHandle deformable, const Deformable
         return Error{"nodes", "are not as many as before", "make another deformable in its place"};
     const Nodes& nodes = record->nodes();
     changed->set_motion(nodes.position, nodes.velocity, nearest_rigid_motion(*record).rotation);
+    if (changed->has_tetrahedra_of(*record)) changed->solid->take_plastic_strain(*record->solid);
     changed->last_positions = nodes.position;
     changed->contacts = std::move(record->contacts);
     changed->touched_bodies = std::move(record->touched_bodies);

@@ -81,6 +81,12 @@ Conserved DeformableRecord::conserved(Vec3 gravity) const {
     return sum;
 }
 
+bool DeformableRecord::has_tetrahedra_of(const DeformableRecord& other) const {
+    const auto* own = std::get_if<SoftSolid>(&definition.matter);
+    const auto* others = std::get_if<SoftSolid>(&other.definition.matter);
+    return own != nullptr && others != nullptr && own->tetrahedra == others->tetrahedra;
+}
+
 Quat DeformableRecord::rotation() const { return solid ? solid->rotation(0) : definition.pose.rotation; }
 
 void DeformableRecord::set_motion(std::span<const Vec3> positions, std::span<const Vec3> velocities, Quat rotation) {

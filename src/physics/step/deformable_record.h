@@ -32,6 +32,8 @@ struct DeformableRecord {
     [[nodiscard]] Bounds bounds() const;
     [[nodiscard]] bool is_finite() const;
     [[nodiscard]] Conserved conserved(Vec3 gravity) const;
+    /// Whether both are solids of the same tetrahedra.
+    [[nodiscard]] bool has_tetrahedra_of(const DeformableRecord& other) const;
     /// Not far from how the whole is turned.
     [[nodiscard]] Quat rotation() const;
     /// Puts its nodes to places (m) with velocities (m/s), one a node; `rotation` as above. Pinned ones get no

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "math/vec3.h"
+
+namespace embody::physics {
+
+/// Gas all through a closed surface, which spreads at once and keeps its temperature (Boyle's law). At rest its
+/// pressure and the tension of what encloses it are in balance: the thing is drawn as it is when blown up.
+class EnclosedGas {
+public:
+    /// `surface` is counter-clockwise from outside; `pressure` above that of the air around, Pa, > 0.
+    EnclosedGas(double pressure, std::span<const std::array<std::uint32_t, 3>> surface, std::span<const Vec3> rest);
+
+    /// Finds volume and slope with the nodes at these places, m.
+    void measure(std::span<const std::array<std::uint32_t, 3>> surface, std::span<const Vec3> position);
+
+    /// ∂V/∂x of each node, m², of the last measure().
+    [[nodiscard]] const std::vector<Vec3>& slope() const { return slope_; }
+    /// Pressure beyond that of the rest, Pa.
+    [[nodiscard]] double excess() const { return absolute_ * (rest_volume_ / volume_ - 1); }
+    /// -∂p/∂V, Pa/m³.
+    [[nodiscard]] double stiffness() const { return absolute_ * rest_volume_ / (volume_ * volume_); }
+    /// Work to bring it from its rest to a volume, with the air around and the tension at rest doing their share, J.
+    [[nodiscard]] double energy() const;
+
+private:
+    double absolute_ = 0;     ///< of the gas at rest, Pa
+    double rest_volume_ = 0;  ///< m³
+    double volume_ = 0;
+    std::vector<Vec3> slope_;
+};
+
+}  // namespace embody::physics
