@@ -12,6 +12,7 @@ namespace embody::physics {
 struct NodeContact {
     std::uint32_t node = 0, body = 0;  ///< body: index in the list of bodies
     Vec3 anchor, normal;  ///< of the plane, from the centre of mass, when the step began; normal to the node
+    Vec3 velocity;        ///< of what touches it there, besides the body's own, m/s
 };
 
 /// Appends, for every one of `candidates` that may come nearer than `radius` (m) to a body within `time_step` (s), the

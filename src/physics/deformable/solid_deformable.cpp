@@ -123,14 +123,14 @@ void SolidDeformable::solve(TaskPool& workers) {
     elements_.linearise(nodes_.position, rate_, force_);
     press();
     find_gas_move(workers);
-    quasi_newton_move(force_, workers);
+    quasi_newton_move(force_, move_, workers);
     // The metric must not be softer than what it stands for along the move, or moves grow from substep to substep.
     stretch_ = 1;
     double ratio = stiffness_ratio();
     if (ratio > stiffest_ratio) {
         make_factor(h_);
         find_gas_move(workers);
-        quasi_newton_move(force_, workers);
+        quasi_newton_move(force_, move_, workers);
         ratio = stiffness_ratio();
     }
     stretch_ = std::max(1.0, ratio / stiffest_ratio);
@@ -138,9 +138,14 @@ void SolidDeformable::solve(TaskPool& workers) {
 }
 
 void SolidDeformable::settle(TaskPool& workers) {
-    quasi_newton_move(unsettled_, workers);
-    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += move_[i] / stretch_;
+    find_response(unsettled_, move_, workers);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += move_[i];
     std::ranges::fill(unsettled_, Vec3{});
+}
+
+void SolidDeformable::find_response(std::span<const Vec3> force, std::span<Vec3> move, TaskPool& workers) {
+    quasi_newton_move(force, move, workers);
+    for (Vec3& m : move) m = m / stretch_;
 }
 
 // The force of the gas on the nodes: what it presses more than at rest, along ∂V/∂x.
@@ -161,12 +166,12 @@ void SolidDeformable::find_gas_move(TaskPool& workers) {
     gas_share_ = stiffness / (1 + stiffness * along);
 }
 
-void SolidDeformable::quasi_newton_move(std::span<const Vec3> force, TaskPool& workers) {
-    metric_move(force, move_, workers);
+void SolidDeformable::quasi_newton_move(std::span<const Vec3> force, std::span<Vec3> move, TaskPool& workers) {
+    metric_move(force, move, workers);
     if (!gas_) return;
     double along = 0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) along += dot(gas_move_[i], force[i]);
-    for (std::size_t i = 0; i < nodes_.size(); ++i) move_[i] -= (gas_share_ * along) * gas_move_[i];
+    for (std::size_t i = 0; i < nodes_.size(); ++i) move[i] -= (gas_share_ * along) * gas_move_[i];
 }
 
 // d = Q L⁻ᵀ L⁻¹ Qᵀ r

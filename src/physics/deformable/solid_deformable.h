@@ -36,6 +36,8 @@ public:
     void solve(TaskPool& workers);
     /// Moves the nodes by what the pushes since solve() do, as the compliance says.
     void settle(TaskPool& workers);
+    /// How the nodes would have moved by these forces (N) in this substep, had nothing else held them, m.
+    void find_response(std::span<const Vec3> force, std::span<Vec3> move, TaskPool& workers);
     /// Velocities of what the substep has come to.
     void finish();
 
@@ -68,7 +70,7 @@ private:
     void find_surface();
     void make_factor(double h);
     void press();
-    void quasi_newton_move(std::span<const Vec3> force, TaskPool& workers);
+    void quasi_newton_move(std::span<const Vec3> force, std::span<Vec3> move, TaskPool& workers);
     void metric_move(std::span<const Vec3> force, std::span<Vec3> move, TaskPool& workers);
     void find_gas_move(TaskPool& workers);
     [[nodiscard]] double stiffness_ratio();

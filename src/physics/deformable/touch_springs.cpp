@@ -86,7 +86,7 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
     if (!is_free || spring.gap > reach) return;
     spring.arm += across(offset, spring.normal);
     spring.friction = std::sqrt(friction * body.friction);
-    spring.carried = path_of(body, spring.arm, substep.h);
+    spring.carried = path_of(body, spring.arm, substep.h) + substep.h * plane.velocity;
     recall(body, spring);
     springs_.push_back(spring);
 }
@@ -185,10 +185,10 @@ bool TouchSprings::choose(std::span<const Vec3> node_moves, std::span<const Body
 void TouchSprings::finish(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves,
                           const Substep& substep, std::span<TouchedBody> bodies) {
     memory_.clear();
-    for (const TouchSpring& spring : springs_) {
+    for (TouchSpring& spring : springs_) {
         if (!spring.acts) continue;
         const Vec3 s = spring.lead(node_moves, body_moves);
-        const Vec3 force = spring.force(s);
+        const Vec3 force = spring.felt = spring.force(s);
         if (spring.body == no_body) continue;
         bodies[spring.body].push(-substep.h * force, spring.arm, substep.h);
         Memory memory{

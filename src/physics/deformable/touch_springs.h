@@ -54,6 +54,7 @@ struct TouchSpring {
     Vec3 hold;                     ///< tangential stretch of the spring while it sticks, m
 
     bool acts = false;
+    Vec3 felt;                   ///< force on the point in the substep that finish() ended, N
     Mat3 matrix = Mat3::zero();  ///< symmetric, not negative, N/m
     Vec3 load;
 

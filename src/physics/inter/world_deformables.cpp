@@ -82,6 +82,11 @@ Result<void> World::destroy_deformable(DeformableHandle deformable) {
         if (state_->is_used(body)) state_->to_wake.push_back(body);
     }
     state_->deformables.remove(deformable);
+    for (std::uint32_t slot = 0; slot < state_->deformables.slot_count(); ++slot) {
+        if (!state_->deformables.used(slot)) continue;
+        std::erase_if(state_->deformables.at(slot).surface_pushes,
+                      [&](const SurfacePush& push) { return push.slot == deformable.index; });
+    }
     return {};
 }
 

@@ -11,6 +11,14 @@
 
 namespace embody::physics {
 
+/// What a node of a sheet or rope pushes a triangle of a solid.
+struct SurfacePush {
+    std::uint32_t slot = 0, node = 0;         ///< the solid's, the sheet's
+    std::array<std::uint32_t, 3> triangle{};  ///< nodes of the solid
+    std::array<double, 3> weight{};           ///< of these where it touches
+    Vec3 force;                               ///< on the solid, N
+};
+
 /// A deformable with what its contacts and its sleep need.
 struct DeformableRecord {
     DeformableDefinition definition;
@@ -23,6 +31,7 @@ struct DeformableRecord {
     std::vector<SolidContact> contacts;                     ///< a solid's of the last step
     std::vector<std::uint32_t> touched_bodies;              ///< slots: those that it pushed in the last step
     std::vector<std::uint32_t> touched_deformables;         ///< slots: a solid's
+    std::vector<SurfacePush> surface_pushes;                ///< a sheet's or rope's, of its last substep
     std::uint32_t slot = 0;                                 ///< its own, while it moves
     double quiet_time = 0;                                  ///< s
     bool is_asleep = false;

@@ -7,7 +7,7 @@
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/step/solid_contact_search.h"
 #include "physics/step/step.h"
-#include "physics/step/thin_deformables.h"
+#include "physics/step/thin_on_solids.h"
 #include "physics/step/wind.h"
 
 namespace embody::physics {
@@ -147,6 +147,7 @@ void advance_thin_ones(WorldState& world, MovingDeformables& moving, int k) {
     const int substeps = world.settings.deformable_substeps;
     const double step = world.settings.time_step, h = step / substeps;
     const Vec3 wind = wind_at(world.settings, world.report.time);
+    ThinOnSolids solids(world);
     for (ThinDeformable& thin : moving.thin) {
         if (thin.record->cloth && k < substeps) continue;
         Substep substep{.h = h, .time = (k - 1) * h};
@@ -154,8 +155,24 @@ void advance_thin_ones(WorldState& world, MovingDeformables& moving, int k) {
         substep.gravity = thin.record->definition.gravity_factor * world.settings.gravity;
         substep.wind = wind;
         substep.air_density = world.settings.air_density;
+        const std::size_t bodies = moving.bodies.size();
+        solids.add(thin, moving.bodies, substep.h);
         advance_thin(thin, substep, moving.bodies, *world.workers);
         if (thin.record->rope) note_breaks(world, *thin.record);
+        solids.take(thin, moving.bodies, bodies);
+        moving.bodies.resize(bodies);
+    }
+}
+
+// What sheets and ropes pushed the solids in their last substep.
+void push_solids(const WorldState& world, MovingDeformables& moving) {
+    for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
+        if (!world.deformables.used(slot) || !world.deformables.at(slot).definition.enabled) continue;
+        for (const SurfacePush& push : world.deformables.at(slot).surface_pushes) {
+            const auto record = std::ranges::lower_bound(moving.solid_records, push.slot, {}, &DeformableRecord::slot);
+            if (record == moving.solid_records.end() || (*record)->slot != push.slot) continue;
+            for (std::size_t k = 0; k < 3; ++k) (*record)->solid->push(push.triangle[k], push.weight[k] * push.force);
+        }
     }
 }
 
@@ -166,6 +183,7 @@ void run_substeps(WorldState& world, MovingDeformables& moving) {
         for (std::size_t i = 0; i < moving.solids.size(); ++i)
             moving.solids[i]->begin_substep(
                 h, moving.solid_records[i]->definition.gravity_factor * world.settings.gravity);
+        push_solids(world, moving);
         for (TouchedBody& body : moving.bodies) body.enter_substep(h);
         SolidContacts::begin(moving.contacts, moving.solids, moving.bodies, h);
         for (SolidDeformable* solid : moving.solids) solid->solve(*world.workers);
@@ -211,7 +229,7 @@ void sort_out(std::vector<std::uint32_t>& slots) {
 }
 
 // What each solid remembers of its contacts.
-void keep_contacts(MovingDeformables& moving) {
+void keep_contacts(WorldState& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.records) {
         record->contacts.clear();
         record->touched_bodies.clear();
@@ -231,6 +249,12 @@ void keep_contacts(MovingDeformables& moving) {
     }
     for (DeformableRecord* record : moving.records) {
         if (!record->solid) record->touched_bodies = bodies_pushed_by(*record, moving.bodies);
+        for (const SurfacePush& push : record->surface_pushes) {
+            record->touched_deformables.push_back(push.slot);
+            world.deformables.at(push.slot).touched_deformables.push_back(record->slot);
+        }
+    }
+    for (DeformableRecord* record : moving.records) {
         sort_out(record->touched_bodies);
         sort_out(record->touched_deformables);
     }
@@ -312,7 +336,7 @@ void advance_deformables(WorldState& world) {
     for (ThinDeformable& thin : moving.thin) find_contacts_of(world, moving, thin);
     run_substeps(world, moving);
     put_back_bodies(world, moving);
-    keep_contacts(moving);
+    keep_contacts(world, moving);
     freeze_broken(world, moving);
     put_to_sleep(world, moving);
 }

@@ -47,11 +47,11 @@ void find_segment_contacts(std::span<const TouchedBody> bodies, const std::vecto
     }
 }
 
+}  // namespace
+
 std::span<const TouchSpring> springs_of(const DeformableRecord& record) {
     return record.cloth ? record.cloth->springs() : record.rope->springs();
 }
-
-}  // namespace
 
 void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide, double time_step,
                         Vec3 gravity, ThinDeformable& thin) {
@@ -86,7 +86,7 @@ void advance_thin(ThinDeformable& thin, const Substep& substep, std::span<Touche
 std::vector<std::uint32_t> bodies_pushed_by(const DeformableRecord& record, std::span<const TouchedBody> bodies) {
     std::vector<std::uint32_t> slots;
     for (const TouchSpring& spring : springs_of(record)) {
-        if (spring.acts && spring.body != no_body) slots.push_back(bodies[spring.body].body);
+        if (spring.acts && spring.body < bodies.size()) slots.push_back(bodies[spring.body].body);
     }
     std::ranges::sort(slots);
     slots.erase(std::unique(slots.begin(), slots.end()), slots.end());

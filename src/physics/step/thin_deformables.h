@@ -22,6 +22,8 @@ void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<b
                         Vec3 gravity, ThinDeformable& thin);
 /// One substep of it; pushes the bodies.
 void advance_thin(ThinDeformable& thin, const Substep& substep, std::span<TouchedBody> bodies, TaskPool& workers);
+/// Its contacts and attachments in the last substep.
+std::span<const TouchSpring> springs_of(const DeformableRecord& record);
 /// Slots of the bodies that it pushed in the last substep, ascending.
 std::vector<std::uint32_t> bodies_pushed_by(const DeformableRecord& record, std::span<const TouchedBody> bodies);
 
