@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "physics/deformable_meshes.h"
 #include "physics/inter/definitions/deformable_primitives.h"
 #include "validation/reference.h"
 

@@ -4,12 +4,8 @@
 
 #include <algorithm>
 
-<<<<<<< HEAD
-#include "physics/inter/definitions/deformable_primitives.h"
-=======
 #include "physics/deformable/solid_deformable.h"
-#include "physics/deformable_meshes.h"
->>>>>>> bfa7f06 (physics/deformable: yield stress and gas inside of soft solids)
+#include "physics/inter/definitions/deformable_primitives.h"
 #include "validation/reference.h"
 
 namespace embody::physics {
@@ -275,7 +271,8 @@ TEST(SoftSolid, GasInsideResistsAChangeOfVolume) {
         solid.solve(workers);
         solid.finish();
     }
-    // Bulk moduli add: of the matter, with what its tension does, and by Boyle's law the pressure of the gas itself.
+    // Bulk moduli add: of the matter, with what its tension does, and by Boyle's law the pressure of the gas
+    // itself.
     const double bulk = youngs_modulus / (3 * (1 - 2 * poisson_ratio)) + pressure / 3 + pressure + air;
     const double shrinking = gas.excess() / (pressure + air);
     EXPECT_NEAR(shrinking, outside / bulk, 0.02 * outside / bulk);
