@@ -352,9 +352,16 @@ TEST(SoftSolid, TheSameBitsForAnyNumberOfWorkers) {
         const auto world = make_world(settings);
         add_plane(*world, {});
         add_box(*world, {0.2, 0.05, 0.2}, {0, 0.25, 0}, 10);
+        // One alone is solved by all workers, several one by each.
         DeformableDefinition cushion = brick({0.5, 0.15, 0.5}, {10, 3, 10}, 40, 2e4, 0.2, 0.02);
         cushion.pose.position = {-0.25, 0.002, -0.25};
         ASSERT_TRUE(world->create_deformable(cushion).ok());
+        run(*world, 0.5);
+        cushion = brick({0.4, 0.1, 0.4}, {4, 2, 4}, 40, 2e4, 0.2, 0.02);
+        for (const double x : {1.0, 1.02, 2.0}) {
+            cushion.pose.position = {x, x == 1.02 ? 0.15 : 0.002, 0};
+            ASSERT_TRUE(world->create_deformable(cushion).ok());
+        }
         run(*world, 0.5);
         if (workers == 1) first = world->state_hash();
         EXPECT_EQ(world->state_hash(), first) << workers;

@@ -4,32 +4,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/deformable/solid_kernels.h"
+
 namespace embody::physics {
 
 namespace {
 
-constexpr std::size_t sums = 16;  // partial sums of a dot product, on any processor
-
-// Several dot products with one vector at once; the same order of additions for any width of registers.
-float add_up(const float (&part)[sums]) {
-    float half[sums / 2];
-    for (std::size_t k = 0; k < sums / 2; ++k) half[k] = part[k] + part[k + sums / 2];
-    return ((half[0] + half[4]) + (half[2] + half[6])) + ((half[1] + half[5]) + (half[3] + half[7]));
+// Numbers from one column of a front to the next.
+std::size_t stride_of(const Front& front) {
+    return (3 * front.size() + solid_row_multiple - 1) / solid_row_multiple * solid_row_multiple;
 }
 
-float dot(const float* a, const float* b, std::size_t count) {
-    float part[sums] = {};
-    std::size_t i = 0;
-    for (; i + sums <= count; i += sums) {
-        for (std::size_t k = 0; k < sums; ++k) part[k] += a[i + k] * b[i + k];
-    }
-    for (std::size_t k = 0; i < count; ++i, ++k) part[k] += a[i] * b[i];
-    return add_up(part);
-}
+// The first row of a column that kernels begin with, so that the rest is a multiple.
+std::size_t first_row(std::size_t column) { return column / solid_row_multiple * solid_row_multiple; }
 
 // Right-looking elimination of the first `own` of `size` columns (lower triangle, column by column).
 void eliminate(std::vector<double>& a, std::size_t size, std::size_t own) {
-    constexpr double huge = 1e150;  // a pivot of what must not move
+    constexpr double huge = 1e30;  // a pivot of what must not move
+    const auto subtract_scaled = widest_solid_kernels().subtract_scaled;
     for (std::size_t j = 0; j < own; ++j) {
         double* column = &a[j * size];
         const double pivot = column[j] > 0 ? std::sqrt(column[j]) : huge;
@@ -38,8 +30,7 @@ void eliminate(std::vector<double>& a, std::size_t size, std::size_t own) {
         for (std::size_t k = j + 1; k < size; ++k) {
             const double factor = column[k];
             if (factor == 0) continue;
-            double* other = &a[k * size];
-            for (std::size_t i = k; i < size; ++i) other[i] -= column[i] * factor;
+            subtract_scaled(&a[k * size + k], column + k, factor, size - k);
         }
     }
 }
@@ -53,15 +44,15 @@ void DissectedCholesky::analyse(std::span<const Vec3> positions, std::span<const
     local_.resize(fronts);
     for (std::size_t f = 0; f < fronts; ++f) {
         const Front& front = order_.fronts[f];
-        first_value_.push_back(first_value_.back() + 9 * front.own() * front.size());
-        local_[f].resize(3 * front.size());
+        first_value_.push_back(first_value_.back() + 3 * front.own() * stride_of(front));
+        local_[f].resize(stride_of(front));
     }
     depth_.resize(fronts);
     for (std::size_t f = fronts; f-- > 0;) {
         const Front& front = order_.fronts[f];
         depth_[f] = 3 * front.own() + (front.parent == f ? 0 : depth_[front.parent]);
     }
-    value_.resize(first_value_.back());
+    value_.assign(first_value_.back(), 0.0f);  // above the diagonal and behind the last row zeros stay
     x_.resize(positions.size());
     shared_among_ = 0;
 }
@@ -113,7 +104,10 @@ void DissectedCholesky::factor(std::span<const Mat3> diagonal, std::span<const E
 
         eliminate(a, size, own);
         float* value = &value_[first_value_[f]];
-        for (std::size_t i = 0; i < own * size; ++i) value[i] = static_cast<float>(a[i]);
+        for (std::size_t c = 0; c < own; ++c) {
+            for (std::size_t r = c; r < size; ++r)
+                value[c * stride_of(front) + r] = static_cast<float>(a[c * size + r]);
+        }
         const std::size_t rest = size - own;
         left[f].resize(rest * rest);
         for (std::size_t c = 0; c < rest; ++c) {
@@ -124,7 +118,7 @@ void DissectedCholesky::factor(std::span<const Mat3> diagonal, std::span<const E
 
 const float* DissectedCholesky::column(const Front& front, std::size_t own_column) const {
     const auto f = static_cast<std::size_t>(&front - order_.fronts.data());
-    return &value_[first_value_[f] + own_column * 3 * front.size()];
+    return &value_[first_value_[f] + own_column * stride_of(front)];
 }
 
 void DissectedCholesky::gather_children(std::uint32_t index, float* local) const {
@@ -140,7 +134,23 @@ void DissectedCholesky::gather_children(std::uint32_t index, float* local) const
     }
 }
 
-// L y = b of one front: three columns at a time.
+// L y = b of the own numbers of a front, three columns at a time; what the others are left with.
+void DissectedCholesky::eliminate_down(const Front& front, float* w) const {
+    const auto subtract_columns = widest_solid_kernels().subtract_columns;
+    const std::size_t stride = stride_of(front);
+    for (std::size_t j = 0; j < 3 * front.own(); j += 3) {
+        const float *a = column(front, j), *b = a + stride, *c = b + stride;
+        const float x = w[j] / a[j];
+        const float y = (w[j + 1] - a[j + 1] * x) / b[j + 1];
+        const float z = (w[j + 2] - a[j + 2] * x - b[j + 2] * y) / c[j + 2];
+        const std::size_t first = first_row(j);
+        subtract_columns(w + first, a + first, b + first, c + first, stride - first, x, y, z);
+        w[j] = x;
+        w[j + 1] = y;
+        w[j + 2] = z;
+    }
+}
+
 void DissectedCholesky::solve_down(std::uint32_t index) {
     const Front& front = order_.fronts[index];
     float* w = local_[index].data();
@@ -151,17 +161,7 @@ void DissectedCholesky::solve_down(std::uint32_t index) {
         own[1] += x_[place].y;
         own[2] += x_[place].z;
     }
-    const std::size_t size = 3 * front.size();
-    for (std::size_t j = 0; j < 3 * front.own(); j += 3) {
-        const float *a = column(front, j), *b = a + size, *c = b + size;
-        const float x = w[j] / a[j];
-        const float y = (w[j + 1] - a[j + 1] * x) / b[j + 1];
-        const float z = (w[j + 2] - a[j + 2] * x - b[j + 2] * y) / c[j + 2];
-        w[j] = x;
-        w[j + 1] = y;
-        w[j + 2] = z;
-        for (std::size_t i = j + 3; i < size; ++i) w[i] -= a[i] * x + b[i] * y + c[i] * z;
-    }
+    eliminate_down(front, w);
 }
 
 // Lᵀ x = y of one front.
@@ -175,14 +175,19 @@ void DissectedCholesky::solve_up(std::uint32_t index) {
         row[1] = x.y;
         row[2] = x.z;
     }
-    const std::size_t size = 3 * front.size();
+    const auto dot_columns = widest_solid_kernels().dot_columns;
+    const std::size_t stride = stride_of(front);
     for (std::size_t j = 3 * front.own(); j > 0;) {
         j -= 3;
-        const float *a = column(front, j), *b = a + size, *c = b + size;
-        const std::size_t first = j + 3, count = size - first;
-        const float z = (w[j + 2] - dot(c + first, w + first, count)) / c[j + 2];
-        const float y = (w[j + 1] - dot(b + first, w + first, count) - b[j + 2] * z) / b[j + 1];
-        const float x = (w[j] - dot(a + first, w + first, count) - a[j + 1] * y - a[j + 2] * z) / a[j];
+        const float *a = column(front, j), *b = a + stride, *c = b + stride;
+        const float right[3] = {w[j], w[j + 1], w[j + 2]};
+        std::fill(w + j, w + j + 3, 0.0f);
+        const std::size_t first = first_row(j);
+        float below[3];
+        dot_columns(w + first, a + first, b + first, c + first, stride - first, below);
+        const float z = (right[2] - below[2]) / c[j + 2];
+        const float y = (right[1] - below[1] - b[j + 2] * z) / b[j + 1];
+        const float x = (right[0] - below[0] - a[j + 1] * y - a[j + 2] * z) / a[j];
         w[j] = x;
         w[j + 1] = y;
         w[j + 2] = z;
@@ -263,21 +268,16 @@ DissectedCholesky::Columns DissectedCholesky::columns(std::uint32_t node) const 
     result.value.assign(3 * result.length, 0.0f);
     for (std::size_t unit = 0; unit < 3; ++unit) {
         std::uint32_t f = result.front;
-        std::vector<float> w(3 * order_.fronts[f].size(), 0.0f);
+        std::vector<float> w(stride_of(order_.fronts[f]), 0.0f);
         w[3 * (place - order_.fronts[f].first) + unit] = 1;
         while (true) {
             const Front& front = order_.fronts[f];
-            const std::size_t size = 3 * front.size(), own = 3 * front.own();
-            for (std::size_t j = 0; j < own; ++j) {
-                if (w[j] == 0) continue;
-                const float* a = column(front, j);
-                w[j] /= a[j];
-                for (std::size_t i = j + 1; i < size; ++i) w[i] -= a[i] * w[j];
-            }
+            const std::size_t own = 3 * front.own();
+            eliminate_down(front, w.data());
             std::copy(w.begin(), w.begin() + static_cast<std::ptrdiff_t>(own),
                       result.value.begin() + static_cast<std::ptrdiff_t>(unit * result.length + depth_[f] - own));
             if (front.parent == f) break;
-            std::vector<float> above(3 * order_.fronts[front.parent].size(), 0.0f);
+            std::vector<float> above(stride_of(order_.fronts[front.parent]), 0.0f);
             for (std::size_t k = 0; k < front.rows.size(); ++k) {
                 for (std::size_t c = 0; c < 3; ++c) above[3 * front.in_parent[k] + c] = w[own + 3 * k + c];
             }
@@ -296,12 +296,11 @@ Mat3 DissectedCholesky::inverse_block(const Columns& i, const Columns& j) const 
         if (order_.fronts[earlier].parent == earlier) return Mat3::zero();
         earlier = order_.fronts[earlier].parent;
     }
+    float product[9];
+    widest_solid_kernels().dot_blocks(i.value.data(), i.length, j.value.data(), j.length, depth_[f], product);
     Mat3 block;
     for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) {
-            block(r, c) = static_cast<double>(dot(&i.value[static_cast<std::size_t>(r) * i.length],
-                                                  &j.value[static_cast<std::size_t>(c) * j.length], depth_[f]));
-        }
+        for (int c = 0; c < 3; ++c) block(r, c) = static_cast<double>(product[3 * r + c]);
     }
     return block;
 }

@@ -43,6 +43,7 @@ private:
     };
     [[nodiscard]] const float* column(const Front& front, std::size_t own_column) const;
     void gather_children(std::uint32_t front, float* local) const;
+    void eliminate_down(const Front& front, float* w) const;
     void solve_down(std::uint32_t front);
     void solve_up(std::uint32_t front);
     void share_subtrees(int workers);

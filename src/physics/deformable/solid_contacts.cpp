@@ -2,14 +2,17 @@
 #include "physics/deformable/solid_contacts.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <functional>
 
 namespace embody::physics {
 
 namespace {
 
-constexpr int most_rounds = 10, sweeps_a_round = 4, most_gradient_rounds = 40, most_leaning_sweeps = 60;
+constexpr int most_rounds = 5, sweeps_a_round = 2, most_gradient_rounds = 8, most_leaning_sweeps = 10;
 constexpr double close_enough = 2e-6;   // m: no contact moves by more in the last sweep
+constexpr double small_share = 0.05;    // or by this of what the first sweeps did: forces are kept for the next substep
 constexpr double not_worth_it = 1e-7;   // m: a contact that would move by less is left as it is
 constexpr double recovery_speed = 0.5;  // m/s: what overlaps is parted no faster
 // Of a contact's own compliance along the normal: where contacts say the same of a place, all bear a part.
@@ -56,62 +59,116 @@ void SolidContacts::begin(std::span<const SolidContact> contacts, Solids solids,
 void SolidContacts::solve(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h,
                           double time, TaskPool& workers) {
     gather(contacts, solids, bodies, h, time);
-    for (std::size_t s = 0; s < solids.size(); ++s) touched_[s].fetch_compliance(*solids[s]);
+    for (std::size_t s = 0; s < solids.size(); ++s) touched_[s].complete(*solids[s], workers);
     for (Active& active : active_) find_give(active, h);
-    find_forces(bodies, h);
+    find_groups(solids.size(), bodies);
+    probe_forces_.assign(bodies.size(), {});
+    probe_torques_.assign(bodies.size(), {});
+    std::atomic<std::size_t> next = 0;
+    const auto work = [&](int) {
+        for (std::size_t g = next++; g < groups_.size(); g = next++) find_forces(groups_[g], h);
+    };
+    if (groups_.size() > 1 && workers.workers() > 1)
+        workers.run(work);
+    else
+        work(0);
     for (std::size_t s = 0; s < solids.size(); ++s) {
         const TouchedNodes& touched = touched_[s];
-        if (touched.nodes().empty()) continue;
-        for (std::size_t k = 0; k < touched.nodes().size(); ++k)
-            solids[s]->push(touched.nodes()[k], touched.forces()[k]);
+        if (!touched.is_pushed()) continue;
+        for (std::size_t k = 0; k < touched.size(); ++k) solids[s]->push(touched.node(k), touched.force(k));
         solids[s]->settle(workers);
     }
+}
+
+// Solids and bodies are joined by contacts; bodies that do not move join nothing. Larger groups first, so that workers
+// end at about the same time.
+void SolidContacts::find_groups(std::size_t solids, std::span<const TouchedBody> bodies) {
+    std::vector<std::uint32_t> joined(solids + bodies.size());
+    for (std::uint32_t i = 0; i < joined.size(); ++i) joined[i] = i;
+    const auto root_of = [&](std::uint32_t i) {
+        while (joined[i] != i) i = joined[i] = joined[joined[i]];
+        return i;
+    };
+    const auto join = [&](std::uint32_t a, std::uint32_t b) {
+        a = root_of(a);
+        b = root_of(b);
+        joined[std::max(a, b)] = std::min(a, b);
+    };
+    const auto first_body = static_cast<std::uint32_t>(solids);
+    for (const Active& active : active_) {
+        const SolidContact& contact = *active.contact;
+        if (!contact.has_body())
+            join(contact.point.solid, contact.other.solid);
+        else if (bodies[contact.body].is_dynamic)
+            join(contact.point.solid, first_body + contact.body);
+    }
+    std::vector<std::uint32_t> group_of(joined.size(), 0xFFFFFFFF);
+    groups_.clear();
+    for (Active& active : active_) {
+        std::uint32_t& group = group_of[root_of(active.contact->point.solid)];
+        if (group == 0xFFFFFFFF) {
+            group = static_cast<std::uint32_t>(groups_.size());
+            groups_.emplace_back();
+        }
+        groups_[group].active.push_back(&active);
+    }
+    for (std::uint32_t i = 0; i < joined.size(); ++i) {
+        const std::uint32_t group = group_of[root_of(i)];
+        if (group == 0xFFFFFFFF) continue;
+        if (i < first_body)
+            groups_[group].solids.push_back(i);
+        else
+            groups_[group].bodies.push_back(i - first_body);
+    }
+    std::ranges::stable_sort(groups_, std::greater{}, [](const Group& group) { return group.active.size(); });
 }
 
 // Sweeps find which contacts hold, stick and slide; conjugate gradients solve for the forces of these at once
 // (M. Silcowitz, S. Niebe, K. Erleben, "Projected Gauss-Seidel subspace minimization method", 2010), as long as that
 // helps. Where many contacts say nearly the same, sweeps that lean on the last ones go on (by the same, "A nonsmooth
 // nonlinear conjugate gradient method for interactive contact force problems", 2010).
-void SolidContacts::find_forces(std::span<TouchedBody> bodies, double h) {
+void SolidContacts::find_forces(const Group& group, double h) {
     const auto sweeps = [&] {
         double moved = 0;
-        for (int k = 0; k < sweeps_a_round && (k == 0 || moved > close_enough); ++k) moved = sweep(h, k % 2 == 0);
+        for (int k = 0; k < sweeps_a_round && (k == 0 || moved > close_enough); ++k)
+            moved = sweep(group, h, k % 2 == 0);
         return moved;
     };
     double moved = sweeps(), best = moved;
+    const double enough = std::max(close_enough, small_share * moved);
     const auto keep = [&] {
-        for (Active& active : active_) active.best = active.contact->force;
+        for (Active* active : group.active) active->best = active->contact->force;
     };
     keep();
-    for (int round = 0; round < most_rounds && moved > close_enough; ++round) {
-        solve_together(bodies, h);
+    for (int round = 0; round < most_rounds && moved > enough; ++round) {
+        solve_together(group, h);
         moved = sweeps();
         if (!(moved < best)) continue;
         best = moved;
         keep();
     }
     if (moved > best) {
-        for (const Active& active : active_) apply(active, active.best - active.contact->force, h);
+        for (const Active* active : group.active) apply(*active, active->best - active->contact->force, h);
         moved = best;
     }
     double last = 0;
-    for (int k = 0; k < most_leaning_sweeps && moved > close_enough; ++k) {
-        for (Active& active : active_) active.before = active.contact->force;
-        moved = sweep(h, k % 2 == 0);
+    for (int k = 0; k < most_leaning_sweeps && moved > enough; ++k) {
+        for (Active* active : group.active) active->before = active->contact->force;
+        moved = sweep(group, h, k % 2 == 0);
         double size = 0;
-        for (const Active& active : active_) size += length_squared(active.contact->force - active.before);
+        for (const Active* active : group.active) size += length_squared(active->contact->force - active->before);
         const double factor = k > 0 && size < last ? size / last : 0;
         last = size;
-        if (k + 1 < most_leaning_sweeps && moved > close_enough) lean_on(factor, h);
+        if (k + 1 < most_leaning_sweeps && moved > enough) lean_on(group, factor, h);
     }
 }
 
 // p ← β p + change of the sweep;  force ← force + β p
-void SolidContacts::lean_on(double factor, double h) {
-    for (Active& active : active_) {
-        const Vec3 along = factor * active.direction;
-        active.direction = along + active.contact->force - active.before;
-        if (along != Vec3{}) apply(active, along, h);
+void SolidContacts::lean_on(const Group& group, double factor, double h) {
+    for (Active* active : group.active) {
+        const Vec3 along = factor * active->direction;
+        active->direction = along + active->contact->force - active->before;
+        if (along != Vec3{}) apply(*active, along, h);
     }
 }
 
@@ -202,10 +259,11 @@ void SolidContacts::apply(const Active& active, Vec3 force, double h) {
     active.contact->force += force;
 }
 
-double SolidContacts::sweep(double h, bool forwards) {
+double SolidContacts::sweep(const Group& group, double h, bool forwards) {
     double moved = 0;
-    for (std::size_t k = 0; k < active_.size(); ++k)
-        moved = std::max(moved, relax(active_[forwards ? k : active_.size() - 1 - k], h));
+    const std::size_t count = group.active.size();
+    for (std::size_t k = 0; k < count; ++k)
+        moved = std::max(moved, relax(*group.active[forwards ? k : count - 1 - k], h));
     return moved;
 }
 
@@ -286,23 +344,24 @@ Vec3 SolidContacts::free_part(const Active& active, Vec3 v) {
 }
 
 // Relative motion of each contact by its `direction` and those of all others, into `response`.
-void SolidContacts::respond(std::span<TouchedBody> bodies, double h) {
-    for (TouchedNodes& touched : touched_) touched.clear_probe();
-    probe_forces_.assign(bodies.size(), {});
-    probe_torques_.assign(bodies.size(), {});
-    for (const Active& active : active_) {
+void SolidContacts::respond(const Group& group, double h) {
+    for (const std::uint32_t solid : group.solids) touched_[solid].clear_probe();
+    for (const std::uint32_t body : group.bodies) probe_forces_[body] = probe_torques_[body] = {};
+    for (Active* const one : group.active) {
+        const Active& active = *one;
         for (std::size_t k = 0; k < active.term_count; ++k) {
             const Term& term = active.terms[k];
             touched_[term.solid].add_to_probe(term.number, term.weight * active.direction);
         }
-        if (active.body == nullptr) continue;
+        if (active.body == nullptr || !active.body->is_dynamic) continue;
         probe_forces_[active.contact->body] -= active.direction;
         probe_torques_[active.contact->body] -= cross(active.arm, active.direction);
     }
-    for (TouchedNodes& touched : touched_) touched.run_probe();
-    for (Active& active : active_) {
+    for (const std::uint32_t solid : group.solids) touched_[solid].run_probe();
+    for (Active* const one : group.active) {
+        Active& active = *one;
         Vec3 sum;
-        if (active.body != nullptr) {
+        if (active.body != nullptr && active.body->is_dynamic) {
             const Vec3 turn = active.body->inverse_inertia * probe_torques_[active.contact->body];
             sum =
                 -(h * h) * (active.body->inverse_mass * probe_forces_[active.contact->body] + cross(turn, active.arm));
@@ -316,34 +375,38 @@ void SolidContacts::respond(std::span<TouchedBody> bodies, double h) {
 }
 
 // The forces of contacts that hold, stick and slide at once, as if they went on doing so; then as far as each may.
-void SolidContacts::solve_together(std::span<TouchedBody> bodies, double h) {
+void SolidContacts::solve_together(const Group& group, double h) {
     double size = 0;
-    for (Active& active : active_) {
+    for (Active* const one : group.active) {
+        Active& active = *one;
         find_state(active);
         active.residual = missing(active);
         active.direction = free_part(active, embody::solve(active.give, active.residual));
         active.change = {};
         size += dot(active.residual, active.direction);
     }
-    const double enough = 1e-6 * size;
+    const double enough = 0.01 * size;
     for (int round = 0; round < most_gradient_rounds && size > enough; ++round) {
-        respond(bodies, h);
+        respond(group, h);
         double curvature = 0;
-        for (const Active& active : active_) curvature += dot(active.direction, active.response);
+        for (const Active* active : group.active) curvature += dot(active->direction, active->response);
         if (!(curvature > 0)) break;
         double next = 0;
-        for (Active& active : active_) {
+        for (Active* const one : group.active) {
+            Active& active = *one;
             active.change += (size / curvature) * active.direction;
             active.residual -= free_part(active, (size / curvature) * active.response);
             next += dot(active.residual, free_part(active, embody::solve(active.give, active.residual)));
         }
-        for (Active& active : active_) {
+        for (Active* const one : group.active) {
+            Active& active = *one;
             active.direction =
                 free_part(active, embody::solve(active.give, active.residual)) + (next / size) * active.direction;
         }
         size = next;
     }
-    for (Active& active : active_) {
+    for (Active* const one : group.active) {
+        Active& active = *one;
         if (active.state == State::open) continue;
         const SolidContact& contact = *active.contact;
         const Vec3 force = contact.force + active.change;

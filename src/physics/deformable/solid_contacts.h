@@ -48,6 +48,11 @@ private:
         Vec3 change, direction;   ///< of the force, N: by conjugate gradients
         Vec3 residual, response;  ///< m
     };
+    /// Contacts that have to do with each other, and solids and bodies that no other group moves.
+    struct Group {
+        std::vector<Active*> active;
+        std::vector<std::uint32_t> solids, bodies;
+    };
     void gather(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h, double time);
     void place_against_body(Active& active, Vec3 at, Vec3 was, double h, double time) const;
     void add_terms(Active& active, const CarriedPoint& point, double sign);
@@ -55,17 +60,19 @@ private:
     [[nodiscard]] Vec3 moved(const Active& active) const;
     void apply(const Active& active, Vec3 force, double h);
     double relax(Active& active, double h);
-    void find_forces(std::span<TouchedBody> bodies, double h);
-    void lean_on(double factor, double h);
-    double sweep(double h, bool forwards);
-    void solve_together(std::span<TouchedBody> bodies, double h);
-    void respond(std::span<TouchedBody> bodies, double h);
+    void find_groups(std::size_t solids, std::span<const TouchedBody> bodies);
+    void find_forces(const Group& group, double h);
+    void lean_on(const Group& group, double factor, double h);
+    double sweep(const Group& group, double h, bool forwards);
+    void solve_together(const Group& group, double h);
+    void respond(const Group& group, double h);
     [[nodiscard]] static Vec3 soft_part(const Active& active, Vec3 force);
     [[nodiscard]] Vec3 missing(const Active& active) const;
     static void find_state(Active& active);
     [[nodiscard]] static Vec3 free_part(const Active& active, Vec3 v);
 
     std::vector<Active> active_;
+    std::vector<Group> groups_;
     std::vector<TouchedNodes> touched_;               // by solid
     std::vector<Vec3> probe_forces_, probe_torques_;  // by body, N and N m
 };

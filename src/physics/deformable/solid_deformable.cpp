@@ -24,7 +24,7 @@ SolidDeformable::SolidDeformable(const DeformableDefinition& definition)
     const std::size_t count = nodes_.size();
     for (auto* vector : {&start_, &pushes_, &unsettled_, &force_, &rate_, &move_}) vector->resize(count);
     for (auto* vector : {&turned_, &product_}) vector->resize(count);
-    touched_place_.assign(count, untouched);
+    for (const double mass : nodes_.inverse_mass) is_pinned_.push_back(mass > 0 ? 0 : 1);
     factor_.analyse(rest_, elements_.edges());
     if (const double pressure = std::get<SoftSolid>(definition.matter).internal_pressure; pressure > 0) {
         gas_.emplace(pressure, surface_, rest_);
@@ -89,8 +89,7 @@ void SolidDeformable::make_factor(double h) {
         if (!(nodes_.inverse_mass[a] > 0 && nodes_.inverse_mass[b] > 0)) blocks[e] = Mat3::zero();
     }
     factor_.factor(diagonal, elements_.edges(), blocks);
-    touched_place_.assign(nodes_.size(), untouched);
-    touched_.clear();
+    compliance_.forget(nodes_.size());
 }
 
 void SolidDeformable::begin_substep(double h, Vec3 gravity) {
@@ -200,28 +199,6 @@ double SolidDeformable::stiffness_ratio() {
         true_one += gas_->stiffness() * along * along;
     }
     return metric > 0 ? true_one / metric : 0;
-}
-
-Mat3 SolidDeformable::compliance(std::uint32_t i, std::uint32_t j) {
-    const auto place_of = [&](std::uint32_t node) {
-        if (touched_place_[node] == untouched) {
-            touched_place_[node] = static_cast<std::uint32_t>(touched_.size());
-            TouchedNode touched{factor_.columns(node), {}};
-            const bool is_pinned = !(nodes_.inverse_mass[node] > 0);
-            for (const TouchedNode& other : touched_)
-                touched.blocks.push_back(factor_.inverse_block(touched.columns, other.columns));
-            touched.blocks.push_back(is_pinned ? Mat3::zero()
-                                               : factor_.inverse_block(touched.columns, touched.columns));
-            touched_.push_back(std::move(touched));
-        }
-        return touched_place_[node];
-    };
-    const std::uint32_t a = place_of(i), b = place_of(j);
-    Mat3 block = a >= b ? touched_[a].blocks[b] : transpose(touched_[b].blocks[a]);
-    if (gas_)
-        block =
-            block - gas_share_ * outer(rotate_inverse(turn(i), gas_move_[i]), rotate_inverse(turn(j), gas_move_[j]));
-    return (1 / stretch_) * block;
 }
 
 void SolidDeformable::finish() {

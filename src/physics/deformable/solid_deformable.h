@@ -6,6 +6,7 @@
 #include "math/bounds.h"
 #include "physics/deformable/dissected_cholesky.h"
 #include "physics/deformable/enclosed_gas.h"
+#include "physics/deformable/node_compliance.h"
 #include "physics/deformable/nodes.h"
 #include "physics/deformable/solid_elements.h"
 #include "physics/inter/definitions/step_report.h"
@@ -43,9 +44,15 @@ public:
 
     /// Where a node was when the substep began, m.
     [[nodiscard]] Vec3 start(std::uint32_t node) const { return start_[node]; }
-    /// How node i moves by a force on node j in this substep, m/N: i turns it by its turn(), j the force
-    /// against its own. Kept, so that asking again is cheap.
-    [[nodiscard]] Mat3 compliance(std::uint32_t i, std::uint32_t j);
+    /// How touched nodes move by forces on each other in this substep, times stretch(): node i turns its move by its
+    /// turn(), j the force against its own.
+    [[nodiscard]] NodeCompliance& compliance() { return compliance_; }
+    void complete_compliance(TaskPool& workers) { compliance_.complete(factor_, is_pinned_, workers); }
+    /// The metric of this substep is so many times that of the factor.
+    [[nodiscard]] double stretch() const { return stretch_; }
+    /// Of the gas within: forces f move the nodes by gas_share() g (g·f) less, g this, m/Pa, world axes; empty: no gas.
+    [[nodiscard]] const std::vector<Vec3>& gas_move() const { return gas_move_; }
+    [[nodiscard]] double gas_share() const { return gas_share_; }
     [[nodiscard]] Quat turn(std::size_t node) const {
         return elements_.node_rotations()[node] * conjugate(factor_rotations_[node]);
     }
@@ -94,7 +101,7 @@ private:
     std::vector<Vec3> rate_, force_;    // m/s, N
     std::vector<Vec3> move_;            // m
     std::vector<Vec3f> turned_, product_;
-    double stretch_ = 1;  // the metric of this substep is so many times P
+    double stretch_ = 1;
 
     std::optional<EnclosedGas> gas_;
     std::vector<Vec3> gas_move_;  // P⁻¹ ∂V/∂x, m/Pa
@@ -103,14 +110,9 @@ private:
     // The factor of the matrix at rest, for substeps of factor_h_ seconds, and what is known of its inverse.
     DissectedCholesky factor_;
     double factor_h_ = 0;
-    std::vector<Quat> factor_rotations_;  // around the nodes when it was made
-    struct TouchedNode {
-        DissectedCholesky::Columns columns;
-        std::vector<Mat3> blocks;  ///< with the nodes that were touched before it, and itself
-    };
-    static constexpr std::uint32_t untouched = 0xFFFFFFFF;
-    std::vector<std::uint32_t> touched_place_;  // by node
-    std::vector<TouchedNode> touched_;
+    std::vector<Quat> factor_rotations_;   // around the nodes when it was made
+    std::vector<std::uint8_t> is_pinned_;  // by node
+    NodeCompliance compliance_;
 };
 
 }  // namespace embody::physics

@@ -24,6 +24,7 @@ void TouchedBody::enter_substep(double h) {
 }
 
 void TouchedBody::push(Vec3 given, Vec3 arm, double h) {
+    if (!is_dynamic) return;
     const Vec3 angular = cross(arm, given);
     const Vec3 faster = inverse_mass * given, turning = inverse_inertia * angular;
     velocity += faster;

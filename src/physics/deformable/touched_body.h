@@ -24,6 +24,7 @@ struct TouchedBody {
     Vec3 path_spin;          ///< mean over the step, rad/s
     Vec3 path_spin_up;       ///< mean over the step, rad/s²
     Vec3 path_turn;          ///< the turn of the step as cayley() takes it, over the step's time, 1/s
+    bool is_dynamic = true;  ///< else pushes do nothing to it
     double inverse_mass = 0;
     Mat3 inverse_inertia = Mat3::zero();   ///< world axes
     Vec3 expected_force, expected_torque;  ///< pushes of the last step, which the path has in it already, N and N m

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "physics/deformable/solid_deformable.h"
@@ -10,15 +11,19 @@ namespace embody::physics {
 /// The nodes of a solid that contacts act on in a substep, and how they move by forces on each other.
 class TouchedNodes {
 public:
-    void begin(const SolidDeformable& solid);
-    /// Its number among the touched nodes; a new one where it is asked for the first time.
-    std::uint32_t number_of(std::uint32_t node);
-    /// Fetches the compliance of all that were asked for.
-    void fetch_compliance(SolidDeformable& solid);
+    void begin(SolidDeformable& solid);
+    /// Its number among the touched nodes.
+    std::uint32_t number_of(std::uint32_t node) { return compliance_->number_of(node); }
+    /// Finds the compliance of all that were asked for.
+    void complete(SolidDeformable& solid, TaskPool& workers);
 
-    [[nodiscard]] const std::vector<std::uint32_t>& nodes() const { return nodes_; }
-    /// Forces given since begin(), N, by number.
-    [[nodiscard]] const std::vector<Vec3>& forces() const { return force_; }
+    [[nodiscard]] std::size_t size() const { return force_.size(); }
+    [[nodiscard]] std::uint32_t node(std::size_t number) const { return compliance_->node(number); }
+    /// Given since begin(), N.
+    [[nodiscard]] Vec3 force(std::size_t number) const { return force_[number]; }
+    [[nodiscard]] bool is_pushed() const {
+        return std::ranges::any_of(force_, [](Vec3 force) { return force != Vec3{}; });
+    }
     /// How node i moves by a force on node j, world axes, m/N; by numbers.
     [[nodiscard]] Mat3 block(std::size_t i, std::size_t j) const;
 
@@ -37,12 +42,11 @@ private:
     [[nodiscard]] Vec3 move_of(std::size_t number, const std::vector<float>& moves) const;
     void add_moves(std::size_t number, Vec3 force, std::vector<float>& moves) const;
 
-    std::vector<std::uint32_t> nodes_;
-    std::vector<std::uint32_t> number_of_;  // by node
-    std::vector<Quat> turn_;
-    std::size_t stride_ = 0;  // numbers from one row to the next
-    /// Of node j nine rows over all nodes i: element (r, c) of the block (i, j), each in its own axes, in row 3 c + r.
-    std::vector<float> compliance_;
+    NodeCompliance* compliance_ = nullptr;
+    double scale_ = 1;                  // of the compliance
+    double gas_share_ = 0;              // what the gas takes away, see SolidDeformable::gas_move()
+    std::vector<float> gas_;            // in the nodes' own axes: rows x, y, z
+    std::vector<Mat3> turn_;            // from the nodes' own axes
     std::vector<float> moved_, probe_;  // in the nodes' own axes, m: rows x, y, z
     std::vector<Vec3> force_, probe_force_;
 };

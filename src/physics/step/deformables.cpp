@@ -2,6 +2,7 @@
 // Deformables after the rigid bodies (docs/physics/deformables.md): in substeps of their own, while the bodies that
 // they touch go along their paths of this step and give way to the nodes.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "physics/dynamic/equations_of_motion.h"
@@ -34,6 +35,7 @@ TouchedBody touched(const WorldState& world, std::uint32_t slot) {
     TouchedBody body;
     body.body = slot;
     body.shape = record.shape;
+    body.is_dynamic = world.is_dynamic(slot);
     body.friction = record.definition.material.friction_dynamic;
     body.start_center = moves ? state.start_center : state.center;
     const Quat rotation = moves ? state.start_rotation : state.rotation;
@@ -176,19 +178,34 @@ void push_solids(const WorldState& world, MovingDeformables& moving) {
     }
 }
 
+// Several solids each by one worker, a single one by all.
+void share_solids(const WorldState& world, const MovingDeformables& moving, const auto& work) {
+    const std::size_t count = moving.solids.size();
+    if (count <= 1 || world.workers->workers() == 1) {
+        for (std::size_t i = 0; i < count; ++i) work(i, *world.workers);
+        return;
+    }
+    std::atomic<std::size_t> next = 0;
+    world.workers->run([&](int) {
+        TaskPool alone(1);
+        for (std::size_t i = next++; i < count; i = next++) work(i, alone);
+    });
+}
+
 void run_substeps(WorldState& world, MovingDeformables& moving) {
     const int substeps = world.settings.deformable_substeps;
     const double h = world.settings.time_step / substeps;
     for (int k = 1; k <= substeps; ++k) {
-        for (std::size_t i = 0; i < moving.solids.size(); ++i)
+        share_solids(world, moving, [&](std::size_t i, TaskPool&) {
             moving.solids[i]->begin_substep(
                 h, moving.solid_records[i]->definition.gravity_factor * world.settings.gravity);
+        });
         push_solids(world, moving);
         for (TouchedBody& body : moving.bodies) body.enter_substep(h);
         SolidContacts::begin(moving.contacts, moving.solids, moving.bodies, h);
-        for (SolidDeformable* solid : moving.solids) solid->solve(*world.workers);
+        share_solids(world, moving, [&](std::size_t i, TaskPool& workers) { moving.solids[i]->solve(workers); });
         world.solid_contacts.solve(moving.contacts, moving.solids, moving.bodies, h, k * h, *world.workers);
-        for (SolidDeformable* solid : moving.solids) solid->finish();
+        share_solids(world, moving, [&](std::size_t i, TaskPool&) { moving.solids[i]->finish(); });
         advance_thin_ones(world, moving, k);
     }
 }

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+//
+// Loops over many numbers of soft solids. Sums are of sixteen partial sums, added in one order, whatever the width.
+// Included once by each of solid_kernel_4.cpp, _8.cpp and _16.cpp.
+#include "math/wide.h"
+#include "physics/deformable/solid_kernels.h"
+
+namespace embody::EMBODY_WIDE {
+namespace {
+
+constexpr std::size_t width = lanes, sums = physics::solid_row_multiple, registers = sums / width;
+
+void add_moves(float* moves, const float* compliance, std::size_t stride, float x, float y, float z) {
+    const Wide by_x = broadcast(x), by_y = broadcast(y), by_z = broadcast(z);
+    for (std::size_t row = 0; row < 3; ++row) {
+        float* to = moves + row * stride;
+        const float *a = compliance + row * stride, *b = a + 3 * stride, *c = b + 3 * stride;
+        for (std::size_t i = 0; i < stride; i += width)
+            store(to + i, load(to + i) + (load(a + i) * by_x + load(b + i) * by_y + load(c + i) * by_z));
+    }
+}
+
+void subtract_columns(float* w, const float* a, const float* b, const float* c, std::size_t count, float x, float y,
+                      float z) {
+    const Wide by_x = broadcast(x), by_y = broadcast(y), by_z = broadcast(z);
+    for (std::size_t i = 0; i < count; i += width)
+        store(w + i, load(w + i) - (load(a + i) * by_x + load(b + i) * by_y + load(c + i) * by_z));
+}
+
+struct Sum {
+    Wide part[registers] = {};
+    EMBODY_WIDE_INLINE void add(Sum& to, const float* a, const float* b) {
+        for (std::size_t k = 0; k < registers; ++k) to.part[k] += load(a + k * width) * load(b + k * width);
+    }
+    [[nodiscard]] float total() const {
+        float all[sums];
+        for (std::size_t k = 0; k < registers; ++k) store(all + k * width, part[k]);
+        for (std::size_t half = sums / 2; half > 0; half /= 2) {
+            for (std::size_t k = 0; k < half; ++k) all[k] += all[k + half];
+        }
+        return all[0];
+    }
+};
+
+void dot_columns(const float* w, const float* a, const float* b, const float* c, std::size_t count, float result[3]) {
+    Sum x, y, z;
+    for (std::size_t i = 0; i < count; i += sums) {
+        Sum::add(x, a + i, w + i);
+        Sum::add(y, b + i, w + i);
+        Sum::add(z, c + i, w + i);
+    }
+    result[0] = x.total();
+    result[1] = y.total();
+    result[2] = z.total();
+}
+
+void add_products(const float* a, std::size_t a_stride, const float* b, std::size_t b_stride, Sum sum[9]) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) Sum::add(sum[3 * i + j], a + i * a_stride, b + j * b_stride);
+    }
+}
+
+void dot_blocks(const float* a, std::size_t a_stride, const float* b, std::size_t b_stride, std::size_t count,
+                float result[9]) {
+    Sum sum[9];
+    std::size_t i = 0;
+    for (; i + sums <= count; i += sums) add_products(a + i, a_stride, b + i, b_stride, sum);
+    if (i < count) {
+        float rest[6 * sums] = {};
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::memcpy(rest + k * sums, a + k * a_stride + i, (count - i) * sizeof(float));
+            std::memcpy(rest + (k + 3) * sums, b + k * b_stride + i, (count - i) * sizeof(float));
+        }
+        add_products(rest, sums, rest + 3 * sums, sums, sum);
+    }
+    for (std::size_t k = 0; k < 9; ++k) result[k] = sum[k].total();
+}
+
+void subtract_scaled(double* a, const double* column, double factor, std::size_t count) {
+    using Doubles = double __attribute__((vector_size(4 * EMBODY_LANES)));
+    constexpr std::size_t at_once = EMBODY_LANES / 2;
+    std::size_t i = 0;
+    for (; i + at_once <= count; i += at_once) {
+        Doubles to, from;
+        std::memcpy(&to, a + i, sizeof to);
+        std::memcpy(&from, column + i, sizeof from);
+        to -= from * factor;
+        std::memcpy(a + i, &to, sizeof to);
+    }
+    for (; i < count; ++i) a[i] -= column[i] * factor;
+}
+
+}  // namespace
+
+extern const physics::SolidKernels solid_kernels;
+const physics::SolidKernels solid_kernels{add_moves, subtract_columns, dot_columns, dot_blocks, subtract_scaled};
+
+}  // namespace embody::EMBODY_WIDE
