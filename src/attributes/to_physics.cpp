@@ -244,6 +244,8 @@ Result<physics::DeformableDefinition> rope_from_attributes(const AttributeSet& a
     constexpr double least_diameter = 1e-4, greatest_diameter = 1, least_break = 1e-6;
     double along = 0;
     for (std::size_t i = 1; i < nodes.size(); ++i) along += length(nodes[i] - nodes[i - 1]);
+    const double slack = number_or_standard(attributes, "slack");
+    along *= 1 + slack;
     const Result<double> linear_density = spread(attributes, "linear_density", along, "m", "rope");
     if (!linear_density) return linear_density.error();
     physics::DeformableDefinition deformable = deformable_from_attributes(attributes);
@@ -256,6 +258,7 @@ Result<physics::DeformableDefinition> rope_from_attributes(const AttributeSet& a
     rope.twist_rigidity = number_or_standard(attributes, "twist_rigidity");
     rope.rayleigh_damping = number_or_standard(attributes, "damping_rayleigh");
     rope.break_tension = std::max(number_or_standard(attributes, "break_tension"), least_break);
+    rope.slack = slack;
     deformable.matter = rope;
     return deformable;
 }

@@ -58,7 +58,7 @@ struct SheetMesh {
 Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& attributes, const SheetMesh& sheet);
 
 /// A rope along these nodes (m, each apart from the one before it), `diameter` (m) thick, without pose. Its linear
-/// density is the one that makes its mass that of the attributes. Errors as of cloth.
+/// density is the one that makes its mass that of the attributes, slack and all. Errors as of cloth.
 Result<physics::DeformableDefinition> rope_from_attributes(const AttributeSet& attributes,
                                                            const std::vector<Vec3>& nodes, double diameter);
 

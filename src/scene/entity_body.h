@@ -13,10 +13,14 @@
 #include "physics/inter/definitions/shape_definition.h"
 #include "scene/document.h"
 #include "scene/points_definition.h"
+#include "scene/thin_form.h"
 
 namespace embody::scene {
 
 /// Whether an entity is one body or points.
+/// What a thing of kind cloth or rope is computed on.
+using ThinForm = std::variant<attributes::SheetMesh, LineForm>;
+
 struct EntityForm {
     bool has_points = false;
     std::string points_key;  ///< the same, the same points; empty: nobody else has them
@@ -56,6 +60,7 @@ public:
     void forget(const std::string& key) {
         models_.erase(key);
         soft_meshes_.erase(key);
+        thin_forms_.erase(key);
     }
 
 private:
@@ -75,6 +80,12 @@ private:
     Result<const catalog::SoftMesh*> soft_mesh(const Entity& entity);
     Result<catalog::SoftMesh> make_soft_mesh(const Entity& entity);
     Result<physics::DeformableDefinition> soft(const Entity& entity, const attributes::AttributeSet& attributes);
+    /// The sheet of an entity of kind cloth, the line of one of kind rope, without its scale. As of soft_mesh().
+    Result<const ThinForm*> thin_form(const Entity& entity, const attributes::AttributeSet& attributes);
+    Result<ThinForm> make_thin_form(const Entity& entity, bool is_cloth, int count);
+    Result<physics::DeformableDefinition> thin(const Entity& entity, const attributes::AttributeSet& attributes);
+    /// With pose, velocities and what its pins hold in the world.
+    Result<physics::DeformableDefinition> deformable(const Entity& entity, const attributes::AttributeSet& attributes);
     const attributes::ModelFacts& primitive(const physics::ShapeDefinition& shape);
 
     catalog::Catalog* catalog_;
@@ -82,6 +93,7 @@ private:
     std::map<std::string, attributes::ModelFacts> primitives_;      ///< by their text
     attributes::ModelFacts last_primitive_;                         ///< of one without a short text
     std::map<std::string, Result<catalog::SoftMesh>> soft_meshes_;  ///< by model or text; "": the last without one
+    std::map<std::string, std::map<std::string, Result<ThinForm>>> thin_forms_;  ///< the same; in it by kind and count
 };
 
 /// Nodes at rest that the pin holds: those within its radius, or the nearest.

@@ -16,21 +16,30 @@ std::string grains_key(const Entity& entity, const attributes::AttributeSet& att
            std::to_string(attributes.number("grain_budget", 0));
 }
 
-// Equal where the form of a soft thing is.
-std::string soft_key(const Entity& entity, const attributes::AttributeSet& attributes) {
+// Equal where the nodes of what changes its form are.
+std::string deformable_key(const Entity& entity, const attributes::AttributeSet& attributes) {
     const std::string key = EntityBodies::shape_key(entity, attributes);
-    return key.empty() ? key : "soft\n" + key + '\n' + std::to_string(entity.scale);
+    if (key.empty()) return {};
+    std::string own = attributes.word("kind", "") + '\n' + key + '\n' + std::to_string(entity.scale);
+    for (const char* count : {"cloth_nodes", "rope_segments"})
+        own += '\n' + std::to_string(attributes.number(count, 0));
+    return own;
 }
+
+bool is_deformable(const std::string& kind) { return kind == "soft" || kind == "cloth" || kind == "rope"; }
 
 }  // namespace
 
 EntityForm EntityBodies::form(const Entity& entity, const attributes::AttributeSet& attributes, bool is_held_as_body) {
     if (is_granular(attributes)) return {true, grains_key(entity, attributes), {}};
-    if (attributes.word("kind", "") != "soft") return {};
+    const std::string kind = attributes.word("kind", "");
+    if (!is_deformable(kind)) return {};
     if (is_held_as_body) return {false, {}, "is simulated as rigid, because a joint or a pin holds on to it"};
-    const Result<const catalog::SoftMesh*> mesh = soft_mesh(entity);
-    if (!mesh.ok()) return {false, {}, "is simulated as rigid, because " + mesh.error().why};
-    return {true, soft_key(entity, attributes), {}};
+    const auto or_rigid = [&](const auto& made) {
+        if (made.ok()) return EntityForm{true, deformable_key(entity, attributes), {}};
+        return EntityForm{false, {}, "is simulated as rigid, because " + made.error().why};
+    };
+    return kind == "soft" ? or_rigid(soft_mesh(entity)) : or_rigid(thin_form(entity, attributes));
 }
 
 Result<PointsDefinition> EntityBodies::points(const Entity& entity, const attributes::AttributeSet& attributes) {
@@ -39,9 +48,9 @@ Result<PointsDefinition> EntityBodies::points(const Entity& entity, const attrib
         if (!grains.ok()) return grains.error();
         return PointsDefinition(std::move(grains).value());
     }
-    Result<physics::DeformableDefinition> soft = this->soft(entity, attributes);
-    if (!soft.ok()) return soft.error();
-    return PointsDefinition(std::move(soft).value());
+    Result<physics::DeformableDefinition> deformable = this->deformable(entity, attributes);
+    if (!deformable.ok()) return deformable.error();
+    return PointsDefinition(std::move(deformable).value());
 }
 
 }  // namespace embody::scene

@@ -59,20 +59,29 @@ Result<physics::DeformableDefinition> EntityBodies::soft(const Entity& entity,
     Result<physics::DeformableDefinition> made = attributes::soft_solid_from_attributes(attributes, scaled);
     if (!made.ok()) return Error{"attributes: " + made.error().where, made.error().why, made.error().remedy};
     physics::DeformableDefinition soft = std::move(made).value();
-    soft.pose = entity.pose;
-    soft.linear_velocity = entity.linear_velocity;
-    soft.angular_velocity = entity.angular_velocity;
-    soft.enabled = entity.enabled;
     soft.contact_radius = std::clamp(radius_share * mesh.value()->cell * entity.scale, least_radius, greatest_radius);
-    soft.user_data = entity.index;
+    return soft;
+}
+
+Result<physics::DeformableDefinition> EntityBodies::deformable(const Entity& entity,
+                                                               const attributes::AttributeSet& attributes) {
+    Result<physics::DeformableDefinition> made =
+        attributes.word("kind", "") == "soft" ? soft(entity, attributes) : thin(entity, attributes);
+    if (!made.ok()) return made.error();
+    physics::DeformableDefinition deformable = std::move(made).value();
+    deformable.pose = entity.pose;
+    deformable.linear_velocity = entity.linear_velocity;
+    deformable.angular_velocity = entity.angular_velocity;
+    deformable.enabled = entity.enabled;
+    deformable.user_data = entity.index;
     for (const Pin& pin : entity.pins) {
         if (pin.to) continue;
-        const std::vector<std::uint32_t> held = pinned_nodes(pin, soft.nodes);
-        soft.pinned.insert(soft.pinned.end(), held.begin(), held.end());
+        const std::vector<std::uint32_t> held = pinned_nodes(pin, deformable.nodes);
+        deformable.pinned.insert(deformable.pinned.end(), held.begin(), held.end());
     }
-    std::ranges::sort(soft.pinned);
-    soft.pinned.erase(std::unique(soft.pinned.begin(), soft.pinned.end()), soft.pinned.end());
-    return soft;
+    std::ranges::sort(deformable.pinned);
+    deformable.pinned.erase(std::unique(deformable.pinned.begin(), deformable.pinned.end()), deformable.pinned.end());
+    return deformable;
 }
 
 }  // namespace embody::scene

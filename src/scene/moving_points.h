@@ -34,6 +34,8 @@ public:
     [[nodiscard]] virtual double radius() const = 0;
     /// What carries a drawn form, at rest; null where nothing does.
     [[nodiscard]] virtual const physics::DeformableDefinition* deformable() const { return nullptr; }
+    /// Of a rope: segment k is between the points k and k + 1.
+    [[nodiscard]] virtual std::vector<std::uint32_t> broken_segments() const { return {}; }
     /// Of the entity's frame, where they are a thing that still has one.
     [[nodiscard]] virtual std::optional<Transform> pose() const { return std::nullopt; }
     [[nodiscard]] virtual Vec3 linear_velocity() const = 0;  ///< of the centre of mass, m/s

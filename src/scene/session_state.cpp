@@ -4,6 +4,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "attributes/form.h"
 #include "scene/catalog_edit.h"
 #include "scene/json/parts.h"
 #include "scene/scene_file.h"
@@ -120,6 +121,18 @@ void SessionState::tell_step() {
               {"id", fired.id},
               {"sender", fired.sender},
               {"receiver", fired.receiver}});
+    }
+
+    for (const physics::RopeBreakEvent& broke : simulation->rope_breaks()) {
+        const auto index = static_cast<EntityIndex>(broke.user_data);
+        const Entity* entity = simulation->definition(index);
+        const std::string who = entity && !entity->name.empty() ? entity->name : "Entity " + std::to_string(index);
+        tell({{"event", "rope_broke"},
+              {"index", index},
+              {"segment", broke.segment},
+              {"tension", broke.tension},
+              {"position", vector_to_json(broke.position)}});
+        tell_message("warning", who + " broke at a tension of " + attributes::short_number(broke.tension) + " N.");
     }
 
     // The same complaint once a run.

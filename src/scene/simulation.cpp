@@ -82,6 +82,7 @@ const physics::StepReport& Simulation::step() {
 bool Simulation::pause_requested() const { return state_->actions->pause_requested; }
 const std::vector<ActionFired>& Simulation::fired() const { return state_->actions->fired; }
 const std::vector<Error>& Simulation::problems() const { return state_->actions->problems; }
+std::span<const physics::RopeBreakEvent> Simulation::rope_breaks() const { return state_->world->rope_break_events(); }
 const std::vector<EntityIndex>& Simulation::spawned() const { return state_->spawned; }
 const std::vector<EntityIndex>& Simulation::despawned() const { return state_->despawned; }
 

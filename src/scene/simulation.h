@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,8 @@ public:
     /// An action asked for a pause in the last step.
     [[nodiscard]] bool pause_requested() const;
     [[nodiscard]] const std::vector<ActionFired>& fired() const;
+    /// Ropes that broke in the last step; their user_data is the entity.
+    [[nodiscard]] std::span<const physics::RopeBreakEvent> rope_breaks() const;
     /// A key or button (OnSignal); the number of actions it starts at the next step.
     std::size_t signal(const std::string& key, const std::string& button);
 

@@ -2,10 +2,14 @@
 #include "scene/soft_nodes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "geometry/tetrahedra/tetrahedral_mesh.h"
 #include "math/mat3.h"
+#include "scene/thin_form.h"
 
 namespace embody::scene {
 
@@ -15,10 +19,12 @@ using physics::DeformableDefinition;
 
 namespace {
 
-constexpr double hand_share = 0.12;   // of the greatest extent: how far around a place a hand holds
+// Of the greatest extent: how far around a place a hand holds a solid, and cloth or a rope, which it pinches.
+constexpr double hand_share = 0.12, pinch_share = 0.03;
 constexpr double hand_radius = 1e-3;  // m; it collides with nothing
 
 std::vector<std::array<std::uint32_t, 3>> outer_faces(const DeformableDefinition& definition) {
+    if (const auto* cloth = std::get_if<physics::Cloth>(&definition.matter)) return cloth->triangles;
     std::vector<std::array<std::uint32_t, 3>> faces;
     if (const auto* solid = std::get_if<physics::SoftSolid>(&definition.matter)) {
         for (const auto& face : geometry::find_tetrahedral_topology(solid->tetrahedra).outer_faces)
@@ -27,8 +33,13 @@ std::vector<std::array<std::uint32_t, 3>> outer_faces(const DeformableDefinition
     return faces;
 }
 
-std::vector<std::uint32_t> nodes_of(const std::vector<std::array<std::uint32_t, 3>>& faces) {
+// All of a rope's.
+std::vector<std::uint32_t> nodes_of(const std::vector<std::array<std::uint32_t, 3>>& faces, std::size_t count) {
     std::vector<std::uint32_t> nodes;
+    if (faces.empty()) {
+        nodes.resize(count);
+        std::iota(nodes.begin(), nodes.end(), 0u);
+    }
     for (const auto& face : faces) nodes.insert(nodes.end(), face.begin(), face.end());
     std::ranges::sort(nodes);
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
@@ -42,9 +53,22 @@ Result<std::unique_ptr<SoftNodes>> SoftNodes::create(physics::World& world, cons
     if (!handle) return handle.error();
     std::unique_ptr<SoftNodes> nodes(new SoftNodes(world, *handle));
     nodes->faces_ = outer_faces(definition);
-    nodes->surface_ = nodes_of(nodes->faces_);
+    nodes->surface_ = nodes_of(nodes->faces_, definition.nodes.size());
     nodes->attachments_ = definition.attachments;
+    if (auto hung = nodes->hang(); !hung) return hung.error();
     return nodes;
+}
+
+// A slack rope is not pressed straight between its ends: it begins as an arc.
+Result<void> SoftNodes::hang() {
+    const auto* rope = std::get_if<physics::Rope>(&deformable()->matter);
+    if (!rope || !(rope->slack > 0)) return {};
+    std::vector<Vec3> positions;
+    read(positions);
+    const Vec3 down = normalized(world_.settings().gravity, {0, -1, 0});
+    const auto velocities = world_.node_velocities(handle_);
+    return world_.set_nodes(handle_, hanging_arc(positions, rope->slack, down),
+                            std::vector<Vec3>(velocities.begin(), velocities.end()));
 }
 
 SoftNodes::~SoftNodes() {
@@ -111,13 +135,44 @@ std::optional<double> SoftNodes::drop_distance(double most) const {
     return least;
 }
 
-// T. Möller, B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, for each face that is met from
-// outside.
 std::optional<SurfaceHit> SoftNodes::cast_ray(Vec3 origin, Vec3 direction, double most) const {
+    return faces_.empty() ? meet_line(origin, direction, most) : meet_faces(origin, direction, most);
+}
+
+// Balls along the segments: where the ray comes nearest to one, and nearer than its radius.
+std::optional<SurfaceHit> SoftNodes::meet_line(Vec3 origin, Vec3 direction, double most) const {
     const auto positions = world_.node_positions(handle_);
+    const double radius = deformable()->contact_radius;
+    const std::vector<std::uint32_t> broken = world_.broken_segments(handle_);
+    std::optional<SurfaceHit> nearest;
+    for (std::uint32_t s = 0; s + 1 < positions.size(); ++s) {
+        if (std::ranges::binary_search(broken, s)) continue;
+        const Vec3 from = positions[s], edge = positions[s + 1] - from, to = origin - from;
+        const double along = dot(edge, direction), square = length_squared(edge);
+        const double across = square - along * along;
+        double part = across > 0 ? (dot(to, edge) - along * dot(to, direction)) / across : 0;
+        part = std::clamp(part, 0.0, 1.0);
+        const Vec3 center = from + part * edge;
+        const double ahead = dot(center - origin, direction);
+        const double beside = length_squared(center - origin) - ahead * ahead;
+        if (beside > radius * radius) continue;
+        const double distance = ahead - std::sqrt(radius * radius - beside);
+        if (distance < 0 || distance > most || (nearest && distance >= nearest->distance)) continue;
+        nearest = SurfaceHit{distance, normalized(origin + distance * direction - center, -direction)};
+    }
+    return nearest;
+}
+
+// T. Möller, B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, for each face that is met from
+// outside, of cloth from either side.
+std::optional<SurfaceHit> SoftNodes::meet_faces(Vec3 origin, Vec3 direction, double most) const {
+    const auto positions = world_.node_positions(handle_);
+    const bool has_two_sides = std::holds_alternative<physics::Cloth>(deformable()->matter);
     std::optional<SurfaceHit> nearest;
     for (const auto& face : faces_) {
-        const Vec3 a = positions[face[0]], along = positions[face[1]] - a, across = positions[face[2]] - a;
+        const Vec3 a = positions[face[0]];
+        Vec3 along = positions[face[1]] - a, across = positions[face[2]] - a;
+        if (has_two_sides && dot(direction, cross(along, across)) > 0) std::swap(along, across);
         const Vec3 p = cross(direction, across);
         const double facing = dot(along, p);
         if (!(facing > 0)) continue;
@@ -137,7 +192,8 @@ BodyHandle SoftNodes::hold(Vec3 position) {
     const Vec3 size = bounds().size();
     double nearest = std::numeric_limits<double>::infinity();
     for (const std::uint32_t node : surface_) nearest = std::min(nearest, length(positions[node] - position));
-    const double reach = nearest + hand_share * std::max({size.x, size.y, size.z});
+    const bool is_solid = std::holds_alternative<physics::SoftSolid>(deformable()->matter);
+    const double reach = nearest + (is_solid ? hand_share : pinch_share) * std::max({size.x, size.y, size.z});
 
     const auto shape = world_.create_shape(physics::SphereShape{hand_radius});
     if (!shape) return {};

@@ -19,6 +19,9 @@ public:
     void read(std::vector<Vec3>& positions) const override;
     [[nodiscard]] double radius() const override { return 0; }
     [[nodiscard]] const physics::DeformableDefinition* deformable() const override;
+    [[nodiscard]] std::vector<std::uint32_t> broken_segments() const override {
+        return world_.broken_segments(handle_);
+    }
     [[nodiscard]] std::optional<Transform> pose() const override { return world_.pose(handle_); }
     [[nodiscard]] Vec3 linear_velocity() const override;
     [[nodiscard]] Vec3 angular_velocity() const override;
@@ -43,10 +46,14 @@ public:
 private:
     SoftNodes(physics::World& world, physics::DeformableHandle handle) : world_(world), handle_(handle) {}
     Result<void> apply_attachments();
+    Result<void> hang();
+    [[nodiscard]] std::optional<SurfaceHit> meet_line(Vec3 origin, Vec3 direction, double most) const;
+    [[nodiscard]] std::optional<SurfaceHit> meet_faces(Vec3 origin, Vec3 direction, double most) const;
 
     physics::World& world_;
     physics::DeformableHandle handle_;
-    std::vector<std::array<std::uint32_t, 3>> faces_;  ///< outer ones, counter-clockwise from outside
+    std::vector<std::array<std::uint32_t, 3>> faces_;  ///< a solid's outer ones, counter-clockwise from outside, or
+                                                       ///< those of cloth; none of a rope
     std::vector<std::uint32_t> surface_;               ///< their nodes, ascending
     std::vector<physics::Attachment> attachments_, held_;
     physics::BodyHandle hand_;

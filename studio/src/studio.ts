@@ -245,6 +245,9 @@ export class Studio {
       case "progress":
         this.progress.emit(event);
         break;
+      case "rope_broke":
+        this.entities.redress(event.index);
+        break;
       case "action":
         break;
     }

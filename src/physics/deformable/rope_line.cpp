@@ -58,7 +58,7 @@ RopeLine::RopeLine(const DeformableDefinition& definition) : rope_(std::get<Rope
     for (std::size_t i = 0; i < count; ++i) {
         nodes_.position.push_back(transform_point(definition.pose, definition.nodes[i]));
         if (i + 1 == count) break;
-        segments_.push_back({length(definition.nodes[i + 1] - definition.nodes[i])});
+        segments_.push_back({(1 + rope_.slack) * length(definition.nodes[i + 1] - definition.nodes[i])});
         nodes_.mass[i] += rope_.linear_density * segments_[i].length / 2;
         nodes_.mass[i + 1] += rope_.linear_density * segments_[i].length / 2;
     }

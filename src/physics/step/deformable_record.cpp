@@ -12,9 +12,10 @@ namespace {
 // Segments of ropes collide as capsules of their length at rest; equal lengths share one.
 Result<void> make_capsules(DeformableRecord& record) {
     const DeformableDefinition& definition = record.definition;
+    const double stretch = 1 + std::get<Rope>(definition.matter).slack;
     std::vector<double> lengths;
     for (std::size_t s = 0; s + 1 < definition.nodes.size(); ++s) {
-        const double own = length(definition.nodes[s + 1] - definition.nodes[s]);
+        const double own = stretch * length(definition.nodes[s + 1] - definition.nodes[s]);
         const auto same = std::ranges::find_if(lengths, [&](double l) { return std::fabs(l - own) < 1e-6 * own; });
         record.segment_capsule.push_back(static_cast<std::uint32_t>(same - lengths.begin()));
         if (same != lengths.end()) continue;

@@ -151,6 +151,14 @@ Result<json> tell_collision_shape(SessionState& state, const json& params) {
     return json{{"shape", physics::is_static_only(shape.value()) ? json(nullptr) : shape_to_json(shape.value())}};
 }
 
+template <std::size_t count>
+json corners_of(const std::vector<std::array<std::uint32_t, count>>& elements) {
+    json corners = json::array();
+    for (const auto& element : elements)
+        for (const std::uint32_t node : element) corners.push_back(node);
+    return corners;
+}
+
 // What carries the drawn form of an entity that changes it.
 Result<json> tell_simulation_mesh(SessionState& state, const json& params) {
     std::optional<Error> error;
@@ -160,14 +168,17 @@ Result<json> tell_simulation_mesh(SessionState& state, const json& params) {
     if (!reader.finish()) return *error;
     const MovingPoints* points = state.simulation->points(index);
     const physics::DeformableDefinition* form = points ? points->deformable() : nullptr;
-    const auto* solid = form ? std::get_if<physics::SoftSolid>(&form->matter) : nullptr;
-    if (!solid) return json{{"mesh", nullptr}};
-    json nodes = json::array(), tetrahedra = json::array();
+    if (!form) return json{{"mesh", nullptr}};
+    json mesh = {{"nodes", json::array()}};
     for (const Vec3 node : form->nodes)
-        for (const double number : {node.x, node.y, node.z}) nodes.push_back(number);
-    for (const auto& tetrahedron : solid->tetrahedra)
-        for (const std::uint32_t node : tetrahedron) tetrahedra.push_back(node);
-    return json{{"mesh", {{"nodes", std::move(nodes)}, {"tetrahedra", std::move(tetrahedra)}}}};
+        for (const double number : {node.x, node.y, node.z}) mesh["nodes"].push_back(number);
+    if (const auto* solid = std::get_if<physics::SoftSolid>(&form->matter))
+        mesh["tetrahedra"] = corners_of(solid->tetrahedra);
+    else if (const auto* cloth = std::get_if<physics::Cloth>(&form->matter))
+        mesh["triangles"] = corners_of(cloth->triangles);
+    else
+        mesh["broken"] = points->broken_segments();
+    return json{{"mesh", std::move(mesh)}};
 }
 
 constexpr Command commands[] = {{"entity.set_attribute", set_attribute},

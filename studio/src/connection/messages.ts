@@ -152,8 +152,12 @@ export interface Hello {
 export interface SimulationMesh {
   /** x, y, z each, m. */
   nodes: number[];
-  /** Four nodes each. */
-  tetrahedra: number[];
+  /** Of a solid, four nodes each. */
+  tetrahedra?: number[];
+  /** Of cloth, three nodes each. */
+  triangles?: number[];
+  /** Of a rope, whose nodes follow each other: where it is broken, between these and the next. */
+  broken?: number[];
 }
 
 /** Each command's parameters and result. */
@@ -251,5 +255,6 @@ export type ServerEvent =
   | ({ event: "statistics" } & Statistics)
   | CatalogEvent
   | ({ event: "progress" } & Progress)
+  | { event: "rope_broke"; index: number; segment: number; tension: number; position: Vector }
   | { event: "action"; name: string; id: number; sender: number; receiver: number }
   | { event: "message"; level: "info" | "warning" | "error"; text: string };

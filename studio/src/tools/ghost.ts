@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-import { Group, Mesh, MeshBasicMaterial, Vector3 } from "three";
+import { Box3, Group, Matrix4, Mesh, MeshBasicMaterial, Quaternion, Vector3 } from "three";
 import type { NewEntity } from "../connection/messages";
+import { rotationOf } from "../document/scene_document";
 import type { Studio } from "../studio";
 import type { Drawable } from "../view/drawable";
 import { drawShape } from "../view/shapes";
@@ -17,6 +18,8 @@ export class Ghost {
   private readonly group = new Group();
   private readonly material = new MeshBasicMaterial({ color: 0x4fc3f7, transparent: true, opacity: 0.45, depthWrite: false });
   private drawable: Drawable | null = null;
+  /** Of what is drawn, turned as the entity will be. */
+  private readonly bounds = new Box3();
 
   constructor(private readonly studio: Studio) {
     this.group.visible = false;
@@ -28,10 +31,12 @@ export class Ghost {
     this.end();
     const drawable = entity.model ? await this.studio.models.drawable(entity.model) : drawShape(entity.shape!);
     this.drawable = drawable;
+    const turn = new Matrix4().makeRotationFromQuaternion(new Quaternion(...rotationOf(entity.pose)));
+    this.bounds.copy(drawable.bounds).applyMatrix4(turn);
     for (const part of drawable.parts) {
       const mesh = new Mesh(part.geometry, this.material);
       mesh.matrixAutoUpdate = false;
-      mesh.matrix.copy(part.matrix);
+      mesh.matrix.multiplyMatrices(turn, part.matrix);
       this.group.add(mesh);
     }
   }
@@ -41,7 +46,7 @@ export class Ghost {
     const { view } = this.studio;
     if (!this.drawable) return;
     const { point, normal } = this.landing(clientX, clientY);
-    const { bounds } = this.drawable;
+    const { bounds } = this;
     this.group.position.copy(point);
     if (normal.y > STEEPEST_FLOOR) this.group.position.y -= bounds.min.y;
     else {

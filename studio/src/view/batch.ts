@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import { BufferGeometry, type Color, DynamicDrawUsage, type Group, InstancedBufferAttribute, InstancedMesh, Matrix4 } from "three";
+import { BufferGeometry, type Color, DoubleSide, DynamicDrawUsage, type Group, InstancedBufferAttribute, InstancedMesh, Matrix4 } from "three";
 import type { Drawable } from "./drawable";
 import { type Quality, tintable } from "./tint";
 
@@ -103,7 +103,9 @@ export class Batch {
       // The instanced attributes lie in the geometry, so each batch has its own one around the shared buffers.
       const geometry = sharing(part.geometry);
       geometry.setAttribute("tint", new InstancedBufferAttribute(new Float32Array(capacity * 4), 4).setUsage(DynamicDrawUsage));
-      const mesh = new InstancedMesh(geometry, tintable(part.material, this.quality), capacity);
+      const material = tintable(part.material, this.quality);
+      if (this.drawable.hasTwoSides) material.side = DoubleSide;
+      const mesh = new InstancedMesh(geometry, material, capacity);
       mesh.instanceColor = new InstancedBufferAttribute(new Float32Array(capacity * 3).fill(1), 3);
       mesh.instanceMatrix.setUsage(DynamicDrawUsage);
       const old = before[at];

@@ -13,6 +13,8 @@ export interface Drawable {
   parts: DrawablePart[];
   bounds: Box3;
   castsShadow: boolean;
+  /** Faces are seen from behind too. */
+  hasTwoSides?: boolean;
 }
 
 export function drawable(parts: DrawablePart[], castsShadow = true): Drawable {

@@ -100,6 +100,12 @@ export class EntityView {
     for (const index of this.softs.take(frame, now, smooth)) this.put(index);
   }
 
+  /** What carries a soft thing's form is another: a rope has broken. */
+  redress(index: number): void {
+    this.softs.undress(index);
+    this.put(index);
+  }
+
   /** All points are those of another scene. */
   forgetPoints(): void {
     this.clouds.clear();

@@ -90,6 +90,11 @@ export class SoftBodies {
     return nodes.skin;
   }
 
+  undress(index: number): void {
+    const nodes = this.all.get(index);
+    if (nodes) nodes.skin = null;
+  }
+
   /** Bends the entity's skin as its nodes are now, seen from its frame there. */
   bend(index: number, now: number, position: Vector3, rotation: Quaternion, scale: number): void {
     const nodes = this.all.get(index);

@@ -1,88 +1,146 @@
 // SPDX-License-Identifier: MIT
-import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Matrix4, Matrix3, Vector3 } from "three";
+import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Matrix4, Matrix3, Quaternion, Vector3 } from "three";
 import type { SimulationMesh } from "../connection/messages";
 import type { Drawable, DrawablePart } from "./drawable";
 import { refine } from "./refine";
 
 const NONE = new Matrix4();
+/** Of an element's edge: how long drawn edges of cloth and ropes may be, so that they look round between the nodes. */
+const THIN_SHARE = 0.7;
 
-/** Tetrahedra at rest, and how their nodes have turned and stretched what is around them. In the drawn thing's own frame. */
+/** Which nodes an element has: four of a solid, three of cloth, two of a rope. */
+function elementsOf(mesh: SimulationMesh): { corners: number; elements: number[] } {
+  if (mesh.tetrahedra) return { corners: 4, elements: mesh.tetrahedra };
+  if (mesh.triangles) return { corners: 3, elements: mesh.triangles };
+  const elements: number[] = [];
+  for (let node = 0; node + 1 < mesh.nodes.length / 3; ++node) if (!mesh.broken?.includes(node)) elements.push(node, node + 1);
+  return { corners: 2, elements };
+}
+
+/**
+ * Elements at rest, and how their nodes have turned and stretched what is around them, in the drawn thing's own frame. Each has three
+ * directions that go along with it: a solid's edges; those of cloth and its unit normal; a rope's edge and two across it, which turn
+ * with the rope but not about it.
+ */
 export class SoftForm {
   readonly nodes: Float32Array;
-  readonly tetrahedra: Uint32Array;
+  readonly elements: Uint32Array;
+  /** Nodes of an element. */
+  readonly corners: number;
   /** Mean length of the edges, m. */
   readonly edge: number;
-  /** Of each node nine numbers by rows: the deformation around it, the mean of its tetrahedra's by volume. */
+  /** Of each node nine numbers by rows: the deformation around it, the mean of its elements' by their amount. */
   readonly deformation: Float32Array;
-  /** Of each tetrahedron nine numbers by rows: what takes a place beside its first node to the weights of the other three. */
+  /** Of each element nine numbers by rows: what takes a place beside its first node to shares of its directions at rest. */
   private readonly inverse: Float32Array;
-  private readonly volume: Float32Array;
+  private readonly amount: Float32Array;
   private readonly share: Float32Array;
 
   /** `scale`: of the entity; the mesh has it in its nodes. */
   constructor(mesh: SimulationMesh, scale: number) {
+    const { corners, elements } = elementsOf(mesh);
     this.nodes = Float32Array.from(mesh.nodes, (number) => number / scale);
-    this.tetrahedra = Uint32Array.from(mesh.tetrahedra);
-    const count = this.tetrahedra.length / 4;
+    this.elements = Uint32Array.from(elements);
+    this.corners = corners;
+    const count = this.count;
     this.inverse = new Float32Array(9 * count);
-    this.volume = new Float32Array(count);
+    this.amount = new Float32Array(count);
     this.share = new Float32Array(this.nodes.length / 3);
     this.deformation = new Float32Array(3 * this.nodes.length);
-    const edges = [new Vector3(), new Vector3(), new Vector3()] as const;
-    const first = new Vector3();
     const matrix = new Matrix3();
+    const [e, f, g] = [new Vector3(), new Vector3(), new Vector3()];
+    const frame = new RopeFrame();
     let lengths = 0;
     for (let t = 0; t < count; ++t) {
-      first.fromArray(this.nodes, 3 * this.tetrahedra[4 * t]!);
-      edges.forEach((edge, k) => {
-        edge.fromArray(this.nodes, 3 * this.tetrahedra[4 * t + k + 1]!).sub(first);
-        lengths += edge.length();
-      });
-      matrix.set(edges[0].x, edges[1].x, edges[2].x, edges[0].y, edges[1].y, edges[2].y, edges[0].z, edges[1].z, edges[2].z);
-      this.volume[t] = Math.abs(matrix.determinant()) / 6;
+      this.directions(t, this.nodes, frame, e, f, g);
+      lengths += e.length();
+      matrix.set(e.x, f.x, g.x, e.y, f.y, g.y, e.z, f.z, g.z);
+      this.amount[t] = Math.abs(matrix.determinant());
       this.inverse.set(matrix.invert().transpose().elements, 9 * t);
-      for (let k = 0; k < 4; ++k) this.share[this.tetrahedra[4 * t + k]!]! += this.volume[t]!;
+      for (let k = 0; k < corners; ++k) this.share[this.elements[corners * t + k]!]! += this.amount[t]!;
     }
-    this.edge = lengths / (3 * count);
+    this.edge = count > 0 ? lengths / count : 1;
   }
 
-  /** Weights of the four nodes at a place: some are negative outside. */
+  get count(): number {
+    return this.elements.length / this.corners;
+  }
+
+  /** Weights of the nodes at a place: some are negative outside. */
   weightsAt(t: number, x: number, y: number, z: number, weights: Float32Array): void {
-    const at = 3 * this.tetrahedra[4 * t]!;
+    const at = 3 * this.elements[this.corners * t]!;
     const m = this.inverse;
     const i = 9 * t;
     const [dx, dy, dz] = [x - this.nodes[at]!, y - this.nodes[at + 1]!, z - this.nodes[at + 2]!];
-    for (let k = 0; k < 3; ++k) weights[k + 1] = m[i + 3 * k]! * dx + m[i + 3 * k + 1]! * dy + m[i + 3 * k + 2]! * dz;
-    weights[0] = 1 - weights[1]! - weights[2]! - weights[3]!;
+    weights[0] = 1;
+    for (let k = 0; k + 1 < this.corners; ++k) {
+      weights[k + 1] = m[i + 3 * k]! * dx + m[i + 3 * k + 1]! * dy + m[i + 3 * k + 2]! * dz;
+      weights[0]! -= weights[k + 1]!;
+    }
   }
 
   /** Finds the deformation with the nodes at these places (x, y, z each). */
   deform(places: Float32Array): void {
-    const { deformation, tetrahedra, inverse } = this;
+    const { deformation, elements, inverse, corners } = this;
     deformation.fill(0);
-    for (let t = 0, i = 0; t < tetrahedra.length; t += 4, i += 9) {
-      const [a, b, c, d] = [3 * tetrahedra[t]!, 3 * tetrahedra[t + 1]!, 3 * tetrahedra[t + 2]!, 3 * tetrahedra[t + 3]!];
-      const volume = this.volume[t / 4]!;
-      for (let row = 0; row < 3; ++row) {
-        const origin = places[a + row]!;
-        const [e, f, g] = [places[b + row]! - origin, places[c + row]! - origin, places[d + row]! - origin];
-        for (let column = 0; column < 3; ++column) {
-          const value = volume * (e * inverse[i + column]! + f * inverse[i + 3 + column]! + g * inverse[i + 6 + column]!);
-          const at = 3 * row + column;
-          deformation[3 * a + at]! += value;
-          deformation[3 * b + at]! += value;
-          deformation[3 * c + at]! += value;
-          deformation[3 * d + at]! += value;
+    const [e, f, g] = [new Vector3(), new Vector3(), new Vector3()];
+    const columns = [0, 1, 2];
+    const frame = new RopeFrame();
+    for (let t = 0, i = 0; t < this.count; ++t, i += 9) {
+      this.directions(t, places, frame, e, f, g);
+      const amount = this.amount[t]!;
+      const moved = [e.x, f.x, g.x, e.y, f.y, g.y, e.z, f.z, g.z];
+      for (let at = 0; at < 9; at += 3)
+        for (const column of columns) {
+          const value =
+            amount * (moved[at]! * inverse[i + column]! + moved[at + 1]! * inverse[i + 3 + column]! + moved[at + 2]! * inverse[i + 6 + column]!);
+          for (let k = 0; k < corners; ++k) deformation[9 * elements[corners * t + k]! + at + column]! += value;
         }
-      }
     }
     for (let node = 0; node < this.share.length; ++node)
-      for (let k = 9 * node; k < 9 * node + 9; ++k) deformation[k]! /= this.share[node]!;
+      for (let k = 9 * node; k < 9 * node + 9; ++k) deformation[k]! /= this.share[node]! || 1;
+  }
+
+  /** An element's three directions with the nodes at these places; of a rope they follow from those of the element before. */
+  private directions(t: number, places: Float32Array, frame: RopeFrame, e: Vector3, f: Vector3, g: Vector3): void {
+    const { elements, corners } = this;
+    const at = (k: number) => 3 * elements[corners * t + k]!;
+    const between = (k: number, to: Vector3) =>
+      to.set(places[at(k)]! - places[at(0)]!, places[at(k) + 1]! - places[at(0) + 1]!, places[at(k) + 2]! - places[at(0) + 2]!);
+    between(1, e);
+    if (corners === 2) {
+      frame.follow(e, f, g);
+      return;
+    }
+    between(2, f);
+    if (corners === 3) g.crossVectors(e, f).normalize();
+    else between(3, g);
   }
 }
 
-/** Finds the tetrahedron around a place, or the nearest one. */
-class TetrahedronFinder {
+/** Two directions across a line that goes on along edges: each turned as little as it can be from those before. */
+class RopeFrame {
+  private readonly tangent = new Vector3();
+  private readonly across = new Vector3();
+  private readonly now = new Vector3();
+  private readonly turn = new Quaternion();
+
+  follow(edge: Vector3, f: Vector3, g: Vector3): void {
+    this.now.copy(edge).normalize();
+    if (this.tangent.lengthSq() === 0) {
+      this.across.set(Math.abs(this.now.y) < 0.9 ? 0 : 1, Math.abs(this.now.y) < 0.9 ? 1 : 0, 0);
+    } else {
+      this.across.applyQuaternion(this.turn.setFromUnitVectors(this.tangent, this.now));
+    }
+    this.across.addScaledVector(this.now, -this.across.dot(this.now)).normalize();
+    this.tangent.copy(this.now);
+    f.copy(this.across);
+    g.crossVectors(this.now, f);
+  }
+}
+
+/** Finds the element around a place, or the nearest one. */
+class ElementFinder {
   private readonly cells = new Map<number, number[]>();
   private readonly box = new Box3();
   private readonly size: [number, number, number];
@@ -95,9 +153,9 @@ class TetrahedronFinder {
     this.size = [0, 1, 2].map((axis) => Math.floor(extent.getComponent(axis) / form.edge) + 1) as [number, number, number];
     const around = new Box3();
     const corner = new Vector3();
-    for (let t = 0; t < form.tetrahedra.length / 4; ++t) {
+    for (let t = 0; t < form.count; ++t) {
       around.makeEmpty();
-      for (let k = 0; k < 4; ++k) around.expandByPoint(corner.fromArray(form.nodes, 3 * form.tetrahedra[4 * t + k]!));
+      for (let k = 0; k < form.corners; ++k) around.expandByPoint(corner.fromArray(form.nodes, 3 * form.elements[form.corners * t + k]!));
       const low = this.cellOf(around.min.x, around.min.y, around.min.z);
       const high = this.cellOf(around.max.x, around.max.y, around.max.z);
       this.visit(low, high, (cell) => {
@@ -132,16 +190,16 @@ class TetrahedronFinder {
     return found;
   }
 
-  /** To the place with the weights cut off at zero: 0 inside. Leaves these in `own`. */
+  /** To the place with the weights cut off at zero: 0 inside a solid. Leaves these in `own`. */
   private distanceTo(t: number, x: number, y: number, z: number): number {
-    const { nodes, tetrahedra } = this.form;
+    const { nodes, elements, corners } = this.form;
     this.form.weightsAt(t, x, y, z, this.own);
-    if (this.own.every((weight) => weight >= 0)) return 0;
+    if (corners === 4 && this.own.every((weight) => weight >= 0)) return 0;
     let sum = 0;
-    for (let k = 0; k < 4; ++k) sum += this.own[k] = Math.max(0, this.own[k]!);
+    for (let k = 0; k < corners; ++k) sum += this.own[k] = Math.max(0, this.own[k]!);
     let [dx, dy, dz] = [x, y, z];
-    for (let k = 0; k < 4; ++k) {
-      const at = 3 * tetrahedra[4 * t + k]!;
+    for (let k = 0; k < corners; ++k) {
+      const at = 3 * elements[corners * t + k]!;
       const weight = (this.own[k]! /= sum);
       dx -= weight * nodes[at]!;
       dy -= weight * nodes[at + 1]!;
@@ -164,11 +222,32 @@ class TetrahedronFinder {
   }
 }
 
-/** A drawn part whose vertices are carried by the tetrahedra: each by four nodes, and by the deformation there for what lies outside. */
+/** Of each element a number: another one on either side of where a rope is broken. */
+function piecesOf(form: SoftForm): Uint32Array {
+  const pieces = new Uint32Array(form.count);
+  if (form.corners > 2) return pieces;
+  for (let t = 1; t < form.count; ++t) pieces[t] = pieces[t - 1]! + (form.elements[2 * t] === form.elements[2 * t - 1] ? 0 : 1);
+  return pieces;
+}
+
+/** Takes out the triangles that would join different pieces. */
+function cutBetween(geometry: BufferGeometry, pieces: Uint32Array): void {
+  const index = geometry.index!.array;
+  const kept: number[] = [];
+  for (let at = 0; at < index.length; at += 3) {
+    const [a, b, c] = [index[at]!, index[at + 1]!, index[at + 2]!];
+    if (pieces[a] === pieces[b] && pieces[b] === pieces[c]) kept.push(a, b, c);
+  }
+  if (kept.length < index.length) geometry.setIndex(kept);
+}
+
+/** A drawn part whose vertices are carried by the elements: each by the nodes of one, and by the deformation there for what lies outside. */
 class CarriedPart {
   private readonly nodes: Uint32Array;
   private readonly weights: Float32Array;
   private readonly offsets: Float32Array;
+  /** Where the elements' nodes with their weights are at rest: a vertex is an offset away. */
+  private readonly anchors: Float32Array;
   private readonly normals: Float32Array;
   private readonly position: BufferAttribute;
   private readonly normal: BufferAttribute;
@@ -176,7 +255,7 @@ class CarriedPart {
   constructor(
     readonly geometry: BufferGeometry,
     form: SoftForm,
-    finder: TetrahedronFinder,
+    finder: ElementFinder,
   ) {
     this.position = geometry.getAttribute("position") as BufferAttribute;
     this.normal = geometry.getAttribute("normal") as BufferAttribute;
@@ -184,17 +263,23 @@ class CarriedPart {
     this.nodes = new Uint32Array(4 * count);
     this.weights = new Float32Array(4 * count);
     this.offsets = Float32Array.from(this.position.array);
+    this.anchors = new Float32Array(3 * count);
     this.normals = Float32Array.from(this.normal.array);
     const weights = new Float32Array(4);
+    const pieces = new Uint32Array(count);
+    const pieceOf = piecesOf(form);
     for (let v = 0; v < count; ++v) {
       const t = finder.find(this.offsets[3 * v]!, this.offsets[3 * v + 1]!, this.offsets[3 * v + 2]!, weights);
+      pieces[v] = pieceOf[t]!;
       this.weights.set(weights, 4 * v);
-      for (let k = 0; k < 4; ++k) {
-        const node = form.tetrahedra[4 * t + k]!;
+      for (let k = 0; k < form.corners; ++k) {
+        const node = form.elements[form.corners * t + k]!;
         this.nodes[4 * v + k] = node;
-        for (let axis = 0; axis < 3; ++axis) this.offsets[3 * v + axis]! -= weights[k]! * form.nodes[3 * node + axis]!;
+        for (let axis = 0; axis < 3; ++axis) this.anchors[3 * v + axis]! += weights[k]! * form.nodes[3 * node + axis]!;
       }
     }
+    for (let at = 0; at < 3 * count; ++at) this.offsets[at]! -= this.anchors[at]!;
+    cutBetween(geometry, pieces);
     this.position.setUsage(DynamicDrawUsage);
     this.normal.setUsage(DynamicDrawUsage);
     geometry.computeBoundingBox();
@@ -212,12 +297,34 @@ class CarriedPart {
     return sum;
   }
 
+  /**
+   * Where a vertex of cloth or a rope is: the mean of its element's nodes x, each with half of the way that the deformation F there makes
+   * of that from the node X to the vertex at rest. Exact where the thing is bent as a parabola, so what is bent evenly looks round.
+   */
+  private round(v: number, places: Float32Array, form: SoftForm): [number, number, number] {
+    const F = form.deformation;
+    let [x, y, z] = [0, 0, 0];
+    for (let k = 4 * v; k < 4 * v + form.corners; ++k) {
+      const n = 3 * this.nodes[k]!;
+      const m = 3 * n;
+      const weight = this.weights[k]!;
+      const dx = (this.anchors[3 * v]! - form.nodes[n]!) / 2;
+      const dy = (this.anchors[3 * v + 1]! - form.nodes[n + 1]!) / 2;
+      const dz = (this.anchors[3 * v + 2]! - form.nodes[n + 2]!) / 2;
+      x += weight * (places[n]! + F[m]! * dx + F[m + 1]! * dy + F[m + 2]! * dz);
+      y += weight * (places[n + 1]! + F[m + 3]! * dx + F[m + 4]! * dy + F[m + 5]! * dz);
+      z += weight * (places[n + 2]! + F[m + 6]! * dx + F[m + 7]! * dy + F[m + 8]! * dz);
+    }
+    return [x, y, z];
+  }
+
   /** Follows nodes at these places, with the deformation that `form` has found there. */
   follow(places: Float32Array, form: SoftForm): void {
     const { nodes, weights, offsets, normals } = this;
     const F = form.deformation;
     const to = this.position.array as Float32Array;
     const up = this.normal.array as Float32Array;
+    const isThin = form.corners < 4;
     for (let v = 0, i = 0; i < to.length; ++v, i += 3) {
       let x = 0, y = 0, z = 0;
       let a = 0, b = 0, c = 0, d = 0, e = 0, f = 0, g = 0, h = 0, j = 0;
@@ -238,6 +345,7 @@ class CarriedPart {
         h += weight * F[m + 7]!;
         j += weight * F[m + 8]!;
       }
+      if (isThin) [x, y, z] = this.round(v, places, form);
       const [p, q, r] = [offsets[i]!, offsets[i + 1]!, offsets[i + 2]!];
       to[i] = x + a * p + b * q + c * r;
       to[i + 1] = y + d * p + e * q + f * r;
@@ -270,20 +378,22 @@ export class SoftSkin {
     readonly form: SoftForm,
     plain: Drawable,
   ) {
-    const finder = new TetrahedronFinder(form);
-    const parts: DrawablePart[] = plain.parts.map(({ geometry, material, matrix }) => ({
-      geometry: refine(geometry, matrix, form.edge),
+    const finder = new ElementFinder(form);
+    // Nothing is left to draw of a rope that is broken everywhere.
+    const shown = form.count > 0 ? plain.parts : [];
+    const parts: DrawablePart[] = shown.map(({ geometry, material, matrix }) => ({
+      geometry: refine(geometry, matrix, form.corners < 4 ? THIN_SHARE * form.edge : form.edge),
       material,
       matrix: NONE,
     }));
     this.parts = parts.map(({ geometry }) => new CarriedPart(geometry, form, finder));
-    this.drawable = { parts, bounds: plain.bounds.clone(), castsShadow: plain.castsShadow };
+    this.drawable = { parts, bounds: plain.bounds.clone(), castsShadow: plain.castsShadow, hasTwoSides: form.corners === 3 };
   }
 
   /** As it is drawn now; for tests. */
   measure(): { size: number[]; vertices: number; normals: number } {
     const vertices = this.parts.reduce((sum, part) => sum + part.count, 0);
-    const normals = this.parts.reduce((sum, part) => sum + part.normalLengths(), 0) / vertices;
+    const normals = this.parts.reduce((sum, part) => sum + part.normalLengths(), 0) / (vertices || 1);
     return { size: this.drawable.bounds.getSize(new Vector3()).toArray(), vertices, normals };
   }
 

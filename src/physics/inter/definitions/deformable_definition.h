@@ -45,6 +45,7 @@ struct Rope {
     double twist_rigidity = 1e-3;                                    ///< GJ, N m², 1e-12 … 1e9
     double rayleigh_damping = 0;                                     ///< stiffness-proportional, s, 0 … 100
     double break_tension = std::numeric_limits<double>::infinity();  ///< N, > 0
+    double slack = 0;  ///< how much longer it is at rest than the way along its nodes: a share of that, 0 … 10
 };
 
 /// A node held to a point of a body.

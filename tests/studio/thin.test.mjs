@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// Cloth and ropes in the Studio: added from the list of primitives, bent by their nodes, blown by the wind, broken.
+import assert from "node:assert/strict";
+import { after, before, describe, it } from "node:test";
+import { openBrowser, openStudio } from "./browser.mjs";
+import { findProgram, prepareDatabase, RealServer } from "./real_server.mjs";
+
+const SCENE = {
+  embody_scene: 1,
+  title: "Thin things",
+  camera: { position: [2.2, 1.6, 3], target: [0.3, 0.8, 0] },
+  entities: [
+    { index: 1, name: "Floor", shape: { type: "box", half_extents: [5, 0.25, 5] }, pose: { position: [0, -0.25, 0] }, attributes: { kind: "static" } },
+    {
+      index: 2,
+      name: "Cloth",
+      shape: { type: "box", half_extents: [0.4, 0.002, 0.4] },
+      pose: { position: [-0.6, 1.2, 0] },
+      attributes: { kind: "cloth", cloth_nodes: 200 },
+      pins: [{ position: [-0.4, 0, -0.4] }, { position: [0.4, 0, -0.4] }],
+    },
+    {
+      index: 3,
+      name: "Rope",
+      shape: { type: "capsule", radius: 0.02, half_height: 0.6 },
+      pose: { position: [0.9, 1.4, 0], rotation: { axis: [0, 0, 1], degrees: 90 } },
+      attributes: { kind: "rope", mass: 2, slack: 0.1, rope_segments: 24 },
+      pins: [{ position: [0, 0.6, 0] }, { position: [0, -0.6, 0] }],
+    },
+  ],
+};
+
+describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
+  let browser, server, page;
+
+  before(async () => {
+    const program = findProgram();
+    assert.ok(program, "the program embody is not built: build it, or set EMBODY_PROGRAM");
+    server = new RealServer(program, prepareDatabase(program));
+    const address = await server.start(SCENE);
+    browser = await openBrowser();
+    page = await openStudio(browser, address);
+    await page.waitForFunction(() => window.embody.bent(2) !== null && window.embody.bent(3) !== null, null, { timeout: 30000 });
+  });
+  after(async () => {
+    await browser?.close();
+    await server?.discard();
+  });
+
+  const send = (command, params) =>
+    page.evaluate(
+      async ([command, params]) => {
+        const socket = new WebSocket(`ws://${location.host}/ws`);
+        await new Promise((opened) => (socket.onopen = opened));
+        socket.send(JSON.stringify({ id: 1, command, params }));
+        const reply = await new Promise((got) => {
+          socket.onmessage = (event) => typeof event.data === "string" && event.data.includes('"ok"') && got(JSON.parse(event.data));
+        });
+        socket.close();
+        if (!reply.ok) throw new Error(JSON.stringify(reply.error));
+        return reply.result;
+      },
+      [command, params],
+    );
+  const bent = (index) => page.evaluate((index) => window.embody.bent(index), index);
+
+  it("draws a sheet with its thickness and a slack rope as an arc", async () => {
+    const cloth = await bent(2);
+    [0.8, 0.004, 0.8].forEach((extent, axis) => assert.ok(Math.abs(cloth.size[axis] - extent) < 1e-3, `${cloth.size}`));
+    assert.ok(Math.abs(cloth.normals - 1) < 1e-3);
+    // Its axis is the frame's Y; the sag of a rope that is longer by s is d √(3s/8), its own thickness around that.
+    const rope = await bent(3);
+    assert.ok(rope.size[1] > 1.2 && rope.size[1] < 1.26, `${rope.size}`);
+    const sag = 1.2 * Math.sqrt((3 * 0.1) / 8);
+    assert.ok(Math.abs(rope.size[0] - sag - 0.04) < 0.03, `${rope.size} ${sag}`);
+    assert.ok(Math.abs(rope.size[2] - 0.04) < 2e-3, `${rope.size}`);
+    assert.deepEqual(page.faults, []);
+  });
+
+  it("lets cloth hang down, and wind lift it", async () => {
+    await send("simulation.step", { count: 120 });
+    await page.waitForFunction(() => window.embody.simulation().step === 120);
+    await page.waitForTimeout(500);
+    const lowest = async () => {
+      const { position } = (await page.evaluate(() => window.embody.entities())).find((entity) => entity.index === 2);
+      return position[1];
+    };
+    const still = await lowest();
+    assert.ok(still < 1.0, `it hangs: ${still}`);
+    const air = page.locator("[data-testid=scene-fields]").getByLabel("Wind z");
+    await air.fill("-6");
+    await air.press("Enter");
+    await send("simulation.step", { count: 180 });
+    await page.waitForFunction(() => window.embody.simulation().step === 300);
+    await page.waitForTimeout(500);
+    assert.ok((await lowest()) > still + 0.05, `it is blown: ${await lowest()}`);
+    const { normals } = await bent(2);
+    assert.ok(Math.abs(normals - 1) < 1e-3, "normals have length one");
+    assert.deepEqual(page.faults, []);
+  });
+
+  it("says that a rope broke and draws it in two", async () => {
+    // Its ends bear 15 N, so the middle comes loose and falls.
+    await send("entity.set_attribute", { indices: [3], name: "break_tension", value: 14 });
+    await send("simulation.step", { count: 60 });
+    await page.waitForSelector("text=/Rope broke at a tension of/");
+    await page.waitForFunction(() => window.embody.simulation().step === 360);
+    await page.waitForFunction(() => window.embody.entities().find((entity) => entity.index === 3).position[1] < 1);
+    await page.waitForFunction(() => window.embody.bent(3) !== null);
+    assert.ok(Math.abs((await bent(3)).normals - 1) < 1e-3);
+    assert.deepEqual(page.faults, []);
+    // Broken everywhere there is nothing left to draw.
+    await send("entity.set_attribute", { indices: [3], name: "break_tension", value: 0 });
+    await send("simulation.step", { count: 60 });
+    await page.waitForFunction(() => window.embody.simulation().step === 420 && window.embody.bent(3) !== null);
+    assert.deepEqual(page.faults, []);
+    await send("simulation.reset", {});
+    await page.waitForFunction(() => Math.abs((window.embody.bent(3)?.size[1] ?? 0) - 1.23) < 0.05 && window.embody.bent(3).normals > 0.99);
+  });
+
+  it("offers cloth, round cloth and rope among the primitives", async () => {
+    for (const name of ["cloth", "round-cloth", "rope"]) {
+      const before = (await page.evaluate(() => window.embody.entities())).length;
+      await page.locator(`[data-testid=primitive-${name}]`).dblclick();
+      await page.waitForFunction((before) => window.embody.entities().length === before + 1, before);
+      const index = await page.evaluate(() => Math.max(...window.embody.entities().map((entity) => entity.index)));
+      await page.waitForFunction((index) => window.embody.bent(index) !== null, index);
+    }
+    assert.deepEqual(page.faults, []);
+  });
+});
