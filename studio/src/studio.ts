@@ -267,7 +267,10 @@ export class Studio {
   private takeSimulation({ state, time, step }: Simulation): void {
     const restarted = state === "stopped" && this.simulation.state !== "stopped";
     this.simulation = { state, time, step };
-    if (restarted) this.document.forgetSpawned();
+    if (restarted) {
+      this.document.forgetSpawned();
+      this.entities.mend();
+    }
     this.retint();
     this.simulationChanged.emit();
   }

@@ -141,6 +141,7 @@ void ClothSheet::find_strains(const Substep& substep, TaskPool& workers) {
     const double damped = 1 + cloth_.rayleigh_damping / substep.h;
     strains_.resize(triangles_.size());
     air_.resize(triangles_.size());
+    winds_.resize(triangles_.size());
     const auto work = [&](int, Share share) {
         for (std::size_t t = share.first; t < share.last; ++t) {
             const ClothTriangle& triangle = triangles_[t];
@@ -170,7 +171,10 @@ void ClothSheet::find_strains(const Substep& substep, TaskPool& workers) {
 
             // Drag by what blows through the triangle: ρ/2 C A |v·n| (v·n) n, a third of it a node.
             const Vec3 normal = normalized(cross(strain.f, strain.g));
-            const double through = std::fabs(dot(velocity - substep.wind, normal));
+            winds_[t] = substep.wind.at((nodes_.position[triangle.node[0]] + nodes_.position[triangle.node[1]] +
+                                         nodes_.position[triangle.node[2]]) /
+                                        3);
+            const double through = std::fabs(dot(velocity - winds_[t], normal));
             air_[t] = std::sqrt(substep.air_density * cloth_.drag_coefficient * triangle.area * through / 6) * normal;
         }
     };
@@ -218,7 +222,7 @@ void ClothSheet::fill_row(std::size_t i, const Substep& substep) {
         }
         const Vec3 air = air_[corner.triangle];
         own += (1 / h) * symmetric_outer(air);
-        load += dot(air, substep.wind) * air;
+        load += dot(air, winds_[corner.triangle]) * air;
     }
     matrix_.diagonal[i] = to_block(own);
     node_stiffness_[i] = trace(own) / 3;
@@ -276,7 +280,7 @@ void ClothSheet::keep_momentum(const Substep& substep) {
     for (std::size_t i = 0; i < nodes_.size(); ++i) given[i] = h * weight_[i];
     for (std::size_t t = 0; t < triangles_.size(); ++t) {  // the air as it acted
         for (const std::uint32_t node : triangles_[t].node)
-            given[node] += dot(air_[t], h * substep.wind - moves_[node]) * air_[t];
+            given[node] += dot(air_[t], h * winds_[t] - moves_[node]) * air_[t];
     }
     keep_momenta(nodes_, given, h, moves_);
 }

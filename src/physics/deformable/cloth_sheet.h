@@ -82,7 +82,7 @@ private:
 
     // Of the substep.
     std::vector<Strain> strains_;
-    std::vector<Vec3> rhs_, weight_, small_load_, air_, moves_;
+    std::vector<Vec3> rhs_, weight_, small_load_, air_, winds_, moves_;
     std::vector<double> node_stiffness_;
     std::vector<BodyInertia> inertias_;
     std::vector<BodyMove> body_moves_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "math/vec3.h"
+#include "physics/deformable/wind.h"
 
 namespace embody::physics {
 
@@ -10,7 +10,7 @@ struct Substep {
     double h = 1.0 / 60;       ///< its length, s
     double time = 0;           ///< of its start, s after the step began
     Vec3 gravity;              ///< m/s², the deformable's own gravity factor in it
-    Vec3 wind;                 ///< velocity of the air, m/s
+    Wind wind;                 ///< of the air
     double air_density = 1.2;  ///< kg/m³
 };
 

@@ -9,7 +9,6 @@
 #include "physics/step/solid_contact_search.h"
 #include "physics/step/step.h"
 #include "physics/step/thin_on_solids.h"
-#include "physics/step/wind.h"
 
 namespace embody::physics {
 
@@ -148,7 +147,8 @@ void note_breaks(WorldState& world, const DeformableRecord& record) {
 void advance_thin_ones(WorldState& world, MovingDeformables& moving, int k) {
     const int substeps = world.settings.deformable_substeps;
     const double step = world.settings.time_step, h = step / substeps;
-    const Vec3 wind = wind_at(world.settings, world.report.time);
+    const WorldSettings& settings = world.settings;
+    const Wind wind{settings.wind, settings.gustiness, settings.gust_time, world.report.time};
     ThinOnSolids solids(world);
     for (ThinDeformable& thin : moving.thin) {
         if (thin.record->cloth && k < substeps) continue;
@@ -306,7 +306,7 @@ bool may_sleep(const WorldState& world, const DeformableRecord& record, std::vec
 // not quiet.
 void put_to_sleep(WorldState& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.records) {
-        const bool is_blown = record->cloth && is_gusty(world.settings);
+        const bool is_blown = record->cloth && Wind{world.settings.wind, world.settings.gustiness}.is_gusty();
         const bool is_quiet = !is_blown && fastest_node(*record) < quiet_speed;
         record->quiet_time = is_quiet ? record->quiet_time + world.settings.time_step : 0;
         for (const std::uint32_t slot : record->touched_bodies) {

@@ -106,6 +106,11 @@ export class EntityView {
     this.put(index);
   }
 
+  /** Everything is as the document has it: ropes are whole again. */
+  mend(): void {
+    for (const index of this.softs.broken()) this.redress(index);
+  }
+
   /** All points are those of another scene. */
   forgetPoints(): void {
     this.clouds.clear();

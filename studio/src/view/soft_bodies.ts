@@ -15,6 +15,7 @@ interface Nodes {
   start: number;
   duration: number;
   skin: SoftSkin | null;
+  isBroken: boolean;
 }
 
 /** Entities whose nodes carry their drawn form, and where these are. */
@@ -52,7 +53,7 @@ export class SoftBodies {
       if (nodes?.to.length !== set.positions.length) {
         this.drop(set.index);
         const places = placesOf(set, new Float32Array(set.positions.length));
-        nodes = { from: places.slice(), to: places, now: places.slice(), start: now, duration: 0, skin: null };
+        nodes = { from: places.slice(), to: places, now: places.slice(), start: now, duration: 0, skin: null, isBroken: false };
         this.all.set(set.index, nodes);
         changed.push(set.index);
       } else {
@@ -85,9 +86,15 @@ export class SoftBodies {
     const { mesh } = await this.connection.request("entity.simulation_mesh", { index });
     const nodes = this.all.get(index);
     if (!mesh || nodes?.to.length !== mesh.nodes.length) return null;
+    nodes.isBroken = (mesh.broken?.length ?? 0) > 0;
     nodes.skin = new SoftSkin(new SoftForm(mesh, scale), plain);
     this.moving.add(index);
     return nodes.skin;
+  }
+
+  /** Ropes that were in pieces when they were dressed. */
+  broken(): number[] {
+    return [...this.all].filter(([, nodes]) => nodes.isBroken).map(([index]) => index);
   }
 
   undress(index: number): void {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "physics/step/wind.h"
+#include "physics/deformable/wind.h"
 
 #include <gtest/gtest.h>
 
@@ -12,38 +12,42 @@ namespace embody::physics {
 namespace {
 
 TEST(Wind, IsSteadyWithoutGusts) {
-    const WorldSettings settings{.wind = {3, 0, -1}};
-    EXPECT_FALSE(is_gusty(settings));
-    EXPECT_EQ(wind_at(settings, 12.3), settings.wind);
-    EXPECT_FALSE(is_gusty({.gustiness = 0.5}));
-    EXPECT_EQ(wind_at({.gustiness = 0.5}, 12.3), Vec3{});
+    const Wind wind{.mean = {3, 0, -1}, .time = 12.3};
+    EXPECT_FALSE(wind.is_gusty());
+    EXPECT_EQ(wind.at({1, 2, 3}), wind.mean);
+    const Wind still{.gustiness = 0.5, .time = 12.3};
+    EXPECT_FALSE(still.is_gusty());
+    EXPECT_EQ(still.at({}), Vec3{});
 }
 
 TEST(Wind, GustsHaveTheMeanAndTheStrengthThatTheyAreGiven) {
-    const WorldSettings settings{.wind = {0, 0, 5}, .gustiness = 0.3, .gust_time = 2};
+    Wind wind{.mean = {0, 0, 5}, .gustiness = 0.3};
     Vec3 mean, squares;
-    const int count = 200'000;
+    const int count = 100'000;
     for (int i = 0; i < count; ++i) {
-        const Vec3 wind = wind_at(settings, 0.05 * i);
-        mean += wind / count;
-        const Vec3 change = wind - settings.wind;
+        wind.time = 0.05 * i;
+        const Vec3 change = wind.at({0.37 * (i % 101), 0.23 * (i % 53), 0}) - wind.mean;
+        mean += change / count;
         squares += scale(change, change) / count;
     }
-    EXPECT_LT(length(mean - settings.wind), 0.05);
+    EXPECT_LT(length(mean), 0.05);
     EXPECT_NEAR(std::sqrt(squares.z), 1.5, 0.06);
     EXPECT_NEAR(std::sqrt(squares.x), 1.5 * 0.8, 0.05);
     EXPECT_NEAR(std::sqrt(squares.y), 1.5 * 0.52, 0.03);
 }
 
-TEST(Wind, GustsAreSmoothAndLastAsLongAsTheyAreTold) {
-    WorldSettings settings{.wind = {4, 0, 0}, .gustiness = 0.5, .gust_time = 1};
-    for (int i = 0; i < 1000; ++i)
-        EXPECT_LT(length(wind_at(settings, 0.001 * (i + 1)) - wind_at(settings, 0.001 * i)), 0.1) << i;
-    // The same gusts, slower.
-    WorldSettings slow = settings;
-    slow.gust_time = 4;
-    for (int i = 0; i < 100; ++i) EXPECT_EQ(wind_at(slow, 0.4 * i), wind_at(settings, 0.1 * i)) << i;
-    EXPECT_EQ(wind_at(settings, 77.7), wind_at(settings, 77.7));
+TEST(Wind, GustsAreSmoothInTimeAndPlaceAndCarriedAlong) {
+    const auto at = [](double time, Vec3 place) { return Wind{{4, 0, 0}, 0.5, 1, time}.at(place); };
+    for (int i = 0; i < 1000; ++i) {
+        EXPECT_LT(length(at(0.001 * (i + 1), {}) - at(0.001 * i, {})), 0.1) << i;
+        EXPECT_LT(length(at(3, {0, 0, 0.001 * (i + 1)}) - at(3, {0, 0, 0.001 * i})), 0.1) << i;
+    }
+    // What is here now is 4 m further downwind a second later.
+    for (int i = 0; i < 20; ++i) EXPECT_LT(length(at(i + 1, {4, 1, 2}) - at(i, {0, 1, 2})), 1e-9) << i;
+    double changed = 0;
+    for (int i = 0; i < 20; ++i) changed += length(at(i, {0, 0, 2}) - at(i, {})) / 20;
+    EXPECT_GT(changed, 0.5) << "2 m aside it blows otherwise";
+    EXPECT_EQ(at(77.7, {1, 2, 3}), at(77.7, {1, 2, 3}));
 }
 
 // A strip that hangs in a wind leans so that the air's push and its weight have no moment about the rod.
