@@ -95,26 +95,51 @@ void put_mass_dependents(AttributeSet& set, const GeometryFacts& facts, const Fo
     if (kind == "granular") put_number(set, "grain_density", density, "density of the material", level);
 }
 
-void put_simulated_grains(AttributeSet& set, const GeometryFacts& facts, const Form& form) {
-    if (set.word("kind", "") != "granular") return;
+namespace {
+
+// Three digits are enough of what is counted by the thousand.
+std::string counted(double count) {
+    const double step = std::pow(10, std::max(0.0, std::floor(std::log10(count)) - 2));
+    return std::to_string(std::llround(count / step) * std::llround(step));
+}
+
+void put_simulated_grains(AttributeSet& set, double volume, const Form& form) {
     const double grain = set.number("grain_diameter", 0.002), budget = set.number("grain_budget", 2000);
-    const double volume = facts.hull_volume > 0 && std::isfinite(facts.hull_volume) ? facts.hull_volume : form.volume;
     const double least = std::cbrt(6 * loose_packing * volume / (std::numbers::pi * budget));
     const AttributeDescription& range = *describe("simulated_diameter");
     // At least one layer of them must lie inside.
     const double largest = std::max(*range.low, 0.6 * std::min({form.size.x, form.size.y, form.size.z}));
     const double diameter = std::min(std::max({grain, least, *range.low}), largest);
     const double stands_for = std::pow(diameter / grain, 3);
-    // Three digits are enough of what is counted by the thousand.
-    const auto counted = [](double count) {
-        const double step = std::pow(10, std::max(0.0, std::floor(std::log10(count)) - 2));
-        return std::to_string(std::llround(count / step) * std::llround(step));
-    };
     const std::string source = stands_for < 1.5 ? "of a grain"
                                                 : "each ball stands for " + counted(stands_for) + " grains, so that " +
                                                       counted(budget) + " fill its volume of " +
                                                       short_number(volume * 1000) + " litres";
     put_number(set, "simulated_diameter", diameter, source, AttributeLevel::model);
+}
+
+// A cell has eight particles.
+void put_fluid_cells(AttributeSet& set, double volume) {
+    // What runs through many cells in a step is solved in as many parts, so that small cells are dear beyond their
+    // number: below this size they are as small as a thousand particles ask for, no smaller.
+    constexpr double usual_least = 0.006, fewest = 1000;
+    const double budget = set.number("particle_budget", 20000);
+    const auto cell_for = [volume](double particles) { return std::cbrt(8 * volume / particles); };
+    const double by_budget = cell_for(budget);
+    const double cell = std::max(by_budget, std::min(usual_least, cell_for(std::min(fewest, budget))));
+    const std::string source = counted(8 * volume / (cell * cell * cell)) + " particles, eight in a cell, fill its " +
+                               "volume of " + short_number(volume * 1000) + " litres" +
+                               (cell > by_budget ? "; smaller cells would take many parts of a step" : "");
+    put_number(set, "fluid_cell_size", cell, source, AttributeLevel::model);
+}
+
+}  // namespace
+
+void put_fineness(AttributeSet& set, const GeometryFacts& facts, const Form& form) {
+    const std::string kind = set.word("kind", "");
+    const double volume = facts.hull_volume > 0 && std::isfinite(facts.hull_volume) ? facts.hull_volume : form.volume;
+    if (kind == "granular") put_simulated_grains(set, volume, form);
+    if (kind == "fluid") put_fluid_cells(set, volume);
 }
 
 void put_cloth_of_primitive(AttributeSet& set, const GeometryFacts& facts) {

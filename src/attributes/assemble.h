@@ -24,9 +24,9 @@ void put_mass_dependents(AttributeSet& set, const GeometryFacts& facts, const Fo
 /// Of bulk that lies as loose as it is poured, the share that is grain (random loose packing).
 inline constexpr double loose_packing = 0.55;
 
-/// How large the balls are that stand for the grains of a granular thing (docs/physics/grains.md); nothing else is
-/// touched.
-void put_simulated_grains(AttributeSet& set, const GeometryFacts& facts, const Form& form);
+/// How fine what is simulated by many points is: the size of the balls that stand for the grains of a granular thing
+/// (docs/physics/grains.md), the cells of a liquid (docs/physics/fluids.md). Nothing else is touched.
+void put_fineness(AttributeSet& set, const GeometryFacts& facts, const Form& form);
 
 /// Thickness, area density and mass of a primitive (whose volume and size `facts` has) that is cloth; nothing else is
 /// touched. Cloth weighs by its area: a box as thin as cloth, but solid, would be far too heavy.

@@ -220,7 +220,7 @@ void add_soft_and_cloth(Rows& rows) {
     cloth_later.number({"tear_strength", "C", "Tear strength", "Tension that tears it."}, "N/m", infinity, 0, infinity);
 }
 
-void add_rope_fluid_and_grain(Rows& rows) {
+void add_rope(Rows& rows) {
     const Group rope{rows, "rope"};
     rope.number({"linear_density", "P", "Linear density", "Mass of a metre."}, "kg/m", 0.07, 1e-6, 1e4);
     rope.number({"axial_stiffness", "P", "Axial stiffness EA", "Force per unit strain."}, "N", 1e4, 1e-3, 1e12);
@@ -233,13 +233,40 @@ void add_rope_fluid_and_grain(Rows& rows) {
     const Group rope_later{rows, "rope", false};
     rope_later.number({"twist_rigidity", "P", "Twist rigidity GJ", "Moment per twist of a metre."}, "N m²", 1e-3, 1e-12,
                       1e9);
-    const Group fluid{rows, "fluid", false};
-    fluid.number({"rest_density", "F", "Rest density", "Density of the liquid at rest."}, "kg/m³", 998, 0.01, 22600);
-    fluid.number({"dynamic_viscosity", "F", "Viscosity", "Dynamic viscosity."}, "Pa s", 1e-3, 1e-7, 1e9);
-    fluid.number({"yield_stress_fluid", "F", "Yield stress of the liquid", "Stress below which it does not flow."},
+}
+
+void add_fluid(Rows& rows) {
+    const Group fluid{rows, "fluid"};
+    fluid.number({"rest_density", "F", "Rest density", "Density of the liquid at rest; simulated as 1 or more."},
+                 "kg/m³", 998, 0.01, 22600);
+    fluid.number({"dynamic_viscosity", "F", "Viscosity", "Dynamic viscosity; simulated up to 10,000."}, "Pa s", 1e-3,
+                 1e-7, 1e9);
+    fluid.number({"yield_stress_fluid", "F", "Yield stress of the liquid",
+                  "Stress below which it does not flow; simulated up to 10,000."},
                  "Pa", 0, 0, 1e9);
-    fluid.number({"surface_tension", "F", "Surface tension", "Against air."}, "N/m", 0.072, 0, 10);
-    fluid.number({"contact_angle", "F", "Contact angle", "On a solid wall."}, "deg", 60, 0, 180);
+    fluid.whole({"particle_budget", "F", "Most particles",
+                 "So many particles carry the liquid at most, save where a smaller number could not fill its form."},
+                20000, 100, 400000);
+    fluid.number(
+        {"fluid_cell_size", "F", "Cell size",
+         "Edge of the cells that the liquid is solved on, eight particles in each: finer is slower, and things "
+         "thinner than a cell are not felt by its pressure."},
+        "m", 0.02, 1e-3, 1);
+    fluid.number({"absorption_red", "F", "Absorption of red light", "Of light at 650 nm, by a path of a metre."}, "1/m",
+                 0.34, 0, 1e7);
+    fluid.number({"absorption_green", "F", "Absorption of green light", "Of light at 550 nm, by a path of a metre."},
+                 "1/m", 0.0565, 0, 1e7);
+    fluid.number({"absorption_blue", "F", "Absorption of blue light", "Of light at 450 nm, by a path of a metre."},
+                 "1/m", 0.0092, 0, 1e7);
+    fluid.number({"turbidity", "F", "Scattering of light",
+                  "Reduced scattering coefficient: clear water has next to none, milk thousands."},
+                 "1/m", 0.03, 0, 1e7);
+    const Group unsimulated{rows, "fluid", false};
+    unsimulated.number({"surface_tension", "F", "Surface tension", "Against air."}, "N/m", 0.072, 0, 10);
+    unsimulated.number({"contact_angle", "F", "Contact angle", "On a solid wall."}, "deg", 60, 0, 180);
+}
+
+void add_grain(Rows& rows) {
     const Group grain{rows, "grain"};
     grain.number({"grain_density", "G", "Grain density", "Density of a single grain."}, "kg/m³", 2650, 0.1, 22600);
     grain.number({"grain_diameter", "G", "Grain diameter", "Median diameter of a grain."}, "m", 0.002, 1e-6, 1);
@@ -270,7 +297,9 @@ std::vector<AttributeDescription> make_registry_table() {
     add_surface(rows);
     add_motion(rows);
     add_soft_and_cloth(rows);
-    add_rope_fluid_and_grain(rows);
+    add_rope(rows);
+    add_fluid(rows);
+    add_grain(rows);
     return rows;
 }
 

@@ -165,7 +165,7 @@ AttributeSet resolve(const Taxonomy& taxonomy, const ModelFacts& facts) {
 
     // Defaults for the rest.
     complete_for_kind(set);
-    put_simulated_grains(set, facts.geometry, form);
+    put_fineness(set, facts.geometry, form);
     return set;
 }
 

@@ -263,4 +263,14 @@ Result<physics::DeformableDefinition> rope_from_attributes(const AttributeSet& a
     return deformable;
 }
 
+physics::FluidDefinition fluid_from_attributes(const AttributeSet& attributes) {
+    constexpr double least_density = 1, most_viscosity = 1e4, most_yield_stress = 1e4;
+    physics::FluidDefinition fluid;
+    fluid.density = std::max(number_or_standard(attributes, "rest_density"), least_density);
+    fluid.viscosity = std::min(number_or_standard(attributes, "dynamic_viscosity"), most_viscosity);
+    fluid.yield_stress = std::min(number_or_standard(attributes, "yield_stress_fluid"), most_yield_stress);
+    fluid.cell_size = number_or_standard(attributes, "fluid_cell_size");
+    return fluid;
+}
+
 }  // namespace embody::attributes

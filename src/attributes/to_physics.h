@@ -12,6 +12,7 @@
 #include "geometry/tetrahedra/tetrahedral_mesh.h"
 #include "physics/inter/definitions/body_definition.h"
 #include "physics/inter/definitions/deformable_definition.h"
+#include "physics/inter/definitions/fluid_definition.h"
 #include "physics/inter/definitions/shape_definition.h"
 
 namespace embody::attributes {
@@ -61,5 +62,9 @@ Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& 
 /// density is the one that makes its mass that of the attributes, slack and all. Errors as of cloth.
 Result<physics::DeformableDefinition> rope_from_attributes(const AttributeSet& attributes,
                                                            const std::vector<Vec3>& nodes, double diameter);
+
+/// A liquid without volume and velocity: what it is and the cells that it is solved on. Density is taken as 1 kg/m³ or
+/// more, viscosity and yield stress up to 10,000 Pa s and Pa.
+physics::FluidDefinition fluid_from_attributes(const AttributeSet& attributes);
 
 }  // namespace embody::attributes

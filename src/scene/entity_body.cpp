@@ -101,11 +101,11 @@ AttributeSet primitive_attributes(const Entity& entity, const physics::ShapeDefi
     return set;
 }
 
-// How large the balls are, of this size of the thing; and what a primitive that is filled with them weighs.
-void complete_grains(AttributeSet& set, const attributes::GeometryFacts& geometry, bool is_primitive) {
-    if (set.word("kind", "") != "granular") return;
-    attributes::put_simulated_grains(set, geometry, attributes::form_of(geometry, {0.5, 0.5, 0.5}));
-    if (!is_primitive) return;
+// How fine the grains or the liquid are, of this size of the thing; and what a primitive that is filled with grains
+// weighs.
+void complete_fineness(AttributeSet& set, const attributes::GeometryFacts& geometry, bool is_primitive) {
+    attributes::put_fineness(set, geometry, attributes::form_of(geometry, {0.5, 0.5, 0.5}));
+    if (!is_primitive || set.word("kind", "") != "granular") return;
     const double density = set.number("grain_density", 2650) * attributes::loose_packing;
     const attributes::AttributeDescription& range = *attributes::describe("mass");
     attributes::replace(set, {"mass",
@@ -242,7 +242,7 @@ Result<AttributeSet> EntityBodies::attributes(const Entity& entity) {
         const ModelFacts& facts = primitive(*shape);
         AttributeSet set = lay_over(primitive_attributes(entity, *shape, facts), own.value(), facts);
         set.erase("collision_shape");
-        complete_grains(set, facts.geometry, true);
+        complete_fineness(set, facts.geometry, true);
         attributes::put_cloth_of_primitive(set, facts.geometry);
         return set;
     }
@@ -253,7 +253,7 @@ Result<AttributeSet> EntityBodies::attributes(const Entity& entity) {
     facts.geometry = attributes::scaled(model.facts.geometry, entity.scale);
     AttributeSet set =
         own.value().empty() ? std::move(automatic).value() : lay_over(automatic.value(), own.value(), facts);
-    complete_grains(set, facts.geometry, false);
+    complete_fineness(set, facts.geometry, false);
     return set;
 }
 

@@ -46,6 +46,8 @@ public:
     Result<physics::ShapeDefinition> shape(const Entity& entity, const attributes::AttributeSet& attributes);
     /// What cannot be what its kind says is rigid, with a note why; so is what joints or pins hold as one body.
     EntityForm form(const Entity& entity, const attributes::AttributeSet& attributes, bool is_held_as_body);
+    /// Whether its kind is fluid; false where the model is unknown.
+    bool is_liquid(const Entity& entity);
     /// What stands for an entity whose form has points; everything but what its pins hold to other entities.
     Result<PointsDefinition> points(const Entity& entity, const attributes::AttributeSet& attributes);
     /// Entities with the same key have the same shape; empty: nobody else has it.
@@ -75,6 +77,7 @@ private:
                                                     const attributes::ModelFacts& facts) const;
     /// Balls of the shape that an entity of kind granular fills.
     Result<GrainDefinition> grains(const Entity& entity, const attributes::AttributeSet& attributes);
+    Result<LiquidDefinition> liquid(const Entity& entity, const attributes::AttributeSet& attributes);
     /// The tetrahedra of an entity of kind soft, without its scale; the error says why it cannot be soft. Valid until
     /// the next call.
     Result<const catalog::SoftMesh*> soft_mesh(const Entity& entity);

@@ -16,6 +16,16 @@ std::string grains_key(const Entity& entity, const attributes::AttributeSet& att
            std::to_string(attributes.number("grain_budget", 0));
 }
 
+bool is_liquid(const attributes::AttributeSet& attributes) { return attributes.word("kind", "") == "fluid"; }
+
+// Equal where geometry and fineness of a liquid are.
+std::string liquid_key(const Entity& entity, const attributes::AttributeSet& attributes) {
+    const std::string key = EntityBodies::shape_key(entity, attributes);
+    if (key.empty()) return {};
+    return "fluid\n" + key + '\n' + std::to_string(attributes.number("fluid_cell_size", 0)) + '\n' +
+           std::to_string(attributes.number("particle_budget", 0));
+}
+
 // Equal where the nodes of what changes its form are.
 std::string deformable_key(const Entity& entity, const attributes::AttributeSet& attributes) {
     const std::string key = EntityBodies::shape_key(entity, attributes);
@@ -33,8 +43,9 @@ bool is_deformable(const std::string& kind) { return kind == "soft" || kind == "
 EntityForm EntityBodies::form(const Entity& entity, const attributes::AttributeSet& attributes, bool is_held_as_body) {
     if (is_granular(attributes)) return {true, grains_key(entity, attributes), {}};
     const std::string kind = attributes.word("kind", "");
-    if (!is_deformable(kind)) return {};
+    if (!is_deformable(kind) && !scene::is_liquid(attributes)) return {};
     if (is_held_as_body) return {false, {}, "is simulated as rigid, because a joint or a pin holds on to it"};
+    if (scene::is_liquid(attributes)) return {true, liquid_key(entity, attributes), {}};
     const auto or_rigid = [&](const auto& made) {
         if (made.ok()) return EntityForm{true, deformable_key(entity, attributes), {}};
         return EntityForm{false, {}, "is simulated as rigid, because " + made.error().why};
@@ -42,11 +53,25 @@ EntityForm EntityBodies::form(const Entity& entity, const attributes::AttributeS
     return kind == "soft" ? or_rigid(soft_mesh(entity)) : or_rigid(thin_form(entity, attributes));
 }
 
+bool EntityBodies::is_liquid(const Entity& entity) {
+    if (const auto own = entity.attributes.find("kind"); own != entity.attributes.end())
+        return own->second == attributes::AttributeValue(std::string("fluid"));
+    const auto* reference = std::get_if<ModelReference>(&entity.geometry);
+    if (!reference) return false;
+    const Result<const Model*> model = find(reference->key);
+    return model.ok() && scene::is_liquid(model.value()->attributes);
+}
+
 Result<PointsDefinition> EntityBodies::points(const Entity& entity, const attributes::AttributeSet& attributes) {
     if (is_granular(attributes)) {
         Result<GrainDefinition> grains = this->grains(entity, attributes);
         if (!grains.ok()) return grains.error();
         return PointsDefinition(std::move(grains).value());
+    }
+    if (scene::is_liquid(attributes)) {
+        Result<LiquidDefinition> liquid = this->liquid(entity, attributes);
+        if (!liquid.ok()) return liquid.error();
+        return PointsDefinition(std::move(liquid).value());
     }
     Result<physics::DeformableDefinition> deformable = this->deformable(entity, attributes);
     if (!deformable.ok()) return deformable.error();

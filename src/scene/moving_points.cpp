@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene/moving_points.h"
 
+#include "scene/fluid_body.h"
 #include "scene/grain_bodies.h"
 #include "scene/soft_nodes.h"
 
@@ -16,9 +17,12 @@ Result<std::unique_ptr<MovingPoints>> made(Result<std::unique_ptr<Points>> point
 
 }  // namespace
 
-Result<std::unique_ptr<MovingPoints>> make_points(physics::World& world, const PointsDefinition& definition) {
+Result<std::unique_ptr<MovingPoints>> make_points(physics::World& world, Liquids& liquids,
+                                                  const PointsDefinition& definition) {
     if (const auto* grains = std::get_if<GrainDefinition>(&definition))
         return made(GrainBodies::create(world, *grains));
+    if (const auto* liquid = std::get_if<LiquidDefinition>(&definition))
+        return made(FluidBody::create(world, liquids, *liquid));
     return made(SoftNodes::create(world, std::get<physics::DeformableDefinition>(definition)));
 }
 

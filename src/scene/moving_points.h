@@ -19,6 +19,8 @@ struct SurfaceHit {
     Vec3 normal;          ///< unit, outwards
 };
 
+class Liquids;
+
 /// What stands for an entity that is not one body: many points, whatever physics moves them. The world that they are in
 /// outlives them; the destructor takes them out of it.
 class MovingPoints {
@@ -28,10 +30,12 @@ public:
     MovingPoints& operator=(const MovingPoints&) = delete;
     virtual ~MovingPoints() = default;
 
-    /// Where they are now, world, m: always as many, in the same order.
+    /// Where they are now, world, m: always in the same order, and as many, but for drops of liquid that got lost.
     virtual void read(std::vector<Vec3>& positions) const = 0;
     /// Of the ball that is drawn at each, m; 0: they carry the thing's own drawn form.
     [[nodiscard]] virtual double radius() const = 0;
+    /// They are drawn as one liquid, each a ball of its volume.
+    [[nodiscard]] virtual bool is_liquid() const { return false; }
     /// What carries a drawn form, at rest; null where nothing does.
     [[nodiscard]] virtual const physics::DeformableDefinition* deformable() const { return nullptr; }
     /// Of a rope: segment k is between the points k and k + 1.
@@ -75,7 +79,8 @@ public:
     virtual Result<void> set_enabled(bool enabled) = 0;
 };
 
-/// All of them or none. `world` outlives them.
-Result<std::unique_ptr<MovingPoints>> make_points(physics::World& world, const PointsDefinition& definition);
+/// All of them or none. `world` and `liquids`, its fluids, outlive them.
+Result<std::unique_ptr<MovingPoints>> make_points(physics::World& world, Liquids& liquids,
+                                                  const PointsDefinition& definition);
 
 }  // namespace embody::scene

@@ -4,9 +4,11 @@
 #include <variant>
 #include <vector>
 
-#include "math/vec3.h"
+#include "math/transform.h"
 #include "physics/inter/definitions/body_definition.h"
 #include "physics/inter/definitions/deformable_definition.h"
+#include "physics/inter/definitions/fluid_definition.h"
+#include "physics/inter/definitions/shape_definition.h"
 
 namespace embody::scene {
 
@@ -17,7 +19,17 @@ struct GrainDefinition {
     physics::BodyDefinition body;  ///< of each ball but for place and shape; its pose is the entity's
 };
 
+/// A body of liquid as it begins.
+struct LiquidDefinition {
+    physics::ShapeDefinition shape;          ///< that it fills, less the bodies that stand in it
+    Transform pose;                          ///< of the shape
+    physics::FluidDefinition matter;         ///< neither volume nor velocity
+    std::size_t particle_budget = 0;         ///< most particles
+    Vec3 linear_velocity, angular_velocity;  ///< m/s, rad/s, as of one rigid thing
+    bool enabled = true;
+};
+
 /// What stands for an entity that is not one body.
-using PointsDefinition = std::variant<GrainDefinition, physics::DeformableDefinition>;
+using PointsDefinition = std::variant<GrainDefinition, LiquidDefinition, physics::DeformableDefinition>;
 
 }  // namespace embody::scene

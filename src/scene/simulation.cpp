@@ -49,10 +49,14 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document,
     for (const Entity& entity : document.entities)
         for (const Pin& pin : entity.pins) state.to_be_held.insert(pin.to.value_or(0));
 
-    // In the document's order, so that the same document is the same world.
-    for (const Entity& entity : document.entities) {
-        state.templates[entity.index] = entity;
-        if (Result<void> added = state.add(entity); !added.ok()) return added.error();
+    // In the document's order, so that the same document is the same world; liquids last, since they fill what the
+    // others leave free.
+    for (const bool liquids : {false, true}) {
+        for (const Entity& entity : document.entities) {
+            state.templates[entity.index] = entity;
+            if (state.bodies.is_liquid(entity) != liquids) continue;
+            if (Result<void> added = state.add(entity); !added.ok()) return added.error();
+        }
     }
     if (Result<void> held = state.fasten_all({}); !held.ok()) return held.error();
     for (const SceneJoint& joint : document.joints)

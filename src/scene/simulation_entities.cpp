@@ -66,7 +66,7 @@ Result<void> Simulation::State::put_body(LiveEntity& entity) {
 Result<void> Simulation::State::put_points(LiveEntity& entity) {
     const Result<PointsDefinition> definition = bodies.points(entity.definition, entity.attributes);
     if (!definition.ok()) return definition.error();
-    Result<std::unique_ptr<MovingPoints>> points = make_points(*world, definition.value());
+    Result<std::unique_ptr<MovingPoints>> points = make_points(*world, liquids, definition.value());
     if (!points.ok()) return points.error();
     entity.points = std::move(points).value();
     if (const auto* grains = std::get_if<GrainDefinition>(&definition.value()))
@@ -154,11 +154,15 @@ Result<void> Simulation::State::replace(LiveEntity& before, LiveEntity& after, b
         after.definition.pose = after.frame = pose_of(before);
         std::tie(after.definition.linear_velocity, after.definition.angular_velocity) = motion_of(before);
     }
+    // Liquid fills only what is free, so the body that it was does not stand in it.
+    const bool hides = before.definition.enabled && !before.body.is_null();
+    if (hides) (void)world->set_enabled(before.body, false).ok();
     Result<void> placed = put(after);
     if (placed.ok()) placed = fasten(after);
     after.definition = document;
     if (!placed.ok()) {
         take_out(after);
+        if (hides) (void)world->set_enabled(before.body, true).ok();
         return placed;
     }
     take_out(before);

@@ -11,6 +11,7 @@
 
 #include "scene/action_runner.h"
 #include "scene/entity_body.h"
+#include "scene/liquids.h"
 #include "scene/moving_points.h"
 #include "scene/shared_shapes.h"
 #include "scene/simulation.h"
@@ -45,13 +46,14 @@ struct TimedForce {
 /// simulation_holds.cpp, what actions do to them in simulation_effects.cpp.
 struct Simulation::State {
     State(std::unique_ptr<physics::World> made, const physics::WorldSettings& asked, catalog::Catalog* catalog)
-        : world(std::move(made)), settings(asked), bodies(catalog), shapes(*world) {}
+        : world(std::move(made)), settings(asked), bodies(catalog), shapes(*world), liquids(*world) {}
 
     std::unique_ptr<physics::World> world;
     physics::WorldSettings settings;  ///< the document's
     double finest_grain = 1e300;      ///< that was ever in this world, m
     EntityBodies bodies;
     SharedShapes shapes;
+    Liquids liquids;
     std::map<EntityIndex, Entity> templates;  ///< the document's entities, for actions that spawn
     std::map<EntityIndex, LiveEntity> live;
     std::vector<EntityIndex> indices;

@@ -36,7 +36,8 @@ void append_record(std::string& frame, const scene::EntityState& state, bool has
 }
 
 // Positions in 65535ths of the box around them: of a heap of a metre, in steps of 15 µm.
-std::string points_record(scene::EntityIndex entity, const std::vector<Vec3>& positions, double radius) {
+std::string points_record(scene::EntityIndex entity, const std::vector<Vec3>& positions,
+                          const scene::MovingPoints& points) {
     constexpr double steps = 65535;
     Bounds bounds;
     for (const Vec3 p : positions) bounds.add(p);
@@ -46,9 +47,9 @@ std::string points_record(scene::EntityIndex entity, const std::vector<Vec3>& po
     append(record, entity);
     append(record, static_cast<std::uint32_t>(positions.size()));
     const Vec3f lower = to_vec3f(bounds.lower), size = to_vec3f(bounds.size());
-    for (const float number : {lower.x, lower.y, lower.z, size.x, size.y, size.z, static_cast<float>(radius)})
+    for (const float number : {lower.x, lower.y, lower.z, size.x, size.y, size.z, static_cast<float>(points.radius())})
         append(record, number);
-    append(record, std::uint32_t{0});
+    append(record, std::uint32_t{points.is_liquid() ? 1U : 0U});
     const auto quantised = [&](double position, float from, float extent) {
         if (!(extent > 0)) return std::uint16_t{0};
         return static_cast<std::uint16_t>(std::lround(std::clamp((position - from) / extent, 0.0, 1.0) * steps));
@@ -92,7 +93,7 @@ StateBoard::Row StateBoard::next_row(const scene::EntityState& state, bool all_c
         return row;
     }
     state.points->read(scratch_);
-    row.points = points_record(state.entity, scratch_, state.points->radius());
+    row.points = points_record(state.entity, scratch_, *state.points);
     if (known != nullptr && known->points == row.points) row.points_changed = known->points_changed;
     return row;
 }

@@ -27,16 +27,36 @@ bool is_finite(const FluidParticle& particle) {
 FluidSolver::FluidSolver(Vec3 origin, double cell_size, const FluidProperties& properties,
                          std::span<const Vec3f> positions, Vec3 velocity)
     : origin_(origin), properties_(properties), grid_(cell_size), solids_(origin) {
-    particles_.resize(positions.size());
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        FluidParticle& particle = particles_[i];
-        const Vec3 p = positions[i];
-        for (int axis = 0; axis < 3; ++axis) {
-            particle.position[axis] = static_cast<float>(p[axis]);
-            particle.velocity[axis] = static_cast<float>(velocity[axis]);
-        }
-        particle.id = static_cast<std::uint32_t>(i);
+    add_particles(positions);
+    for (FluidParticle& particle : particles_) {
+        for (int axis = 0; axis < 3; ++axis) particle.velocity[axis] = static_cast<float>(velocity[axis]);
     }
+}
+
+FluidIds FluidSolver::add_particles(std::span<const Vec3f> positions) {
+    const std::uint32_t first = next_id_;
+    particles_.reserve(particles_.size() + positions.size());
+    for (const Vec3f p : positions) particles_.push_back({.position = {p.x, p.y, p.z}, .id = next_id_++});
+    return {first, next_id_};
+}
+
+void FluidSolver::change_particles(FluidIds ids, const FluidChange& change) {
+    std::erase_if(particles_, [&](FluidParticle& particle) {
+        if (!ids.contains(particle.id)) return false;
+        float *x = particle.position, *v = particle.velocity;
+        const Vec3 before{v[0], v[1], v[2]};
+        Vec3 position = origin_ + Vec3{x[0], x[1], x[2]}, velocity = before;
+        if (!change(particle.id, position, velocity)) return true;
+        // What is told to move otherwise no longer turns or stretches as it did.
+        if (velocity != before) {
+            for (auto& row : particle.affine) std::fill_n(row, 3, 0.0f);
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            x[axis] = static_cast<float>((position - origin_)[axis]);
+            v[axis] = static_cast<float>(velocity[axis]);
+        }
+        return false;
+    });
 }
 
 double FluidSolver::usual_speed() const {

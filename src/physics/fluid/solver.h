@@ -8,6 +8,7 @@
 #include "physics/fluid/pressure_system.h"
 #include "physics/fluid/solids.h"
 #include "physics/fluid/viscosity.h"
+#include "physics/inter/definitions/fluid_definition.h"
 #include "physics/inter/definitions/step_report.h"
 
 namespace embody::physics {
@@ -53,6 +54,10 @@ public:
     [[nodiscard]] Conserved conserved(Vec3 gravity) const;
     /// The speed that all but a few drops stay below, m/s; there is liquid.
     [[nodiscard]] double usual_speed() const;
+    /// At rest; their ids follow those that were ever given.
+    FluidIds add_particles(std::span<const Vec3f> positions);
+    /// Those with these ids as `change` says, in world coordinates.
+    void change_particles(FluidIds ids, const FluidChange& change);
     /// Stops all motion.
     void stop();
     /// The particles are at these places, and stand.
@@ -77,6 +82,7 @@ private:
     PressureSystem system_;
     ViscositySystem viscosity_;
     std::vector<FluidParticle> particles_;
+    std::uint32_t next_id_ = 0;
     std::vector<std::array<float, 3>> places_;  // where they meet the grid
     std::vector<double> flow_, impulse_, potential_;
     double speed_ = 0;  // usual one when the step began, m/s

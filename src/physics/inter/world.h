@@ -138,6 +138,11 @@ public:
     [[nodiscard]] const FluidDefinition* fluid(FluidHandle fluid) const;
     /// Another density, viscosity, yield stress, …; where the liquid is does not change, and cell_size must not.
     Result<void> set_fluid(FluidHandle fluid, const FluidDefinition& definition);
+    /// More of the same liquid: particles of its particle_volume at these places (m), less what solids fill, at rest.
+    /// Their ids follow each other; an error where none fits in.
+    Result<FluidIds> add_to_fluid(FluidHandle fluid, std::span<const Vec3> places);
+    /// Calls `change` for each particle with an id of these; what returns false goes. Wakes the fluid.
+    Result<void> change_fluid(FluidHandle fluid, FluidIds ids, const FluidChange& change);
     /// Empty if stale.
     [[nodiscard]] FluidParticles fluid_particles(FluidHandle fluid) const;
     /// At a world point, Pa above the air's; 0 outside the liquid.

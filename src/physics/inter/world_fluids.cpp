@@ -44,6 +44,24 @@ Result<void> World::set_fluid(FluidHandle fluid, const FluidDefinition& definiti
     return wake(fluid);
 }
 
+Result<FluidIds> World::add_to_fluid(FluidHandle fluid, std::span<const Vec3> places) {
+    FluidRecord* record = state_->fluids.find(fluid);
+    if (record == nullptr) return Error{"fluid", "is not one of this world"};
+    if (record->is_frozen) return Error{"fluid", "is frozen", "destroy it and create another one"};
+    const auto ids = add_particles(*state_, *record, places);
+    if (!ids) return ids.error();
+    if (Result<void> awake = wake(fluid); !awake) return awake.error();
+    return *ids;
+}
+
+Result<void> World::change_fluid(FluidHandle fluid, FluidIds ids, const FluidChange& change) {
+    FluidRecord* record = state_->fluids.find(fluid);
+    if (record == nullptr) return Error{"fluid", "is not one of this world"};
+    record->solver->change_particles(ids, change);
+    read_particles(*record);
+    return wake(fluid);
+}
+
 FluidParticles World::fluid_particles(FluidHandle fluid) const {
     const FluidRecord* record = state_->fluids.find(fluid);
     if (record == nullptr) return {};

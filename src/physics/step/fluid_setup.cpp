@@ -142,6 +142,22 @@ void read_particles(FluidRecord& record) {
     record.bounds.add(origin + Vec3{high[0], high[1], high[2]});
 }
 
+Result<FluidIds> add_particles(const WorldState& world, FluidRecord& fluid, std::span<const Vec3> places) {
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        if (!is_finite(places[i])) return Error{"places[" + std::to_string(i) + "]", "must be finite"};
+    }
+    if (fluid.positions.size() + places.size() > most_fluid_particles) return too_many();
+    std::vector<Vec3> free(places.begin(), places.end());
+    leave_out_solids(world, fluid.definition.cell_size, free);
+    if (free.empty()) return Error{"places", "hold no particle", "place the liquid outside of solids"};
+    std::vector<Vec3f> positions;
+    positions.reserve(free.size());
+    for (const Vec3 p : free) positions.push_back(to_vec3f(p - fluid.solver->origin()));
+    const FluidIds ids = fluid.solver->add_particles(positions);
+    read_particles(fluid);
+    return ids;
+}
+
 Result<FluidRecord> set_up_fluid(const WorldState& world, const FluidDefinition& definition) {
     if (auto result = validate(definition); !result) return result.error();
     Filling filling;

@@ -42,6 +42,8 @@ struct FluidTouch {
 
 /// Particles that fill the definition's volume and no solid. Fails where there are none or too many, or a hull is flat.
 Result<FluidRecord> set_up_fluid(const WorldState& world, const FluidDefinition& definition);
+/// More particles for it, at rest, where no solid is. Fails where there are none or too many.
+Result<FluidIds> add_particles(const WorldState& world, FluidRecord& fluid, std::span<const Vec3> places);
 /// Fills what is read of a fluid from its solver.
 void read_particles(FluidRecord& record);
 

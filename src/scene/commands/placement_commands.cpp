@@ -26,7 +26,7 @@ public:
         // What flows or bends is put down as the solid thing that it would be.
         const Result<attributes::AttributeSet> set = state.bodies.attributes(entity);
         const std::string kind = set.ok() ? set.value().word("kind", "") : "";
-        if (kind == "granular" || kind == "soft") still.attributes["kind"] = std::string("rigid");
+        if (kind == "granular" || kind == "soft" || kind == "fluid") still.attributes["kind"] = std::string("rigid");
         if (Result<void> added = state.simulation->add(still); !added.ok()) return added;
         probe.emplace(state, entity.index);
         return {};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -42,6 +43,16 @@ struct FluidParticles {
     bool is_asleep = false;              ///< nothing has changed since the last step
     bool is_frozen = false;              ///< its numbers were no longer finite: it stands still for good
 };
+
+/// Ids from `first` to below `last`.
+struct FluidIds {
+    std::uint32_t first = 0, last = 0;
+
+    [[nodiscard]] bool contains(std::uint32_t id) const { return id >= first && id < last; }
+};
+
+/// Position (m, world) and velocity (m/s) of a particle, to be changed; false takes it away.
+using FluidChange = std::function<bool(std::uint32_t id, Vec3& position, Vec3& velocity)>;
 
 /// What fluids did to a body, mean over the last step, world axes: N, and N m about its centre of mass.
 struct FluidForce {

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#include "attributes/to_physics.h"
+#include "scene/entity_body.h"
+
+namespace embody::scene {
+
+Result<LiquidDefinition> EntityBodies::liquid(const Entity& entity, const attributes::AttributeSet& attributes) {
+    Result<physics::ShapeDefinition> filled = shape(entity, attributes);
+    if (!filled.ok()) return filled.error();
+    LiquidDefinition liquid;
+    liquid.shape = std::move(filled).value();
+    liquid.pose = entity.pose;
+    liquid.matter = attributes::fluid_from_attributes(attributes);
+    liquid.matter.allow_sleep = entity.allow_sleep;
+    liquid.particle_budget = static_cast<std::size_t>(attributes.number("particle_budget", 20000));
+    liquid.linear_velocity = entity.linear_velocity;
+    liquid.angular_velocity = entity.angular_velocity;
+    liquid.enabled = entity.enabled;
+    return liquid;
+}
+
+}  // namespace embody::scene

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+#include "scene/fluid_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "scene/filled_region.h"
+#include "scene/fluid_filling.h"
+
+namespace embody::scene {
+
+using physics::FluidParticles;
+using physics::SleepState;
+
+Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liquids& liquids,
+                                                     const LiquidDefinition& definition) {
+    const Result<FilledRegion> region = FilledRegion::of(definition.shape);
+    if (!region.ok()) return region.error();
+    std::unique_ptr<FluidBody> made(new FluidBody(world, liquids));
+    made->matter_ = definition.matter;
+    const Bounds bounds = transformed(definition.pose, region.value().bounds());
+    const double cell = liquids.cell_size(definition.matter, bounds);
+    const Result<FluidFilling> filling = fill_with_fluid(definition.shape, cell, definition.particle_budget);
+    if (!filling.ok()) return filling.error();
+    // Its own fluid's cells are such that the particles have its volume.
+    if (cell == definition.matter.cell_size) made->matter_.cell_size = std::clamp(filling.value().cell_size, 1e-3, 1.0);
+
+    std::vector<Particle> particles;
+    particles.reserve(filling.value().places.size());
+    const Vec3 center = bounds.center();
+    for (const Vec3 place : filling.value().places) {
+        const Vec3 position = transform_point(definition.pose, place);
+        const Vec3 velocity = definition.linear_velocity + cross(definition.angular_velocity, position - center);
+        particles.push_back({position, velocity});
+    }
+    made->kept_ = std::move(particles);
+    if (!definition.enabled) return made;
+    if (Result<void> put = made->set_enabled(true); !put.ok()) return put.error();
+    return made;
+}
+
+FluidBody::~FluidBody() {
+    if (is_enabled_) liquids_.remove(share_);
+}
+
+Result<void> FluidBody::put(const std::vector<Particle>& particles) {
+    std::vector<Vec3> places;
+    places.reserve(particles.size());
+    for (const Particle& particle : particles) places.push_back(particle.position);
+    const Result<Liquids::Share> share = liquids_.add(matter_, places);
+    if (!share.ok())
+        return Error{"shape", "holds no liquid: " + share.error().why,
+                     "place it outside of solid things, or make it larger"};
+    share_ = share.value();
+    is_enabled_ = true;
+    if (std::ranges::all_of(particles, [](const Particle& particle) { return particle.velocity == Vec3{}; })) return {};
+
+    // Those in solids were left out, so that the ids say nothing of the places, but their order is the same.
+    std::size_t at = 0;
+    return world_.change_fluid(share_.fluid, share_.ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
+        constexpr double same_place = 1e-4;
+        while (at < particles.size() && length(particles[at].position - position) > same_place) ++at;
+        if (at < particles.size()) velocity = particles[at++].velocity;
+        return true;
+    });
+}
+
+Result<void> FluidBody::set_definition(const PointsDefinition& definition) {
+    const physics::FluidDefinition& matter = std::get<LiquidDefinition>(definition).matter;
+    const double cell_size = matter_.cell_size;
+    if (is_enabled_ && liquids_.is_alone(share_)) {
+        matter_ = matter;
+        matter_.cell_size = world_.fluid(share_.fluid)->cell_size;
+        return world_.set_fluid(share_.fluid, matter_);
+    }
+    // The others of its fluid stay as they are.
+    const bool was_enabled = is_enabled_;
+    if (Result<void> out = set_enabled(false); !out.ok()) return out;
+    matter_ = matter;
+    matter_.cell_size = cell_size;
+    return was_enabled ? set_enabled(true) : Result<void>{};
+}
+
+std::vector<FluidBody::Particle> FluidBody::particles() const {
+    if (!is_enabled_) return kept_;
+    const FluidParticles all = world_.fluid_particles(share_.fluid);
+    std::vector<Particle> own(share_.ids.last - share_.ids.first);
+    std::vector<bool> is_there(own.size());
+    for (std::size_t i = 0; i < all.ids.size(); ++i) {
+        if (!share_.ids.contains(all.ids[i])) continue;
+        const std::uint32_t at = all.ids[i] - share_.ids.first;
+        own[at] = {all.origin + to_vec3(all.positions[i]), to_vec3(all.velocities[i])};
+        is_there[at] = true;
+    }
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        if (is_there[i]) own[count++] = own[i];
+    }
+    own.resize(count);
+    return own;
+}
+
+void FluidBody::read(std::vector<Vec3>& positions) const {
+    positions.clear();
+    for (const Particle& particle : particles()) positions.push_back(particle.position);
+}
+
+double FluidBody::particle_mass() const {
+    const double cell =
+        is_enabled_ ? 2 * std::cbrt(world_.fluid_particles(share_.fluid).particle_volume) : matter_.cell_size;
+    return matter_.density * cell * cell * cell / 8;
+}
+
+double FluidBody::radius() const { return std::cbrt(3 * particle_mass() / (4 * std::numbers::pi * matter_.density)); }
+
+SleepState FluidBody::state() const {
+    const bool rests = !is_enabled_ || world_.fluid_particles(share_.fluid).is_asleep ||
+                       world_.fluid_particles(share_.fluid).is_frozen;
+    return rests ? SleepState::asleep : SleepState::active;
+}
+
+Vec3 FluidBody::center_of_mass() const {
+    const std::vector<Particle> own = particles();
+    Vec3 sum;
+    for (const Particle& particle : own) sum += particle.position;
+    return own.empty() ? Vec3{} : sum / static_cast<double>(own.size());
+}
+
+Vec3 FluidBody::linear_velocity() const {
+    const std::vector<Particle> own = particles();
+    Vec3 sum;
+    for (const Particle& particle : own) sum += particle.velocity;
+    return own.empty() ? Vec3{} : sum / static_cast<double>(own.size());
+}
+
+double FluidBody::mass() const { return particle_mass() * static_cast<double>(particles().size()); }
+
+Bounds FluidBody::bounds() const {
+    Bounds bounds;
+    for (const Particle& particle : particles()) bounds.add(particle.position);
+    return bounds.is_empty() ? bounds : enlarged(bounds, radius());
+}
+
+// A ray down from the lowest particle of each column of cells.
+std::optional<double> FluidBody::drop_distance(double most) const {
+    std::map<std::pair<int, int>, Vec3> lowest;
+    for (const Particle& particle : particles()) {
+        const Vec3 p = particle.position;
+        const std::pair column{static_cast<int>(std::floor(p.x / matter_.cell_size)),
+                               static_cast<int>(std::floor(p.z / matter_.cell_size))};
+        const auto [found, is_new] = lowest.try_emplace(column, p);
+        if (!is_new && p.y < found->second.y) found->second = p;
+    }
+    const double clearance = radius();
+    std::optional<double> least;
+    for (const auto& [column, place] : lowest) {
+        const auto hit = world_.cast_ray(place, {0, -1, 0}, most + clearance);
+        if (hit && (!least || hit->distance < *least)) least = hit->distance;
+    }
+    if (least) *least = std::max(0.0, *least - clearance);
+    return least;
+}
+
+// The first of balls so large that neighbours at rest overlap.
+std::optional<SurfaceHit> FluidBody::cast_ray(Vec3 origin, Vec3 direction, double most) const {
+    const double reach = 1.5 * radius();
+    const Bounds box = bounds();
+    if (box.is_empty()) return {};
+    std::optional<SurfaceHit> nearest;
+    for (const Particle& particle : particles()) {
+        const Vec3 to = particle.position - origin;
+        const double along = dot(to, direction), off = length_squared(to) - along * along;
+        if (off > reach * reach) continue;
+        const double distance = along - std::sqrt(reach * reach - off);
+        if (distance < 0 || distance > most || (nearest && distance >= nearest->distance)) continue;
+        nearest = SurfaceHit{distance, normalized(distance * direction - to)};
+    }
+    return nearest;
+}
+
+Result<void> FluidBody::move(const Transform& motion) {
+    for (Particle& particle : kept_) particle = {transform_point(motion, particle.position), {}};
+    if (!is_enabled_) return {};
+    return world_.change_fluid(share_.fluid, share_.ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
+        position = transform_point(motion, position);
+        velocity = {};
+        return true;
+    });
+}
+
+Result<void> FluidBody::set_velocity(Vec3 linear, Vec3 angular) {
+    const Vec3 center = center_of_mass();
+    for (Particle& particle : kept_) particle.velocity = linear + cross(angular, particle.position - center);
+    if (!is_enabled_) return {};
+    return world_.change_fluid(share_.fluid, share_.ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
+        velocity = linear + cross(angular, position - center);
+        return true;
+    });
+}
+
+Result<void> FluidBody::apply_impulse(Vec3 impulse) {
+    if (!is_enabled_) return {};
+    const Vec3 change = impulse / mass();
+    return world_.change_fluid(share_.fluid, share_.ids, [&](std::uint32_t, Vec3&, Vec3& velocity) {
+        velocity += change;
+        return true;
+    });
+}
+
+Result<void> FluidBody::apply_force(Vec3 force) { return apply_impulse(world_.settings().time_step * force); }
+
+Result<void> FluidBody::set_enabled(bool enabled) {
+    if (enabled == is_enabled_) return {};
+    if (enabled) {
+        if (Result<void> in = put(kept_); !in.ok()) return in;
+        kept_.clear();
+        return {};
+    }
+    kept_ = particles();
+    liquids_.remove(share_);
+    is_enabled_ = false;
+    return {};
+}
+
+}  // namespace embody::scene
