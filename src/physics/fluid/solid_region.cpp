@@ -91,8 +91,13 @@ void SolidRegion::shut_thin(const SolidProbe& probe) {
                 const Vec3 center = grid_->center({x + lower_[0] - 1, y + lower_[1] - 1, z + lower_[2] - 1});
                 const Cell place{x, y, z};
                 if (here < on_surface) {
-                    if (!probe.is_thinner(center, probe.nearest(center).normal, (thickness + here) * h)) continue;
+                    // Near its edges the nearest surface may be another than those of the wall's two sides.
+                    const bool is_thin = probe.is_thinner(center, probe.nearest(center).normal, (thickness + here) * h);
                     for (int axis = 0; axis < 3; ++axis) {
+                        const bool has_both = place[axis] > 0 && place[axis] + 1 < size_[axis];
+                        const bool is_between = has_both && own_distance_[cell - stride(axis)] > on_surface &&
+                                                own_distance_[cell + stride(axis)] > on_surface;
+                        if (!is_thin && !is_between) continue;
                         shut(axis, cell);
                         if (place[axis] + 1 < size_[axis]) shut(axis, cell + stride(axis));
                     }
