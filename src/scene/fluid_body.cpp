@@ -70,17 +70,20 @@ Result<void> FluidBody::put(const std::vector<Particle>& particles) {
 Result<void> FluidBody::set_definition(const PointsDefinition& definition) {
     const physics::FluidDefinition& matter = std::get<LiquidDefinition>(definition).matter;
     const double cell_size = matter_.cell_size;
-    if (is_enabled_ && liquids_.is_alone(share_)) {
-        matter_ = matter;
-        matter_.cell_size = world_.fluid(share_.fluid)->cell_size;
-        return world_.set_fluid(share_.fluid, matter_);
-    }
-    // The others of its fluid stay as they are.
-    const bool was_enabled = is_enabled_;
-    if (Result<void> out = set_enabled(false); !out.ok()) return out;
     matter_ = matter;
     matter_.cell_size = cell_size;
-    return was_enabled ? set_enabled(true) : Result<void>{};
+    if (!is_enabled_) return {};
+    if (liquids_.is_alone(share_)) {
+        physics::FluidDefinition changed = *world_.fluid(share_.fluid);
+        changed.density = matter.density;
+        changed.viscosity = matter.viscosity;
+        changed.yield_stress = matter.yield_stress;
+        changed.allow_sleep = matter.allow_sleep;
+        return world_.set_fluid(share_.fluid, changed);
+    }
+    // The others of its fluid stay as they are.
+    if (Result<void> out = set_enabled(false); !out.ok()) return out;
+    return set_enabled(true);
 }
 
 std::vector<FluidBody::Particle> FluidBody::particles() const {
