@@ -20,7 +20,7 @@ export interface TestHook {
   /** Red, green, blue and amount of the state colour an entity is drawn with. */
   tintOf(index: number): number[];
   /** Points that an entity is drawn as, and the box around them; null where it is drawn as a thing. */
-  points(index: number): { count: number; lower: number[]; upper: number[] } | null;
+  points(index: number): { count: number; liquid: boolean; lower: number[]; upper: number[] } | null;
   /** Size of the box around a soft thing's drawn form in its own frame, its vertices and the mean length of their normals; null for others. */
   bent(index: number): { size: number[]; vertices: number; normals: number } | null;
   /** Parts of collision shapes that are drawn over the selection. */
@@ -61,7 +61,7 @@ export function offerTestHook(studio: Studio): void {
     tintOf: (index) => studio.entities.tintOf(index),
     points: (index) => {
       const cloud = studio.entities.clouds.of(index);
-      return cloud ? { count: cloud.count, lower: cloud.bounds.min.toArray(), upper: cloud.bounds.max.toArray() } : null;
+      return cloud ? { count: cloud.count, liquid: cloud.isLiquid, lower: cloud.bounds.min.toArray(), upper: cloud.bounds.max.toArray() } : null;
     },
     bent: (index) => studio.entities.softs.skinOf(index)?.measure() ?? null,
     collisionParts: () => studio.view.collision.parts,

@@ -28,6 +28,8 @@ export interface PointSet {
   size: [number, number, number];
   /** Of the ball at each, m; 0: they carry the entity's drawn form. */
   radius: number;
+  /** They are a liquid: what is drawn is its surface. */
+  liquid: boolean;
   /** Three numbers each, in 65535ths of the box. */
   positions: Uint16Array;
 }
@@ -80,6 +82,7 @@ function decodeSets(buffer: ArrayBuffer, start: number, count: number): PointSet
       lower: [number(0), number(1), number(2)],
       size: [number(3), number(4), number(5)],
       radius: number(6),
+      liquid: view.getUint32(at + 36, true) === 1,
       positions: new Uint16Array(buffer.slice(first, end)),
     });
     at = end + (end % 4);

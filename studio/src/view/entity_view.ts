@@ -9,7 +9,8 @@ import type { Frame } from "../connection/frame";
 import { Batch } from "./batch";
 import { averageColor, disposeDrawable, disposeGeometries, type Drawable } from "./drawable";
 import type { ModelStore } from "./model_store";
-import { PointClouds } from "./point_cloud";
+import { opticsOf } from "./liquid_look";
+import { PointClouds } from "./point_clouds";
 import { drawShape, shapeKey } from "./shapes";
 import { SoftBodies } from "./soft_bodies";
 import { type Quality, STATE_TINT } from "./tint";
@@ -61,12 +62,16 @@ export class EntityView {
     private readonly document: SceneDocument,
     private readonly motion: Motion,
     private readonly models: ModelStore,
-    connection: Connection,
+    private readonly connection: Connection,
     private quality: Quality,
   ) {
     this.softs = new SoftBodies(connection);
     this.clouds = new PointClouds(quality);
     this.group.add(this.clouds.group);
+    this.clouds.surfaced.on(() => {
+      this.shadowsAreOld = true;
+      this.loaded.emit();
+    });
   }
 
   /** Models on their way. */
@@ -292,8 +297,22 @@ export class EntityView {
     const shown = this.batchOf.get(index);
     if (!cloud || !shown) return;
     const { entity } = shown;
-    if (entity.model) cloud.setColor(averageColor(shown.batch.drawable));
+    if (cloud.isLiquid) {
+      cloud.setColor(entity.color ? colorOf(entity) : null);
+      void this.askOptics(index);
+    } else if (entity.model) cloud.setColor(averageColor(shown.batch.drawable));
     else cloud.setColor(entity.color ? colorOf(entity) : SAND);
+  }
+
+  private async askOptics(index: number): Promise<void> {
+    try {
+      const { attributes } = await this.connection.request("entity.attributes", { index });
+      const cloud = this.clouds.of(index);
+      if (cloud?.isLiquid) cloud.setOptics(opticsOf(attributes));
+      this.loaded.emit();
+    } catch (error) {
+      this.failed.emit({ index, reason: (error as Error).message });
+    }
   }
 
   private place(index: number, now: number): void {

@@ -52,6 +52,11 @@ export class Outline {
     this.shown = [];
     for (const index of indices) {
       const cloud = this.entities.clouds.of(index);
+      if (cloud?.isLiquid) {
+        const meshes = [this.mesh(maskGeometry(cloud.geometry), this.mask, 998), this.mesh(rimGeometry(cloud.geometry), this.rim, 999)];
+        this.shown.push({ index, meshes, ofCloud: false });
+        continue;
+      }
       if (cloud) {
         const mask = this.prepared(cloud.twin(this.mask.clone(), new Uniform(0)), 998);
         const rim = this.prepared(cloud.twin(cloudRimMaterial(), this.cloudRim), 999);
@@ -74,6 +79,11 @@ export class Outline {
     this.cloudRim.value = (2 * WIDTH_PIXELS) / size.y;
     for (const { index, meshes, ofCloud } of this.shown) {
       if (ofCloud) continue;
+      const liquid = this.entities.clouds.of(index);
+      if (liquid?.isLiquid) {
+        for (const { geometry } of meshes) follow(geometry, liquid.geometry);
+        continue;
+      }
       const drawable = this.entities.drawableOf(index);
       const drawn = drawable !== undefined && this.entities.matrixOf(index, now, this.matrix);
       meshes.forEach((mesh, at) => {
@@ -104,6 +114,14 @@ function maskGeometry(original: BufferGeometry): BufferGeometry {
   geometry.setIndex(original.index);
   geometry.setAttribute("position", original.getAttribute("position"));
   return geometry;
+}
+
+/** The same triangles as they are now. */
+function follow(geometry: BufferGeometry, original: BufferGeometry): void {
+  if (!original.index) return;
+  geometry.setIndex(original.index);
+  geometry.setAttribute("position", original.getAttribute("position"));
+  geometry.setDrawRange(original.drawRange.start, original.drawRange.count);
 }
 
 function rimGeometry(original: BufferGeometry): BufferGeometry {

@@ -2,7 +2,6 @@
 import {
   type Color,
   FrontSide,
-  Group,
   InstancedBufferAttribute,
   InstancedBufferGeometry,
   type Intersection,
@@ -18,11 +17,9 @@ import {
   Vector3,
   Vector4,
 } from "three";
-import type { Frame, PointSet } from "../connection/frame";
+import type { PointSet } from "../connection/frame";
 import { MIX, type Quality } from "./tint";
 
-/** Longest time in which points go on to where a frame has them, ms; as of poses. */
-const LONGEST_BLEND_MS = 120;
 /** Of the state colour, beside that of other things. */
 const SHARE_OF_TINT = 0.3;
 
@@ -77,6 +74,7 @@ function placed<M extends Material>(material: M, uniforms: Uniforms, head: strin
 /** The points of one entity, drawn as balls. */
 export class PointCloud {
   readonly mesh: Mesh<InstancedBufferGeometry, Material>;
+  readonly isLiquid = false;
   readonly bounds = new Box3();
   private readonly uniforms: Uniforms = {
     fromLower: new Uniform(new Vector3()),
@@ -120,6 +118,10 @@ export class PointCloud {
 
   get count(): number {
     return this.mesh.geometry.instanceCount;
+  }
+
+  accepts(set: PointSet): boolean {
+    return !set.liquid && this.count === set.positions.length / 3;
   }
 
   /** Goes on to these places within `duration` ms. */
@@ -215,71 +217,5 @@ export class PointCloud {
     if (!best) return;
     const point = ray.at(best.distance, new Vector3());
     hits.push({ distance: best.distance, point, normal: point.clone().sub(best.centre).normalize(), object: this.mesh, instanceId: 0 });
-  }
-}
-
-/** The clouds of all entities that have points. */
-export class PointClouds {
-  readonly group = new Group();
-  private readonly clouds = new Map<number, PointCloud>();
-  private lastFrame = 0;
-
-  constructor(private quality: Quality) {}
-
-  of(index: number): PointCloud | undefined {
-    return this.clouds.get(index);
-  }
-
-  /** Takes a frame's points; tells which entities began or ceased to have some. */
-  take(frame: Frame, now: number, smooth: boolean): number[] {
-    const changed: number[] = [];
-    frame.indices.forEach((index, record) => {
-      if (!frame.pointed[record] && this.drop(index)) changed.push(index);
-    });
-    const duration = smooth ? Math.min(now - this.lastFrame, LONGEST_BLEND_MS) : 0;
-    this.lastFrame = now;
-    for (const set of frame.sets) {
-      // Points without a size carry what is drawn otherwise.
-      if (!(set.radius > 0)) {
-        if (this.drop(set.index)) changed.push(set.index);
-        continue;
-      }
-      const known = this.clouds.get(set.index);
-      if (known?.count === set.positions.length / 3) {
-        known.take(set, now, duration);
-        continue;
-      }
-      this.drop(set.index);
-      const cloud = new PointCloud(set.index, set, this.quality);
-      this.clouds.set(set.index, cloud);
-      this.group.add(cloud.mesh);
-      changed.push(set.index);
-    }
-    return changed;
-  }
-
-  /** Moves what is on its way; returns whether anything still is. */
-  advance(now: number): boolean {
-    let moving = false;
-    for (const cloud of this.clouds.values()) moving = cloud.advance(now) || moving;
-    return moving;
-  }
-
-  setQuality(quality: Quality): void {
-    this.quality = quality;
-    for (const cloud of this.clouds.values()) cloud.setQuality(quality);
-  }
-
-  drop(index: number): boolean {
-    const cloud = this.clouds.get(index);
-    if (!cloud) return false;
-    this.clouds.delete(index);
-    this.group.remove(cloud.mesh);
-    cloud.dispose();
-    return true;
-  }
-
-  clear(): void {
-    for (const index of [...this.clouds.keys()]) this.drop(index);
   }
 }

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: MIT
+import {
+  AddEquation,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  CustomBlending,
+  DynamicDrawUsage,
+  FrontSide,
+  Group,
+  type Intersection,
+  type Material,
+  Mesh,
+  MeshLambertMaterial,
+  MeshStandardMaterial,
+  OneFactor,
+  OneMinusSrcAlphaFactor,
+  type Raycaster,
+  ShaderMaterial,
+  Sphere,
+  SrcColorFactor,
+  Uniform,
+  Vector3,
+  Vector4,
+  Box3,
+  ZeroFactor,
+} from "three";
+import type { PointSet } from "../connection/frame";
+import { lookOf, type Optics, WATER } from "./liquid_look";
+import type { FromLiquidWorker, ToLiquidWorker } from "./liquid_worker";
+import type { Quality } from "./tint";
+
+/** Of the state colour, beside that of other things. */
+const SHARE_OF_TINT = 0.05;
+/** Of light that falls straight on water, what is thrown back: ((n − 1)/(n + 1))², n = 1.33. */
+const REFLECTANCE = 0.02;
+/** What a colour that a person gave is the look of, m of the liquid. */
+const DEPTH_OF_COLOR = 0.1;
+
+/** What the light from behind is multiplied by; seen aslant its way through is longer. */
+const FILTER_VERTEX = `
+varying vec3 vNormalOfView, vToEye;
+void main() {
+  vec4 at = modelViewMatrix * vec4(position, 1.0);
+  vNormalOfView = normalMatrix * normal;
+  vToEye = -at.xyz;
+  gl_Position = projectionMatrix * at;
+}`;
+const FILTER_FRAGMENT = `
+uniform vec3 through;
+uniform vec4 stateTint;
+varying vec3 vNormalOfView, vToEye;
+void main() {
+  float facing = abs(dot(normalize(vNormalOfView), normalize(vToEye)));
+  float mirrored = ${REFLECTANCE} + ${1 - REFLECTANCE} * pow(1.0 - facing, 5.0);
+  vec3 passed = pow(through, vec3(1.0 / max(facing, 0.4))) * (1.0 - mirrored);
+  gl_FragColor = vec4(passed * (1.0 - stateTint.a), 1.0);
+}`;
+/** What comes from the liquid itself: light thrown back inside, and the mirrored sky. */
+const GLOW = `
+float facing = abs(dot(normal, normalize(vViewPosition)));
+float mirrored = ${REFLECTANCE} + ${1 - REFLECTANCE} * pow(1.0 - facing, 5.0);
+outgoingLight += mirrored * sky;
+outgoingLight = mix(outgoingLight, stateTint.rgb, stateTint.a);
+#include <opaque_fragment>
+gl_FragColor.a = 0.0;`;
+
+interface Uniforms {
+  [name: string]: Uniform;
+}
+
+/** The surface of one entity's liquid: light from behind is filtered by it, then its own is added. */
+export class LiquidSurface {
+  readonly mesh = new Group();
+  readonly bounds = new Box3();
+  readonly isLiquid = true;
+  geometry = new BufferGeometry();
+  /** The worker's time for the last mesh, ms. */
+  lastMs = 0;
+  private readonly uniforms: Uniforms = {
+    through: new Uniform(new Vector3(1, 1, 1)),
+    sky: new Uniform(new Color(0.75, 0.8, 0.85)),
+    stateTint: new Uniform(new Vector4()),
+  };
+  private readonly filter: Mesh<BufferGeometry, Material>;
+  private readonly glow: Mesh<BufferGeometry, Material>;
+  private optics = WATER;
+  private color: Color | null = null;
+  private thickness = 0.1;
+  private start = 0;
+  private duration = 0;
+  private shownPart = -1;
+  private isWaiting = false;
+
+  constructor(
+    readonly index: number,
+    set: PointSet,
+    quality: Quality,
+    private readonly tell: (message: ToLiquidWorker) => void,
+  ) {
+    const filter = new ShaderMaterial({
+      uniforms: this.uniforms,
+      vertexShader: FILTER_VERTEX,
+      fragmentShader: FILTER_FRAGMENT,
+      transparent: true,
+      blending: CustomBlending,
+      blendEquation: AddEquation,
+      blendSrc: ZeroFactor,
+      blendDst: SrcColorFactor,
+    });
+    this.filter = new Mesh(this.geometry, filter);
+    this.glow = new Mesh(this.geometry, this.glowMaterial(quality));
+    for (const mesh of [this.filter, this.glow]) {
+      mesh.frustumCulled = false;
+      mesh.userData["batch"] = { entityAt: () => index };
+    }
+    // After all that one may see through it, and the filter before the glow.
+    this.filter.renderOrder = 10;
+    this.glow.renderOrder = 11;
+    this.filter.raycast = () => {};
+    this.glow.raycast = (raycaster, hits) => this.meet(raycaster, hits);
+    this.glow.receiveShadow = true;
+    this.mesh.add(this.filter, this.glow);
+    this.take(set, 0, 0);
+  }
+
+  /** Triangles that are drawn. */
+  get count(): number {
+    return this.geometry.drawRange.count / 3;
+  }
+
+  accepts(set: PointSet): boolean {
+    return set.liquid;
+  }
+
+  /** Goes on to these places within `duration` ms. */
+  take(set: PointSet, now: number, duration: number): void {
+    this.tell({ kind: "points", set });
+    this.bounds.min.fromArray(set.lower);
+    this.bounds.max.fromArray(set.size).add(this.bounds.min);
+    this.bounds.expandByScalar(set.radius);
+    this.start = now;
+    this.duration = duration;
+    this.shownPart = -1;
+    this.ask(duration > 0 ? 0 : 1);
+  }
+
+  /** Asks for the surface as it is now; the picture is drawn again once it is there. */
+  advance(now: number): boolean {
+    const part = this.duration > 0 ? Math.min(Math.max((now - this.start) / this.duration, 0), 1) : 1;
+    if (part !== this.shownPart) this.ask(part);
+    return false;
+  }
+
+  private ask(part: number): void {
+    if (this.isWaiting) return;
+    this.isWaiting = true;
+    this.shownPart = part;
+    this.tell({ kind: "mesh", index: this.index, part });
+  }
+
+  /** A mesh came from the worker. */
+  show(made: FromLiquidWorker): void {
+    this.isWaiting = false;
+    this.lastMs = made.ms;
+    this.thickness = made.area > 0 ? Math.max((2 * made.volume) / made.area, 1e-4) : 0.1;
+    this.write("position", made.positions);
+    this.write("normal", made.normals);
+    this.writeIndex(made.indices);
+    this.geometry.setDrawRange(0, made.indices.length);
+    const size = this.bounds.getSize(new Vector3());
+    this.geometry.boundingSphere = new Sphere(this.bounds.getCenter(new Vector3()), size.length() / 2);
+    this.applyLook();
+  }
+
+  setOptics(optics: Optics): void {
+    this.optics = optics;
+    this.applyLook();
+  }
+
+  /** A colour that a person gave; null: as its attributes say. */
+  setColor(color: Color | null): void {
+    this.color = color;
+    this.applyLook();
+  }
+
+  setTint([red, green, blue, amount]: readonly number[]): void {
+    (this.uniforms["stateTint"]!.value as Vector4).set(red!, green!, blue!, SHARE_OF_TINT * amount!);
+  }
+
+  tint(): number[] {
+    return (this.uniforms["stateTint"]!.value as Vector4).toArray();
+  }
+
+  setQuality(quality: Quality): void {
+    this.glow.material.dispose();
+    this.glow.material = this.glowMaterial(quality);
+    this.applyLook();
+  }
+
+  dispose(): void {
+    this.tell({ kind: "forget", index: this.index });
+    this.geometry.dispose();
+    this.filter.material.dispose();
+    this.glow.material.dispose();
+  }
+
+  private applyLook(): void {
+    const optics: Optics = this.color
+      ? {
+          absorption: this.color.toArray().map((share) => -Math.log(Math.max(share, 0.01)) / DEPTH_OF_COLOR) as Optics["absorption"],
+          scattering: this.optics.scattering,
+        }
+      : this.optics;
+    const look = lookOf(optics, this.thickness);
+    (this.uniforms["through"]!.value as Vector3).fromArray(look.through);
+    (this.glow.material as MeshStandardMaterial).color.setRGB(...look.back);
+    this.glow.castShadow = Math.max(...look.through) < 0.5;
+  }
+
+  private glowMaterial(quality: Quality): Material {
+    const material =
+      quality === "low" ? new MeshLambertMaterial() : new MeshStandardMaterial({ roughness: 0.12, metalness: 0, envMapIntensity: 1.5 });
+    material.transparent = true;
+    material.side = material.shadowSide = FrontSide;
+    material.blending = CustomBlending;
+    material.blendEquation = AddEquation;
+    material.blendSrc = OneFactor;
+    material.blendDst = OneFactor;
+    material.blendSrcAlpha = ZeroFactor;
+    material.blendDstAlpha = OneMinusSrcAlphaFactor;
+    material.onBeforeCompile = (shader) => {
+      Object.assign(shader.uniforms, this.uniforms);
+      shader.fragmentShader = shader.fragmentShader
+        .replace("#include <common>", "#include <common>\nuniform vec3 sky;\nuniform vec4 stateTint;")
+        .replace("#include <opaque_fragment>", quality === "low" ? GLOW : GLOW.replace("outgoingLight += mirrored * sky;", ""));
+    };
+    material.customProgramCacheKey = () => `liquid ${quality}`;
+    return material;
+  }
+
+  // Buffers grow with the mesh and are kept.
+  private write(name: "position" | "normal", values: Float32Array): void {
+    let attribute = this.geometry.getAttribute(name) as BufferAttribute | undefined;
+    if (!attribute || attribute.array.length < values.length) {
+      attribute = this.grown(new Float32Array(3 * Math.ceil(values.length / 2)), 3);
+      this.geometry.setAttribute(name, attribute);
+    }
+    renew(attribute, values);
+  }
+
+  private writeIndex(values: Uint32Array): void {
+    let attribute = this.geometry.index;
+    if (!attribute || attribute.array.length < values.length) {
+      attribute = this.grown(new Uint32Array(Math.ceil(1.5 * values.length)), 1);
+      this.geometry.setIndex(attribute);
+    }
+    renew(attribute, values);
+  }
+
+  private grown(array: Float32Array | Uint32Array, size: number): BufferAttribute {
+    this.geometry.dispose();
+    const attribute = new BufferAttribute(array, size);
+    attribute.setUsage(DynamicDrawUsage);
+    return attribute;
+  }
+
+  private meet(raycaster: Raycaster, hits: Intersection[]): void {
+    if (!this.geometry.boundingSphere || !raycaster.ray.intersectsBox(this.bounds)) return;
+    Mesh.prototype.raycast.call(this.glow, raycaster, hits);
+  }
+}
+
+function renew(attribute: BufferAttribute, values: Float32Array | Uint32Array): void {
+  (attribute.array as Float32Array).set(values);
+  attribute.clearUpdateRanges();
+  attribute.addUpdateRange(0, values.length);
+  attribute.needsUpdate = true;
+}

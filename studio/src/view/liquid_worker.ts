@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// Makes the surfaces of liquids beside the page: 60,000 particles take longer than a picture may.
+import type { PointSet } from "../connection/frame";
+import { LiquidMesher } from "./liquid_mesher";
+
+/** Page → worker. */
+export type ToLiquidWorker =
+  | { kind: "points"; set: PointSet }
+  /** A mesh of where the points are at this share of their way to where the last set has them. */
+  | { kind: "mesh"; index: number; part: number }
+  | { kind: "forget"; index: number };
+/** Worker → page: what was asked for; `ms` it took. */
+export interface FromLiquidWorker {
+  index: number;
+  positions: Float32Array;
+  normals: Float32Array;
+  indices: Uint32Array;
+  volume: number;
+  area: number;
+  ms: number;
+}
+
+interface Points {
+  from: Float32Array;
+  to: Float32Array;
+  now: Float32Array;
+  spacing: number;
+}
+
+const known = new Map<number, Points>();
+const mesher = new LiquidMesher();
+
+/** Edge of the cube that has a ball's volume, by its radius. */
+const CUBE = Math.cbrt((4 / 3) * Math.PI);
+
+function take(set: PointSet): void {
+  const to = new Float32Array(set.positions.length);
+  for (let at = 0; at < to.length; ++at) to[at] = set.lower[at % 3]! + (set.size[at % 3]! * set.positions[at]!) / 65535;
+  const before = known.get(set.index);
+  const isSame = before?.to.length === to.length;
+  const from = isSame ? before.now : to;
+  known.set(set.index, { from, to, now: new Float32Array(to.length), spacing: CUBE * set.radius });
+}
+
+function mesh(index: number, part: number): void {
+  const points = known.get(index);
+  if (!points) return;
+  const start = performance.now();
+  const { from, to, now } = points;
+  for (let at = 0; at < to.length; ++at) now[at] = from[at]! + part * (to[at]! - from[at]!);
+  const made = mesher.build(now, points.spacing);
+  const message: FromLiquidWorker = { index, ...made, ms: performance.now() - start };
+  postMessage(message, { transfer: [made.positions.buffer, made.normals.buffer, made.indices.buffer] });
+}
+
+onmessage = (event: MessageEvent<ToLiquidWorker>) => {
+  const message = event.data;
+  if (message.kind === "points") take(message.set);
+  else if (message.kind === "mesh") mesh(message.index, message.part);
+  else known.delete(message.index);
+};

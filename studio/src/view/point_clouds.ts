@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+import { Group } from "three";
+import type { Frame } from "../connection/frame";
+import { Signal } from "../signal";
+import { LiquidSurface } from "./liquid_surface";
+import type { FromLiquidWorker, ToLiquidWorker } from "./liquid_worker";
+import { PointCloud } from "./point_cloud";
+import type { Quality } from "./tint";
+
+/** Longest time in which points go on to where a frame has them, ms; as of poses. */
+const LONGEST_BLEND_MS = 120;
+
+/** What is drawn of all entities that have points: balls, or the surface of a liquid. */
+export class PointClouds {
+  readonly group = new Group();
+  /** A surface is ready to be drawn. */
+  readonly surfaced = new Signal<number>();
+  private readonly clouds = new Map<number, PointCloud | LiquidSurface>();
+  private worker: Worker | null = null;
+  private lastFrame = 0;
+
+  constructor(private quality: Quality) {}
+
+  of(index: number): PointCloud | LiquidSurface | undefined {
+    return this.clouds.get(index);
+  }
+
+  liquids(): LiquidSurface[] {
+    return [...this.clouds.values()].filter((cloud) => cloud.isLiquid);
+  }
+
+  /** Takes a frame's points; tells which entities began or ceased to have some. */
+  take(frame: Frame, now: number, smooth: boolean): number[] {
+    const changed: number[] = [];
+    frame.indices.forEach((index, record) => {
+      if (!frame.pointed[record] && this.drop(index)) changed.push(index);
+    });
+    const duration = smooth ? Math.min(now - this.lastFrame, LONGEST_BLEND_MS) : 0;
+    this.lastFrame = now;
+    for (const set of frame.sets) {
+      // Points without a size carry what is drawn otherwise.
+      if (!(set.radius > 0)) {
+        if (this.drop(set.index)) changed.push(set.index);
+        continue;
+      }
+      const known = this.clouds.get(set.index);
+      if (known?.accepts(set)) {
+        known.take(set, now, duration);
+        continue;
+      }
+      this.drop(set.index);
+      const cloud = set.liquid
+        ? new LiquidSurface(set.index, set, this.quality, (message) => this.tell(message))
+        : new PointCloud(set.index, set, this.quality);
+      this.clouds.set(set.index, cloud);
+      this.group.add(cloud.mesh);
+      changed.push(set.index);
+    }
+    return changed;
+  }
+
+  /** Moves what is on its way; returns whether anything still is. */
+  advance(now: number): boolean {
+    let moving = false;
+    for (const cloud of this.clouds.values()) moving = cloud.advance(now) || moving;
+    return moving;
+  }
+
+  setQuality(quality: Quality): void {
+    this.quality = quality;
+    for (const cloud of this.clouds.values()) cloud.setQuality(quality);
+  }
+
+  drop(index: number): boolean {
+    const cloud = this.clouds.get(index);
+    if (!cloud) return false;
+    this.clouds.delete(index);
+    this.group.remove(cloud.mesh);
+    cloud.dispose();
+    return true;
+  }
+
+  clear(): void {
+    for (const index of [...this.clouds.keys()]) this.drop(index);
+  }
+
+  private tell(message: ToLiquidWorker): void {
+    if (!this.worker) {
+      this.worker = new Worker(new URL("./liquid_worker.ts", import.meta.url), { type: "module" });
+      this.worker.onmessage = (event: MessageEvent<FromLiquidWorker>) => {
+        const surface = this.clouds.get(event.data.index);
+        if (!surface?.isLiquid) return;
+        surface.show(event.data);
+        this.surfaced.emit(event.data.index);
+      };
+    }
+    this.worker.postMessage(message);
+  }
+}
