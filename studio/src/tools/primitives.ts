@@ -15,7 +15,7 @@ function primitive(label: string, drawing: string, shape: Shape): Primitive {
 }
 
 /** A primitive whose kind says how it behaves. */
-function thin(name: string, kind: "cloth" | "rope", label: string, drawing: string, shape: Shape, pose?: Pose): Primitive {
+function ofKind(name: string, kind: "cloth" | "rope" | "fluid", label: string, drawing: string, shape: Shape, pose?: Pose): Primitive {
   return { name, label, drawing, entity: () => ({ name: label, shape, attributes: { kind }, ...(pose ? { pose } : {}) }) };
 }
 
@@ -26,10 +26,11 @@ export const PRIMITIVES: readonly Primitive[] = [
   primitive("Capsule", "M10 12a6 6 0 0 1 12 0v8a6 6 0 0 1-12 0zM10 12c2 2.5 10 2.5 12 0M10 20c2 2.5 10 2.5 12 0", { type: "capsule", radius: 0.12, half_height: 0.15 }),
   primitive("Cylinder", "M8 9c0-4 16-4 16 0v14c0 4-16 4-16 0zM8 9c0 4 16 4 16 0", { type: "cylinder", radius: 0.2, half_height: 0.2 }),
   primitive("Cone", "M16 5l9 18c0 4-18 4-18 0zM7 23c0-3.5 18-3.5 18 0", { type: "cone", radius: 0.2, half_height: 0.25 }),
-  thin("cloth", "cloth", "Cloth", "M4 11c5-4 8 3 12 0s7-3 12 0l-2 13c-4-3-7 3-10 0s-7-3-12 0z", { type: "box", half_extents: [0.6, 0.001, 0.6] }),
-  thin("round-cloth", "cloth", "Round cloth", "M4 14c0-8 24-8 24 0 0 3-2 8-4 10-2-3-4 2-8 0s-6 3-8 0c-2-2-4-7-4-10z", { type: "cylinder", radius: 0.6, half_height: 0.001 }),
-  thin("rope", "rope", "Rope", "M4 9c4 0 4 14 12 14s8-14 12-14M4 12c3 0 4 14 12 14s9-14 12-14", { type: "capsule", radius: 0.01, half_height: 0.75 }, {
+  ofKind("cloth", "cloth", "Cloth", "M4 11c5-4 8 3 12 0s7-3 12 0l-2 13c-4-3-7 3-10 0s-7-3-12 0z", { type: "box", half_extents: [0.6, 0.001, 0.6] }),
+  ofKind("round-cloth", "cloth", "Round cloth", "M4 14c0-8 24-8 24 0 0 3-2 8-4 10-2-3-4 2-8 0s-6 3-8 0c-2-2-4-7-4-10z", { type: "cylinder", radius: 0.6, half_height: 0.001 }),
+  ofKind("rope", "rope", "Rope", "M4 9c4 0 4 14 12 14s8-14 12-14M4 12c3 0 4 14 12 14s9-14 12-14", { type: "capsule", radius: 0.01, half_height: 0.75 }, {
     rotation: [0, 0, Math.SQRT1_2, Math.SQRT1_2],
   }),
+  ofKind("water", "fluid", "Water", "M16 5c5 7 8 10 8 14a8 8 0 0 1-16 0c0-4 3-7 8-14zM12 20a4 4 0 0 0 4 4", { type: "box", half_extents: [0.2, 0.2, 0.2] }),
   primitive("Plane", "M3 20l8-8h18l-8 8zM16 16V7M16 7l-2.5 3M16 7l2.5 3", { type: "plane", normal: [0, 1, 0], offset: 0 }),
 ];

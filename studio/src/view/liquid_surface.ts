@@ -31,7 +31,7 @@ import type { FromLiquidWorker, ToLiquidWorker } from "./liquid_worker";
 import type { Quality } from "./tint";
 
 /** Of the state colour, beside that of other things. */
-const SHARE_OF_TINT = 0.05;
+const SHARE_OF_TINT = 0.012;
 /** Of light that falls straight on water, what is thrown back: ((n − 1)/(n + 1))², n = 1.33. */
 const REFLECTANCE = 0.02;
 /** What a colour that a person gave is the look of, m of the liquid. */
