@@ -303,6 +303,13 @@ void join(std::span<const LayerContact> contacts, double thickness, std::span<co
 
 }  // namespace
 
+double ClothLayers::longest_way(const Nodes& nodes, double thickness, std::span<const Vec3> moves, TaskPool& workers) {
+    find(nodes, thickness, moves, workers);
+    double longest = 0;
+    for (const LayerContact& contact : contacts_) longest = std::max(longest, length(way_of(contact, moves)));
+    return longest;
+}
+
 void ClothLayers::part(const Nodes& nodes, double thickness, double friction, std::span<const double> give,
                        std::span<Vec3> moves, TaskPool& workers) {
     constexpr int rounds = 10;

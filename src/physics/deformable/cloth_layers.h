@@ -32,6 +32,9 @@ public:
     /// be missed.
     void part(const Nodes& nodes, double thickness, double friction, std::span<const double> give,
               std::span<Vec3> moves, TaskPool& workers);
+    /// The longest way (m) that those which come near each other by these moves go against each other.
+    [[nodiscard]] double longest_way(const Nodes& nodes, double thickness, std::span<const Vec3> moves,
+                                     TaskPool& workers);
     /// Mean, m.
     [[nodiscard]] double edge_length() const { return edge_length_; }
     /// Of the last call.

@@ -285,20 +285,20 @@ void ClothSheet::keep_momentum(const Substep& substep) {
     keep_momenta(nodes_, given, h, moves_);
 }
 
-// Layers lie as far from each other as two of them from a body between. What lies on a body gives way last.
+// What lies on a body gives way last.
 void ClothSheet::part_layers(TaskPool& workers) {
     constexpr double give_on_body = 0.05;
     std::vector<double> give = nodes_.inverse_mass;
     for (const TouchSpring& spring : springs_.springs()) {
         if (spring.acts) give[spring.node[0]] *= give_on_body;
     }
-    const double apart = std::max(cloth_.thickness, 2 * springs_.radius);
-    layers_->part(nodes_, apart, springs_.friction, give, moves_, workers);
+    layers_->part(nodes_, apart(), springs_.friction, give, moves_, workers);
 }
 
-// Layers are kept apart reliably where they move by no more than half an edge: faster cloth takes more parts.
-int ClothSheet::parts_of(double h) const {
+// Layers are kept apart reliably where they pass each other by no more than half an edge: faster ones take more parts.
+int ClothSheet::parts_of(double h, TaskPool& workers) {
     constexpr int most_parts = 4;
+    const double edge = layers_->edge_length();
     Vec3 mean;
     double mass = 0, fastest = 0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -306,7 +306,11 @@ int ClothSheet::parts_of(double h) const {
         mass += nodes_.mass[i];
     }
     for (const Vec3 velocity : nodes_.mean_velocity) fastest = std::max(fastest, length(velocity - mean / mass));
-    return static_cast<int>(std::clamp(std::ceil(2 * h * fastest / layers_->edge_length()), 1.0, double{most_parts}));
+    if (2 * h * fastest <= edge) return 1;
+    moves_.resize(nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) moves_[i] = h * nodes_.mean_velocity[i];
+    const double way = layers_->longest_way(nodes_, apart(), moves_, workers);
+    return static_cast<int>(std::clamp(std::ceil(2 * way / edge), 1.0, double{most_parts}));
 }
 
 void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> contacts,
@@ -314,7 +318,7 @@ void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> co
                          TaskPool& workers) {
     std::vector<std::pair<Vec3, Vec3>> velocities;
     for (const TouchedBody& body : bodies) velocities.emplace_back(body.velocity, body.spin);
-    const int parts = parts_of(substep.h);
+    const int parts = parts_of(substep.h, workers);
     int rounds = 0, solves = 0;
     for (int part = 0; part < parts; ++part) {
         Substep own = substep;

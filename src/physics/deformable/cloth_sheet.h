@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "foundation/task_pool.h"
@@ -63,7 +64,9 @@ private:
     bool solve_moves(const Substep& substep, std::span<const TouchedBody> bodies, TaskPool& workers);
     void keep_momentum(const Substep& substep);
     void part_layers(TaskPool& workers);
-    [[nodiscard]] int parts_of(double h) const;
+    [[nodiscard]] int parts_of(double h, TaskPool& workers);
+    // Layers lie as far from each other as two of them from a body between.
+    [[nodiscard]] double apart() const { return std::max(cloth_.thickness, 2 * springs_.radius); }
     void advance_part(const Substep& substep, std::span<const NodeContact> contacts,
                       std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies,
                       TaskPool& workers);
