@@ -179,11 +179,9 @@ void add_motion(Rows& rows) {
                 4294967295.0);
     group.whole({"collision_mask", all_kinds, "Collides with", "Bits of the groups that it collides with."},
                 4294967295.0, 0, 4294967295.0);
+    group.number({"drag_coefficient", "RAC", "Drag coefficient", "Of the drag of the air."}, "1", 1, 0, 3);
+    group.number({"drag_area", "RA", "Drag area", "Area that meets the air."}, "m²", 0, 0, 1e8);
     const Group later{rows, "motion", false};
-    group.number({"drag_coefficient", "RAC", "Drag coefficient",
-                  "Of the drag of the air; it acts on cloth, on other things not yet."},
-                 "1", 1, 0, 3);
-    later.number({"drag_area", "RAC", "Drag area", "Area that meets the air."}, "m²", 1, 0, 1e8);
     later.number({"break_impulse", "RA", "Breaking impulse", "An impulse above this breaks it."}, "N s", infinity, 0,
                  infinity);
     later.number({"break_energy", "RA", "Breaking energy", "An impact energy above this breaks it."}, "J", infinity, 0,

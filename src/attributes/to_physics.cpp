@@ -164,6 +164,7 @@ Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attribu
     if (taxonomy != nullptr) put_surface_id(attributes, *taxonomy, body.material);
     body.linear_damping = number_or_standard(attributes, "linear_damping");
     body.angular_damping = number_or_standard(attributes, "angular_damping");
+    body.drag_area = number_or_standard(attributes, "drag_coefficient") * attributes.number("drag_area", 0);
     body.gravity_factor = number_or_standard(attributes, "gravity_factor");
     body.sleep_energy_per_mass = number_or_standard(attributes, "sleep_energy_per_mass");
     body.continuous = attributes.truth("continuous", false);

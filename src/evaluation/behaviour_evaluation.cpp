@@ -92,7 +92,8 @@ bool rocks(const Stage& stage, double extent) {
     return std::hypot(spin.x, spin.z) * extent > rocking;
 }
 
-std::optional<Compared> slide_of(const Stage& stage, double extent, double friction) {
+// Friction and the drag of the air, v' = -μ g - k v² with k = ρ c A/2m, stop it after ln(1 + k v²/μ g)/2k.
+std::optional<Compared> slide_of(const Stage& stage, double extent, double friction, const AttributeSet& attributes) {
     const Vec3 start = stage.center();
     const double seconds = push_speed / (friction * gravity) + 1;
     for (double t = 0; t < seconds; t += stage.world().settings().time_step) {
@@ -101,7 +102,10 @@ std::optional<Compared> slide_of(const Stage& stage, double extent, double frict
     }
     if (length(stage.world().linear_velocity(stage.body)) > 0.01) return std::nullopt;
     const Vec3 way = stage.center() - start;
-    return Compared{push_speed * push_speed / (2 * friction * gravity), std::hypot(way.x, way.z)};
+    const double drag_area = attributes.number("drag_coefficient", 1) * attributes.number("drag_area", 0);
+    const double k = stage.world().settings().air_density * drag_area / (2 * attributes.number("mass", 1));
+    const double energy = push_speed * push_speed / (2 * friction * gravity);
+    return Compared{k > 0 ? std::log1p(2 * k * energy) / (2 * k) : energy, std::hypot(way.x, way.z)};
 }
 
 // From how high it comes back: `ground` is the height of its centre where it stands.
@@ -159,7 +163,7 @@ Result<Behaviour> behaviour_of(catalog::Catalog& catalog, const catalog::ModelSu
     const OnFloor expected = on_floor(catalog.taxonomy(), attributes, *floor);
     const auto pushed = stage_of(catalog, model.key, 0, {push_speed, 0, 0});
     if (!pushed) return pushed.error();
-    behaviour.slide = slide_of(*pushed, extent, expected.friction);
+    behaviour.slide = slide_of(*pushed, extent, expected.friction, attributes);
     // A bottom that is not flat meets the floor before it stands: then the height of its bounce says little.
     if (std::abs(standing->center().y - placed) > 2e-4 || standing->tilt() > 0.05) return behaviour;
     const auto dropped = stage_of(catalog, model.key, drop_height, {});

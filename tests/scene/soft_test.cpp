@@ -107,6 +107,7 @@ TEST(Soft, KindChangesWhileItMovesAndItGoesOn) {
     document.entities[1].angular_velocity = {0, 1.5, 0};
     document.entities[1].attributes["kind"] = std::string("rigid");
     document.entities[1].attributes["angular_damping"] = 0.0;
+    document.entities[1].attributes["drag_coefficient"] = 0.0;
     const auto simulation = make(document);
     ASSERT_TRUE(simulation);
     const auto expected = [](double t) { return Vec3{3 * t, 50 + 2 * t - 9.81 / 2 * t * t, 0}; };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "physics/deformable/wind.h"
+#include "physics/dynamic/wind.h"
 
 namespace embody::physics {
 

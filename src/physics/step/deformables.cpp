@@ -147,8 +147,7 @@ void note_breaks(WorldState& world, const DeformableRecord& record) {
 void advance_thin_ones(WorldState& world, MovingDeformables& moving, int k) {
     const int substeps = world.settings.deformable_substeps;
     const double step = world.settings.time_step, h = step / substeps;
-    const WorldSettings& settings = world.settings;
-    const Wind wind{settings.wind, settings.gustiness, settings.gust_time, world.report.time};
+    const Wind wind = world.wind();
     ThinOnSolids solids(world);
     for (ThinDeformable& thin : moving.thin) {
         if (thin.record->cloth && k < substeps) continue;
@@ -306,7 +305,7 @@ bool may_sleep(const WorldState& world, const DeformableRecord& record, std::vec
 // not quiet.
 void put_to_sleep(WorldState& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.records) {
-        const bool is_blown = record->cloth && Wind{world.settings.wind, world.settings.gustiness}.is_gusty();
+        const bool is_blown = record->cloth && world.wind().is_gusty();
         const bool is_quiet = !is_blown && fastest_node(*record) < quiet_speed;
         record->quiet_time = is_quiet ? record->quiet_time + world.settings.time_step : 0;
         for (const std::uint32_t slot : record->touched_bodies) {

@@ -36,8 +36,30 @@ void list_awake(WorldState& world) {
     }
 }
 
+// ½ ρ c A |u| u of the air that goes by with velocity u, held back so that in one step it takes away no more than all:
+// alone it has u go to u/(1 + k |u| h), which is exact, with k = ρ c A/2m.
+Vec3 drag_of_air(const WorldState& world, std::uint32_t body, const Wind& wind) {
+    const double half_density_area = world.settings.air_density / 2 * world.record(body).definition.drag_area;
+    const Vec3 u = wind.at(world.motion[body].center) - world.motion[body].linear_velocity;
+    const double strength = half_density_area * length(u);
+    return (strength / (1 + strength * world.motion[body].inverse_mass * world.settings.time_step)) * u;
+}
+
+// Sleepers that the wind pushes otherwise than when they fell asleep.
+void wake_by_wind(WorldState& world, const Wind& wind) {
+    constexpr double noticed_change = 0.05;  // of the weight
+    for (std::uint32_t body = 0; body < world.bodies.slot_count(); ++body) {
+        if (!world.is_used(body) || !world.is_asleep(body) || !world.is_dynamic(body)) continue;
+        const BodyRecord& record = world.record(body);
+        if (!(record.definition.drag_area > 0)) continue;
+        const double weight = world.constants[body].mass * length(world.settings.gravity);
+        if (length(drag_of_air(world, body, wind) - record.drag) > noticed_change * weight)
+            world.to_wake.push_back(body);
+    }
+}
+
 // Gravity and forces of the coming step.
-void refresh_forces(WorldState& world, std::uint32_t body) {
+void refresh_forces(WorldState& world, std::uint32_t body, const Wind& wind) {
     BodyRecord& record = world.record(body);
     if (world.deformables.count() > 0) {
         record.start_linear_velocity = world.motion[body].linear_velocity;
@@ -48,6 +70,10 @@ void refresh_forces(WorldState& world, std::uint32_t body) {
     constants.acceleration =
         world.settings.gravity * record.definition.gravity_factor +
         (record.definition.force + record.next_force + record.deformable_force + record.fluid_force) * inverse_mass;
+    if (record.definition.drag_area > 0) {
+        record.drag = drag_of_air(world, body, wind);
+        constants.acceleration += record.drag * inverse_mass;
+    }
     constants.torque = record.definition.torque + record.next_torque + record.deformable_torque + record.fluid_torque;
 }
 
@@ -94,6 +120,7 @@ void wake_around(WorldState& world, std::uint32_t body) {
 
 void wake_bodies(WorldState& world) {
     world.sleep_events.clear();
+    if (world.settings.wind != Vec3{}) wake_by_wind(world, world.wind());
     for (const std::uint32_t body : world.to_wake) {
         if (world.is_used(body) && world.is_asleep(body)) wake_group_of(world, body);
         if (world.is_used(body)) world.sleep[body].quiet_time = 0;
@@ -105,8 +132,9 @@ void wake_bodies(WorldState& world) {
 
 void gather_awake(WorldState& world) {
     if (world.awake_changed) list_awake(world);
+    const Wind wind = world.wind();
     for_each_awake(world, [&](std::uint32_t body) {
-        if (world.is_dynamic(body)) refresh_forces(world, body);
+        if (world.is_dynamic(body)) refresh_forces(world, body, wind);
     });
 }
 

@@ -15,6 +15,7 @@
 #include "physics/constraint/joint_system.h"
 #include "physics/constraint/wide_contact_solver.h"
 #include "physics/deformable/solid_contacts.h"
+#include "physics/dynamic/wind.h"
 #include "physics/inter/definitions/events.h"
 #include "physics/inter/definitions/step_report.h"
 #include "physics/inter/definitions/world_settings.h"
@@ -45,6 +46,7 @@ struct BodyRecord {
     Vec3 next_force, next_torque;  ///< for the next step only, cleared by report; N, N m about the centre of mass
     Vec3 start_linear_velocity, start_angular_velocity;  ///< when the step began, where there are deformables
     Vec3 deformable_force, deformable_torque;            ///< pushes of deformables in the last step, N, N m
+    Vec3 drag;                                           ///< of the air in this step, or when it fell asleep, N
     Vec3 fluid_force, fluid_torque;                      ///< of fluids in this step, N, N m
     Vec3 last_center;                                    ///< last finite pose, to freeze the body at
     Quat last_rotation;
@@ -144,6 +146,8 @@ struct WorldState {
     [[nodiscard]] Transform pose(std::uint32_t body) const {
         return body_pose(motion[body], constants[body].local_center);
     }
+    /// The air now.
+    [[nodiscard]] Wind wind() const { return {settings.wind, settings.gustiness, settings.gust_time, report.time}; }
     [[nodiscard]] bool is_dynamic(std::uint32_t body) const {
         return bodies.at(body).definition.kind == BodyKind::dynamic_body;
     }

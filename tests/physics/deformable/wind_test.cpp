@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "physics/deformable/wind.h"
+#include "physics/dynamic/wind.h"
 
 #include <gtest/gtest.h>
 

@@ -55,6 +55,7 @@ Result<void> validate(const BodyDefinition& definition) {
         check_vector("linear_velocity", d.linear_velocity, largest_linear_speed, "m/s"),
         check_vector("angular_velocity", d.angular_velocity, largest_angular_speed, "rad/s"), check_mass(d.mass),
         check_number("linear_damping", d.linear_damping, 0, 100, "1/s"),
+        check_number("drag_area", d.drag_area, 0, 1e8, "m²"),
         check_number("angular_damping", d.angular_damping, 0, 100, "1/s"),
         check_number("gravity_factor", d.gravity_factor, -10, 10), check_vector("force", d.force, largest_force, "N"),
         check_vector("torque", d.torque, largest_force, "N m"),

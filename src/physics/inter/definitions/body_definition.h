@@ -38,6 +38,7 @@ struct BodyDefinition {
     Material material;
     double linear_damping = 0;                         ///< 1/s, 0 … 100
     double angular_damping = 0;                        ///< 1/s, 0 … 100
+    double drag_area = 0;                              ///< that meets the air, times its coefficient, m², 0 … 1e8
     double gravity_factor = 1;                         ///< -10 … 10
     Vec3 force;                                        ///< constant, world axes, at the centre of mass, N
     Vec3 torque;                                       ///< constant, world axes, N m

@@ -10,7 +10,7 @@ struct WorldSettings {
     Vec3 gravity{0, -9.81, 0};    ///< m/s²
     double time_step = 1.0 / 60;  ///< s, 1e-5 … 0.1
     int substeps = 4;             ///< parts a step is solved in, 1 … 64
-    Vec3 wind;                    ///< velocity of the air around cloth, m/s
+    Vec3 wind;                    ///< velocity of the air, m/s
     double gustiness = 0;         ///< root mean square of the wind's changes over its speed, 0 … 2
     double gust_time = 2;         ///< how long a gust lasts, s, 0.05 … 1000
     double air_density = 1.2;     ///< kg/m³, 0 … 100

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Gusts as value noise: random levels at the corners of a lattice, joined smoothly, in octaves of half the size and
 // half the height each. No library functions whose bits differ between compilers.
-#include "physics/deformable/wind.h"
+#include "physics/dynamic/wind.h"
 
 #include <cmath>
 #include <cstdint>
