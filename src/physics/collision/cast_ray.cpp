@@ -23,6 +23,17 @@ struct RayProbe {
     }
 };
 
+// False where the ray's whole way lies on one side of the box, for sure.
+bool may_meet(const RayProbe& ray, const Bounds& box) {
+    constexpr double slack = 1e-9;  // of the numbers' size
+    const Vec3 end = ray.at(ray.max_distance);
+    for (int axis = 0; axis < 3; ++axis) {
+        const double a = ray.origin[axis], b = end[axis], margin = slack * (1 + std::fabs(a));
+        if (std::max(a, b) < box.lower[axis] - margin || std::min(a, b) > box.upper[axis] + margin) return false;
+    }
+    return true;
+}
+
 // Smaller root of a t² + 2 b t + c, where the ray comes in; false if there is none.
 bool first_root(double a, double b, double c, double& t) {
     const double disc = b * b - a * c;
@@ -183,7 +194,9 @@ std::optional<ShapeRayHit> cast_ray(const CollisionShape& shape, const Transform
     }
     if (data.surface) cast_in(pose, [&](RayProbe& ray) { cast_at_surface(ray, *data.surface); });
     for (const ConvexPiece& piece : data.pieces) {
-        cast_in(pose * piece.local, [&](RayProbe& ray) { cast_at_convex(ray, piece.convex); });
+        cast_in(pose * piece.local, [&](RayProbe& ray) {
+            if (may_meet(ray, piece.convex.bounds)) cast_at_convex(ray, piece.convex);
+        });
     }
     return best;
 }

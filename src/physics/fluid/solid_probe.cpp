@@ -213,6 +213,11 @@ std::optional<SolidProbe::Crossing> SolidProbe::crossing(Vec3 a, Vec3 b) const {
     const double whole = length(way);
     if (!(whole > 0)) return std::nullopt;
     if (!shape_->data().surface) {
+        Bounds box;
+        box.add(a);
+        box.add(b);
+        const auto may_meet = [&](std::uint32_t piece) { return overlaps(pieces_[piece].bounds, box); };
+        if (!shape_->data().is_plane && std::ranges::none_of(near_pieces_, may_meet)) return std::nullopt;
         const auto hit = cast_ray(*shape_, pose_, a, way / whole, whole);
         if (!hit) return std::nullopt;
         return Crossing{hit->distance / whole, hit->normal};

@@ -39,7 +39,7 @@ function take(set: PointSet): void {
   const before = known.get(set.index);
   const isSame = before?.to.length === to.length;
   const from = isSame ? before.now : to;
-  known.set(set.index, { from, to, now: new Float32Array(to.length), spacing: CUBE * set.radius });
+  known.set(set.index, { from, to, now: from.slice(), spacing: CUBE * set.radius });
 }
 
 function mesh(index: number, part: number): void {
