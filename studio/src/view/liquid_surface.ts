@@ -98,6 +98,11 @@ export class LiquidSurface {
     quality: Quality,
     private readonly tell: (message: ToLiquidWorker) => void,
   ) {
+    // Nothing until the first mesh is there.
+    this.geometry.setAttribute("position", new BufferAttribute(new Float32Array(3), 3));
+    this.geometry.setAttribute("normal", new BufferAttribute(new Float32Array(3), 3));
+    this.geometry.setIndex(new BufferAttribute(new Uint32Array(1), 1));
+    this.geometry.setDrawRange(0, 0);
     const filter = new ShaderMaterial({
       uniforms: this.uniforms,
       vertexShader: FILTER_VERTEX,
@@ -241,8 +246,8 @@ export class LiquidSurface {
 
   // Buffers grow with the mesh and are kept.
   private write(name: "position" | "normal", values: Float32Array): void {
-    let attribute = this.geometry.getAttribute(name) as BufferAttribute | undefined;
-    if (!attribute || attribute.array.length < values.length) {
+    let attribute = this.geometry.getAttribute(name) as BufferAttribute;
+    if (attribute.array.length < values.length) {
       attribute = this.grown(new Float32Array(3 * Math.ceil(values.length / 2)), 3);
       this.geometry.setAttribute(name, attribute);
     }
@@ -250,8 +255,8 @@ export class LiquidSurface {
   }
 
   private writeIndex(values: Uint32Array): void {
-    let attribute = this.geometry.index;
-    if (!attribute || attribute.array.length < values.length) {
+    let attribute = this.geometry.index!;
+    if (attribute.array.length < values.length) {
       attribute = this.grown(new Uint32Array(Math.ceil(1.5 * values.length)), 1);
       this.geometry.setIndex(attribute);
     }

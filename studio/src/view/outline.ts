@@ -118,7 +118,6 @@ function maskGeometry(original: BufferGeometry): BufferGeometry {
 
 /** The same triangles as they are now. */
 function follow(geometry: BufferGeometry, original: BufferGeometry): void {
-  if (!original.index) return;
   geometry.setIndex(original.index);
   geometry.setAttribute("position", original.getAttribute("position"));
   geometry.setDrawRange(original.drawRange.start, original.drawRange.count);

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// Liquids in the Studio: drawn as one surface, run apart, chosen, changed, and there to add.
+import assert from "node:assert/strict";
+import { after, before, beforeEach, describe, it } from "node:test";
+import { openBrowser, openStudio } from "./browser.mjs";
+import { findProgram, prepareDatabase, RealServer } from "./real_server.mjs";
+
+const WATER = 2;
+const SCENE = {
+  embody_scene: 1,
+  title: "Water",
+  entities: [
+    { index: 1, name: "Floor", shape: { type: "plane", normal: [0, 1, 0], offset: 0 }, attributes: { kind: "static" } },
+    {
+      index: WATER,
+      name: "Water",
+      shape: { type: "box", half_extents: [0.1, 0.1, 0.1] },
+      pose: { position: [0, 0.101, 0] },
+      attributes: { kind: "fluid", particle_budget: 2000 },
+    },
+  ],
+  camera: { position: [0.5, 0.4, 0.7], target: [0, 0.08, 0] },
+};
+
+describe("liquids in the Studio", { timeout: 600000 }, () => {
+  let browser, server, page, address;
+
+  before(async () => {
+    const program = findProgram();
+    assert.ok(program, "the program embody is not built: build it, or set EMBODY_PROGRAM");
+    server = new RealServer(program, prepareDatabase(program));
+    address = await server.start(SCENE);
+    browser = await openBrowser();
+  });
+  after(async () => {
+    await browser?.close();
+    await server?.discard();
+  });
+  beforeEach(async () => {
+    await page?.context().close();
+    page = await openStudio(browser, address);
+    await command("scene.load", { scene: SCENE });
+    await surface();
+  });
+
+  // As another client of the same server would.
+  async function command(name, params) {
+    await page.evaluate(
+      async ([name, params]) => {
+        const socket = new WebSocket(`ws://${location.host}/ws`);
+        await new Promise((opened) => (socket.onopen = opened));
+        socket.send(JSON.stringify({ id: 1, command: name, params }));
+        const reply = await new Promise((got) => {
+          socket.onmessage = (event) => typeof event.data === "string" && event.data.includes('"ok"') && got(JSON.parse(event.data));
+        });
+        socket.close();
+        if (!reply.ok) throw new Error(JSON.stringify(reply.error));
+      },
+      [name, params],
+    );
+  }
+  // Made beside the page: it comes a while after the points.
+  async function surface() {
+    await page.waitForFunction((water) => window.embody.points(water)?.count > 100, WATER);
+    return page.evaluate((water) => window.embody.points(water), WATER);
+  }
+
+  it("draws one surface that runs apart, and is as it was after a reset", async () => {
+    const filled = await surface();
+    assert.equal(filled.liquid, true);
+    assert.ok(filled.upper[0] < 0.12 && filled.lower[1] > -0.01, JSON.stringify(filled));
+    await command("simulation.step", { count: 40 });
+    await page.waitForFunction((water) => window.embody.points(water).upper[0] > 0.2, WATER);
+    await command("simulation.reset", {});
+    await page.waitForFunction((upper) => window.embody.points(2).upper[0] === upper, filled.upper[0]);
+    assert.deepEqual(page.faults, []);
+  });
+
+  it("is chosen by a click on its surface, and says how fine it is and why", async () => {
+    const seen = await page.evaluate((water) => window.embody.seenAt(water), WATER);
+    await page.mouse.click(seen.x, seen.y);
+    assert.deepEqual(await page.evaluate(() => window.embody.selection()), [WATER]);
+    const row = page.locator("[data-testid=attribute-fluid_cell_size]").first();
+    await row.waitFor();
+    assert.match(await row.innerText(), /particles, eight in a cell/);
+    assert.deepEqual(page.faults, []);
+  });
+
+  it("becomes a solid thing and water again while it runs", async () => {
+    await command("simulation.step", { count: 5 });
+    await command("entity.set_attribute", { indices: [WATER], name: "kind", value: "rigid" });
+    await page.waitForFunction((water) => !window.embody.points(water), WATER);
+    await command("entity.set_attribute", { indices: [WATER], name: "kind", value: "fluid" });
+    await surface();
+    await command("entity.remove", { indices: [WATER] });
+    await page.waitForFunction((water) => !window.embody.points(water), WATER);
+    await command("edit.undo", {});
+    await surface();
+    assert.deepEqual(page.faults, []);
+  });
+
+  it("can be added as a primitive", async () => {
+    await page.locator("[data-testid=primitive-water]").dblclick();
+    await page.waitForFunction(() => window.embody.entities().length === 3);
+    await page.waitForFunction(() => window.embody.points(3)?.liquid === true && window.embody.points(3).count > 100);
+    assert.deepEqual(page.faults, []);
+  });
+});
