@@ -335,14 +335,23 @@ export class LiquidMesher {
     return this.vertexOf[own * NODES + (at[0]! & 7) + EDGE * ((at[1]! & 7) + EDGE * (at[2]! & 7))]!;
   }
 
-  /** Whether the surface does not hold this particle. */
+  /** Whether the surface does not come near this particle. */
   private isDrop(points: Float32Array, at: number, spacing: number): boolean {
-    const { lower, span } = this;
+    const { lower } = this;
     const x = Math.round(points[at]! / spacing - lower[0]!);
     const y = Math.round(points[at + 1]! / spacing - lower[1]!);
     const z = Math.round(points[at + 2]! / spacing - lower[2]!);
+    if (this.valueAt(x, y, z) > LEVEL) return false;
+    for (let n = 0; n < 27; ++n) {
+      if (this.valueAt(x + (n % 3) - 1, y + (Math.floor(n / 3) % 3) - 1, z + Math.floor(n / 9) - 1) > LEVEL) return false;
+    }
+    return true;
+  }
+
+  private valueAt(x: number, y: number, z: number): number {
+    const { span } = this;
     const block = this.table[(x >> 3) + span[0]! * ((y >> 3) + span[1]! * (z >> 3))]!;
-    return this.smooth[block * NODES + (x & 7) + EDGE * ((y & 7) + EDGE * (z & 7))]! < 0.7 * LEVEL;
+    return block < 0 ? 0 : this.smooth[block * NODES + (x & 7) + EDGE * ((y & 7) + EDGE * (z & 7))]!;
   }
 
   private countDrops(points: Float32Array, spacing: number): number {

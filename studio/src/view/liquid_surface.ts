@@ -74,9 +74,7 @@ export class LiquidSurface {
   readonly mesh = new Group();
   readonly bounds = new Box3();
   readonly isLiquid = true;
-  geometry = new BufferGeometry();
-  /** The worker's time for the last mesh, ms. */
-  lastMs = 0;
+  readonly geometry = new BufferGeometry();
   private readonly uniforms: Uniforms = {
     through: new Uniform(new Vector3(1, 1, 1)),
     sky: new Uniform(new Color(0.75, 0.8, 0.85)),
@@ -167,7 +165,6 @@ export class LiquidSurface {
   /** A mesh came from the worker. */
   show(made: FromLiquidWorker): void {
     this.isWaiting = false;
-    this.lastMs = made.ms;
     this.thickness = made.area > 0 ? Math.max((2 * made.volume) / made.area, 1e-4) : 0.1;
     this.write("position", made.positions);
     this.write("normal", made.normals);

@@ -9,7 +9,7 @@ export type ToLiquidWorker =
   /** A mesh of where the points are at this share of their way to where the last set has them. */
   | { kind: "mesh"; index: number; part: number }
   | { kind: "forget"; index: number };
-/** Worker → page: what was asked for; `ms` it took. */
+/** Worker → page: what was asked for. */
 export interface FromLiquidWorker {
   index: number;
   positions: Float32Array;
@@ -17,7 +17,6 @@ export interface FromLiquidWorker {
   indices: Uint32Array;
   volume: number;
   area: number;
-  ms: number;
 }
 
 interface Points {
@@ -45,11 +44,10 @@ function take(set: PointSet): void {
 function mesh(index: number, part: number): void {
   const points = known.get(index);
   if (!points) return;
-  const start = performance.now();
   const { from, to, now } = points;
   for (let at = 0; at < to.length; ++at) now[at] = from[at]! + part * (to[at]! - from[at]!);
   const made = mesher.build(now, points.spacing);
-  const message: FromLiquidWorker = { index, ...made, ms: performance.now() - start };
+  const message: FromLiquidWorker = { index, ...made };
   postMessage(message, { transfer: [made.positions.buffer, made.normals.buffer, made.indices.buffer] });
 }
 

@@ -25,10 +25,6 @@ export class PointClouds {
     return this.clouds.get(index);
   }
 
-  liquids(): LiquidSurface[] {
-    return [...this.clouds.values()].filter((cloud) => cloud.isLiquid);
-  }
-
   /** Takes a frame's points; tells which entities began or ceased to have some. */
   take(frame: Frame, now: number, smooth: boolean): number[] {
     const changed: number[] = [];
