@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The surface of a liquid told by particles (docs/decisions/0015-liquid-surface.md): their density on a grid, the surface where it
+// The surface of a liquid told by particles (docs/decisions/0014-liquid-surface.md): their density on a grid, the surface where it
 // is half of the liquid's, as a net of quads with one vertex in each cell that the surface goes through.
 
 /** Nodes of a block along an edge, and with one more on either side. */
