@@ -10,14 +10,18 @@ namespace embody::physics {
 namespace {
 
 constexpr double cell_share = 1.5;  // cells over mean edge
+constexpr double most_cells = 8;    // that a box spans along an axis
+constexpr double farthest_cell = 1e9;
 
 struct Cell {
     int x = 0, y = 0, z = 0;
 };
 
 Cell cell_of(Vec3 p, double size) {
-    return {static_cast<int>(std::floor(p.x / size)), static_cast<int>(std::floor(p.y / size)),
-            static_cast<int>(std::floor(p.z / size))};
+    const auto index = [&](double x) {
+        return static_cast<int>(std::floor(std::max(-farthest_cell, std::min(farthest_cell, x / size))));
+    };
+    return {index(p.x), index(p.y), index(p.z)};
 }
 
 // Teschner and others, "Optimized spatial hashing for collision detection of deformable objects" (2003).
@@ -151,7 +155,13 @@ void ClothLayers::find_boxes(const Search& search) {
 void ClothLayers::fill_grid() {
     std::size_t buckets = 1;
     while (buckets < 2 * triangles_.size()) buckets *= 2;
-    const double size = cell_share * edge_length_;
+    double longest = 0;
+    for (const Bounds& box : triangle_boxes_) {
+        const Vec3 sides = box.upper - box.lower;
+        longest = std::max({longest, sides.x, sides.y, sides.z});
+    }
+    cell_size_ = std::max(cell_share * edge_length_, longest / most_cells);
+    const double size = cell_size_;
     cell_start_.assign(buckets + 1, 0);
     for (const Bounds& box : triangle_boxes_)
         for_each_bucket(box, size, buckets, [&](std::size_t b) { ++cell_start_[b + 1]; });
@@ -172,7 +182,7 @@ void ClothLayers::search_node(const Search& search, std::uint32_t node, std::vec
     const auto is_near = [&](std::uint32_t p, std::uint32_t q, std::uint32_t r) {
         return are_neighbours(node, p) || are_neighbours(node, q) || are_neighbours(node, r);
     };
-    for_each_bucket(box, cell_share * edge_length_, cell_start_.size() - 1, [&](std::size_t b) {
+    for_each_bucket(box, cell_size_, cell_start_.size() - 1, [&](std::size_t b) {
         for (std::uint32_t k = cell_start_[b]; k < cell_start_[b + 1]; ++k) {
             const std::uint32_t t = cell_triangles_[k];
             if (!overlaps(triangle_boxes_[t], box) || seen[t] == node) continue;
@@ -195,7 +205,7 @@ void ClothLayers::search_edge(const Search& search, std::uint32_t edge, std::vec
     const auto [a, b] = edges_[edge];
     const Bounds& box = edge_boxes_[edge];
     const std::size_t first_found = found.size();
-    for_each_bucket(box, cell_share * edge_length_, cell_start_.size() - 1, [&](std::size_t bucket) {
+    for_each_bucket(box, cell_size_, cell_start_.size() - 1, [&](std::size_t bucket) {
         for (std::uint32_t k = cell_start_[bucket]; k < cell_start_[bucket + 1]; ++k) {
             const std::uint32_t t = cell_triangles_[k];
             if (!overlaps(triangle_boxes_[t], box)) continue;

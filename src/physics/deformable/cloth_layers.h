@@ -60,6 +60,7 @@ private:
     // Of the substep. Boxes hold the way that something goes, without that of the whole, and the thickness around it;
     // triangles are kept by the cells of a grid that theirs reach, cells by a hash.
     std::vector<Bounds> node_boxes_, edge_boxes_, triangle_boxes_;
+    double cell_size_ = 0;  // m
     std::vector<std::uint32_t> cell_start_, cell_triangles_;
     std::vector<LayerContact> contacts_;
 };

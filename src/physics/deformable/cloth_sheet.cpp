@@ -255,8 +255,10 @@ bool ClothSheet::solve_moves(const Substep& substep, std::span<const TouchedBody
     rounds_ = solves_ = 0;
     constexpr int most_solves = 4;
     for (;;) {
-        rounds_ += solver.solve(matrix_, rhs_, small_load_, fixed_, springs_.springs(), inertias_, moves_, body_moves_,
-                                workers);
+        const int rounds = solver.solve(matrix_, rhs_, small_load_, fixed_, springs_.springs(), inertias_, moves_,
+                                        body_moves_, workers);
+        if (rounds == ClothSolver::not_finite) return false;
+        rounds_ += rounds;
         ++solves_;
         if (springs_.springs().empty() || solves_ == most_solves) break;
         // The last solve's springs stay as they were in it, so that what bodies feel is what nodes felt.

@@ -235,6 +235,7 @@ void ClothSolver::iterate(const ClothMatrix& matrix, std::span<const TouchSpring
     // Floats cannot tell less.
     enough = std::max(enough, 1e-12 * size);
     int round = 0;
+    bool is_finite = std::isfinite(size);
     for (; round < most_rounds && size > enough; ++round) {
         const auto turn = static_cast<float>(round == 0 ? 0 : size / previous);
         for (std::size_t i = share.first * chunk_size; i < std::min(nodes_, share.last * chunk_size); ++i)
@@ -254,7 +255,8 @@ void ClothSolver::iterate(const ClothMatrix& matrix, std::span<const TouchSpring
         }
         barrier.wait();
         const double bend = sum_of(parts_);
-        if (!(bend > 0)) break;
+        is_finite = is_finite && std::isfinite(bend);
+        if (!(bend > 0) || !is_finite) break;
         const double way = size / bend;
         const auto step = static_cast<float>(way);
         for (std::size_t i = share.first * chunk_size; i < std::min(nodes_, share.last * chunk_size); ++i) {
@@ -272,7 +274,7 @@ void ClothSolver::iterate(const ClothMatrix& matrix, std::span<const TouchSpring
         previous = size;
         size = precondition();
     }
-    if (worker == 0) rounds_ = round;
+    if (worker == 0) rounds_ = is_finite && std::isfinite(size) ? round : not_finite;
 }
 
 int ClothSolver::solve(const ClothMatrix& matrix, std::span<const Vec3> rhs, std::span<const Vec3> small_load,

@@ -36,12 +36,13 @@ class ClothSolver {
 public:
     /// `fixed`: nodes that do not move. `moves`: first guess and answer. It ends when
     /// the residual is `tolerance` of `small_load` (N) in the norm of the preconditioner.
-    /// Returns the rounds that it took.
+    /// Returns the rounds that it took, or not_finite where numbers have broken.
     int solve(const ClothMatrix& matrix, std::span<const Vec3> rhs, std::span<const Vec3> small_load,
               std::span<const std::uint8_t> fixed, std::span<const TouchSpring> springs,
               std::span<const BodyInertia> bodies, std::span<Vec3> moves, std::span<BodyMove> body_moves,
               TaskPool& workers);
 
+    static constexpr int not_finite = -1;
     double tolerance = 5e-3;
     int most_rounds = 200;
 

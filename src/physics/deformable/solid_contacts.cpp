@@ -17,6 +17,7 @@ constexpr double not_worth_it = 1e-7;   // m: a contact that would move by less 
 constexpr double recovery_speed = 0.5;  // m/s: what overlaps is parted no faster
 // Of a contact's own compliance along the normal: where contacts say the same of a place, all bear a part.
 constexpr double softness = 0.01;
+constexpr double farthest = 1e3;           // m: gaps beyond belong to solids whose numbers have broken
 constexpr double reach_beyond_radius = 1;  // contacts farther than this many radii stay out of the sweeps
 
 Vec3 position(const CarriedPoint& point, SolidContacts::Solids solids) {
@@ -190,6 +191,10 @@ void SolidContacts::gather(std::span<SolidContact> contacts, Solids solids, std:
             active.normal = contact.normal;
             active.gap = dot(at - other, contact.normal) - contact.radius;
             active.slid = at - was - (other - start_position(contact.other, solids));
+        }
+        if (!(std::fabs(active.gap) < farthest && length(active.slid) < farthest)) {
+            contact.force = {};
+            continue;
         }
         if (!contact.holds && contact.force == Vec3{} && active.gap > reach_beyond_radius * contact.radius) continue;
         const double gap_before = active.gap - dot(active.slid, active.normal);
