@@ -277,7 +277,7 @@ TEST(Fluids, AMugThatTiltsEmpties) {
     held.attributes = {{"kinematic", true}};
     const EntityIndex mug_index = held.index;
     Entity& drink = samples::add(document, "Water", physics::CylinderShape{0.04, 0.035}, {0, 0.246, 0});
-    drink.attributes = water(4000);
+    drink.attributes = water(1500);
     const EntityIndex index = drink.index;
     const auto simulation = make(document);
     ASSERT_TRUE(simulation);
