@@ -43,6 +43,16 @@ void Barrier::wait() {
     }
 }
 
+void Progress::wait_for(std::uint64_t count) const {
+    for (int i = 0; count_.load(std::memory_order_acquire) < count; ++i) {
+        if (i < spins_at_barrier) {
+            relax();
+        } else {
+            std::this_thread::yield();
+        }
+    }
+}
+
 struct TaskPool::State {
     const std::function<void(int)>* task = nullptr;  // of the present round
     std::atomic<unsigned> round{0};

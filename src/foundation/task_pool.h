@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
 
@@ -18,6 +19,17 @@ private:
     const int workers_;
     std::atomic<int> arrived_{0};
     std::atomic<unsigned> round_{0};
+};
+
+/// How far a worker of a task has come, for others that follow it. Spins first.
+class alignas(64) Progress {
+public:
+    void reach(std::uint64_t count) { count_.store(count, std::memory_order_release); }
+    /// Returns when it has reached that.
+    void wait_for(std::uint64_t count) const;
+
+private:
+    std::atomic<std::uint64_t> count_{0};
 };
 
 /// A fixed set of threads that run one task together. The calling thread is worker 0, so a pool of one has no threads;

@@ -23,20 +23,11 @@ int floor_to(int value, int unit) { return (value >= 0 ? value / unit : -((-valu
 
 int cell_of(float position, double cell) { return static_cast<int>(std::floor(position / cell)); }
 
-CellRange range_of(const std::vector<FluidParticle>& particles, double cell) {
-    std::array<float, 3> low, high;
-    low.fill(INFINITY);
-    high.fill(-INFINITY);
-    for (const FluidParticle& particle : particles) {
-        for (int axis = 0; axis < 3; ++axis) {
-            low[axis] = std::min(low[axis], particle.position[axis]);
-            high[axis] = std::max(high[axis], particle.position[axis]);
-        }
-    }
+CellRange range_of(const ParticleReach& reach, double cell) {
     CellRange range;
     for (int axis = 0; axis < 3; ++axis) {
-        range.lower[axis] = cell_of(low[axis], cell);
-        range.upper[axis] = cell_of(high[axis], cell);
+        range.lower[axis] = cell_of(reach.lower[axis], cell);
+        range.upper[axis] = cell_of(reach.upper[axis], cell);
     }
     return range;
 }
@@ -62,21 +53,48 @@ void trim(std::vector<FluidParticle>& particles, const CellRange& range, double 
     });
 }
 
+/// A box of cells, or of tiles.
+struct Box {
+    Cell lower, size;
+};
+
+// What an array of an element a cell of one box becomes in another box.
+template <class T>
+void carry_over(std::vector<T>& array, const Box& from, const Box& to) {
+    std::vector<T> old(static_cast<std::size_t>(to.size[0]) * static_cast<std::size_t>(to.size[1]) *
+                       static_cast<std::size_t>(to.size[2]));
+    old.swap(array);
+    if (from.size[0] == 0) return;
+    const Cell shift{from.lower[0] - to.lower[0], from.lower[1] - to.lower[1], from.lower[2] - to.lower[2]};
+    const int first = std::max(0, -shift[0]), last = std::min(from.size[0], to.size[0] - shift[0]);
+    for (int z = std::max(0, -shift[2]); z < std::min(from.size[2], to.size[2] - shift[2]); ++z) {
+        for (int y = std::max(0, -shift[1]); y < std::min(from.size[1], to.size[1] - shift[1]); ++y) {
+            const int source = from.size[0] * (y + from.size[1] * z);
+            const int target = shift[0] + to.size[0] * (y + shift[1] + to.size[1] * (z + shift[2]));
+            for (int x = first; x < last; ++x) array[target + x] = old[source + x];
+        }
+    }
+}
+
 }  // namespace
 
-std::size_t FluidGrid::cover(std::vector<FluidParticle>& particles) {
+std::size_t FluidGrid::cover(std::vector<FluidParticle>& particles, TaskPool& workers) {
     // Coordinates beyond these cannot be counted in cells.
     constexpr float farthest = 1e8f;
     const std::size_t before = particles.size();
-    std::erase_if(particles, [&](const FluidParticle& p) {
-        const auto is_far = [&](float x) { return !(std::fabs(x) * per_cell_ < farthest); };
-        return is_far(p.position[0]) || is_far(p.position[1]) || is_far(p.position[2]);
-    });
+    ParticleReach reach = reach_of(particles, workers);
+    if (!(reach.farthest() * per_cell_ < farthest)) {
+        std::erase_if(particles, [&](const FluidParticle& p) {
+            const auto is_far = [&](float x) { return !(std::fabs(x) * per_cell_ < farthest); };
+            return is_far(p.position[0]) || is_far(p.position[1]) || is_far(p.position[2]);
+        });
+        reach = reach_of(particles, workers);
+    }
     if (particles.empty()) return before;
-    CellRange range = range_of(particles, cell_);
+    CellRange range = range_of(reach, cell_);
     while (range.count() > std::max(fewest_cells, cells_by_particle * particles.size())) {
         trim(particles, range, cell_);
-        range = range_of(particles, cell_);
+        range = range_of(reach_of(particles, workers), cell_);
     }
 
     // Two tiles more than there are particles: one that is active and one that stencils may reach.
@@ -101,7 +119,6 @@ std::size_t FluidGrid::cover(std::vector<FluidParticle>& particles) {
 
 void FluidGrid::resize(const Cell& lower, const Cell& upper) {
     const Cell old_lower = lower_, old_size = size_;
-    const std::vector<float> old_pressure = std::move(pressure);
     lower_ = lower;
     std::size_t cells = 1, tiles = 1;
     for (int axis = 0; axis < 3; ++axis) {
@@ -110,34 +127,36 @@ void FluidGrid::resize(const Cell& lower, const Cell& upper) {
         cells *= static_cast<std::size_t>(size_[axis]);
         tiles *= static_cast<std::size_t>(tiles_[axis]);
     }
-    for (auto* arrays : {&velocity, &mass, &open, &shift, &static_share}) {
+    for (auto* arrays : {&velocity, &mass, &open, &shift}) {
         for (auto& array : *arrays) array.assign(cells, 0);
     }
     for (auto& array : known) array.assign(cells, 0);
-    for (auto* array : {&density, &surface, &solid, &room, &pressure, &static_distance, &static_room}) {
+    for (auto* array : {&density, &surface, &solid, &room}) {
         array->assign(cells, 0);
     }
     solid_owner.assign(cells, -1);
     thin.assign(cells, 0);
-    static_thin.assign(cells, 0);
     row.assign(cells, -1);
     first_particle.assign(cells, 0);
     particle_count.assign(cells, 0);
     tile_state_.assign(tiles, 0);
-    is_static_known.assign(tiles, 0);
     active_.clear();
 
-    // The last pressure is the next solve's guess.
-    for (int z = 0; z < old_size[2]; ++z) {
-        for (int y = 0; y < old_size[1]; ++y) {
-            const Cell from{old_lower[0] - lower_[0], y + old_lower[1] - lower_[1], z + old_lower[2] - lower_[2]};
-            if (from[1] < 0 || from[1] >= size_[1] || from[2] < 0 || from[2] >= size_[2]) continue;
-            for (int x = std::max(0, -from[0]); x < std::min(old_size[0], size_[0] - from[0]); ++x) {
-                pressure[index({x + from[0], from[1], from[2]})] =
-                    old_pressure[x + old_size[0] * (y + old_size[1] * z)];
-            }
+    // The last pressure is the next solve's guess; static solids stand where they stood.
+    const auto box_of = [](const Cell& low, const Cell& whole, const Cell& unit) {
+        Box box;
+        for (int axis = 0; axis < 3; ++axis) {
+            box.lower[axis] = low[axis] / unit[axis];
+            box.size[axis] = whole[axis] / unit[axis];
         }
-    }
+        return box;
+    };
+    const Cell one{1, 1, 1};
+    const Box from = box_of(old_lower, old_size, one), to = box_of(lower_, size_, one);
+    for (auto* array : {&pressure, &static_distance, &static_room}) carry_over(*array, from, to);
+    for (auto& array : static_share) carry_over(array, from, to);
+    carry_over(static_thin, from, to);
+    carry_over(is_static_known, box_of(old_lower, old_size, tile), box_of(lower_, size_, tile));
 }
 
 void FluidGrid::list_tiles() {
@@ -156,23 +175,9 @@ void FluidGrid::list_tiles() {
     }
 }
 
-void FluidGrid::sort(std::vector<FluidParticle>& particles, TaskPool& workers) {
-    // Which cell each is in, and which tiles that makes active.
-    cell_of_.resize(particles.size());
-    share_among(workers, particles.size(), particles.size() > 4000, [&](int, Share share) {
-        for (std::size_t i = share.first; i < share.last; ++i) {
-            const float* p = particles[i].position;
-            cell_of_[i] = static_cast<std::uint32_t>(
-                index({static_cast<int>(in_cells(p[0], 0)), static_cast<int>(in_cells(p[1], 1)),
-                       static_cast<int>(in_cells(p[2], 2))}));
-        }
-    });
+void FluidGrid::mark_tiles() {
     std::fill(tile_state_.begin(), tile_state_.end(), 0);
-    for (const std::uint32_t cell : cell_of_) {
-        const int c = static_cast<int>(cell);
-        const int x = c % size_[0], y = c / size_[0] % size_[1], z = c / size_[0] / size_[1];
-        tile_state_[tile_of({x, y, z})] = 2;
-    }
+    for (const std::uint32_t t : tile_of_particle_) tile_state_[t] = 2;
     for (int z = 1; z + 1 < tiles_[2]; ++z) {
         for (int y = 1; y + 1 < tiles_[1]; ++y) {
             for (int x = 1; x + 1 < tiles_[0]; ++x) {
@@ -186,8 +191,25 @@ void FluidGrid::sort(std::vector<FluidParticle>& particles, TaskPool& workers) {
         }
     }
     list_tiles();
+}
 
-    // Counting sort, stable, tile by tile.
+void FluidGrid::sort(std::vector<FluidParticle>& particles, TaskPool& workers) {
+    // Which cell each is in, and which tiles that makes active.
+    const std::size_t count = particles.size();
+    cell_of_.resize(count);
+    tile_of_particle_.resize(count);
+    share_among(workers, count, count > few_particles, [&](int, Share share) {
+        for (std::size_t i = share.first; i < share.last; ++i) {
+            const float* p = particles[i].position;
+            const Cell c{static_cast<int>(in_cells(p[0], 0)), static_cast<int>(in_cells(p[1], 1)),
+                         static_cast<int>(in_cells(p[2], 2))};
+            cell_of_[i] = static_cast<std::uint32_t>(index(c));
+            tile_of_particle_[i] = static_cast<std::uint32_t>(tile_of(c));
+        }
+    });
+    mark_tiles();
+
+    // Counting sort, stable, tile by tile. Places first: to move the particles takes longest and can be shared.
     for (const Cell& corner : active_) {
         for_rows(corner, [&](int first, const Cell&) { std::fill_n(particle_count.begin() + first, tile[0], 0u); });
     }
@@ -199,11 +221,14 @@ void FluidGrid::sort(std::vector<FluidParticle>& particles, TaskPool& workers) {
             next += particle_count[cell];
         });
     }
-    sorted_.resize(particles.size());
-    for (std::size_t i = 0; i < particles.size(); ++i) sorted_[first_particle[cell_of_[i]]++] = particles[i];
-    for (const Cell& corner : active_) {
+    for (std::uint32_t& cell : cell_of_) cell = first_particle[cell]++;
+    sorted_.resize(count);
+    share_among(workers, count, count > few_particles, [&](int, Share share) {
+        for (std::size_t i = share.first; i < share.last; ++i) sorted_[cell_of_[i]] = particles[i];
+    });
+    for_tiles(workers, [&](const Cell& corner) {
         for_cells(corner, [&](int cell, const Cell&) { first_particle[cell] -= particle_count[cell]; });
-    }
+    });
     particles.swap(sorted_);
 }
 

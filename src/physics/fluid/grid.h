@@ -26,7 +26,7 @@ public:
     explicit FluidGrid(double cell_size) : cell_(cell_size), per_cell_(static_cast<float>(1 / cell_size)) {}
 
     /// Makes the box hold the particles. Removes those that would make it too large, and returns how many.
-    std::size_t cover(std::vector<FluidParticle>& particles);
+    std::size_t cover(std::vector<FluidParticle>& particles, TaskPool& workers);
     /// Sorts the particles by cell and lists the active tiles.
     void sort(std::vector<FluidParticle>& particles, TaskPool& workers);
 
@@ -104,6 +104,7 @@ public:
 
 private:
     void resize(const Cell& lower, const Cell& upper);
+    void mark_tiles();
     void list_tiles();
 
     double cell_;
@@ -112,7 +113,7 @@ private:
     std::vector<std::uint8_t> tile_state_;  // 0: nothing, 1: next to particles, 2: has particles
     std::vector<Cell> active_;
     std::array<std::vector<std::uint32_t>, colors> colored_;
-    std::vector<std::uint32_t> cell_of_;
+    std::vector<std::uint32_t> cell_of_, tile_of_particle_;  // of each particle; then the place it is sorted to
     std::vector<FluidParticle> sorted_;
 };
 

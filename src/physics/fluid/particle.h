@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstdint>
+#include <span>
+
+#include "foundation/task_pool.h"
 
 namespace embody::physics {
 
@@ -14,5 +19,25 @@ struct FluidParticle {
     std::uint32_t id = 0;
 };
 static_assert(sizeof(FluidParticle) == 64);
+
+/// Loops over fewer particles are not shared among workers.
+inline constexpr std::size_t few_particles = 1000;
+
+/// The box of particles' places and their largest speed.
+struct ParticleReach {
+    std::array<float, 3> lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};  ///< m
+    float fastest_squared = 0;                                                                         ///< m²/s²
+    float zero = 0;  ///< none, if any place or velocity was none
+
+    void add(const FluidParticle& particle);
+    void add(const ParticleReach& other);
+    [[nodiscard]] bool is_finite() const { return zero == 0; }
+    /// Largest coordinate, m; of no particles, or such that are not finite: infinity.
+    [[nodiscard]] float farthest() const;
+};
+ParticleReach reach_of(std::span<const FluidParticle> particles, TaskPool& workers);
+
+/// The speed that all but 1 in `drops_by_particle` stay below, m/s, at most 1 % too large.
+double usual_speed_of(std::span<const FluidParticle> particles, std::size_t drops_by_particle, TaskPool& workers);
 
 }  // namespace embody::physics

@@ -65,9 +65,51 @@ TwoFaces faces_near(const Convex& convex, Vec3 p) {
     return faces;
 }
 
+/// The faces of a convex that may cut a cube around a point.
+struct FacesOfCube {
+    FacesOfCube(const Convex& piece, Vec3 center, double edge) : convex(piece) {
+        const double reach = half_diagonal * edge;
+        if (convex.kind != ConvexKind::polytope) {
+            is_outside = faces_near(convex, center).first.distance > reach;
+            return;
+        }
+        for (const Polytope::Face& face : convex.polytope.faces) {
+            const double distance = dot(face.normal, center) - face.offset;
+            is_outside = is_outside || distance > reach;
+            if (distance < -reach || count == most) continue;
+            faces[count++] = &face;
+        }
+    }
+    /// Of those, as faces_near; wholly inside where there are none.
+    [[nodiscard]] TwoFaces at(Vec3 p) const {
+        if (convex.kind != ConvexKind::polytope || count == most) return faces_near(convex, p);
+        TwoFaces two;
+        for (int i = 0; i < count; ++i) two.offer(dot(faces[i]->normal, p) - faces[i]->offset, faces[i]->normal);
+        return two;
+    }
+
+    static constexpr int most = 12;
+    static constexpr double half_diagonal = 0.8660254;  // √3 / 2
+    const Convex& convex;
+    const Polytope::Face* faces[most] = {};
+    int count = 0;
+    bool is_outside = false;
+};
+
+constexpr int octants = 8;
+
+Vec3 octant_offset(int octant) {
+    return {(octant & 1) ? 0.25 : -0.25, (octant & 2) ? 0.25 : -0.25, (octant & 4) ? 0.25 : -0.25};
+}
+
+Vec3 rotate_back(const Mat3& rotation, Vec3 v) {
+    return {dot(rotation.x, v), dot(rotation.y, v), dot(rotation.z, v)};
+}
+
 // Share of a cube of that edge behind a face at this distance from its centre: exact for faces along the axes.
 double share_behind(const SolidDistance& face, double edge) {
     const Vec3 n = abs(face.normal);
+    if (face.distance < -edge) return 1;
     return std::clamp(0.5 - face.distance / (edge * (n.x + n.y + n.z)), 0.0, 1.0);
 }
 
@@ -169,34 +211,41 @@ SolidDistance SolidProbe::nearest(Vec3 p) const {
     for (const std::uint32_t index : near_pieces_) {
         const Piece& piece = pieces_[index];
         if (outside_of(piece.bounds, p) >= best.distance) continue;
-        const Vec3 from = p - piece.position;
-        const Vec3 local{dot(piece.rotation.x, from), dot(piece.rotation.y, from), dot(piece.rotation.z, from)};
+        const Vec3 local = rotate_back(piece.rotation, p - piece.position);
         const SolidDistance here = faces_near(*piece.convex, local).first;
         if (here.distance < best.distance) best = {here.distance, piece.rotation * here.normal};
     }
     return best;
 }
 
-double SolidProbe::share_of_cube(Vec3 p, double edge) const {
-    if (shape_->data().is_plane || shape_->data().surface) return share_behind(nearest(p), edge);
+void SolidProbe::add_octants(Vec3 p, double edge, float* shares) const {
+    const double half = edge / 2;
+    const auto add = [&](int octant, double share) {
+        shares[octant] = std::min(1.0f, shares[octant] + static_cast<float>(share));
+    };
+    if (shape_->data().is_plane || shape_->data().surface) {
+        for (int octant = 0; octant < octants; ++octant) {
+            add(octant, share_behind(nearest(p + octant_offset(octant) * edge), half));
+        }
+        return;
+    }
     // Pieces lie side by side: their shares add up.
-    double sum = 0;
     for (const std::uint32_t index : near_pieces_) {
         const Piece& piece = pieces_[index];
         if (outside_of(piece.bounds, p) > edge) continue;
-        const Vec3 from = p - piece.position;
-        const Vec3 local{dot(piece.rotation.x, from), dot(piece.rotation.y, from), dot(piece.rotation.z, from)};
-        TwoFaces faces = faces_near(*piece.convex, local);
-        if (faces.first.distance > edge) continue;
-        faces.first.normal = piece.rotation * faces.first.normal;
-        double share = share_behind(faces.first, edge);
-        if (faces.second.distance > -edge) {
-            faces.second.normal = piece.rotation * faces.second.normal;
-            share *= share_behind(faces.second, edge);
+        const Vec3 center = rotate_back(piece.rotation, p - piece.position);
+        const FacesOfCube faces(*piece.convex, center, edge);
+        if (faces.is_outside) continue;
+        for (int octant = 0; octant < octants; ++octant) {
+            const Vec3 offset = octant_offset(octant) * edge;
+            const TwoFaces two = faces.at(center + rotate_back(piece.rotation, offset));
+            double share = share_behind({two.first.distance, piece.rotation * two.first.normal}, half);
+            if (two.second.distance > -half) {
+                share *= share_behind({two.second.distance, piece.rotation * two.second.normal}, half);
+            }
+            add(octant, share);
         }
-        sum += share;
     }
-    return std::min(sum, 1.0);
 }
 
 bool SolidProbe::is_thinner(Vec3 p, Vec3 normal, double depth) const {

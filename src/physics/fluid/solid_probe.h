@@ -30,8 +30,9 @@ public:
     bool look_at(const Bounds& box, double reach);
     /// Farther than the reach: the reach.
     [[nodiscard]] SolidDistance nearest(Vec3 p) const;
-    /// Share of the axis-aligned cube around p, of that edge, that is solid, 0 … 1.
-    [[nodiscard]] double share_of_cube(Vec3 p, double edge) const;
+    /// Shares of the eight octants of the axis-aligned cube around p, of that edge, that are solid: 0 … 1, added to
+    /// `shares`. Bit 0 of an octant's number: its upper half in x, bit 1: in y, bit 2: in z.
+    void add_octants(Vec3 p, double edge, float* shares) const;
     /// Whether the solid ends within `depth` behind the surface nearest to p, which is inside.
     [[nodiscard]] bool is_thinner(Vec3 p, Vec3 normal, double depth) const;
     /// First place of the way from a to b where a surface is met, from either side of triangles, from outside of

@@ -11,8 +11,13 @@ namespace {
 // A cube that is farther than this from a surface is not cut by it, in half its edges: √3.
 constexpr double half_diagonal = 1.7320508;
 
-Vec3 octant_offset(int octant) {
-    return {(octant & 1) ? 0.25 : -0.25, (octant & 2) ? 0.25 : -0.25, (octant & 4) ? 0.25 : -0.25};
+// Whether a wall stands between two places, and not the tip of an edge: its sides look away from each other.
+bool is_walled(const SolidProbe& probe, Vec3 a, Vec3 b) {
+    constexpr double least_opposed = -0.5;
+    const auto entry = probe.crossing(a, b);
+    if (!entry) return false;
+    const auto exit = probe.crossing(b, a);
+    return !exit || dot(entry->normal, exit->normal) < least_opposed;
 }
 
 }  // namespace
@@ -27,21 +32,11 @@ void SolidRegion::begin(const FluidGrid& grid, const Cell& lower, const Cell& up
         cells *= static_cast<std::size_t>(size_[axis]);
     }
     distance_.assign(cells, static_cast<float>(reach));
-    octants_.assign(cells, Octants{});
+    octants_.assign(8 * cells, 0);
     for (auto& share : share_) share.assign(cells, 0);
     thin_.assign(cells, 0);
     is_cut_.assign(cells, 0);
-    any_thin_ = false;
-}
-
-void SolidRegion::add_octants(const SolidProbe& probe, int cell, Vec3 center) {
-    const double h = grid_->cell_size();
-    for (int octant = 0; octant < 8; ++octant) {
-        const double share = probe.share_of_cube(center + octant_offset(octant) * h, h / 2);
-        float& sum = octants_[cell][octant];
-        sum = std::min(1.0f, sum + static_cast<float>(share));
-    }
-    is_cut_[cell] = 1;
+    any_thin_ = any_cut_ = false;
 }
 
 bool SolidRegion::add(SolidProbe& probe) {
@@ -60,11 +55,12 @@ bool SolidRegion::add(SolidProbe& probe) {
                 distance_[cell] = std::min(distance_[cell], own_distance_[cell]);
                 if (distance > half_diagonal / 2 * h) continue;
                 if (distance < -half_diagonal / 2 * h) {
-                    octants_[cell].fill(1);
-                    is_cut_[cell] = 1;
+                    std::fill_n(octants_.begin() + 8 * cell, 8, 1.0f);
                 } else {
-                    add_octants(probe, cell, center);
+                    probe.add_octants(center, h, &octants_[8 * cell]);
                 }
+                is_cut_[cell] = 1;
+                any_cut_ = true;
             }
         }
     }
@@ -109,7 +105,7 @@ void SolidRegion::shut_thin(const SolidProbe& probe) {
                     if (there < on_surface || here + there > 1.05f) continue;
                     Vec3 from = center;
                     from[axis] -= h;
-                    if (probe.crossing(from, center)) shut(axis, cell);
+                    if (is_walled(probe, from, center)) shut(axis, cell);
                 }
             }
         }
@@ -141,25 +137,53 @@ void SolidRegion::mark_near_thin() {
 }
 
 void SolidRegion::finish() {
+    if (any_thin_) filled_ = share_;
     for (int z = 1; z < size_[2]; ++z) {
         for (int y = 1; y < size_[1]; ++y) {
             for (int x = 1; x < size_[0]; ++x) {
                 const int cell = x + size_[0] * (y + size_[1] * z);
                 for (int axis = 0; axis < 3; ++axis) {
-                    if (share_[axis][cell] == 1) continue;
+                    const bool is_shut = share_[axis][cell] == 1;
                     const int below = cell - stride(axis);
-                    if (!is_cut_[cell] && !is_cut_[below]) continue;
                     float sum = 0;
-                    for (int octant = 0; octant < 8; ++octant) {
-                        const bool is_upper = octant >> axis & 1;
-                        sum += octants_[is_upper ? below : cell][octant];
+                    if (is_cut_[cell] || is_cut_[below]) {
+                        for (int octant = 0; octant < 8; ++octant) {
+                            const bool is_upper = octant >> axis & 1;
+                            sum += octants_[8 * (is_upper ? below : cell) + octant];
+                        }
                     }
-                    share_[axis][cell] = sum / 8;
+                    if (!is_shut) share_[axis][cell] = sum / 8;
+                    if (any_thin_) filled_[axis][cell] = sum / 8;
                 }
             }
         }
     }
     if (any_thin_) mark_near_thin();
+    measure_room();
+}
+
+// The tent kernel over octants: 1/8, 3/8, 3/8, 1/8 along each axis, one axis after the other.
+void SolidRegion::measure_room() {
+    const auto cells = distance_.size();
+    room_.assign(cells, 1);
+    if (!any_cut_) return;
+    const auto fold = [&](int axis, int octants, const std::vector<float>& from, std::vector<float>& to) {
+        // An eighth, a quarter … of each cell's values is left: those of the other axes' octants.
+        const auto below = static_cast<std::size_t>(stride(axis));
+        const auto width = static_cast<std::size_t>(octants);
+        to.assign(cells * width, 0);
+        for (std::size_t cell = below; cell + below < cells; ++cell) {
+            const float *own = &from[cell * 2 * width], *lower = own - below * 2 * width,
+                        *upper = own + below * 2 * width;
+            for (std::size_t i = 0; i < width; ++i) {
+                to[cell * width + i] = 0.125f * (lower[2 * i + 1] + upper[2 * i]) + 0.375f * (own[2 * i] + own[2 * i + 1]);
+            }
+        }
+    };
+    fold(0, 4, octants_, folded_[0]);
+    fold(1, 2, folded_[0], folded_[1]);
+    fold(2, 1, folded_[1], folded_[0]);
+    for (std::size_t cell = 0; cell < cells; ++cell) room_[cell] = std::max(0.0f, 1 - folded_[0][cell]);
 }
 
 float SolidRegion::room(int cell) const {
@@ -172,28 +196,7 @@ float SolidRegion::room(int cell) const {
             return std::clamp(0.5f + distance_[cell], 0.0f, 1.0f);
         }
     }
-    // The tent kernel over the octants of 27 cells: 1/8, 3/8, 3/8, 1/8 along each axis.
-    float filled = 0;
-    for (int z = -1; z <= 1; ++z) {
-        for (int y = -1; y <= 1; ++y) {
-            for (int x = -1; x <= 1; ++x) {
-                const int other = cell + x + size_[0] * (y + size_[1] * z);
-                if (!is_cut_[other]) continue;
-                const std::array<int, 3> step{x, y, z};
-                for (int octant = 0; octant < 8; ++octant) {
-                    float weight = octants_[other][octant];
-                    for (int axis = 0; axis < 3; ++axis) {
-                        const bool is_upper = octant >> axis & 1;
-                        // Beside the own cell only the octants that face it lie within the kernel.
-                        const bool faces = step[axis] == 0 || (step[axis] > 0) != is_upper;
-                        weight *= step[axis] == 0 ? 0.375f : faces ? 0.125f : 0.0f;
-                    }
-                    filled += weight;
-                }
-            }
-        }
-    }
-    return std::max(0.0f, 1 - filled);
+    return room_[cell];
 }
 
 }  // namespace embody::physics

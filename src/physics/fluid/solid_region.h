@@ -31,26 +31,31 @@ public:
     }
     /// Share of the control volume of the lower face along `axis`; valid from lower() to upper(), that included.
     [[nodiscard]] float share(int axis, int cell) const { return share_[axis][cell]; }
+    /// The same without what is shut because it is thin.
+    [[nodiscard]] float filled(int axis, int cell) const {
+        return any_thin_ ? filled_[axis][cell] : share_[axis][cell];
+    }
     [[nodiscard]] float distance(int cell) const { return distance_[cell]; }  ///< cells
     [[nodiscard]] std::uint8_t thin(int cell) const { return thin_[cell]; }   ///< ThinMark
     /// Share of the density's kernel around the centre that is free; within the box.
     [[nodiscard]] float room(int cell) const;
 
 private:
-    using Octants = std::array<float, 8>;
-    void add_octants(const SolidProbe& probe, int cell, Vec3 center);
     void shut_thin(const SolidProbe& probe);
     void mark_near_thin();
+    void measure_room();
     [[nodiscard]] int stride(int axis) const { return axis == 0 ? 1 : axis == 1 ? size_[0] : size_[0] * size_[1]; }
 
     const FluidGrid* grid_ = nullptr;
     Cell lower_{}, upper_{}, size_{};
     std::vector<float> distance_, own_distance_;
-    std::vector<Octants> octants_;
-    std::array<std::vector<float>, 3> share_;
+    std::vector<float> octants_;                // eight a cell
+    std::array<std::vector<float>, 2> folded_;  // octants summed along axes
+    std::vector<float> room_;
+    std::array<std::vector<float>, 3> share_, filled_;
     std::vector<std::uint8_t> thin_;
     std::vector<std::uint8_t> is_cut_;
-    bool any_thin_ = false;
+    bool any_thin_ = false, any_cut_ = false;
 };
 
 }  // namespace embody::physics

@@ -23,6 +23,15 @@ Transform moved(const FluidSolid& solid, Vec3 origin, Vec3 center, Quat rotation
     return {center - origin + rotate(rotation, arm), rotation};
 }
 
+// A face that is shut though the solid does not fill it.
+void bind_face(MovingSolid& moving, const FluidGrid& grid, int axis, const Cell& c, float share) {
+    if (share < least_open) return;
+    const Vec3 n{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
+    const Vec3 place = grid.center(c) - n * (grid.cell_size() / 2);
+    moving.bound.push_back(
+        {.axis = axis, .cell = grid.index(c), .share = share, .turn = cross(place - moving.center, n)});
+}
+
 }  // namespace
 
 void FluidSolids::begin(std::span<FluidSolid> solids, FluidGrid& grid) {
@@ -76,15 +85,22 @@ void FluidSolids::measure_static(FluidGrid& grid, TaskPool& workers) {
     for (const Cell& corner : grid.tiles()) {
         if (!grid.is_static_known[grid.tile_of(corner)]) unknown.push_back(corner);
     }
-    share_among(workers, unknown.size(), unknown.size() > 4, [&](int, Share share) {
-        if (share.first == share.last) return;
+    if (unknown.empty()) return;
+    // Neighbours cost alike: every worker takes each so many-th.
+    const auto number = static_cast<std::size_t>(workers.workers());
+    share_among(workers, number, unknown.size() > 4, [&](int, Share share) {
         std::vector<SolidProbe> probes = fixed_;
         SolidRegion region;
-        for (std::size_t i = share.first; i < share.last; ++i) measure_static_tile(grid, unknown[i], probes, region);
+        for (std::size_t first = share.first; first < share.last; ++first) {
+            for (std::size_t i = first; i < unknown.size(); i += number) {
+                measure_static_tile(grid, unknown[i], probes, region);
+            }
+        }
     });
 }
 
-void FluidSolids::measure_moving(MovingSolid& moving, int owner, FluidGrid& grid) {
+// Shares and distances of one alone.
+void FluidSolids::measure_moving(MovingSolid& moving, const FluidGrid& grid) {
     // The cells in reach, within the box and away from its rim.
     const double h = grid.cell_size();
     const Bounds wide = enlarged(moving.probe.bounds(), SolidRegion::reach * h);
@@ -103,8 +119,14 @@ void FluidSolids::measure_moving(MovingSolid& moving, int owner, FluidGrid& grid
     moving.is_in_reach = region.add(moving.probe);
     if (!moving.is_in_reach) return;
     region.finish();
+}
 
-    // Where solids overlap, the first one has the space.
+// Where solids overlap, the first one has the space.
+void FluidSolids::place_moving(MovingSolid& moving, int owner, FluidGrid& grid) {
+    if (!moving.is_in_reach) return;
+    const SolidRegion& region = moving.region;
+    const Cell &lower = region.lower(), &upper = region.upper();
+    moving.bound.clear();
     for (auto& share : moving.share) share.assign(static_cast<std::size_t>(region.index(upper)) + 1, 0);
     for (int z = lower[2]; z < upper[2]; ++z) {
         for (int y = lower[1]; y < upper[1]; ++y) {
@@ -118,6 +140,7 @@ void FluidSolids::measure_moving(MovingSolid& moving, int owner, FluidGrid& grid
                     if (open - share < least_open) share = open;
                     moving.share[axis][here] = share;
                     open -= share;
+                    bind_face(moving, grid, axis, c, share - region.filled(axis, here));
                 }
                 if (region.distance(here) < grid.solid[cell]) {
                     grid.solid[cell] = region.distance(here);
@@ -146,8 +169,7 @@ void FluidSolids::measure(double dt, FluidGrid& grid, TaskPool& workers) {
             }
         });
     });
-    for (std::size_t i = 0; i < moving_.size(); ++i) {
-        MovingSolid& moving = moving_[i];
+    for (MovingSolid& moving : moving_) {
         const FluidSolid& solid = *moving.solid;
         moving.center += moving.linear_velocity * (dt / 2);
         moving.rotation = turned(moving.rotation, moving.angular_velocity, dt / 2);
@@ -155,8 +177,11 @@ void FluidSolids::measure(double dt, FluidGrid& grid, TaskPool& workers) {
         moving.angular_velocity += solid.angular_acceleration * dt;
         const Transform placed = moved(solid, origin_, moving.center + origin_, moving.rotation);
         moving.probe = SolidProbe(*solid.shape, placed);
-        measure_moving(moving, static_cast<int>(i), grid);
     }
+    share_among(workers, moving_.size(), moving_.size() > 1, [&](int, Share share) {
+        for (std::size_t i = share.first; i < share.last; ++i) measure_moving(moving_[i], grid);
+    });
+    for (std::size_t i = 0; i < moving_.size(); ++i) place_moving(moving_[i], static_cast<int>(i), grid);
 
     // A cell that is shut all around is solid, be its centre on the seam of two solids.
     grid.for_tiles(workers, [&](const Cell& corner) {

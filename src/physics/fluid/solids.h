@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "math/transform.h"
+#include "physics/fluid/bound_liquid.h"
 #include "physics/fluid/grid.h"
 #include "physics/fluid/solid_probe.h"
 #include "physics/fluid/solid_region.h"
@@ -44,6 +45,8 @@ struct MovingSolid {
     SolidRegion region;
     std::array<std::vector<float>, 3> share;  ///< of faces, by the region's index: what other solids left
     std::vector<SolidArea> areas;
+    std::vector<BoundFace> bound;
+    SolidResponse response;
     bool is_in_reach = false;
 
     [[nodiscard]] Vec3 velocity_at(Vec3 p) const { return linear_velocity + cross(angular_velocity, p - center); }
@@ -75,7 +78,8 @@ public:
 private:
     void measure_static(FluidGrid& grid, TaskPool& workers);
     void measure_static_tile(FluidGrid& grid, const Cell& corner, std::vector<SolidProbe>& probes, SolidRegion& region);
-    void measure_moving(MovingSolid& moving, int owner, FluidGrid& grid);
+    static void measure_moving(MovingSolid& moving, const FluidGrid& grid);
+    static void place_moving(MovingSolid& moving, int owner, FluidGrid& grid);
 
     Vec3 origin_;
     std::vector<MovingSolid> moving_;

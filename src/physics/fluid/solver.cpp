@@ -15,11 +15,27 @@ namespace {
 // A part of a step is so short that nothing moves farther than this, in cells, and they are so many at most.
 constexpr double longest_way = 1.5;
 constexpr int most_parts = 16;
+// One in so many particles may be faster than that.
+constexpr std::size_t drops_by_particle = 200;
 
-bool is_finite(const FluidParticle& particle) {
-    float sum = 0;
-    for (int axis = 0; axis < 3; ++axis) sum += std::fabs(particle.position[axis]) + std::fabs(particle.velocity[axis]);
-    return std::isfinite(sum);
+// Whether neither the cell of a place nor those beside it are liquid.
+bool is_drop(const FluidGrid& grid, const float* place) {
+    Cell c{};
+    for (int axis = 0; axis < 3; ++axis) c[axis] = static_cast<int>(grid.in_cells(place[axis], axis));
+    const int cell = grid.index(c);
+    bool is_liquid = grid.row[cell] >= 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int stride = grid.stride(axis);
+        is_liquid = is_liquid || grid.row[cell - stride] >= 0 || grid.row[cell + stride] >= 0;
+    }
+    return !is_liquid;
+}
+
+// A gradient, 1/s, made no steeper than that: what is steeper no step of this length resolves.
+void set_gradient(const float* gradient, float steepest, float* affine) {
+    const float squared = gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2];
+    const float scale = squared > steepest * steepest ? steepest / std::sqrt(squared) : 1;
+    for (int axis = 0; axis < 3; ++axis) affine[axis] = gradient[axis] * scale;
 }
 
 }  // namespace
@@ -59,24 +75,23 @@ void FluidSolver::change_particles(FluidIds ids, const FluidChange& change) {
     });
 }
 
-double FluidSolver::usual_speed() const {
-    constexpr std::size_t drops_by_particle = 200;
-    std::vector<float> squares(particles_.size());
-    for (std::size_t i = 0; i < squares.size(); ++i) {
-        const float* v = particles_[i].velocity;
-        squares[i] = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-    }
-    const auto place =
-        squares.begin() + static_cast<std::ptrdiff_t>(squares.size() - 1 - squares.size() / drops_by_particle);
-    std::nth_element(squares.begin(), place, squares.end());
-    return std::sqrt(static_cast<double>(*place));
+double FluidSolver::usual_speed(TaskPool& workers) const {
+    return usual_speed_of(particles_, drops_by_particle, workers);
+}
+
+void FluidSolver::prepare(std::span<FluidSolid> solids, TaskPool& workers) {
+    grid_.cover(particles_, workers);
+    if (particles_.empty()) return;
+    solids_.begin(solids, grid_);
+    grid_.sort(particles_, workers);
+    solids_.measure(0, grid_, workers);
 }
 
 FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidSolid> solids, TaskPool& workers) {
     FluidOutcome outcome;
     for (FluidSolid& solid : solids) solid.impulse = solid.angular_impulse = {};
     if (particles_.empty()) return outcome;
-    speed_ = usual_speed();
+    speed_ = usual_speed(workers);
     const double cells = (speed_ + length(gravity) * dt) * dt / (longest_way * grid_.cell_size());
     outcome.parts = static_cast<int>(std::clamp(std::ceil(cells), 1.0, static_cast<double>(most_parts)));
     outcome.is_slowed = cells > most_parts;
@@ -87,10 +102,9 @@ FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidSolid>
     // Numbers that are none: no solid learns of them.
     for (const FluidSolid& solid : solids) {
         outcome.is_finite =
-            outcome.is_finite && embody::is_finite(solid.impulse) && embody::is_finite(solid.angular_impulse);
+            outcome.is_finite && is_finite(solid.impulse) && is_finite(solid.angular_impulse);
     }
-    outcome.is_finite = outcome.is_finite && std::all_of(particles_.begin(), particles_.end(),
-                                                         [](const FluidParticle& p) { return is_finite(p); });
+    outcome.is_finite = outcome.is_finite && reach_of(particles_, workers).is_finite();
     if (outcome.is_finite) return outcome;
     for (FluidSolid& solid : solids) solid.impulse = solid.angular_impulse = {};
     return outcome;
@@ -127,7 +141,7 @@ Conserved FluidSolver::conserved(Vec3 gravity) const {
 
 void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers) {
     const double h = grid_.cell_size();
-    outcome.lost += grid_.cover(particles_);
+    outcome.lost += grid_.cover(particles_, workers);
     if (particles_.empty()) return;
     grid_.sort(particles_, workers);
     solids_.measure(dt, grid_, workers);
@@ -137,10 +151,11 @@ void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, T
     accelerate(gravity * dt, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
 
-    system_.build(grid_, mark_liquid(grid_, workers));
+    system_.build(grid_, workers);
     solids_.list_areas(grid_);
     const Viscosity liquid{properties_.density, properties_.viscosity, properties_.yield_stress};
     if (is_viscous(liquid, h, dt)) shear(liquid, dt, outcome);
+    for (MovingSolid& moving : solids_.moving()) bind_liquid(grid_, properties_.density, gravity, moving);
     project(dt, outcome, workers);
     // Next to the liquid the air's faces go along with it; farther away drops fall freely.
     extrapolate(grid_, grid_.velocity, 1, workers);
@@ -154,7 +169,7 @@ void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, T
 
 void FluidSolver::find_places(double dt, TaskPool& workers) {
     places_.resize(particles_.size());
-    share_among(workers, particles_.size(), particles_.size() > 1000, [&](int, Share share) {
+    share_among(workers, particles_.size(), particles_.size() > few_particles, [&](int, Share share) {
         ParticleCollider collider(grid_, solids_, dt);
         for (std::size_t i = share.first; i < share.last; ++i) places_[i] = collider.place_of(particles_[i]);
     });
@@ -191,7 +206,7 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
     }
     system_.set_bodies(solids_.moving(), rho / h);
     const double tolerance = allowed_change * rho * h * h / dt;
-    const int iterations = system_.solve(flow_, impulse_, tolerance, most_iterations);
+    const int iterations = system_.solve(flow_, impulse_, tolerance, most_iterations, workers);
     outcome.pressure_iterations += iterations;
     outcome.is_solved = outcome.is_solved && iterations <= most_iterations;
 
@@ -215,8 +230,9 @@ void FluidSolver::push_solids(std::span<const double> impulse) {
         FluidSolid& solid = *moving.solid;
         solid.impulse += linear;
         solid.angular_impulse += angular;
-        moving.linear_velocity += linear * solid.inverse_mass;
-        moving.angular_velocity += solid.inverse_inertia * angular;
+        moving.linear_velocity += moving.response.linear_change(linear, angular);
+        moving.angular_velocity += moving.response.angular_change(linear, angular);
+        release_liquid(moving);
     }
 }
 
@@ -239,7 +255,7 @@ void FluidSolver::spread_out(TaskPool& workers) {
         flow_[row] = share * error;
     }
     system_.set_bodies({}, 0);
-    system_.solve(flow_, potential_, share * allowed_error, most_iterations);
+    system_.solve(flow_, potential_, share * allowed_error, most_iterations, workers);
     grid_.for_tiles(workers, [&](const Cell& corner) {
         grid_.for_rows(corner, [&](int first, const Cell&) {
             for (auto& field : grid_.shift) std::fill_n(field.begin() + first, FluidGrid::tile[0], 0.0f);
@@ -250,20 +266,22 @@ void FluidSolver::spread_out(TaskPool& workers) {
 
 void FluidSolver::move_particles(double dt, TaskPool& workers) {
     const auto time = static_cast<float>(dt);
-    share_among(workers, particles_.size(), particles_.size() > 1000, [&](int, Share share) {
+    share_among(workers, particles_.size(), particles_.size() > few_particles, [&](int, Share share) {
         ParticleCollider collider(grid_, solids_, dt);
         for (std::size_t i = share.first; i < share.last; ++i) {
             FluidParticle& particle = particles_[i];
             const FieldSample sample = sample_field(grid_, grid_.velocity, places_[i].data());
             float shift[3], end[3];
             sample_value(grid_, grid_.shift, places_[i].data(), shift);
+            // A drop reads back what it wrote: a gradient that it took along would stay for ever.
+            const float steepest = is_drop(grid_, places_[i].data()) ? 0 : 1 / time;
             for (int a = 0; a < 3; ++a) {
                 particle.velocity[a] = sample.value[a];
-                std::copy_n(sample.gradient[a], 3, particle.affine[a]);
+                set_gradient(sample.gradient[a], steepest, particle.affine[a]);
             }
             // Along the affine field by the midpoint rule.
             for (int a = 0; a < 3; ++a) {
-                const float* g = sample.gradient[a];
+                const float* g = particle.affine[a];
                 const float turn = g[0] * sample.value[0] + g[1] * sample.value[1] + g[2] * sample.value[2];
                 end[a] = particle.position[a] + time * (sample.value[a] + 0.5f * time * turn) + shift[a];
             }

@@ -38,6 +38,8 @@ public:
     FluidSolver(Vec3 origin, double cell_size, const FluidProperties& properties, std::span<const Vec3f> positions,
                 Vec3 velocity);
 
+    /// Gets the grid and the static solids on it ready for the first step.
+    void prepare(std::span<FluidSolid> solids, TaskPool& workers);
     /// Advances by dt; the solids' impulses are set.
     FluidOutcome advance(double dt, Vec3 gravity, std::span<FluidSolid> solids, TaskPool& workers);
 
@@ -53,7 +55,7 @@ public:
     /// Energies and momenta, of the particles as points.
     [[nodiscard]] Conserved conserved(Vec3 gravity) const;
     /// The speed that all but a few drops stay below, m/s; there is liquid.
-    [[nodiscard]] double usual_speed() const;
+    [[nodiscard]] double usual_speed(TaskPool& workers) const;
     /// At rest; their ids follow those that were ever given.
     FluidIds add_particles(std::span<const Vec3f> positions);
     /// Those with these ids as `change` says, in world coordinates.

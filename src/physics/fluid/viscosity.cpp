@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/fluid/dot_product.h"
+
 namespace embody::physics {
 
 namespace {
@@ -24,16 +26,6 @@ Vec3 face_center(const FluidGrid& grid, int axis, const Cell& c) {
 
 // Share of a cell below the surface.
 float filled(const FluidGrid& grid, int cell) { return std::clamp(0.5f - grid.surface[cell], 0.0f, 1.0f); }
-
-double dot_product(const std::vector<double>& a, const std::vector<double>& b) {
-    double sum[4] = {};
-    std::size_t i = 0;
-    for (; i + 4 <= a.size(); i += 4) {
-        for (std::size_t k = 0; k < 4; ++k) sum[k] += a[i + k] * b[i + k];
-    }
-    for (; i < a.size(); ++i) sum[0] += a[i] * b[i];
-    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-}
 
 }  // namespace
 

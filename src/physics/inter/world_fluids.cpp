@@ -7,6 +7,7 @@ namespace embody::physics {
 Result<FluidHandle> World::create_fluid(const FluidDefinition& definition) {
     auto record = set_up_fluid(*state_, definition);
     if (!record) return record.error();
+    prepare_fluid(*state_, *record);
     return state_->fluids.insert(std::move(*record));
 }
 
@@ -58,7 +59,7 @@ Result<void> World::change_fluid(FluidHandle fluid, FluidIds ids, const FluidCha
     FluidRecord* record = state_->fluids.find(fluid);
     if (record == nullptr) return Error{"fluid", "is not one of this world"};
     record->solver->change_particles(ids, change);
-    read_particles(*record);
+    read_particles(*record, *state_->workers);
     return wake(fluid);
 }
 

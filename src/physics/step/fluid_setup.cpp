@@ -113,33 +113,27 @@ void leave_out_solids(const WorldState& world, double cell_size, std::vector<Vec
 
 }  // namespace
 
-void read_particles(FluidRecord& record) {
+void read_particles(FluidRecord& record, TaskPool& workers) {
     const std::vector<FluidParticle>& particles = record.solver->particles();
-    record.positions.resize(particles.size());
-    record.velocities.resize(particles.size());
-    record.ids.resize(particles.size());
-    std::array<float, 3> low, high;
-    low.fill(INFINITY);
-    high.fill(-INFINITY);
-    float fastest = 0;
-    for (std::size_t i = 0; i < particles.size(); ++i) {
-        const FluidParticle& p = particles[i];
-        const float *x = p.position, *v = p.velocity;
-        record.positions[i] = {x[0], x[1], x[2]};
-        record.velocities[i] = {v[0], v[1], v[2]};
-        record.ids[i] = p.id;
-        fastest = std::max(fastest, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-        for (int axis = 0; axis < 3; ++axis) {
-            low[axis] = std::min(low[axis], x[axis]);
-            high[axis] = std::max(high[axis], x[axis]);
+    const std::size_t count = particles.size();
+    record.positions.resize(count);
+    record.velocities.resize(count);
+    record.ids.resize(count);
+    share_among(workers, count, count > few_particles, [&](int, Share share) {
+        for (std::size_t i = share.first; i < share.last; ++i) {
+            const float *x = particles[i].position, *v = particles[i].velocity;
+            record.positions[i] = {x[0], x[1], x[2]};
+            record.velocities[i] = {v[0], v[1], v[2]};
+            record.ids[i] = particles[i].id;
         }
-    }
-    record.fastest = std::sqrt(static_cast<double>(fastest));
+    });
+    const ParticleReach reach = reach_of(particles, workers);
+    record.fastest = std::sqrt(static_cast<double>(reach.fastest_squared));
     record.bounds = {};
     if (particles.empty()) return;
     const Vec3 origin = record.solver->origin();
-    record.bounds.add(origin + Vec3{low[0], low[1], low[2]});
-    record.bounds.add(origin + Vec3{high[0], high[1], high[2]});
+    record.bounds.add(origin + Vec3{reach.lower[0], reach.lower[1], reach.lower[2]});
+    record.bounds.add(origin + Vec3{reach.upper[0], reach.upper[1], reach.upper[2]});
 }
 
 Result<FluidIds> add_particles(const WorldState& world, FluidRecord& fluid, std::span<const Vec3> places) {
@@ -154,7 +148,7 @@ Result<FluidIds> add_particles(const WorldState& world, FluidRecord& fluid, std:
     positions.reserve(free.size());
     for (const Vec3 p : free) positions.push_back(to_vec3f(p - fluid.solver->origin()));
     const FluidIds ids = fluid.solver->add_particles(positions);
-    read_particles(fluid);
+    read_particles(fluid, *world.workers);
     return ids;
 }
 
@@ -189,7 +183,7 @@ Result<FluidRecord> set_up_fluid(const WorldState& world, const FluidDefinition&
     record.definition = definition;
     record.solver =
         std::make_unique<FluidSolver>(origin, definition.cell_size, properties, positions, definition.velocity);
-    read_particles(record);
+    read_particles(record, *world.workers);
     return record;
 }
 

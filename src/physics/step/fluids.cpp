@@ -183,7 +183,7 @@ void note_outcome(WorldState& world, FluidRecord& fluid, const FluidOutcome& out
 }
 
 void fall_asleep_if_quiet(WorldState& world, FluidRecord& fluid) {
-    const bool is_quiet = fluid.solver->particles().empty() || fluid.solver->usual_speed() < quiet_speed;
+    const bool is_quiet = fluid.solver->particles().empty() || fluid.solver->usual_speed(*world.workers) < quiet_speed;
     fluid.quiet_time = is_quiet ? fluid.quiet_time + world.settings.time_step : 0;
     if (!is_quiet) {
         // What floats is quiet at its turning points, too: it waits for the liquid.
@@ -199,7 +199,18 @@ void fall_asleep_if_quiet(WorldState& world, FluidRecord& fluid) {
     }
     fluid.is_asleep = true;
     fluid.solver->stop();
-    read_particles(fluid);
+    read_particles(fluid, *world.workers);
+}
+
+std::vector<FluidSolid> solids_near(WorldState& world, const FluidRecord& fluid,
+                                    const std::vector<std::uint32_t>& slots) {
+    std::vector<FluidSolid> solids;
+    solids.reserve(slots.size());
+    for (const std::uint32_t slot : slots) {
+        solids.push_back(world.is_dynamic(slot) ? dynamic_solid(world, slot, fluid.definition.density)
+                                                : fixed_solid(world, fluid, slot));
+    }
+    return solids;
 }
 
 void advance_fluid(WorldState& world, FluidRecord& fluid) {
@@ -207,21 +218,24 @@ void advance_fluid(WorldState& world, FluidRecord& fluid) {
     if (fluid.is_asleep && !is_disturbed(world, fluid, slots)) return;
     if (fluid.is_asleep) fluid.quiet_time = 0;
     fluid.is_asleep = false;
-    std::vector<FluidSolid> solids;
-    solids.reserve(slots.size());
-    for (const std::uint32_t slot : slots) {
-        solids.push_back(world.is_dynamic(slot) ? dynamic_solid(world, slot, fluid.definition.density)
-                                                : fixed_solid(world, fluid, slot));
-    }
+    const TaskPool::StayAwake stay_awake(*world.workers);
+    std::vector<FluidSolid> solids = solids_near(world, fluid, slots);
     const FluidOutcome outcome = fluid.solver->advance(
         world.settings.time_step, world.settings.gravity * fluid.definition.gravity_factor, solids, *world.workers);
     note_outcome(world, fluid, outcome);
     push_bodies(world, fluid, solids);
-    read_particles(fluid);
+    read_particles(fluid, *world.workers);
     fall_asleep_if_quiet(world, fluid);
 }
 
 }  // namespace
+
+void prepare_fluid(WorldState& world, FluidRecord& fluid) {
+    world.fluid_touches.resize(world.bodies.slot_count());
+    std::vector<FluidSolid> solids = solids_near(world, fluid, bodies_near(world, fluid));
+    fluid.solver->prepare(solids, *world.workers);
+    read_particles(fluid, *world.workers);
+}
 
 void advance_fluids(WorldState& world) {
     for (const std::uint32_t slot : world.pushed_by_fluids) {

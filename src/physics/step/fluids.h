@@ -44,7 +44,9 @@ struct FluidTouch {
 Result<FluidRecord> set_up_fluid(const WorldState& world, const FluidDefinition& definition);
 /// More particles for it, at rest, where no solid is. Fails where there are none or too many.
 Result<FluidIds> add_particles(const WorldState& world, FluidRecord& fluid, std::span<const Vec3> places);
+/// Measures the solids around a new fluid, which the first step would have to do.
+void prepare_fluid(WorldState& world, FluidRecord& fluid);
 /// Fills what is read of a fluid from its solver.
-void read_particles(FluidRecord& record);
+void read_particles(FluidRecord& record, TaskPool& workers);
 
 }  // namespace embody::physics
