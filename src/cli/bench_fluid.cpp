@@ -25,8 +25,9 @@ int run_fluid(const BenchArguments& arguments) {
     nlohmann::json rows = nlohmann::json::array();
     bool right = true;
     if (!arguments.json) {
-        fmt::print("Water that sloshes, 20 boxes afloat, 180 beside it; 3 s at 60 Hz, of each step the fastest of {} runs.\n",
-                   runs);
+        fmt::print(
+            "Water that sloshes, 20 boxes afloat, 180 beside it; 3 s at 60 Hz, of each step the fastest of {} runs.\n",
+            runs);
         fmt::print("particles  workers  fluid ms  step ms  worst ms  volume %  draft %  end state\n");
     }
     for (const int count : particles) {

@@ -14,9 +14,9 @@ struct MovingSolid;
 /// A shut face of a solid that fills only a part of its control volume, the rest of which goes along with the solid.
 struct BoundFace {
     int axis = 0, cell = 0;
-    float share = 0;  ///< of the control volume that is shut but not solid
-    double mass = 0;  ///< of liquid in it, kg
-    Vec3 turn;        ///< (place − the solid's centre of mass) × axis, m
+    float share = 0;   ///< of the control volume that is shut but not solid
+    double mass = 0;   ///< of liquid in it, kg
+    Vec3 turn;         ///< (place − the solid's centre of mass) × axis, m
     double speed = 0;  ///< of that liquid along the axis before it is bound, m/s
 };
 

@@ -47,7 +47,8 @@ bool ParticleCollider::sees(Vec3 from, Vec3 to) {
     const auto is_barred = [&](SolidProbe& probe) { return probe.look_at(box, 0) && probe.crossing(from, to); };
     if (std::any_of(fixed_.begin(), fixed_.end(), is_barred)) return false;
     for (std::size_t i = 0; i < moving_.size(); ++i) {
-        if (solids_.moving()[i].is_in_reach && is_barred(moving_[i])) return false;
+        const MovingSolid& moving = solids_.moving()[i];
+        if (moving.is_in_reach && !moving.is_small && is_barred(moving_[i])) return false;
     }
     return true;
 }
@@ -155,7 +156,7 @@ void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to) {
         }
         for (std::size_t i = 0; i < moving_.size(); ++i) {
             const MovingSolid& moving = solids_.moving()[i];
-            if (!moving.is_in_reach) continue;
+            if (!moving.is_in_reach || moving.is_small) continue;
             const Vec3 seen_from = from + moving.velocity_at(from) * (dt_ / 2);
             Vec3 seen_to = to - moving.velocity_at(to) * (dt_ / 2);
             if (!bar(moving_[i], seen_from, seen_to, normal)) continue;

@@ -43,8 +43,8 @@ private:
         std::int32_t row, body;
         Vec3 area, moment;
     };
-    /// Rows of tiles that one worker solves, by layers: those of a layer need the same layer of the strip before and the
-    /// layer before of their own.
+    /// Rows of tiles that one worker solves, by layers: those of a layer need the same layer of the strip before and
+    /// the layer before of their own.
     struct Strip {
         std::vector<std::vector<Share>> layers;
     };
@@ -73,7 +73,7 @@ private:
     std::vector<double> r_, z_, p_, ap_, q_;
     std::vector<const MovingSolid*> bodies_;
     std::vector<BodyVelocity> velocities_;
-    std::vector<BodyPart> parts_;             // by row, then by body
+    std::vector<BodyPart> parts_;            // by row, then by body
     std::vector<std::uint32_t> first_part_;  // by block, and one more
     double scale_ = 0;
 };

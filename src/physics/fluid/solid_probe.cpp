@@ -102,9 +102,7 @@ Vec3 octant_offset(int octant) {
     return {(octant & 1) ? 0.25 : -0.25, (octant & 2) ? 0.25 : -0.25, (octant & 4) ? 0.25 : -0.25};
 }
 
-Vec3 rotate_back(const Mat3& rotation, Vec3 v) {
-    return {dot(rotation.x, v), dot(rotation.y, v), dot(rotation.z, v)};
-}
+Vec3 rotate_back(const Mat3& rotation, Vec3 v) { return {dot(rotation.x, v), dot(rotation.y, v), dot(rotation.z, v)}; }
 
 // Share of a cube of that edge behind a face at this distance from its centre: exact for faces along the axes.
 double share_behind(const SolidDistance& face, double edge) {

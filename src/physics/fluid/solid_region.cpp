@@ -176,7 +176,8 @@ void SolidRegion::measure_room() {
             const float *own = &from[cell * 2 * width], *lower = own - below * 2 * width,
                         *upper = own + below * 2 * width;
             for (std::size_t i = 0; i < width; ++i) {
-                to[cell * width + i] = 0.125f * (lower[2 * i + 1] + upper[2 * i]) + 0.375f * (own[2 * i] + own[2 * i + 1]);
+                to[cell * width + i] =
+                    0.125f * (lower[2 * i + 1] + upper[2 * i]) + 0.375f * (own[2 * i] + own[2 * i + 1]);
             }
         }
     };
@@ -186,8 +187,36 @@ void SolidRegion::measure_room() {
     for (std::size_t cell = 0; cell < cells; ++cell) room_[cell] = std::max(0.0f, 1 - folded_[0][cell]);
 }
 
+void SolidRegion::spread(Vec3 place, double volume) {
+    const double h = grid_->cell_size();
+    room_.assign(distance_.size(), 1);
+    for (int axis = 0; axis <= 3; ++axis) {  // 3: centres
+        Cell corner{};
+        float upper[3];
+        for (int a = 0; a < 3; ++a) {
+            const double at = place[a] / h - grid_->lower()[a] - (a == axis ? 0.0 : 0.5);
+            corner[a] = static_cast<int>(std::floor(at));
+            upper[a] = static_cast<float>(at - corner[a]);
+        }
+        for (int k = 0; k < 8; ++k) {
+            Cell c = corner;
+            auto weight = static_cast<float>(volume / (h * h * h));
+            for (int a = 0; a < 3; ++a) {
+                const bool is_upper = k >> a & 1;
+                c[a] += is_upper;
+                weight *= is_upper ? upper[a] : 1 - upper[a];
+            }
+            if (axis < 3) {
+                share_[axis][index(c)] += weight;
+            } else {
+                room_[index(c)] -= weight;
+            }
+        }
+    }
+}
+
 float SolidRegion::room(int cell) const {
-    if (distance_[cell] > 1.75f) return 1;
+    if (distance_[cell] > 1.75f) return room_[cell];
 
     // Behind a thin wall nothing counts, and what lies before it is taken to the centre (ParticleCollider::place_of).
     for (int axis = 0; axis < 3 && any_thin_; ++axis) {

@@ -22,6 +22,9 @@ public:
     bool add(SolidProbe& probe);
     /// Faces from octants, once all solids are in.
     void finish();
+    /// Instead of both: a volume, m³, that is less than a cell and spread by trilinear weights around a place that is
+    /// two cells within the box.
+    void spread(Vec3 place, double volume);
 
     [[nodiscard]] const Cell& lower() const { return lower_; }
     [[nodiscard]] const Cell& upper() const { return upper_; }

@@ -105,6 +105,8 @@ void FluidSolids::measure_moving(MovingSolid& moving, const FluidGrid& grid) {
     const double h = grid.cell_size();
     const Bounds wide = enlarged(moving.probe.bounds(), SolidRegion::reach * h);
     Cell lower{}, upper{};
+    const Vec3 extent = moving.probe.bounds().half_extents() * 2;
+    moving.is_small = std::max({extent.x, extent.y, extent.z}) < h && !moving.probe.is_surface();
     moving.is_in_reach = true;
     for (int axis = 0; axis < 3; ++axis) {
         const double low = std::floor(wide.lower[axis] / h) - grid.lower()[axis];
@@ -112,10 +114,18 @@ void FluidSolids::measure_moving(MovingSolid& moving, const FluidGrid& grid) {
         lower[axis] = static_cast<int>(std::clamp(low, 1.0, grid.size()[axis] - 1.0));
         upper[axis] = static_cast<int>(std::clamp(high, 1.0, grid.size()[axis] - 1.0));
         moving.is_in_reach = moving.is_in_reach && lower[axis] < upper[axis];
+        // What is spread reaches a cell around the centre.
+        const double at = moving.center[axis] / h;
+        const bool is_inside = at > grid.lower()[axis] + lower[axis] + 1 && at < grid.lower()[axis] + upper[axis] - 1;
+        moving.is_in_reach = moving.is_in_reach && (is_inside || !moving.is_small);
     }
     if (!moving.is_in_reach) return;
     SolidRegion& region = moving.region;
     region.begin(grid, lower, upper);
+    if (moving.is_small) {
+        region.spread(moving.center, moving.solid->shape->mass_properties().volume);
+        return;
+    }
     moving.is_in_reach = region.add(moving.probe);
     if (!moving.is_in_reach) return;
     region.finish();

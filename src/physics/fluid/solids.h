@@ -48,6 +48,7 @@ struct MovingSolid {
     std::vector<BoundFace> bound;
     SolidResponse response;
     bool is_in_reach = false;
+    bool is_small = false;  ///< smaller than a cell: what it fills is spread around its centre
 
     [[nodiscard]] Vec3 velocity_at(Vec3 p) const { return linear_velocity + cross(angular_velocity, p - center); }
 };

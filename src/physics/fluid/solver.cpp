@@ -6,6 +6,7 @@
 
 #include "physics/fluid/collide_particles.h"
 #include "physics/fluid/faces.h"
+#include "physics/fluid/small_body.h"
 #include "physics/fluid/transfer.h"
 
 namespace embody::physics {
@@ -101,8 +102,7 @@ FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidSolid>
 
     // Numbers that are none: no solid learns of them.
     for (const FluidSolid& solid : solids) {
-        outcome.is_finite =
-            outcome.is_finite && is_finite(solid.impulse) && is_finite(solid.angular_impulse);
+        outcome.is_finite = outcome.is_finite && is_finite(solid.impulse) && is_finite(solid.angular_impulse);
     }
     outcome.is_finite = outcome.is_finite && reach_of(particles_, workers).is_finite();
     if (outcome.is_finite) return outcome;
@@ -155,7 +155,11 @@ void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, T
     solids_.list_areas(grid_);
     const Viscosity liquid{properties_.density, properties_.viscosity, properties_.yield_stress};
     if (is_viscous(liquid, h, dt)) shear(liquid, dt, outcome);
-    for (MovingSolid& moving : solids_.moving()) bind_liquid(grid_, properties_.density, gravity, moving);
+    for (MovingSolid& moving : solids_.moving()) {
+        bind_liquid(grid_, properties_.density, gravity, moving);
+        drag_small_body(grid_, properties_.density, properties_.viscosity,
+                        properties_.density * properties_.particle_volume, dt, moving);
+    }
     project(dt, outcome, workers);
     // Next to the liquid the air's faces go along with it; farther away drops fall freely.
     extrapolate(grid_, grid_.velocity, 1, workers);

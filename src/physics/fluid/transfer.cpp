@@ -134,6 +134,22 @@ void sample_value(const FluidGrid& grid, const std::array<std::vector<float>, 3>
     std::copy_n(sample.value, 3, value);
 }
 
+FaceWeights face_weights(const FluidGrid& grid, const float* position, int axis) {
+    float at[3];
+    for (int a = 0; a < 3; ++a) at[a] = grid.in_cells(position[a], a);
+    const Corners c = corners_at(grid, at, axis);
+    FaceWeights faces{};
+    for (std::size_t k = 0; k < faces.size(); ++k) {
+        faces[k] = {c.base, 1};
+        for (int a = 0; a < 3; ++a) {
+            const bool is_upper = k >> a & 1;
+            if (is_upper) faces[k].cell += grid.stride(a);
+            faces[k].weight *= is_upper ? c.f[a] : 1 - c.f[a];
+        }
+    }
+    return faces;
+}
+
 float sample_center(const FluidGrid& grid, const std::vector<float>& field, const float* position, float* gradient) {
     const int dy = grid.stride(1), dz = grid.stride(2);
     float at[3];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "foundation/task_pool.h"
@@ -23,6 +24,13 @@ FieldSample sample_field(const FluidGrid& grid, const std::array<std::vector<flo
 /// Without gradient.
 void sample_value(const FluidGrid& grid, const std::array<std::vector<float>, 3>& field, const float* position,
                   float* value);
+/// The eight faces along `axis` around a place of the fluid's frame and their trilinear weights.
+struct FaceWeight {
+    int cell;
+    float weight;
+};
+using FaceWeights = std::array<FaceWeight, 8>;
+FaceWeights face_weights(const FluidGrid& grid, const float* position, int axis);
 /// A value on centres at a place of the fluid's frame, and its gradient per cell.
 float sample_center(const FluidGrid& grid, const std::vector<float>& field, const float* position, float* gradient);
 

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "physics/collision/collision_shape.h"
 #include "physics/inter/world.h"
+#include "physics/step/step.h"
+#include "physics/step/world_state.h"
 
 namespace embody::physics {
 namespace {
@@ -152,6 +155,52 @@ TEST(Fluid, ALeakIsReportedAndNumbersStayFinite) {
     EXPECT_NE(limits & static_cast<std::uint32_t>(StepLimit::fluid_too_fast), 0u);
     for (const Vec3f p : world->fluid_particles(water).positions) ASSERT_TRUE(is_finite(Vec3(p)));
     EXPECT_TRUE(std::isfinite(world->conserved().kinetic_energy));
+}
+
+// A fluid whose particles have that velocity, which no definition allows.
+FluidRecord fluid_gone_wrong(const WorldState& world, const FluidDefinition& definition, Vec3 velocity) {
+    FluidRecord record = set_up_fluid(world, definition).value();
+    std::vector<Vec3f> places = record.positions;
+    record.solver = std::make_unique<FluidSolver>(record.solver->origin(), definition.cell_size,
+                                                  record.solver->properties(), places, velocity);
+    return record;
+}
+
+TEST(Fluid, NumbersThatAreNoneFreezeItAndAreReported) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+    for (const Vec3 velocity : {Vec3{nan, 0, 0}, Vec3{0, -inf, 0}, Vec3{3e38, 3e38, 0}}) {
+        WorldState world;
+        const FluidHandle water =
+            world.fluids.insert(fluid_gone_wrong(world, cube_of_water(0.2, 0.02), velocity));
+        const std::vector<Vec3f> before = world.fluids.find(water)->positions;
+        for (int i = 0; i < 3; ++i) {
+            advance_fluids(world);
+            EXPECT_NE(world.report.limits & static_cast<std::uint32_t>(StepLimit::not_finite_fluid_frozen), 0u);
+            const FluidRecord& record = *world.fluids.find(water);
+            EXPECT_TRUE(record.is_frozen);
+            ASSERT_EQ(record.positions.size(), before.size());
+            for (std::size_t k = 0; k < before.size(); ++k) {
+                ASSERT_EQ(record.positions[k].x, before[k].x);
+                ASSERT_EQ(record.velocities[k].x, 0);
+            }
+        }
+    }
+}
+
+TEST(Fluid, NumbersThatAreNonePushNoBody) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    const auto shape = std::move(CollisionShape::create(BoxShape{{0.05, 0.05, 0.05}})).value();
+    FluidSolid solid{.shape = shape.get(), .inverse_mass = 1, .inverse_inertia = Mat3::identity()};
+    std::vector<Vec3f> places;
+    for (float x = -0.09f; x < 0.1f; x += 0.02f) {
+        for (float y = -0.09f; y < 0.1f; y += 0.02f) places.push_back({x, y, 0.07f});
+    }
+    FluidSolver solver({}, 0.04, {.particle_volume = 8e-6}, places, {0, nan, 0});
+    TaskPool workers(1);
+    const FluidOutcome outcome = solver.advance(1.0 / 60, {0, -9.81, 0}, {&solid, 1}, workers);
+    EXPECT_FALSE(outcome.is_finite);
+    EXPECT_EQ(solid.impulse, Vec3{});
+    EXPECT_EQ(solid.angular_impulse, Vec3{});
 }
 
 TEST(Fluid, DegenerateLumpsOfLiquidAreNoTrouble) {

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// Bodies smaller than a cell: the speed at which drag and buoyancy hold their weight.
+#include "validation/fluid_scenes.h"
+
+namespace embody::physics {
+namespace {
+
+// Of a sphere in water: C_d = 24 / Re (1 + 0.15 Re^0.687) below Re = 1000, 0.44 above (L. Schiller, A. Naumann, 1933).
+double speed_of_fall(double radius, double density) {
+    constexpr double water = 998, viscosity = 0.001, pi = 3.14159265358979;
+    const double weight = 4.0 / 3 * pi * radius * radius * radius * (density - water) * gravity;
+    double low = 0, high = 20;
+    for (int i = 0; i < 60; ++i) {
+        const double speed = (low + high) / 2, reynolds = water * speed * 2 * radius / viscosity;
+        const double c = reynolds < 1000 ? 24 / reynolds * (1 + 0.15 * std::pow(reynolds, 0.687)) : 0.44;
+        (c * water / 2 * speed * speed * pi * radius * radius < weight ? low : high) = speed;
+    }
+    return low;
+}
+
+struct Ball {
+    double radius, density;
+};
+
+TEST(FluidSmallBody, BallsSinkAsFastAsSchillerAndNaumannMeasured) {
+    constexpr double side = 0.48, depth = 1.2;
+    auto world = make_world({});
+    add_tank(*world, {{0, 0, 0}, {side, 1.6, side}});
+    const auto water = world->create_fluid(
+        {.boxes = {{{0, 0, 0}, {side, depth, side}}}, .cell_size = 0.04, .allow_sleep = false});
+    ASSERT_TRUE(water);
+    run(*world, 0.5);
+    for (const Ball ball : {Ball{0.005, 7850}, Ball{0.01, 2500}, Ball{0.01, 1200}}) {
+        const BodyHandle body = world->create_body({.shape = world->create_shape(SphereShape{ball.radius}).value(),
+                                                    .position = {side / 2, 1, side / 2},
+                                                    .mass = {.density = ball.density}})
+                                    .value();
+        double speed = 0;
+        for (int i = 0; i < 300 && world->center_of_mass(body).y > 0.5; ++i) {
+            world->step();
+            speed = -world->linear_velocity(body).y;
+        }
+        const double ratio = speed / speed_of_fall(ball.radius, ball.density);
+        RecordProperty("ratio_" + std::to_string(std::lround(ball.density)), std::to_string(ratio));
+        EXPECT_NEAR(ratio, 1, 0.1) << ball.radius << " " << ball.density;
+        // It falls without acceleration: water holds its whole weight.
+        const double weight = world->mass(body) * gravity;
+        EXPECT_NEAR(world->fluid_force(body).force.y, weight, 0.03 * weight);
+        ASSERT_TRUE(world->destroy_body(body));
+    }
+}
+
+TEST(FluidSmallBody, ALightBallRisesAndFloats) {
+    auto world = make_world({});
+    add_tank(*world, {{0, 0, 0}, {0.4, 0.8, 0.4}});
+    ASSERT_TRUE(world->create_fluid({.boxes = {{{0, 0, 0}, {0.4, 0.4, 0.4}}}, .cell_size = 0.04}));
+    const BodyHandle ball = world->create_body({.shape = world->create_shape(SphereShape{0.012}).value(),
+                                                .position = {0.2, 0.1, 0.2},
+                                                .mass = {.density = 500}})
+                                .value();
+    run(*world, 4);
+    // Its centre is at the surface: half of it displaces its weight. What it fills is spread over a cell.
+    EXPECT_NEAR(world->center_of_mass(ball).y, 0.4, 0.03);
+    EXPECT_NEAR(world->linear_velocity(ball).y, 0, 0.05);
+}
+
+TEST(FluidSmallBody, DragKeepsMomentum) {
+    auto world = make_world({.gravity = {0, 0, 0}});
+    ASSERT_TRUE(world->create_fluid({.boxes = {{{0, 0, 0}, {0.3, 0.3, 0.3}}}, .viscosity = 1, .cell_size = 0.03}));
+    const BodyHandle ball = world->create_body({.shape = world->create_shape(SphereShape{0.012}).value(),
+                                                .position = {0.08, 0.15, 0.15},
+                                                .mass = {.density = 7850},
+                                                .linear_velocity = {2, 0, 0}})
+                                .value();
+    const double before = world->conserved().linear_momentum.x;
+    for (int i = 0; i < 6; ++i) world->step();
+    EXPECT_LT(world->linear_velocity(ball).x, 1.8);
+    EXPECT_NEAR(world->conserved().linear_momentum.x, before, 0.05 * before);
+}
+
+}  // namespace
+}  // namespace embody::physics
