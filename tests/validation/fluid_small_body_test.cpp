@@ -26,14 +26,15 @@ TEST(FluidSmallBody, BallsSinkAsFastAsSchillerAndNaumannMeasured) {
     constexpr double side = 0.48, depth = 1.2;
     auto world = make_world({});
     add_tank(*world, {{0, 0, 0}, {side, 1.6, side}});
-    const auto water = world->create_fluid(
-        {.boxes = {{{0, 0, 0}, {side, depth, side}}}, .cell_size = 0.04, .allow_sleep = false});
+    const auto water =
+        world->create_fluid({.boxes = {{{0, 0, 0}, {side, depth, side}}}, .cell_size = 0.04, .allow_sleep = false});
     ASSERT_TRUE(water);
     run(*world, 0.5);
     for (const Ball ball : {Ball{0.005, 7850}, Ball{0.01, 2500}, Ball{0.01, 1200}}) {
-        const BodyHandle body = world->create_body({.shape = world->create_shape(SphereShape{ball.radius}).value(),
-                                                    .position = {side / 2, 1, side / 2},
-                                                    .mass = {.density = ball.density}})
+        const BodyHandle body = world
+                                    ->create_body({.shape = world->create_shape(SphereShape{ball.radius}).value(),
+                                                   .position = {side / 2, 1, side / 2},
+                                                   .mass = {.density = ball.density}})
                                     .value();
         double speed = 0;
         for (int i = 0; i < 300 && world->center_of_mass(body).y > 0.5; ++i) {
@@ -54,9 +55,10 @@ TEST(FluidSmallBody, ALightBallRisesAndFloats) {
     auto world = make_world({});
     add_tank(*world, {{0, 0, 0}, {0.4, 0.8, 0.4}});
     ASSERT_TRUE(world->create_fluid({.boxes = {{{0, 0, 0}, {0.4, 0.4, 0.4}}}, .cell_size = 0.04}));
-    const BodyHandle ball = world->create_body({.shape = world->create_shape(SphereShape{0.012}).value(),
-                                                .position = {0.2, 0.1, 0.2},
-                                                .mass = {.density = 500}})
+    const BodyHandle ball = world
+                                ->create_body({.shape = world->create_shape(SphereShape{0.012}).value(),
+                                               .position = {0.2, 0.1, 0.2},
+                                               .mass = {.density = 500}})
                                 .value();
     run(*world, 4);
     // Its centre is at the surface: half of it displaces its weight. What it fills is spread over a cell.
@@ -67,10 +69,11 @@ TEST(FluidSmallBody, ALightBallRisesAndFloats) {
 TEST(FluidSmallBody, DragKeepsMomentum) {
     auto world = make_world({.gravity = {0, 0, 0}});
     ASSERT_TRUE(world->create_fluid({.boxes = {{{0, 0, 0}, {0.3, 0.3, 0.3}}}, .viscosity = 1, .cell_size = 0.03}));
-    const BodyHandle ball = world->create_body({.shape = world->create_shape(SphereShape{0.012}).value(),
-                                                .position = {0.08, 0.15, 0.15},
-                                                .mass = {.density = 7850},
-                                                .linear_velocity = {2, 0, 0}})
+    const BodyHandle ball = world
+                                ->create_body({.shape = world->create_shape(SphereShape{0.012}).value(),
+                                               .position = {0.08, 0.15, 0.15},
+                                               .linear_velocity = {2, 0, 0},
+                                               .mass = {.density = 7850}})
                                 .value();
     const double before = world->conserved().linear_momentum.x;
     for (int i = 0; i < 6; ++i) world->step();

@@ -175,6 +175,7 @@ void ParticleCollider::move(FluidParticle& particle, const float* end) {
     float way[3], size = 0;
     for (int axis = 0; axis < 3; ++axis) {
         way[axis] = std::clamp(end[axis] - particle.position[axis], -longest, longest);
+        if (!std::isfinite(way[axis])) return;  // its velocity tells the solver
         size = std::max(size, std::fabs(way[axis]));
     }
     const int strides = 1 + static_cast<int>(size / (1.5f * static_cast<float>(grid_.cell_size())));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "physics/fluid/collide_particles.h"
 #include "physics/fluid/faces.h"
@@ -81,7 +82,7 @@ double FluidSolver::usual_speed(TaskPool& workers) const {
 }
 
 void FluidSolver::prepare(std::span<FluidSolid> solids, TaskPool& workers) {
-    grid_.cover(particles_, workers);
+    lost_before_ += grid_.cover(particles_, workers);
     if (particles_.empty()) return;
     solids_.begin(solids, grid_);
     grid_.sort(particles_, workers);
@@ -90,6 +91,7 @@ void FluidSolver::prepare(std::span<FluidSolid> solids, TaskPool& workers) {
 
 FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidSolid> solids, TaskPool& workers) {
     FluidOutcome outcome;
+    outcome.lost = std::exchange(lost_before_, 0);
     for (FluidSolid& solid : solids) solid.impulse = solid.angular_impulse = {};
     if (particles_.empty()) return outcome;
     speed_ = usual_speed(workers);

@@ -170,8 +170,7 @@ TEST(Fluid, NumbersThatAreNoneFreezeItAndAreReported) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
     for (const Vec3 velocity : {Vec3{nan, 0, 0}, Vec3{0, -inf, 0}, Vec3{3e38, 3e38, 0}}) {
         WorldState world;
-        const FluidHandle water =
-            world.fluids.insert(fluid_gone_wrong(world, cube_of_water(0.2, 0.02), velocity));
+        const FluidHandle water = world.fluids.insert(fluid_gone_wrong(world, cube_of_water(0.2, 0.02), velocity));
         const std::vector<Vec3f> before = world.fluids.find(water)->positions;
         for (int i = 0; i < 3; ++i) {
             advance_fluids(world);
