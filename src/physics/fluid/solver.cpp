@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "physics/fluid/collide_particles.h"
 #include "physics/fluid/faces.h"
@@ -82,16 +81,17 @@ double FluidSolver::usual_speed(TaskPool& workers) const {
 }
 
 void FluidSolver::prepare(std::span<FluidSolid> solids, TaskPool& workers) {
-    lost_before_ += grid_.cover(particles_, workers);
-    if (particles_.empty()) return;
+    // A copy: whoever made them still knows them by their order.
+    std::vector<FluidParticle> particles = particles_;
+    grid_.cover(particles, workers);
+    if (particles.empty()) return;
     solids_.begin(solids, grid_);
-    grid_.sort(particles_, workers);
+    grid_.sort(particles, workers);
     solids_.measure(0, grid_, workers);
 }
 
 FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidSolid> solids, TaskPool& workers) {
     FluidOutcome outcome;
-    outcome.lost = std::exchange(lost_before_, 0);
     for (FluidSolid& solid : solids) solid.impulse = solid.angular_impulse = {};
     if (particles_.empty()) return outcome;
     speed_ = usual_speed(workers);

@@ -85,7 +85,6 @@ private:
     ViscositySystem viscosity_;
     std::vector<FluidParticle> particles_;
     std::uint32_t next_id_ = 0;
-    std::size_t lost_before_ = 0;               // particles, before the first step
     std::vector<std::array<float, 3>> places_;  // where they meet the grid
     std::vector<double> flow_, impulse_, potential_;
     double speed_ = 0;  // usual one when the step began, m/s

@@ -234,7 +234,6 @@ void prepare_fluid(WorldState& world, FluidRecord& fluid) {
     world.fluid_touches.resize(world.bodies.slot_count());
     std::vector<FluidSolid> solids = solids_near(world, fluid, bodies_near(world, fluid));
     fluid.solver->prepare(solids, *world.workers);
-    read_particles(fluid, *world.workers);
 }
 
 void advance_fluids(WorldState& world) {
