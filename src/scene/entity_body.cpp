@@ -94,6 +94,8 @@ AttributeSet primitive_attributes(const Entity& entity, const physics::ShapeDefi
         put_measured(set, "mass", density * form.volume, "density × volume of the " + name);
         put_measured(set, "center_of_mass", form.center_of_volume, solid);
         put_measured(set, "inertia", form.unit_inertia * density, solid);
+        const Vec3 s = form.size;
+        put_measured(set, "drag_area", (s.x * s.y + s.y * s.z + s.z * s.x) / 2, "mean projected area of its box");
     }
     attributes::complete_for_kind(set);
     // What collides is the primitive itself.

@@ -17,10 +17,10 @@
 
 namespace embody::scene {
 
-/// Whether an entity is one body or points.
 /// What a thing of kind cloth or rope is computed on.
 using ThinForm = std::variant<attributes::SheetMesh, LineForm>;
 
+/// Whether an entity is one body or points.
 struct EntityForm {
     bool has_points = false;
     std::string points_key;  ///< the same, the same points; empty: nobody else has them

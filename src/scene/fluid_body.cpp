@@ -21,11 +21,14 @@ Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liqu
     std::unique_ptr<FluidBody> made(new FluidBody(world, liquids));
     made->matter_ = definition.matter;
     const Bounds bounds = transformed(definition.pose, region.value().bounds());
+    // Particles of a fluid that is there already have that one's volume, however many it takes.
     const double cell = liquids.cell_size(definition.matter, bounds);
-    const Result<FluidFilling> filling = fill_with_fluid(definition.shape, cell, definition.particle_budget);
+    const bool is_own = cell == definition.matter.cell_size;
+    const std::size_t most = definition.particle_budget * (is_own ? 1 : Liquids::most_particles_ratio);
+    const Result<FluidFilling> filling = fill_with_fluid(definition.shape, cell, most);
     if (!filling.ok()) return filling.error();
     // Its own fluid's cells are such that the particles have its volume.
-    if (cell == definition.matter.cell_size) made->matter_.cell_size = std::clamp(filling.value().cell_size, 1e-3, 1.0);
+    if (is_own) made->matter_.cell_size = std::clamp(filling.value().cell_size, 1e-3, 1.0);
 
     std::vector<Particle> particles;
     particles.reserve(filling.value().places.size());
@@ -72,18 +75,20 @@ Result<void> FluidBody::set_definition(const PointsDefinition& definition) {
     const double cell_size = matter_.cell_size;
     matter_ = matter;
     matter_.cell_size = cell_size;
-    if (!is_enabled_) return {};
+    const bool enabled = std::get<LiquidDefinition>(definition).enabled;
+    if (!is_enabled_) return set_enabled(enabled);
     if (liquids_.is_alone(share_)) {
         physics::FluidDefinition changed = *world_.fluid(share_.fluid);
         changed.density = matter.density;
         changed.viscosity = matter.viscosity;
         changed.yield_stress = matter.yield_stress;
         changed.allow_sleep = matter.allow_sleep;
-        return world_.set_fluid(share_.fluid, changed);
+        if (Result<void> set = world_.set_fluid(share_.fluid, changed); !set.ok()) return set;
+        return set_enabled(enabled);
     }
     // The others of its fluid stay as they are.
     if (Result<void> out = set_enabled(false); !out.ok()) return out;
-    return set_enabled(true);
+    return set_enabled(enabled);
 }
 
 std::vector<FluidBody::Particle> FluidBody::particles() const {

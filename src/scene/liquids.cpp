@@ -10,8 +10,6 @@ using physics::FluidHandle;
 
 namespace {
 
-// Cells of one solver have one size: a body whose own would be coarser or finer by more has a fluid of its own.
-constexpr double most_ratio = 1.6;
 // The solver's grid spans all of its liquid: bodies so far apart that it would have more cells do not share one.
 constexpr double most_cells = 200'000;
 

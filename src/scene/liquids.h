@@ -13,6 +13,11 @@ namespace embody::scene {
 /// mixes. Liquids of different matter do not see each other (docs/physics/fluids.md, "Entities").
 class Liquids {
 public:
+    /// Cells of one solver have one size: bodies of liquid whose own differ by no more than this factor share a fluid.
+    static constexpr double most_ratio = 1.6;
+    /// How many times as many particles one may need with the other's cells: that cubed, rounded up.
+    static constexpr std::size_t most_particles_ratio = 5;
+
     /// `world` outlives this.
     explicit Liquids(physics::World& world) : world_(world) {}
 

@@ -132,7 +132,9 @@ void SessionState::tell_step() {
               {"segment", broke.segment},
               {"tension", broke.tension},
               {"position", vector_to_json(broke.position)}});
-        tell_message("warning", who + " broke at a tension of " + attributes::short_number(broke.tension) + " N.");
+        // Of one that goes on breaking the first place says enough.
+        if (told_problems.insert(who + " broke").second)
+            tell_message("warning", who + " broke at a tension of " + attributes::short_number(broke.tension) + " N.");
     }
 
     // The same complaint once a run.

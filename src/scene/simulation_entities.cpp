@@ -148,21 +148,26 @@ Result<void> Simulation::State::update_points(LiveEntity& before, LiveEntity& af
 // Another kind, or other points: made anew where it is.
 Result<void> Simulation::State::replace(LiveEntity& before, LiveEntity& after, bool keep_motion) {
     if (after.form.has_points && is_held_as_body(before.definition.index))
-        return Error{"attributes.kind", "grains cannot be held by a joint", "remove the joint first"};
+        return Error{"attributes.kind", "grains cannot be held by a joint or a pin", "remove that first"};
     const Entity document = after.definition;
     if (keep_motion) {
         after.definition.pose = after.frame = pose_of(before);
         std::tie(after.definition.linear_velocity, after.definition.angular_velocity) = motion_of(before);
     }
-    // Liquid fills only what is free, so the body that it was does not stand in it.
-    const bool hides = before.definition.enabled && !before.body.is_null();
-    if (hides) (void)world->set_enabled(before.body, false).ok();
+    // Liquid fills only what is free and joins liquid that is there, so what it was is not there meanwhile.
+    const bool hides = before.definition.enabled && (!before.points || before.attributes.word("kind", "") == "fluid");
+    const auto show = [&](bool shown) {
+        return before.points ? before.points->set_enabled(shown) : world->set_enabled(before.body, shown);
+    };
+    if (hides) {
+        if (Result<void> hidden = show(false); !hidden.ok()) return hidden;
+    }
     Result<void> placed = put(after);
     if (placed.ok()) placed = fasten(after);
     after.definition = document;
     if (!placed.ok()) {
         take_out(after);
-        if (hides) (void)world->set_enabled(before.body, true).ok();
+        if (Result<void> shown = hides ? show(true) : Result<void>{}; !shown.ok()) return shown;
         return placed;
     }
     take_out(before);

@@ -66,6 +66,25 @@ double mean_height(const std::vector<Vec3>& points) {
     return sum / static_cast<double>(points.size());
 }
 
+TEST(Fluids, OfAnotherSizeBesideEachOtherHaveTheirOwnVolume) {
+    Document document;
+    const EntityIndex small = add_box(document, "Small", {0.2, 0.2, 0.2}, {0, 0.2, 0}, water(2000)).index;
+    const EntityIndex large = add_box(document, "Large", {0.3, 0.3, 0.3}, {0.55, 0.3, 0}, water(2000)).index;
+    const auto simulation = make(document);
+    ASSERT_TRUE(simulation);
+    EXPECT_NEAR(simulation->points(small)->mass(), 998 * 0.064, 0.05 * 998 * 0.064);
+    EXPECT_NEAR(simulation->points(large)->mass(), 998 * 0.216, 0.05 * 998 * 0.216);
+
+    // In the running scene it may be switched off and on.
+    Entity changed = *simulation->definition(large);
+    changed.enabled = false;
+    ASSERT_TRUE(simulation->update(changed, true).ok());
+    EXPECT_EQ(simulation->world().fluids().size(), 1u);
+    changed.enabled = true;
+    ASSERT_TRUE(simulation->update(changed, true).ok());
+    EXPECT_NEAR(simulation->points(large)->mass(), 998 * 0.216, 0.05 * 998 * 0.216);
+}
+
 TEST(FluidFilling, HasTheShapesVolume) {
     const double pi = std::acos(-1.0);
     const std::vector<std::pair<ShapeDefinition, double>> shapes = {

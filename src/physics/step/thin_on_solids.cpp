@@ -87,21 +87,22 @@ void ThinOnSolids::find_following(SolidDeformable& solid, const Nodes& sheet, do
     }
 }
 
+// By solid and node.
+std::pair<std::uint32_t, std::uint32_t> ThinOnSolids::touch_of(const SurfacePush& push) {
+    return {push.slot, push.node};
+}
+
 void ThinOnSolids::take(ThinDeformable& thin, std::span<const TouchedBody> bodies, std::size_t first) {
     DeformableRecord& sheet = *thin.record;
     thin.contacts = std::move(with_bodies_);
     std::vector<SurfacePush> pushes = std::exchange(sheet.surface_pushes, {});
     for (const TouchSpring& spring : springs_of(sheet)) {
         if (!spring.acts || spring.body == no_body || spring.body < first) continue;
-        const auto held =
-            std::ranges::lower_bound(held_, std::pair{spring.body, spring.node[0]}, {}, [](const Held& h) {
-                return std::pair{h.body, h.node};
-            });
+        const auto held = std::ranges::lower_bound(held_, std::pair{spring.body, spring.node[0]}, {}, key);
         SurfacePush push{
             bodies[spring.body].body - first_solid_slot, spring.node[0], held->place.triangle, held->place.weight, {}};
-        const auto last = std::ranges::find_if(
-            pushes, [&](const SurfacePush& p) { return p.slot == push.slot && p.node == push.node; });
-        if (last != pushes.end()) push.force = std::exchange(last->force, {});
+        const auto last = std::ranges::lower_bound(pushes, touch_of(push), {}, touch_of);
+        if (last != pushes.end() && touch_of(*last) == touch_of(push)) push.force = std::exchange(last->force, {});
         push.force += held->following * (-spring.felt - push.force);
         sheet.surface_pushes.push_back(push);
     }
@@ -111,6 +112,7 @@ void ThinOnSolids::take(ThinDeformable& thin, std::span<const TouchedBody> bodie
         push.force *= lasting;
         if (length(push.force) > least) sheet.surface_pushes.push_back(push);
     }
+    std::ranges::stable_sort(sheet.surface_pushes, {}, touch_of);
 }
 
 }  // namespace embody::physics

@@ -32,6 +32,7 @@ private:
         PlacedSurface::Place place;
         double following = 1;  ///< share of a new push that the solid takes on
     };
+    static std::pair<std::uint32_t, std::uint32_t> touch_of(const SurfacePush& push);
     static std::pair<std::uint32_t, std::uint32_t> key(const Held& held) { return {held.body, held.node}; }
     const PlacedSurface& surface(std::uint32_t slot);
     void add_solid(ThinDeformable& thin, std::uint32_t slot, std::vector<TouchedBody>& bodies, double h);

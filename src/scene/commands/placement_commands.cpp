@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 
 #include "scene/commands/commands.h"
 #include "scene/json/parts.h"
@@ -26,7 +28,8 @@ public:
         // What flows or bends is put down as the solid thing that it would be.
         const Result<attributes::AttributeSet> set = state.bodies.attributes(entity);
         const std::string kind = set.ok() ? set.value().word("kind", "") : "";
-        if (kind == "granular" || kind == "soft" || kind == "fluid") still.attributes["kind"] = std::string("rigid");
+        const std::set<std::string> with_points{"granular", "soft", "cloth", "rope", "fluid"};
+        if (with_points.contains(kind)) still.attributes["kind"] = std::string("rigid");
         if (Result<void> added = state.simulation->add(still); !added.ok()) return added;
         probe.emplace(state, entity.index);
         return {};

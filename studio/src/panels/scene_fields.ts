@@ -40,10 +40,10 @@ export class SceneFields {
         "details",
         { class: "group", open: true },
         element("summary", {}, "Air"),
-        row("Wind", this.wind.root, "Velocity of the air; it moves cloth"),
+        row("Wind", this.wind.root, "Velocity of the air"),
         row("Gustiness", this.gustiness.root, "How much the wind changes: 0 is steady, 0.2 a usual wind, 1 gusts as strong as the wind"),
         row("Gust time", this.gustTime.root, "How long a gust lasts"),
-        row("Air density", this.airDensity.root, "Of the air around cloth"),
+        row("Air density", this.airDensity.root, "Of the air"),
       ),
       element("p", { class: "note" }, "Select an entity, or click on a model, to see what it is made of. Drag models in from the left; they land on what is under the pointer."),
     );
