@@ -42,7 +42,7 @@ void NodeCompliance::keep_only_asked_for() {
         const std::uint32_t from = kept[i];
         nodes_[i] = nodes_[from];
         number_[nodes_[i]] = static_cast<std::uint32_t>(i);
-        columns_[i] = std::move(columns_[from]);
+        if (from != i) columns_[i] = std::move(columns_[from]);  // moved onto itself a vector may become empty
         for (std::size_t row = 0; row < 9; ++row) {
             // Never behind what is read next: i <= from, and so of each number within the row.
             float* to = value_.data() + (9 * i + row) * stride_;
