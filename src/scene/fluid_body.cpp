@@ -28,7 +28,14 @@ Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liqu
     const Result<FluidFilling> filling = fill_with_fluid(definition.shape, cell, most);
     if (!filling.ok()) return filling.error();
     // Its own fluid's cells are such that the particles have its volume.
-    if (is_own) made->matter_.cell_size = std::clamp(filling.value().cell_size, 1e-3, 1.0);
+    constexpr double largest_cell = 1;  // m, of the physics
+    if (filling.value().cell_size > largest_cell)
+        return Error{"attributes.particle_budget",
+                     "is too small for so much liquid: its cells would be " +
+                         std::to_string(static_cast<int>(std::ceil(filling.value().cell_size))) +
+                         " m wide, more than 1 m",
+                     "raise it, or fill a smaller shape"};
+    if (is_own) made->matter_.cell_size = std::max(filling.value().cell_size, 1e-3);
 
     std::vector<Particle> particles;
     particles.reserve(filling.value().places.size());

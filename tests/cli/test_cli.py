@@ -299,8 +299,9 @@ class Scenes(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 
     def test_a_ball_falls_as_galileo_says(self):
-        scene = {"embody_scene": 1, "entities": [{"index": 1, "name": "ball", "shape": {"type": "sphere", "radius": 0.1},
-                                                  "pose": {"position": [0, 20, 0]}}]}
+        scene = {"embody_scene": 1, "settings": {"air_density": 0},
+                 "entities": [{"index": 1, "name": "ball", "shape": {"type": "sphere", "radius": 0.1},
+                               "pose": {"position": [0, 20, 0]}}]}
         file = self.path / "fall.json"
         file.write_text(json.dumps(scene))
         record = self.path / "out.jsonl"

@@ -66,6 +66,15 @@ double mean_height(const std::vector<Vec3>& points) {
     return sum / static_cast<double>(points.size());
 }
 
+TEST(Fluids, TooLargeForTheirParticlesAreRefused) {
+    Document document;
+    add_box(document, "Sea", {500, 500, 500}, {0, 500, 0}, water(20'000));
+    const auto made = Simulation::create(document, nullptr);
+    ASSERT_FALSE(made.ok());
+    EXPECT_NE(made.error().message().find("Sea"), std::string::npos) << made.error().message();
+    EXPECT_NE(made.error().message().find("particle_budget"), std::string::npos) << made.error().message();
+}
+
 TEST(Fluids, OfAnotherSizeBesideEachOtherHaveTheirOwnVolume) {
     Document document;
     const EntityIndex small = add_box(document, "Small", {0.2, 0.2, 0.2}, {0, 0.2, 0}, water(2000)).index;
