@@ -145,8 +145,13 @@ void put_fineness(AttributeSet& set, const GeometryFacts& facts, const Form& for
 void put_cloth_of_primitive(AttributeSet& set, const GeometryFacts& facts) {
     if (set.word("kind", "") != "cloth") return;
     const Vec3 size = facts.size;
-    const double thickness = std::min({size.x, size.y, size.z}), area = facts.volume / thickness;
-    put_number(set, "thickness", thickness, "thickness of the shape", AttributeLevel::measured);
+    const double thickness = std::min({size.x, size.y, size.z});
+    // Of triangles, which have no volume, the largest face of their box; a plane has no area at all.
+    const bool is_solid = facts.volume > 0 && thickness > 0;
+    const double face = std::max({size.x * size.y, size.y * size.z, size.z * size.x});
+    const double area = is_solid ? facts.volume / thickness : face;
+    if (!(area > 0)) return;
+    if (is_solid) put_number(set, "thickness", thickness, "thickness of the shape", AttributeLevel::measured);
     if (is_manual(set, "mass")) {
         put_number(set, "area_density", set.number("mass", 1) / area, "manual mass / area", AttributeLevel::model);
         return;

@@ -29,7 +29,8 @@ inline constexpr double loose_packing = 0.55;
 void put_fineness(AttributeSet& set, const GeometryFacts& facts, const Form& form);
 
 /// Thickness, area density and mass of a primitive (whose volume and size `facts` has) that is cloth; nothing else is
-/// touched. Cloth weighs by its area: a box as thin as cloth, but solid, would be far too heavy.
+/// touched, and nothing at all of one without area. Cloth weighs by its area: a box as thin as cloth, but solid, would
+/// be far too heavy.
 void put_cloth_of_primitive(AttributeSet& set, const GeometryFacts& facts);
 
 /// Replaces the entry unless a person set it.

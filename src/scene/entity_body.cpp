@@ -179,6 +179,11 @@ ModelFacts primitive_facts(const physics::ShapeDefinition& shape) {
     attributes::GeometryFacts& form = facts.geometry;
     form.volume_method = "closed form";
     form.closed = true;
+    if (const auto* mesh = std::get_if<physics::MeshShape>(&shape)) {
+        Bounds bounds;
+        for (const Vec3f& position : mesh->positions) bounds.add(to_vec3(position));
+        if (!bounds.is_empty()) form.size = bounds.size();
+    }
     if (physics::is_static_only(shape)) return facts;
 
     // The physics itself says what a body of unit density would be.
@@ -298,9 +303,12 @@ Result<physics::BodyDefinition> EntityBodies::body(const Entity& entity, const A
         body.enabled = entity.enabled;
     }
 
-    // The physics knows a primitive's centre and moments itself, and its mass from the density.
+    // The physics knows a primitive's centre and moments itself, and its mass from the density; but cloth and ropes
+    // that are simulated as rigid weigh by their area and length all the same.
     if (std::holds_alternative<physics::ShapeDefinition>(entity.geometry)) {
-        if (!attributes::is_manual(attributes, "mass")) body.mass.mass.reset();
+        const std::string kind = attributes.word("kind", "rigid");
+        const bool is_thin = kind == "cloth" || kind == "rope";
+        if (!is_thin && !attributes::is_manual(attributes, "mass")) body.mass.mass.reset();
         if (!attributes::is_manual(attributes, "center_of_mass")) body.mass.center_of_mass.reset();
         if (!attributes::is_manual(attributes, "inertia")) body.mass.inertia.reset();
         body.mass.density *= attributes.number("fill_fraction", 1);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "scene/entity_body.h"
 #include "scene/sample_documents.h"
 #include "scene/scene_file.h"
 #include "scene/session.h"
@@ -153,6 +154,58 @@ TEST(ClothEntity, WhatIsThickStaysRigidAndSaysWhy) {
     ASSERT_TRUE(simulation);
     ASSERT_EQ(simulation->notes().size(), 1u);
     EXPECT_NE(simulation->notes()[0].find("no rope"), std::string::npos) << simulation->notes()[0];
+}
+
+// A box as thick as this is no sheet; it weighs as cloth of its face would, not as 64 litres of something solid.
+TEST(ClothEntity, WhatStaysRigidWeighsByItsAreaOrLengthAllTheSame) {
+    Document document = a_cloth(0.5);
+    Entity& entity = document.entities[1];
+    entity.geometry = ShapeDefinition{BoxShape{{0.2, 0.2, 0.2}}};
+    entity.attributes["area_density"] = 0.3;
+    auto simulation = make(document);
+    ASSERT_TRUE(simulation);
+    EXPECT_NEAR(simulation->world().mass(simulation->body(thing)), 0.3 * 0.16, 1e-9);
+    EXPECT_NEAR(simulation->attributes(thing)->number("mass", 0), 0.3 * 0.16, 1e-9);
+    entity.attributes = {{"kind", std::string("rope")}, {"linear_density", 0.5}};
+    simulation = make(document);
+    ASSERT_TRUE(simulation);
+    EXPECT_NEAR(simulation->world().mass(simulation->body(thing)), 0.5 * 0.4, 1e-9);
+
+    // A sheet that a joint holds.
+    Document held = a_cloth(0.5);
+    SceneJoint joint;
+    joint.index = 1;
+    joint.entity_b = thing;
+    held.joints.push_back(joint);
+    simulation = make(held);
+    ASSERT_TRUE(simulation);
+    ASSERT_FALSE(simulation->points(thing));
+    EXPECT_NEAR(simulation->world().mass(simulation->body(thing)), 0.2, 1e-9);
+}
+
+TEST(ClothEntity, OfEveryShapeTheAttributesAreNumbers) {
+    for (const Entity& primitive : samples::everything().entities) {
+        const auto* shape = std::get_if<ShapeDefinition>(&primitive.geometry);
+        if (!shape) continue;
+        for (const char* kind : {"cloth", "rope", "soft", "granular", "fluid", "rigid"}) {
+            Entity entity;
+            entity.geometry = *shape;
+            entity.attributes["kind"] = std::string(kind);
+            const auto set = EntityBodies(nullptr).attributes(entity);
+            ASSERT_TRUE(set) << kind;
+            for (const attributes::AttributeEntry& entry : set->entries()) {
+                const auto* number = std::get_if<double>(&entry.value);
+                EXPECT_FALSE(number && std::isnan(*number))
+                    << kind << " " << physics::shape_name(*shape) << ": " << entry.name;
+            }
+        }
+    }
+    // Triangles weigh by the face of their box.
+    Entity sheet;
+    sheet.geometry =
+        ShapeDefinition{physics::MeshShape{{{0, 0, 0}, {2, 0, 0}, {2, 0, 1}, {0, 0, 1}}, {{0, 2, 1}, {0, 3, 2}}}};
+    sheet.attributes["kind"] = std::string("cloth");
+    EXPECT_NEAR(EntityBodies(nullptr).attributes(sheet)->number("mass", 0), 0.4, 1e-9);
 }
 
 TEST(ClothEntity, KindChangesWhileItMovesInAllDirections) {
