@@ -287,16 +287,17 @@ private:
                                      "embody bench table1 --scene table1_f --json");
         add_race(c);
         c.app
-            ->add_option("suite", c.into->suite,
-                         "table1; stability: do structures stand, tight and quiet; simbenchmark: accuracy beside "
-                         "published figures; scaling: cost of 1,000 to 100,000 bodies; decomposition: convex parts of "
-                         "models of the database; tetrahedra: fillings of soft ones; grains: slopes of heaps "
-                         "and cost of grains; cloth: cost of a tablecloth; soft: cost of cushions; fluid: cost of "
-                         "water with things afloat; "
-                         "catalogue: search in the database, filled with variants")
+            ->add_option(
+                "suite", c.into->suite,
+                "table1; stability: do structures stand, tight and quiet; simbenchmark: accuracy beside "
+                "published figures; scaling: cost of 1,000 to 100,000 bodies; decomposition: convex parts of "
+                "models of the database; tetrahedra: fillings of soft ones; grains: slopes of heaps "
+                "and cost of grains; cloth: cost of a tablecloth; soft: cost of cushions; fluid: cost of "
+                "water with things afloat; convergence: soft things and liquids beside theory, finer and finer; "
+                "catalogue: search in the database, filled with variants")
             ->capture_default_str()
             ->check(CLI::IsMember({"table1", "stability", "simbenchmark", "scaling", "decomposition", "tetrahedra",
-                                   "grains", "cloth", "soft", "fluid", "catalogue"})
+                                   "grains", "cloth", "soft", "fluid", "convergence", "catalogue"})
                         .description(""));
         c.app->add_option("--scene", c.into->scene, "Only this scene, or this model");
         add_database(c);

@@ -7,6 +7,7 @@
 
 #include "cli/bench_catalogue.h"
 #include "cli/bench_cloth.h"
+#include "cli/bench_convergence.h"
 #include "cli/bench_decomposition.h"
 #include "cli/bench_fluid.h"
 #include "cli/bench_grains.h"
@@ -56,6 +57,7 @@ int run_bench(const BenchArguments& arguments) {
     if (arguments.suite == "scaling") return run_scaling(arguments);
     if (arguments.suite == "decomposition") return run_decomposition(arguments);
     if (arguments.suite == "cloth") return run_cloth(arguments);
+    if (arguments.suite == "convergence") return run_convergence(arguments);
     if (arguments.suite == "fluid") return run_fluid(arguments);
     if (arguments.suite == "soft") return run_soft(arguments);
     if (arguments.suite == "grains") return run_grains(arguments);

@@ -13,6 +13,7 @@ namespace {
 constexpr int most_rounds = 5, sweeps_a_round = 2, most_gradient_rounds = 8, most_leaning_sweeps = 10;
 constexpr double close_enough = 2e-6;   // m: no contact moves by more in the last sweep
 constexpr double small_share = 0.05;    // or by this of what the first sweeps did: forces are kept for the next substep
+constexpr double slid_share = 0.02;     // or by this of the farthest way that two slide or close in the substep
 constexpr double not_worth_it = 1e-7;   // m: a contact that would move by less is left as it is
 constexpr double recovery_speed = 0.5;  // m/s: what overlaps is parted no faster
 // Of a contact's own compliance along the normal: where contacts say the same of a place, all bear a part.
@@ -65,20 +66,29 @@ void SolidContacts::solve(std::span<SolidContact> contacts, Solids solids, std::
     find_groups(solids.size(), bodies);
     probe_forces_.assign(bodies.size(), {});
     probe_torques_.assign(bodies.size(), {});
-    std::atomic<std::size_t> next = 0;
-    const auto work = [&](int) {
-        for (std::size_t g = next++; g < groups_.size(); g = next++) find_forces(groups_[g], h);
-    };
-    if (groups_.size() > 1 && workers.workers() > 1)
-        workers.run(work);
-    else
-        work(0);
+    find_forces(h, workers);
     for (std::size_t s = 0; s < solids.size(); ++s) {
         const TouchedNodes& touched = touched_[s];
         if (!touched.is_pushed()) continue;
         for (std::size_t k = 0; k < touched.size(); ++k) solids[s]->push(touched.node(k), touched.force(k));
         solids[s]->settle(workers);
     }
+}
+
+// A group that is most of the work by all workers together, else each by one.
+void SolidContacts::find_forces(double h, TaskPool& workers) {
+    std::size_t first_shared = 0;
+    if (!groups_.empty() && 2 * groups_[0].active.size() > active_.size())
+        find_forces(groups_[first_shared++], h, workers);
+    std::atomic<std::size_t> next = first_shared;
+    const auto work = [&](int) {
+        TaskPool alone(1);
+        for (std::size_t g = next++; g < groups_.size(); g = next++) find_forces(groups_[g], h, alone);
+    };
+    if (groups_.size() > first_shared + 1 && workers.workers() > 1)
+        workers.run(work);
+    else
+        work(0);
 }
 
 // Solids and bodies are joined by contacts; bodies that do not move join nothing. Larger groups first, so that workers
@@ -128,7 +138,7 @@ void SolidContacts::find_groups(std::size_t solids, std::span<const TouchedBody>
 // (M. Silcowitz, S. Niebe, K. Erleben, "Projected Gauss-Seidel subspace minimization method", 2010), as long as that
 // helps. Where many contacts say nearly the same, sweeps that lean on the last ones go on (by the same, "A nonsmooth
 // nonlinear conjugate gradient method for interactive contact force problems", 2010).
-void SolidContacts::find_forces(const Group& group, double h) {
+void SolidContacts::find_forces(const Group& group, double h, TaskPool& workers) {
     const auto sweeps = [&] {
         double moved = 0;
         for (int k = 0; k < sweeps_a_round && (k == 0 || moved > close_enough); ++k)
@@ -136,13 +146,15 @@ void SolidContacts::find_forces(const Group& group, double h) {
         return moved;
     };
     double moved = sweeps(), best = moved;
-    const double enough = std::max(close_enough, small_share * moved);
+    double slid = 0;
+    for (const Active* active : group.active) slid = std::max(slid, length(active->slid));
+    const double enough = std::max({close_enough, small_share * moved, slid_share * slid});
     const auto keep = [&] {
         for (Active* active : group.active) active->best = active->contact->force;
     };
     keep();
     for (int round = 0; round < most_rounds && moved > enough; ++round) {
-        solve_together(group, h);
+        solve_together(group, h, workers);
         moved = sweeps();
         if (!(moved < best)) continue;
         best = moved;
@@ -348,8 +360,25 @@ Vec3 SolidContacts::free_part(const Active& active, Vec3 v) {
     }
 }
 
+void SolidContacts::probe(const Group& group, TaskPool& workers) {
+    constexpr std::size_t worth_sharing = 100;  // contacts
+    struct Part {
+        std::uint32_t solid = 0;
+        std::size_t part = 0;
+    };
+    std::vector<Part> parts;
+    for (const std::uint32_t solid : group.solids) {
+        touched_[solid].begin_probe();
+        for (std::size_t part = 0; part < touched_[solid].probe_parts(); ++part) parts.push_back({solid, part});
+    }
+    share_among(workers, parts.size(), group.active.size() >= worth_sharing, [&](int, Share share) {
+        for (std::size_t k = share.first; k < share.last; ++k) touched_[parts[k].solid].run_probe(parts[k].part);
+    });
+    for (const std::uint32_t solid : group.solids) touched_[solid].end_probe();
+}
+
 // Relative motion of each contact by its `direction` and those of all others, into `response`.
-void SolidContacts::respond(const Group& group, double h) {
+void SolidContacts::respond(const Group& group, double h, TaskPool& workers) {
     for (const std::uint32_t solid : group.solids) touched_[solid].clear_probe();
     for (const std::uint32_t body : group.bodies) probe_forces_[body] = probe_torques_[body] = {};
     for (Active* const one : group.active) {
@@ -362,7 +391,7 @@ void SolidContacts::respond(const Group& group, double h) {
         probe_forces_[active.contact->body] -= active.direction;
         probe_torques_[active.contact->body] -= cross(active.arm, active.direction);
     }
-    for (const std::uint32_t solid : group.solids) touched_[solid].run_probe();
+    probe(group, workers);
     for (Active* const one : group.active) {
         Active& active = *one;
         Vec3 sum;
@@ -380,7 +409,7 @@ void SolidContacts::respond(const Group& group, double h) {
 }
 
 // The forces of contacts that hold, stick and slide at once, as if they went on doing so; then as far as each may.
-void SolidContacts::solve_together(const Group& group, double h) {
+void SolidContacts::solve_together(const Group& group, double h, TaskPool& workers) {
     double size = 0;
     for (Active* const one : group.active) {
         Active& active = *one;
@@ -392,7 +421,7 @@ void SolidContacts::solve_together(const Group& group, double h) {
     }
     const double enough = 0.01 * size;
     for (int round = 0; round < most_gradient_rounds && size > enough; ++round) {
-        respond(group, h);
+        respond(group, h, workers);
         double curvature = 0;
         for (const Active* active : group.active) curvature += dot(active->direction, active->response);
         if (!(curvature > 0)) break;

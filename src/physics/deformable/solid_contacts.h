@@ -61,11 +61,13 @@ private:
     void apply(const Active& active, Vec3 force, double h);
     double relax(Active& active, double h);
     void find_groups(std::size_t solids, std::span<const TouchedBody> bodies);
-    void find_forces(const Group& group, double h);
+    void find_forces(double h, TaskPool& workers);
+    void find_forces(const Group& group, double h, TaskPool& workers);
     void lean_on(const Group& group, double factor, double h);
     double sweep(const Group& group, double h, bool forwards);
-    void solve_together(const Group& group, double h);
-    void respond(const Group& group, double h);
+    void solve_together(const Group& group, double h, TaskPool& workers);
+    void respond(const Group& group, double h, TaskPool& workers);
+    void probe(const Group& group, TaskPool& workers);
     [[nodiscard]] static Vec3 soft_part(const Active& active, Vec3 force);
     [[nodiscard]] Vec3 missing(const Active& active) const;
     static void find_state(Active& active);

@@ -90,9 +90,46 @@ void subtract_scaled(double* a, const double* column, double factor, std::size_t
     for (; i < count; ++i) a[i] -= column[i] * factor;
 }
 
+// What the forces on node j do to the nodes of a tile, and what forces on these do to j, as far as `back` collects it.
+template <bool is_both_ways>
+EMBODY_WIDE_INLINE void add_tile_moves(float* moves, const float* compliance, const float* forces, std::size_t stride,
+                                       const Wide by[3], Sum back[3]) {
+    for (std::size_t k = 0; k < registers; ++k) {
+        const std::size_t at = k * width;
+        Wide move[3], force[3];
+        for (std::size_t r = 0; r < 3; ++r) {
+            move[r] = load(moves + r * stride + at);
+            if constexpr (is_both_ways) force[r] = load(forces + r * stride + at);
+        }
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (std::size_t r = 0; r < 3; ++r) {
+                const Wide element = load(compliance + (3 * c + r) * stride + at);
+                move[r] += element * by[c];
+                if constexpr (is_both_ways) back[c].part[k] += element * force[r];
+            }
+        }
+        for (std::size_t r = 0; r < 3; ++r) store(moves + r * stride + at, move[r]);
+    }
+}
+
+void add_all_moves(float* moves, const float* compliance, const float* forces, std::size_t stride,
+                   std::size_t first_tile, std::size_t last_tile) {
+    for (std::size_t j = first_tile * sums; j < last_tile * sums; ++j) {
+        const std::size_t own_tile = j / sums * sums;
+        const float* rows = compliance + 9 * j * stride;
+        const Wide by[3] = {broadcast(forces[j]), broadcast(forces[stride + j]), broadcast(forces[2 * stride + j])};
+        Sum back[3];
+        for (std::size_t i = 0; i < own_tile; i += sums)
+            add_tile_moves<true>(moves + i, rows + i, forces + i, stride, by, back);
+        add_tile_moves<false>(moves + own_tile, rows + own_tile, forces + own_tile, stride, by, back);
+        for (std::size_t c = 0; c < 3; ++c) moves[c * stride + j] += back[c].total();
+    }
+}
+
 }  // namespace
 
 extern const physics::SolidKernels solid_kernels;
-const physics::SolidKernels solid_kernels{add_moves, subtract_columns, dot_columns, dot_blocks, subtract_scaled};
+const physics::SolidKernels solid_kernels{add_moves,  subtract_columns, dot_columns,
+                                          dot_blocks, subtract_scaled,  add_all_moves};
 
 }  // namespace embody::EMBODY_WIDE

@@ -27,6 +27,12 @@ struct SolidKernels {
                        float result[9]);
     /// a −= column factor, `count` numbers, any.
     void (*subtract_scaled)(double* a, const double* column, double factor, std::size_t count);
+    /// moves += W forces, W the symmetric matrix of 3×3 blocks whose rows `compliance` holds as for add_moves, 9 stride
+    /// numbers a node. Each block below the diagonal is read once and serves both of its nodes; of the pairs of nodes
+    /// those are done whose later one is in a tile (of solid_row_multiple nodes) from `first_tile` to below
+    /// `last_tile`.
+    void (*add_all_moves)(float* moves, const float* compliance, const float* forces, std::size_t stride,
+                          std::size_t first_tile, std::size_t last_tile);
 };
 
 /// Of 4, 8 or 16 floats side by side; nothing where this processor has none of that width.

@@ -2,6 +2,7 @@
 #include "physics/deformable/touched_nodes.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "physics/deformable/solid_kernels.h"
 
@@ -28,8 +29,12 @@ void TouchedNodes::complete(SolidDeformable& solid, TaskPool& workers) {
             gas_[2 * compliance_->stride() + i] = own.z;
         }
     }
-    for (auto* moves : {&moved_, &probe_}) moves->assign(3 * compliance_->stride(), 0.0f);
-    for (auto* forces : {&force_, &probe_force_}) forces->assign(count, {});
+    moved_.assign(3 * compliance_->stride(), 0.0f);
+    for (auto* vectors : {&force_, &probe_force_, &probe_moves_}) vectors->assign(count, {});
+    probe_own_force_.assign(3 * compliance_->stride(), 0.0f);
+    // As many whatever the number of workers: they decide in which order is added.
+    constexpr std::size_t most_parts = 4, worth_parting = 8 * solid_row_multiple;  // nodes
+    probe_part_moves_.resize(count < worth_parting ? 1 : most_parts);
 }
 
 Mat3 TouchedNodes::block(std::size_t i, std::size_t j) const {
@@ -46,28 +51,52 @@ Vec3 TouchedNodes::move_of(std::size_t number, const std::vector<float>& moves) 
     return turn_[number] * to_vec3(Vec3f{moves[number], moves[stride + number], moves[2 * stride + number]});
 }
 
-void TouchedNodes::add_moves(std::size_t number, Vec3 force, std::vector<float>& moves) const {
+void TouchedNodes::push(std::size_t number, Vec3 force) {
+    force_[number] += force;
     const Vec3f own = to_vec3f(transpose(turn_[number]) * (scale_ * force));
-    widest_solid_kernels().add_moves(moves.data(), compliance_->rows(number), compliance_->stride(), own.x, own.y,
+    widest_solid_kernels().add_moves(moved_.data(), compliance_->rows(number), compliance_->stride(), own.x, own.y,
                                      own.z);
     if (gas_share_ == 0) return;
     const auto taken = static_cast<float>(gas_share_ * dot(move_of(number, gas_), force));
-    for (std::size_t i = 0; i < moves.size(); ++i) moves[i] -= taken * gas_[i];
+    for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] -= taken * gas_[i];
 }
 
-void TouchedNodes::push(std::size_t number, Vec3 force) {
-    force_[number] += force;
-    add_moves(number, force, moved_);
-}
+void TouchedNodes::clear_probe() { std::ranges::fill(probe_force_, Vec3{}); }
 
-void TouchedNodes::clear_probe() {
-    std::ranges::fill(probe_, 0.0f);
-    std::ranges::fill(probe_force_, Vec3{});
-}
-
-void TouchedNodes::run_probe() {
+void TouchedNodes::begin_probe() {
+    const std::size_t stride = compliance_->stride();
     for (std::size_t j = 0; j < size(); ++j) {
-        if (probe_force_[j] != Vec3{}) add_moves(j, probe_force_[j], probe_);
+        const Vec3f own = to_vec3f(transpose(turn_[j]) * (scale_ * probe_force_[j]));
+        probe_own_force_[j] = own.x;
+        probe_own_force_[stride + j] = own.y;
+        probe_own_force_[2 * stride + j] = own.z;
+    }
+}
+
+// Parts have about as many pairs of nodes each: those up to tile t grow with its square.
+void TouchedNodes::run_probe(std::size_t part) {
+    const std::size_t stride = compliance_->stride();
+    const auto tiles = static_cast<double>((size() + solid_row_multiple - 1) / solid_row_multiple);
+    const auto tile_of = [&](std::size_t k) {
+        const double share = static_cast<double>(k) / static_cast<double>(probe_parts());
+        return static_cast<std::size_t>(std::lround(tiles * std::sqrt(share)));
+    };
+    std::vector<float>& moves = probe_part_moves_[part];
+    moves.assign(3 * stride, 0.0f);
+    widest_solid_kernels().add_all_moves(moves.data(), compliance_->rows(0), probe_own_force_.data(), stride,
+                                         tile_of(part), tile_of(part + 1));
+}
+
+void TouchedNodes::end_probe() {
+    double taken = 0;
+    if (gas_share_ != 0) {
+        for (std::size_t i = 0; i < size(); ++i) taken += dot(move_of(i, gas_), probe_force_[i]);
+        taken *= gas_share_;
+    }
+    for (std::size_t i = 0; i < size(); ++i) {
+        Vec3 sum;
+        for (const std::vector<float>& moves : probe_part_moves_) sum += move_of(i, moves);
+        probe_moves_[i] = gas_share_ == 0 ? sum : sum - taken * move_of(i, gas_);
     }
 }
 

@@ -32,23 +32,30 @@ public:
     /// By all forces so far, m.
     [[nodiscard]] Vec3 moved(std::size_t number) const { return move_of(number, moved_); }
 
-    // A set of forces that only tells what it would do.
+    // A set of forces that only tells what it would do: they are cleared and added, the probe begins, each of its parts
+    // is run, on any worker, and the probe ends.
     void clear_probe();
     void add_to_probe(std::size_t number, Vec3 force) { probe_force_[number] += force; }
-    void run_probe();
-    [[nodiscard]] Vec3 probe_move(std::size_t number) const { return move_of(number, probe_); }
+    void begin_probe();
+    [[nodiscard]] std::size_t probe_parts() const { return probe_part_moves_.size(); }
+    void run_probe(std::size_t part);
+    void end_probe();
+    [[nodiscard]] Vec3 probe_move(std::size_t number) const { return probe_moves_[number]; }
 
 private:
     [[nodiscard]] Vec3 move_of(std::size_t number, const std::vector<float>& moves) const;
-    void add_moves(std::size_t number, Vec3 force, std::vector<float>& moves) const;
 
     NodeCompliance* compliance_ = nullptr;
-    double scale_ = 1;                  // of the compliance
-    double gas_share_ = 0;              // what the gas takes away, see SolidDeformable::gas_move()
-    std::vector<float> gas_;            // in the nodes' own axes: rows x, y, z
-    std::vector<Mat3> turn_;            // from the nodes' own axes
-    std::vector<float> moved_, probe_;  // in the nodes' own axes, m: rows x, y, z
-    std::vector<Vec3> force_, probe_force_;
+    double scale_ = 1;          // of the compliance
+    double gas_share_ = 0;      // what the gas takes away, see SolidDeformable::gas_move()
+    std::vector<float> gas_;    // in the nodes' own axes: rows x, y, z
+    std::vector<Mat3> turn_;    // from the nodes' own axes
+    std::vector<float> moved_;  // in the nodes' own axes, m: rows x, y, z
+    std::vector<Vec3> force_;
+
+    std::vector<Vec3> probe_force_, probe_moves_;       // world axes
+    std::vector<float> probe_own_force_;                // in the nodes' own axes: rows x, y, z
+    std::vector<std::vector<float>> probe_part_moves_;  // as moved_
 };
 
 }  // namespace embody::physics

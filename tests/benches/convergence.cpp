@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "benches/convergence/convergence.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace embody::convergence {
+namespace {
+
+double error_at(const Study& study, std::size_t row) {
+    const auto value = study.measure(study.resolutions[row]);
+    if (!value) {
+        ADD_FAILURE() << value.error().message();
+        return 1;
+    }
+    return std::fabs(*value / study.expected - 1);
+}
+
+TEST(convergence, studies_are_found_by_name) {
+    EXPECT_EQ(find_study("no_such_study"), nullptr);
+    for (const Study& study : studies()) EXPECT_EQ(find_study(study.name), &study);
+}
+
+// Of mesh or step: what is measured comes near to theory, and nearer than the coarsest does.
+TEST(convergence, finer_is_nearer_to_theory) {
+    for (const Study& study : studies()) {
+        if (study.name == "slab_draft") continue;
+        const double coarse = error_at(study, 0), fine = error_at(study, 2);
+        EXPECT_LT(fine, coarse / 2) << study.name;
+        EXPECT_LT(fine, 0.011) << study.name;
+    }
+}
+
+// How the surface lies in the cells makes more of the draft's error than their size: it is small from the start.
+TEST(convergence, a_slab_floats_at_its_depth_with_few_cells) {
+    for (const std::size_t row : {0U, 1U, 2U}) EXPECT_LT(error_at(*find_study("slab_draft"), row), 0.015) << row;
+}
+
+}  // namespace
+}  // namespace embody::convergence
