@@ -19,7 +19,7 @@ def main() -> int:
         return 2
     studies = json.load(sys.stdin)["studies"]
     # The same measurements make the same file.
-    matplotlib.rcParams.update({"svg.hashsalt": "embody", "font.size": 8})
+    matplotlib.rcParams.update({"svg.hashsalt": "embody", "svg.fonttype": "none", "font.size": 8})
     across = 4
     figure, axes = pyplot.subplots(-(-len(studies) // across), across, figsize=(11, 5.2), squeeze=False)
     for study, axis in zip(studies, axes.flat):

@@ -7,7 +7,8 @@ namespace embody::physics {
 
 void follow_rotation(const Mat3& deformation, Quat& rotation) {
     constexpr int most_rounds = 20;
-    constexpr double close = 1e-10;  // rad
+    constexpr double close = 1e-10;     // rad
+    constexpr double last_turn = 1e-5;  // rad: its square, which is about what is left after it, is close
     for (int round = 0; round < most_rounds; ++round) {
         // W = Rᵀ F is symmetric where R is right. A turn by ω (in R's axes) changes its skew part by (tr W - W) ω.
         const Mat3 w = transpose(to_matrix(rotation)) * deformation;
@@ -25,6 +26,7 @@ void follow_rotation(const Mat3& deformation, Quat& rotation) {
         if (angle > 1) turn = turn / angle;
         const Vec3 half = 0.5 * turn;
         rotation = normalized(rotation * Quat{half.x, half.y, half.z, 1});
+        if (is_near && angle < last_turn) return;
     }
 }
 
