@@ -142,8 +142,15 @@ void put_fineness(AttributeSet& set, const GeometryFacts& facts, const Form& for
     if (kind == "fluid") put_fluid_cells(set, volume);
 }
 
-void put_cloth_of_primitive(AttributeSet& set, const GeometryFacts& facts) {
-    if (set.word("kind", "") != "cloth") return;
+bool changes_form(std::string_view kind) {
+    constexpr std::array<std::string_view, 5> kinds = {"soft", "cloth", "rope", "fluid", "granular"};
+    return std::ranges::find(kinds, kind) != kinds.end();
+}
+
+namespace {
+
+// By its area: a box as thin as cloth, but solid, would be far too heavy.
+void put_mass_of_sheet(AttributeSet& set, const GeometryFacts& facts) {
     const Vec3 size = facts.size;
     const double thickness = std::min({size.x, size.y, size.z});
     // Of triangles, which have no volume, the largest face of their box; a plane has no area at all.
@@ -157,9 +164,38 @@ void put_cloth_of_primitive(AttributeSet& set, const GeometryFacts& facts) {
         return;
     }
     const double usual = std::get<double>(describe("area_density")->standard);
-    put_number(set, "area_density", usual, "default", AttributeLevel::standard);
-    const double density = set.number("area_density", usual);
-    put_number(set, "mass", density * area, "area density × area of the sheet", AttributeLevel::model);
+    const AttributeEntry* held = set.find("area_density");
+    if (held == nullptr || held->level == AttributeLevel::model)
+        put_number(set, "area_density", usual, "default", AttributeLevel::standard);
+    put_number(set, "mass", set.number("area_density", usual) * area, "area density × area of the sheet",
+               AttributeLevel::model);
+}
+
+// As its category says of a metre; without one as solid as anything.
+void put_mass_of_line(AttributeSet& set, const GeometryFacts& facts) {
+    const AttributeEntry* held = set.find("linear_density");
+    const double along = std::max({facts.size.x, facts.size.y, facts.size.z});
+    const bool says =
+        held != nullptr && (held->level == AttributeLevel::category || held->level == AttributeLevel::subcategory);
+    if (!says || !(along > 0)) return;
+    put_number(set, "mass", set.number("linear_density", 0) * along, "linear density × length", AttributeLevel::model);
+}
+
+void put_mass_by_volume(AttributeSet& set, double density, double volume, const char* source) {
+    if (volume > 0) put_number(set, "mass", density * volume, source, AttributeLevel::model);
+}
+
+}  // namespace
+
+void put_mass_of_primitive(AttributeSet& set, const GeometryFacts& facts) {
+    const std::string kind = set.word("kind", "");
+    if (kind == "cloth") put_mass_of_sheet(set, facts);
+    if (kind == "rope") put_mass_of_line(set, facts);
+    if (kind == "fluid")
+        put_mass_by_volume(set, set.number("rest_density", 998), facts.volume, "rest density × volume");
+    if (kind == "granular")
+        put_mass_by_volume(set, set.number("grain_density", 2650) * loose_packing, facts.volume,
+                           "grain density × 0.55, as poured grains lie, × volume");
 }
 
 }  // namespace embody::attributes

@@ -28,10 +28,13 @@ inline constexpr double loose_packing = 0.55;
 /// (docs/physics/grains.md), the cells of a liquid (docs/physics/fluids.md). Nothing else is touched.
 void put_fineness(AttributeSet& set, const GeometryFacts& facts, const Form& form);
 
-/// Thickness, area density and mass of a primitive (whose volume and size `facts` has) that is cloth; nothing else is
-/// touched, and nothing at all of one without area. Cloth weighs by its area: a box as thin as cloth, but solid, would
-/// be far too heavy.
-void put_cloth_of_primitive(AttributeSet& set, const GeometryFacts& facts);
+/// Whether things of this physical kind are no rigid body: soft, cloth, rope, fluid, granular.
+bool changes_form(std::string_view physical_kind);
+
+/// What a primitive (whose volume and size `facts` has) weighs that is no rigid thing, and what goes with that: cloth
+/// by its area, a rope of a category by its length, liquids and bulk by their own density. A mass that a person set
+/// stays.
+void put_mass_of_primitive(AttributeSet& set, const GeometryFacts& facts);
 
 /// Replaces the entry unless a person set it.
 void replace(AttributeSet& set, AttributeEntry entry);

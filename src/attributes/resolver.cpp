@@ -141,10 +141,9 @@ std::optional<double> density_sum(const Taxonomy& taxonomy, const ModelFacts& fa
     return mass_of_parts(parts);
 }
 
-AttributeSet resolve(const Taxonomy& taxonomy, const ModelFacts& facts) {
-    // Words tell what it is and what it is made of.
-    const Taxonomy::Data& data = taxonomy.data();
-    Classification what = classify(data, facts);
+namespace {
+
+AttributeSet resolve_as(const Taxonomy::Data& data, const ModelFacts& facts, Classification what) {
     if (const auto file = data.user_words.find(stems_of(what.phrase)); file != data.user_words.end()) {
         what.source += ", a word of your " + file->second;
     }
@@ -166,6 +165,51 @@ AttributeSet resolve(const Taxonomy& taxonomy, const ModelFacts& facts) {
     // Defaults for the rest.
     complete_for_kind(set);
     put_fineness(set, facts.geometry, form);
+    return set;
+}
+
+// An entry of that name, else one that has the word.
+const CategoryData* category_called(const Taxonomy::Data& data, std::string_view word) {
+    if (const CategoryData* category = data.category(word)) return category;
+    const auto phrase = data.category_phrases.find(stems_of(word));
+    return phrase == data.category_phrases.end() ? nullptr : &data.categories[phrase->second.entry];
+}
+
+}  // namespace
+
+AttributeSet resolve(const Taxonomy& taxonomy, const ModelFacts& facts) {
+    return resolve_as(taxonomy.data(), facts, classify(taxonomy.data(), facts));
+}
+
+std::optional<AttributeSet> resolve_primitive(const Taxonomy& taxonomy, std::string_view category,
+                                              const ModelFacts& facts) {
+    const Taxonomy::Data& data = taxonomy.data();
+    const CategoryData* known = category_called(data, category);
+    if (known == nullptr || !known->movable || !changes_form(known->kind)) return std::nullopt;
+    Classification what;
+    what.category = known;
+    what.confidence = 1;
+    what.where = "category";
+    what.source = "the entity's category \"" + std::string(category) + "\"";
+    what.phrase = category;
+    what.synset = known->synset;
+    what.reckoning = "a person named it";
+    what.level = known->parent.empty() ? AttributeLevel::category : AttributeLevel::subcategory;
+    AttributeSet set = resolve_as(data, facts, std::move(what));
+
+    // Its form is known exactly; moments are those of the whole shape, wherever its origin lies.
+    const GeometryFacts& form = facts.geometry;
+    if (form.volume > 0) {
+        const double mass = set.number("mass", 1);
+        replace(set, {"center_of_mass", form.center_of_volume, {}, {}, "homogeneous", AttributeLevel::measured});
+        replace(set, {"inertia",
+                      form.unit_inertia * (mass / form.volume),
+                      {},
+                      {},
+                      "homogeneous, of this mass",
+                      AttributeLevel::measured});
+    }
+    set.erase("collision_shape");
     return set;
 }
 

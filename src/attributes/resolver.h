@@ -45,6 +45,12 @@ private:
 /// then what geometry tells. Deterministic; never fails: what nothing tells gets the default.
 AttributeSet resolve(const Taxonomy& taxonomy, const ModelFacts& facts);
 
+/// The same of a primitive, whose form `facts` tells, by the category that a person gave it: an entry of the taxonomy
+/// or one of its words ("honey"), which means the stuff itself, not what it comes in. Nothing where no entry is called
+/// so, and where things of it are rigid or static: these are what their shape says.
+std::optional<AttributeSet> resolve_primitive(const Taxonomy& taxonomy, std::string_view category,
+                                              const ModelFacts& facts);
+
 /// What the parts of a model weigh by their volumes and materials, walls as thick as usual, kg: a second opinion on its
 /// mass that asks neither its category's mass nor its box. Nothing where the parts are not known.
 std::optional<double> density_sum(const Taxonomy& taxonomy, const ModelFacts& facts);

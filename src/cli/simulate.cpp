@@ -30,14 +30,17 @@ struct Summary {
 nlohmann::json to_json(const Summary& summary, const scene::Simulation& simulation) {
     const physics::StepReport& report = simulation.world().last_report();
     const physics::Conserved sums = simulation.world().conserved();
+    const scene::Activity activity = simulation.activity();
     return {{"steps", summary.steps},
             {"simulated_seconds", summary.simulated},
             {"wall_seconds", summary.wall},
             {"average_ms", summary.steps > 0 ? 1000 * summary.wall / static_cast<double>(summary.steps) : 0},
             {"slowest_ms", summary.slowest_ms},
-            {"active", report.bodies_active},
-            {"wants_to_sleep", report.bodies_wanting_to_sleep},
-            {"asleep", report.bodies_asleep},
+            {"things", activity.things},
+            {"active", activity.active},
+            {"wants_to_sleep", activity.wants_to_sleep},
+            {"asleep", activity.asleep},
+            {"points", activity.points},
             {"contacts", report.contacts},
             {"actions", summary.actions},
             {"paused", summary.paused},
@@ -51,9 +54,11 @@ void print(const Summary& summary, const scene::Simulation& simulation) {
     fmt::print("{} steps, {:.3f} s simulated in {:.3f} s ({:.1f} times real time), slowest step {:.3f} ms\n",
                summary.steps, summary.simulated, summary.wall,
                summary.wall > 0 ? summary.simulated / summary.wall : 0.0, summary.slowest_ms);
-    fmt::print("bodies: {} active, {} want to sleep, {} asleep; {} contacts; {} actions carried out\n",
-               report.bodies_active, report.bodies_wanting_to_sleep, report.bodies_asleep, report.contacts,
+    const scene::Activity activity = simulation.activity();
+    fmt::print("{} of {} things active, {} want to sleep, {} asleep; {} contacts; {} actions carried out\n",
+               activity.active, activity.things, activity.wants_to_sleep, activity.asleep, report.contacts,
                summary.actions);
+    if (activity.points > 0) fmt::print("grains, drops and nodes of soft things: {}\n", activity.points);
     const auto reached = [&](physics::StepLimit limit) {
         return (summary.limits & static_cast<std::uint32_t>(limit)) != 0;
     };
@@ -64,6 +69,8 @@ void print(const Summary& summary, const scene::Simulation& simulation) {
         print_line("note: so many bodies are in each other that some pairs are left out; place them apart");
     if (reached(StepLimit::not_finite_body_frozen))
         print_line("note: a body's state left the finite numbers; it was switched off where it last was");
+    if (reached(StepLimit::not_finite_deformable_frozen))
+        print_line("note: a soft thing's motion left the finite numbers; it was frozen where it was");
     if (reached(StepLimit::impact_rounds_exhausted))
         print_line("note: an impact needed more rounds than allowed; a smaller settings.time_step helps");
     if (reached(StepLimit::deep_penetration))

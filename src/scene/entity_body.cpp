@@ -76,13 +76,19 @@ void put_measured(AttributeSet& set, const char* name, attributes::AttributeValu
         set.put({name, std::move(value), {}, {}, std::move(source), AttributeLevel::measured});
 }
 
-// A primitive is solid, of the default density, and its form is known exactly.
-AttributeSet primitive_attributes(const Entity& entity, const physics::ShapeDefinition& shape,
-                                  const ModelFacts& facts) {
+// What a person says that a primitive is; empty: nothing.
+std::string category_of(const Entity& entity) {
+    const auto own = entity.attributes.find("category");
+    const auto* word = own == entity.attributes.end() ? nullptr : std::get_if<std::string>(&own->second);
+    return word ? *word : entity.category;
+}
+
+// A primitive that no category makes soft or the like is solid, of the default density, and its form is known exactly.
+AttributeSet solid_attributes(const std::string& category, const physics::ShapeDefinition& shape,
+                              const ModelFacts& facts) {
     AttributeSet set;
     const std::string name = physics::shape_name(shape);
-    if (!entity.category.empty())
-        set.put({"category", entity.category, {}, {}, "the entity's category", AttributeLevel::category});
+    if (!category.empty()) set.put({"category", category, {}, {}, "the entity's category", AttributeLevel::category});
     if (physics::is_static_only(shape)) {
         set.put({"kind", std::string("static"), {}, {}, "a " + name + " can't move", AttributeLevel::kind});
     } else {
@@ -103,19 +109,9 @@ AttributeSet primitive_attributes(const Entity& entity, const physics::ShapeDefi
     return set;
 }
 
-// How fine the grains or the liquid are, of this size of the thing; and what a primitive that is filled with grains
-// weighs.
-void complete_fineness(AttributeSet& set, const attributes::GeometryFacts& geometry, bool is_primitive) {
+// How fine the grains or the liquid are, of this size of the thing.
+void complete_fineness(AttributeSet& set, const attributes::GeometryFacts& geometry) {
     attributes::put_fineness(set, geometry, attributes::form_of(geometry, {0.5, 0.5, 0.5}));
-    if (!is_primitive || set.word("kind", "") != "granular") return;
-    const double density = set.number("grain_density", 2650) * attributes::loose_packing;
-    const attributes::AttributeDescription& range = *attributes::describe("mass");
-    attributes::replace(set, {"mass",
-                              std::clamp(density * geometry.volume, *range.low, *range.high),
-                              {},
-                              {},
-                              "grain density × 0.55, as poured grains lie, × volume",
-                              AttributeLevel::model});
 }
 
 // Large shapes have no short name to be found by.
@@ -234,9 +230,24 @@ Result<catalog::ModelSummary> EntityBodies::model(const Entity& entity) {
     return found.value()->summary;
 }
 
+AttributeSet EntityBodies::primitive_attributes(const Entity& entity, const physics::ShapeDefinition& shape,
+                                                const ModelFacts& facts) const {
+    const std::string category = category_of(entity);
+    const bool has_extent = facts.geometry.size != Vec3{};
+    if (taxonomy() && has_extent && !category.empty()) {
+        std::optional<AttributeSet> set = attributes::resolve_primitive(*taxonomy(), category, facts);
+        if (set) return std::move(*set);
+    }
+    return solid_attributes(category, shape, facts);
+}
+
 Result<AttributeSet> EntityBodies::automatic_attributes(const Entity& entity) {
-    if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry))
-        return primitive_attributes(entity, *shape, primitive(*shape));
+    if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry)) {
+        const ModelFacts& facts = primitive(*shape);
+        AttributeSet set = primitive_attributes(entity, *shape, facts);
+        attributes::put_mass_of_primitive(set, facts.geometry);
+        return set;
+    }
     const Result<const Model*> model = find(std::get<ModelReference>(entity.geometry).key);
     if (!model.ok()) return model.error();
     return entity.scale == 1 ? model.value()->attributes : scaled(model.value()->attributes, entity.scale);
@@ -249,8 +260,8 @@ Result<AttributeSet> EntityBodies::attributes(const Entity& entity) {
         const ModelFacts& facts = primitive(*shape);
         AttributeSet set = lay_over(primitive_attributes(entity, *shape, facts), own.value(), facts);
         set.erase("collision_shape");
-        complete_fineness(set, facts.geometry, true);
-        attributes::put_cloth_of_primitive(set, facts.geometry);
+        complete_fineness(set, facts.geometry);
+        attributes::put_mass_of_primitive(set, facts.geometry);
         return set;
     }
     Result<AttributeSet> automatic = automatic_attributes(entity);
@@ -260,8 +271,17 @@ Result<AttributeSet> EntityBodies::attributes(const Entity& entity) {
     facts.geometry = attributes::scaled(model.facts.geometry, entity.scale);
     AttributeSet set =
         own.value().empty() ? std::move(automatic).value() : lay_over(automatic.value(), own.value(), facts);
-    complete_fineness(set, facts.geometry, false);
+    complete_fineness(set, facts.geometry);
     return set;
+}
+
+bool EntityBodies::is_liquid(const Entity& entity) {
+    if (const auto own = entity.attributes.find("kind"); own != entity.attributes.end())
+        return own->second == attributes::AttributeValue(std::string("fluid"));
+    const bool is_primitive = std::holds_alternative<physics::ShapeDefinition>(entity.geometry);
+    if (is_primitive && category_of(entity).empty()) return false;
+    const Result<AttributeSet> automatic = automatic_attributes(entity);
+    return automatic.ok() && automatic.value().word("kind", "") == "fluid";
 }
 
 Result<std::vector<attributes::Issue>> EntityBodies::contradictions(const Entity& entity) {

@@ -90,6 +90,10 @@ private:
     /// With pose, velocities and what its pins hold in the world.
     Result<physics::DeformableDefinition> deformable(const Entity& entity, const attributes::AttributeSet& attributes);
     const attributes::ModelFacts& primitive(const physics::ShapeDefinition& shape);
+    /// Without its own: what its category says where that is no rigid thing's, else those of something solid.
+    [[nodiscard]] attributes::AttributeSet primitive_attributes(const Entity& entity,
+                                                                const physics::ShapeDefinition& shape,
+                                                                const attributes::ModelFacts& facts) const;
 
     catalog::Catalog* catalog_;
     std::map<std::string, Model> models_;

@@ -53,15 +53,6 @@ EntityForm EntityBodies::form(const Entity& entity, const attributes::AttributeS
     return kind == "soft" ? or_rigid(soft_mesh(entity)) : or_rigid(thin_form(entity, attributes));
 }
 
-bool EntityBodies::is_liquid(const Entity& entity) {
-    if (const auto own = entity.attributes.find("kind"); own != entity.attributes.end())
-        return own->second == attributes::AttributeValue(std::string("fluid"));
-    const auto* reference = std::get_if<ModelReference>(&entity.geometry);
-    if (!reference) return false;
-    const Result<const Model*> model = find(reference->key);
-    return model.ok() && scene::is_liquid(model.value()->attributes);
-}
-
 Result<PointsDefinition> EntityBodies::points(const Entity& entity, const attributes::AttributeSet& attributes) {
     if (is_granular(attributes)) {
         Result<GrainDefinition> grains = this->grains(entity, attributes);

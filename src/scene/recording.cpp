@@ -47,14 +47,16 @@ json entities_json(const Simulation& simulation) {
     json entities = json::array();
     for (const EntityIndex entity : simulation.entities()) {
         const physics::BodyHandle body = simulation.body(entity);
+        const MovingPoints* points = simulation.points(entity);
         const Transform pose = simulation.pose(entity);
-        entities.push_back({{"index", entity},
-                            {"position", to_json(pose.position)},
-                            {"rotation", to_json(pose.rotation)},
-                            {"linear_velocity", to_json(world.linear_velocity(body))},
-                            {"angular_velocity", to_json(world.angular_velocity(body))},
-                            {"state", state_name(simulation, entity)}});
-        if (const MovingPoints* points = simulation.points(entity)) entities.back()["points"] = points_json(*points);
+        entities.push_back(
+            {{"index", entity},
+             {"position", to_json(pose.position)},
+             {"rotation", to_json(pose.rotation)},
+             {"linear_velocity", to_json(points ? points->linear_velocity() : world.linear_velocity(body))},
+             {"angular_velocity", to_json(points ? points->angular_velocity() : world.angular_velocity(body))},
+             {"state", state_name(simulation, entity)}});
+        if (points) entities.back()["points"] = points_json(*points);
     }
     return entities;
 }

@@ -92,13 +92,7 @@ std::uint64_t Session::simulated_steps() const { return state_->simulation->worl
 json Session::statistics() const {
     const physics::StepReport& report = state_->simulation->world().last_report();
 
-    // What changes its form is no body in the report.
-    std::uint32_t active = report.bodies_active, asleep = report.bodies_asleep;
-    for (const EntityIndex index : state_->simulation->entities()) {
-        const MovingPoints* points = state_->simulation->points(index);
-        if (!points || !points->deformable()) continue;
-        ++(points->state() == physics::SleepState::asleep ? asleep : active);
-    }
+    const Activity activity = state_->simulation->activity();
 
     // Simulated over real time, of the last steps.
     double factor = 0;
@@ -111,9 +105,11 @@ json Session::statistics() const {
             {"time", report.time},
             {"step", report.step},
             {"bodies", state_->simulation->entities().size()},
-            {"active", active},
-            {"wants_to_sleep", report.bodies_wanting_to_sleep},
-            {"asleep", asleep},
+            {"things", activity.things},
+            {"active", activity.active},
+            {"wants_to_sleep", activity.wants_to_sleep},
+            {"asleep", activity.asleep},
+            {"points", activity.points},
             {"contacts", report.contacts},
             {"step_ms", report.milliseconds},
             {"real_time_factor", factor}};

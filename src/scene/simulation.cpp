@@ -177,6 +177,23 @@ physics::SleepState Simulation::sleep_state(EntityIndex entity) const {
     return its ? its->state() : state_->world->sleep_state(body(entity));
 }
 
+Activity Simulation::activity() const {
+    Activity activity;
+    std::vector<Vec3> positions;
+    for (const auto& [index, entity] : state_->live) {
+        if (!entity.definition.enabled || !is_movable(index)) continue;
+        ++activity.things;
+        const physics::SleepState state = sleep_state(index);
+        ++(state == physics::SleepState::asleep           ? activity.asleep
+           : state == physics::SleepState::wants_to_sleep ? activity.wants_to_sleep
+                                                          : activity.active);
+        if (!entity.points) continue;
+        entity.points->read(positions);
+        activity.points += positions.size();
+    }
+    return activity;
+}
+
 Result<void> Simulation::set_pose(EntityIndex entity, const Transform& pose) {
     LiveEntity* found = state_->find(entity);
     return found ? state_->place(*found, pose) : not_in_world(entity);

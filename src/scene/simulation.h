@@ -24,6 +24,13 @@ struct ActionFired {
     EntityIndex sender = 0, receiver = 0;  ///< 0: none
 };
 
+/// Of all that can move and is switched on, how many are in which state: an entity is one thing, whether it is one
+/// body, a heap, a liquid, or bends.
+struct Activity {
+    std::size_t things = 0, active = 0, wants_to_sleep = 0, asleep = 0;
+    std::size_t points = 0;  ///< grains, drops and nodes that stand for those that are no single body
+};
+
 /// A document brought to life: each entity a body, each joint a joint, the actions running.
 class Simulation {
 public:
@@ -78,6 +85,7 @@ public:
     [[nodiscard]] bool is_movable(EntityIndex entity) const;
     /// Of points, that of the most awake.
     [[nodiscard]] physics::SleepState sleep_state(EntityIndex entity) const;
+    [[nodiscard]] Activity activity() const;
     [[nodiscard]] EntityIndex entity(physics::BodyHandle body) const;  ///< 0 if none
     /// The entity as it is now, but for pose and velocities; null for one that is not in the world.
     [[nodiscard]] const Entity* definition(EntityIndex entity) const;

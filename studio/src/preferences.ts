@@ -7,7 +7,10 @@ import type { Quality } from "./view/tint";
 export interface PreferenceValues {
   theme: Theme;
   quality: Quality;
+  /** States of the simulation can be told from the picture. */
   tint: boolean;
+  /** By their colour all over, in place of the things' own. */
+  fullTint: boolean;
   grid: boolean;
   /** What collides is drawn over what is selected. */
   collision: boolean;
@@ -28,6 +31,7 @@ const DEFAULTS: PreferenceValues = {
   theme: "dark",
   quality: "high",
   tint: true,
+  fullTint: false,
   grid: true,
   collision: false,
   snap: false,

@@ -116,6 +116,10 @@ export class Studio {
     this.entities.pointed.on((index) => {
       if (this.selection.has(index)) this.view.outline.show(this.selection.indices);
     });
+    this.entities.surfacesLost.on((reason) => {
+      this.notice.emit({ level: "error", text: `The surfaces of liquids cannot be drawn: ${reason}`, remedy: "You see their drops instead. Reload the page to try again." });
+      this.view.invalidate();
+    });
     this.entities.failed.on(({ index, reason }) => {
       const entity = this.document.entity(index);
       this.notice.emit({ level: "warning", text: `“${entity?.name ?? index}” cannot be drawn: ${reason}` });
@@ -173,7 +177,7 @@ export class Studio {
       if (name === "theme") view.setTheme(preferences.get("theme"));
       if (name === "quality") view.setQuality(preferences.get("quality"));
       if (name === "grid") view.environment.showGrid(preferences.get("grid"));
-      if (name === "tint") this.retint();
+      if (name === "tint" || name === "fullTint") this.retint();
       if (name === "collision") void this.showCollision();
       if (name === "userName") void this.tellName();
       view.invalidate();
@@ -277,7 +281,9 @@ export class Studio {
 
   /** States are told apart while there is a simulation; a scene being built shows its own colours. */
   private retint(): void {
-    this.entities.tinted = this.preferences.get("tint") && this.simulation.state !== "stopped";
+    const { preferences } = this;
+    const shown = preferences.get("tint") && this.simulation.state !== "stopped";
+    this.entities.tinted = !shown ? "off" : preferences.get("fullTint") ? "full" : "faint";
     this.entities.update(performance.now(), true);
     this.view.invalidate();
   }

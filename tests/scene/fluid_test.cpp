@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/fluid_filling.h"
+#include "scene/live_scene.h"
 #include "scene/sample_documents.h"
 #include "scene/scene_file.h"
 #include "scene/session.h"
@@ -16,24 +17,11 @@ namespace {
 
 using physics::BoxShape;
 using physics::ShapeDefinition;
+using samples::make;
+using samples::points_of;
+using samples::step;
 
 using Words = std::map<std::string, attributes::AttributeValue>;
-
-std::unique_ptr<Simulation> make(const Document& document) {
-    auto made = Simulation::create(document, nullptr);
-    if (!made.ok()) ADD_FAILURE() << made.error().message();
-    return made.ok() ? std::move(made).value() : nullptr;
-}
-
-std::vector<Vec3> points_of(const Simulation& simulation, EntityIndex entity) {
-    std::vector<Vec3> points;
-    if (const MovingPoints* its = simulation.points(entity)) its->read(points);
-    return points;
-}
-
-void step(Simulation& simulation, int count) {
-    for (int i = 0; i < count; ++i) simulation.step();
-}
 
 Entity& add_box(Document& document, const std::string& name, Vec3 half, Vec3 position, const Words& words) {
     Entity& entity = samples::add(document, name, BoxShape{half}, position);

@@ -7,6 +7,7 @@
 
 #include "physics/inter/definitions/grain_material.h"
 #include "scene/grain_filling.h"
+#include "scene/live_scene.h"
 #include "scene/sample_documents.h"
 #include "scene/session.h"
 #include "scene/simulation.h"
@@ -16,8 +17,11 @@ namespace {
 
 using physics::BoxShape;
 using physics::ShapeDefinition;
+using samples::make;
+using samples::points_of;
+using samples::step;
 
-constexpr EntityIndex sand = 2;
+constexpr EntityIndex sand = samples::thing;
 
 /// A floor and a box of sand, 20 × 12 × 20 cm, that stands on it.
 Document box_of_sand(double budget = 300) {
@@ -25,22 +29,6 @@ Document box_of_sand(double budget = 300) {
     document.entities[1].geometry = ShapeDefinition{BoxShape{{0.1, 0.06, 0.1}}};
     document.entities[1].attributes = {{"kind", std::string("granular")}, {"grain_budget", budget}};
     return document;
-}
-
-std::unique_ptr<Simulation> make(const Document& document) {
-    auto made = Simulation::create(document, nullptr);
-    if (!made.ok()) ADD_FAILURE() << made.error().message();
-    return made.ok() ? std::move(made).value() : nullptr;
-}
-
-std::vector<Vec3> points_of(const Simulation& simulation, EntityIndex entity = sand) {
-    std::vector<Vec3> points;
-    if (const MovingPoints* its = simulation.points(entity)) its->read(points);
-    return points;
-}
-
-void step(Simulation& simulation, int count) {
-    for (int i = 0; i < count; ++i) simulation.step();
 }
 
 double least_distance(const std::vector<Vec3>& points) {

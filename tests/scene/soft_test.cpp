@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/mass_properties.h"
+#include "scene/live_scene.h"
 #include "scene/sample_documents.h"
 #include "scene/scene_file.h"
 #include "scene/session.h"
@@ -18,8 +19,11 @@ namespace {
 using nlohmann::json;
 using physics::BoxShape;
 using physics::ShapeDefinition;
+using samples::make;
+using samples::points_of;
+using samples::step;
 
-constexpr EntityIndex cushion = 2;
+constexpr EntityIndex cushion = samples::thing;
 
 /// A floor and a cushion of 40 × 20 × 40 cm, a kilogram, with its middle at this height.
 Document a_cushion(double height = 0.5) {
@@ -28,22 +32,6 @@ Document a_cushion(double height = 0.5) {
     document.entities[1].attributes = {
         {"kind", std::string("soft")}, {"mass", 1.0}, {"youngs_modulus", 2e4}, {"damping_rayleigh", 0.02}};
     return document;
-}
-
-std::unique_ptr<Simulation> make(const Document& document) {
-    auto made = Simulation::create(document, nullptr);
-    if (!made.ok()) ADD_FAILURE() << made.error().message();
-    return made.ok() ? std::move(made).value() : nullptr;
-}
-
-void step(Simulation& simulation, int count) {
-    for (int i = 0; i < count; ++i) simulation.step();
-}
-
-std::vector<Vec3> nodes_of(const Simulation& simulation, EntityIndex entity = cushion) {
-    std::vector<Vec3> nodes;
-    if (const MovingPoints* its = simulation.points(entity)) its->read(nodes);
-    return nodes;
 }
 
 TEST(ShapeSurface, EnclosesWhatTheShapeDoes) {
@@ -137,11 +125,11 @@ TEST(Soft, OtherAttributesTakeEffectWhereItIs) {
     const auto simulation = make(document);
     ASSERT_TRUE(simulation);
     step(*simulation, 40);
-    const std::vector<Vec3> before = nodes_of(*simulation);
+    const std::vector<Vec3> before = points_of(*simulation);
     Entity changed = document.entities[1];
     changed.attributes["mass"] = 3.0;
     ASSERT_TRUE(simulation->update(changed, true));
-    EXPECT_EQ(nodes_of(*simulation), before);
+    EXPECT_EQ(points_of(*simulation), before);
     EXPECT_NEAR(simulation->points(cushion)->mass(), 3, 1e-9);
     changed.attributes["mass"] = 1e6;
     EXPECT_FALSE(simulation->update(changed, true)) << "no matter is as dense as that";
@@ -181,9 +169,9 @@ TEST(SoftPins, HoldItInTheWorldAndToOtherThings) {
     ASSERT_TRUE(simulation);
     const auto& held = simulation->points(cushion)->deformable()->pinned;
     ASSERT_GE(held.size(), 2u);
-    const std::vector<Vec3> before = nodes_of(*simulation);
+    const std::vector<Vec3> before = points_of(*simulation);
     step(*simulation, 60);
-    const std::vector<Vec3> after = nodes_of(*simulation);
+    const std::vector<Vec3> after = points_of(*simulation);
     for (const std::uint32_t node : held) EXPECT_EQ(after[node], before[node]);
     EXPECT_LT(simulation->points(cushion)->center_of_mass().y, 2) << "the rest hangs";
     EXPECT_GT(simulation->points(cushion)->center_of_mass().y, 1);
@@ -222,25 +210,9 @@ TEST(Soft, IsRigidAsLongAsAJointHoldsIt) {
     EXPECT_FALSE(simulation->joint(1).is_null());
 }
 
-class SoftSession : public testing::Test {
+class SoftSession : public samples::LiveSession {
 protected:
-    SoftSession() {
-        session_ = Session::create(nullptr, {}).value();
-        run("scene.load", {{"scene", document_to_json(a_cushion())}});
-    }
-    json run(const std::string& command, const json& params = json::object()) {
-        auto result = session_->execute(command, params);
-        if (!result.ok()) ADD_FAILURE() << command << ": " << result.error().message();
-        return result.ok() ? result.value() : json();
-    }
-    EntityState state(EntityIndex index) {
-        std::vector<EntityState> states;
-        session_->read_states(states);
-        for (const EntityState& one : states)
-            if (one.entity == index) return one;
-        return {};
-    }
-    std::unique_ptr<Session> session_;
+    SoftSession() { open(a_cushion()); }
 };
 
 TEST_F(SoftSession, TellsItsMeshAndIsUndoneAndReset) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/entity_body.h"
+#include "scene/live_scene.h"
 #include "scene/sample_documents.h"
 #include "scene/scene_file.h"
 #include "scene/session.h"
@@ -19,8 +20,10 @@ using nlohmann::json;
 using physics::BoxShape;
 using physics::CapsuleShape;
 using physics::ShapeDefinition;
-
-constexpr EntityIndex thing = 2;
+using samples::make;
+using samples::points_of;
+using samples::step;
+using samples::thing;
 
 /// A floor and a cloth of 1 × 1 m that lies level at this height.
 Document a_cloth(double height) {
@@ -42,22 +45,6 @@ Document a_rope(double height, double slack) {
     rope.attributes = {{"kind", std::string("rope")}, {"mass", 2.0}, {"slack", slack}, {"axial_stiffness", 1e5}};
     rope.pins = {{{0, 1, 0}, 0.0, {}}, {{0, -1, 0}, 0.0, {}}};
     return document;
-}
-
-std::unique_ptr<Simulation> make(const Document& document) {
-    auto made = Simulation::create(document, nullptr);
-    if (!made.ok()) ADD_FAILURE() << made.error().message();
-    return made.ok() ? std::move(made).value() : nullptr;
-}
-
-void step(Simulation& simulation, int count) {
-    for (int i = 0; i < count; ++i) simulation.step();
-}
-
-std::vector<Vec3> nodes_of(const Simulation& simulation, EntityIndex entity = thing) {
-    std::vector<Vec3> nodes;
-    if (const MovingPoints* its = simulation.points(entity)) its->read(nodes);
-    return nodes;
 }
 
 TEST(ClothEntity, WeighsByItsAreaAndFallsAsAnythingDoes) {
@@ -103,7 +90,7 @@ TEST(ClothEntity, LiesOverABoxAndHangsDownAtItsSides) {
     ASSERT_TRUE(simulation);
     step(*simulation, 240);
     double highest = 0, lowest = 1;
-    for (const Vec3 node : nodes_of(*simulation)) {
+    for (const Vec3 node : points_of(*simulation)) {
         highest = std::max(highest, node.y);
         lowest = std::min(lowest, node.y);
         const bool is_inside = std::fabs(node.x) < 0.29 && std::fabs(node.z) < 0.29;
@@ -243,7 +230,7 @@ TEST(RopeEntity, HangsAsDeepAsItsSlackSays) {
     EXPECT_NEAR(simulation->points(thing)->mass(), 2, 1e-9);
     const auto lowest = [&] {
         double low = 10;
-        for (const Vec3 node : nodes_of(*simulation)) low = std::min(low, node.y);
+        for (const Vec3 node : points_of(*simulation)) low = std::min(low, node.y);
         return low;
     };
     const double sag = 2 * std::sqrt(0.1 * 3 / 8);
@@ -283,31 +270,12 @@ TEST(RopeEntity, IsMetByARayAndByWhatFallsOnIt) {
     double lowest = 3;
     for (int i = 0; i < 40; ++i) {
         simulation->step();
-        for (const Vec3 node : nodes_of(*simulation)) lowest = std::min(lowest, node.y);
+        for (const Vec3 node : points_of(*simulation)) lowest = std::min(lowest, node.y);
     }
     EXPECT_LT(lowest, 1.97) << "the ball hits the rope in its middle";
 }
 
-class ThinSession : public testing::Test {
-protected:
-    void open(const Document& document) {
-        session_ = Session::create(nullptr, {}).value();
-        run("scene.load", {{"scene", document_to_json(document)}});
-    }
-    json run(const std::string& command, const json& params = json::object()) {
-        auto result = session_->execute(command, params);
-        if (!result.ok()) ADD_FAILURE() << command << ": " << result.error().message();
-        return result.ok() ? result.value() : json();
-    }
-    EntityState state(EntityIndex index) {
-        std::vector<EntityState> states;
-        session_->read_states(states);
-        for (const EntityState& one : states)
-            if (one.entity == index) return one;
-        return {};
-    }
-    std::unique_ptr<Session> session_;
-};
+using ThinSession = samples::LiveSession;
 
 TEST_F(ThinSession, ABrokenRopeIsToldOnceAndReset) {
     Document document = a_rope(3, 0.1);

@@ -29,9 +29,10 @@ export async function openBrowser() {
 }
 
 /** A page on the Studio that is connected, with its models drawn. Errors of the page fail the test through `faults`. */
-export async function openStudio(browser, address, { width = 1280, height = 800, quality = "low" } = {}) {
+export async function openStudio(browser, address, { width = 1280, height = 800, quality = "low", prepare = async () => {} } = {}) {
   const context = await browser.newContext({ viewport: { width, height } });
   const page = await context.newPage();
+  await prepare(page);
   page.faults = [];
   page.on("pageerror", (error) => page.faults.push(error.message));
   page.on("console", (message) => message.type() === "error" && page.faults.push(message.text()));

@@ -3,57 +3,34 @@
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { after, afterEach, before, beforeEach, describe, it } from "node:test";
-import { openBrowser, openStudio } from "./browser.mjs";
-import { findProgram, prepareDatabase, RealServer } from "./real_server.mjs";
+import { openStudio } from "./browser.mjs";
+import { Session } from "./session.mjs";
 
 const FLOOR = { name: "Floor", shape: { type: "plane", normal: [0, 1, 0], offset: 0 }, attributes: { kind: "static" } };
 const ROOM = { embody_scene: 1, title: "Catalogue room", entities: [FLOOR], camera: { position: [3, 2.4, 4], target: [0, 0.4, 0] } };
 
 describe("changes of the catalogue in the Studio", { timeout: 900000 }, () => {
-  let browser, program, server, address, page;
+  const session = new Session();
+  let page;
   const others = [];
 
-  before(async () => {
-    program = findProgram();
-    assert.ok(program, "the program embody is not built: build it, or set EMBODY_PROGRAM");
-    server = new RealServer(program, prepareDatabase(program));
-    address = await server.start(ROOM);
-    browser = await openBrowser();
-  });
-  after(async () => {
-    await browser?.close();
-    await server?.discard();
-  });
+  before(() => session.start(ROOM));
+  after(() => session.end());
   beforeEach(async () => {
-    page = await openStudio(browser, address);
+    page = await session.reopen();
     await command("scene.load", { scene: ROOM });
     await page.waitForFunction(() => window.embody.entities().length === 1);
     await searchFor("chair");
   });
   afterEach(async () => {
     assert.deepEqual(page.faults, []);
-    for (const each of [page, ...others.splice(0)]) await each.context().close();
+    for (const other of others.splice(0)) await other.context().close();
   });
 
   // As another client of the same server, or another program on the same database, would.
-  function command(name, params = {}) {
-    return page.evaluate(
-      async ([command, params]) => {
-        const socket = new WebSocket(`ws://${location.host}/ws`);
-        await new Promise((opened) => (socket.onopen = opened));
-        socket.send(JSON.stringify({ id: 1, command, params }));
-        const reply = await new Promise((got) => {
-          socket.onmessage = (event) => typeof event.data === "string" && "ok" in JSON.parse(event.data) && got(JSON.parse(event.data));
-        });
-        socket.close();
-        if (!reply.ok) throw new Error(JSON.stringify(reply.error));
-        return reply.result;
-      },
-      [name, params],
-    );
-  }
+  const command = (name, params) => session.command(name, params);
   function embody(...words) {
-    const done = spawnSync(program, [...words, "--database", server.database], { encoding: "utf8", maxBuffer: 1 << 28 });
+    const done = spawnSync(session.program, [...words, "--database", session.server.database], { encoding: "utf8", maxBuffer: 1 << 28 });
     assert.equal(done.status, 0, done.stderr);
     return done.stdout;
   }
@@ -129,7 +106,7 @@ describe("changes of the catalogue in the Studio", { timeout: 900000 }, () => {
   });
 
   it("gives a value to all that are found, tells the other Studio, and undoes and redoes it with keys and button", async () => {
-    const other = await openStudio(browser, address);
+    const other = await openStudio(session.browser, session.address);
     others.push(other);
     await other.getByTestId("search").fill("chair");
     await other.waitForFunction(() => document.querySelector("[data-testid=model-tile]")?.getAttribute("aria-label")?.toLowerCase().includes("chair"));
@@ -277,7 +254,7 @@ describe("changes of the catalogue in the Studio", { timeout: 900000 }, () => {
   });
 
   it("loses nothing when two Studios and the command line change the same models at once", async () => {
-    const other = await openStudio(browser, address);
+    const other = await openStudio(session.browser, session.address);
     others.push(other);
     const rounds = 4;
     const change = (of, mass) =>
@@ -302,7 +279,7 @@ describe("changes of the catalogue in the Studio", { timeout: 900000 }, () => {
       );
     const commandLine = async (mass) => {
       for (let round = 0; round < rounds; ++round) {
-        const set = spawn(program, ["set", "--query", "chair", `mass=${mass + round}`, "--database", server.database]);
+        const set = spawn(session.program, ["set", "--query", "chair", `mass=${mass + round}`, "--database", session.server.database]);
         let told = "";
         for (const stream of [set.stdout, set.stderr]) stream.on("data", (data) => (told += data));
         const ended = await new Promise((end) => set.on("close", (code, signal) => end(signal ?? code)));

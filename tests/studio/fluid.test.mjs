@@ -2,8 +2,7 @@
 // Liquids in the Studio: drawn as one surface, run apart, chosen, changed, and there to add.
 import assert from "node:assert/strict";
 import { after, before, beforeEach, describe, it } from "node:test";
-import { openBrowser, openStudio } from "./browser.mjs";
-import { findProgram, prepareDatabase, RealServer } from "./real_server.mjs";
+import { Session } from "./session.mjs";
 
 const WATER = 2;
 const SCENE = {
@@ -23,42 +22,18 @@ const SCENE = {
 };
 
 describe("liquids in the Studio", { timeout: 600000 }, () => {
-  let browser, server, page, address;
+  const session = new Session();
+  let page;
 
-  before(async () => {
-    const program = findProgram();
-    assert.ok(program, "the program embody is not built: build it, or set EMBODY_PROGRAM");
-    server = new RealServer(program, prepareDatabase(program));
-    address = await server.start(SCENE);
-    browser = await openBrowser();
-  });
-  after(async () => {
-    await browser?.close();
-    await server?.discard();
-  });
+  before(() => session.start(SCENE));
+  after(() => session.end());
   beforeEach(async () => {
-    await page?.context().close();
-    page = await openStudio(browser, address);
+    page = await session.reopen();
     await command("scene.load", { scene: SCENE });
     await surface();
   });
 
-  // As another client of the same server would.
-  async function command(name, params) {
-    await page.evaluate(
-      async ([name, params]) => {
-        const socket = new WebSocket(`ws://${location.host}/ws`);
-        await new Promise((opened) => (socket.onopen = opened));
-        socket.send(JSON.stringify({ id: 1, command: name, params }));
-        const reply = await new Promise((got) => {
-          socket.onmessage = (event) => typeof event.data === "string" && event.data.includes('"ok"') && got(JSON.parse(event.data));
-        });
-        socket.close();
-        if (!reply.ok) throw new Error(JSON.stringify(reply.error));
-      },
-      [name, params],
-    );
-  }
+  const command = (name, params) => session.command(name, params);
   // Made beside the page: it comes a while after the points.
   async function surface() {
     await page.waitForFunction((water) => window.embody.points(water)?.count > 100, WATER);
@@ -104,5 +79,21 @@ describe("liquids in the Studio", { timeout: 600000 }, () => {
     await page.waitForFunction(() => window.embody.entities().length === 3);
     await page.waitForFunction(() => window.embody.points(3)?.liquid === true && window.embody.points(3).count > 100);
     assert.deepEqual(page.faults, []);
+  });
+
+  it("draws its drops, and says why, where surfaces cannot be made", async () => {
+    const prepare = (page) =>
+      page.route("**/liquid_worker*", (route) => route.fulfill({ contentType: "text/javascript", body: "throw new Error('out of order');" }));
+    page = await session.reopen({ prepare });
+    await page.waitForFunction((water) => window.embody.points(water)?.liquid === false && window.embody.points(water).count > 100, WATER);
+    await page.getByText(/surfaces of liquids cannot be drawn: .*out of order/).waitFor();
+    const seen = await page.evaluate((water) => window.embody.seenAt(water), WATER);
+    assert.equal(await page.evaluate(({ x, y }) => window.embody.pick(x, y), seen), WATER);
+    // They go on as drops, also those that come later.
+    await command("simulation.step", { count: 40 });
+    await page.waitForFunction((water) => window.embody.points(water).upper[0] > 0.2, WATER);
+    await page.locator("[data-testid=primitive-water]").dblclick();
+    await page.waitForFunction(() => window.embody.points(3)?.liquid === false);
+    assert.ok(page.faults.every((fault) => fault.includes("out of order")), `${page.faults}`);
   });
 });

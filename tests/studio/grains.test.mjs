@@ -2,8 +2,8 @@
 // Grains in the Studio: drawn as points, poured, chosen, changed, and there for who comes later.
 import assert from "node:assert/strict";
 import { after, before, beforeEach, describe, it } from "node:test";
-import { openBrowser, openStudio } from "./browser.mjs";
-import { findProgram, prepareDatabase, RealServer } from "./real_server.mjs";
+import { openStudio } from "./browser.mjs";
+import { Session } from "./session.mjs";
 
 const ASLEEP = 2;
 const SAND = 2;
@@ -24,42 +24,18 @@ const SANDBOX = {
 };
 
 describe("grains in the Studio", { timeout: 600000 }, () => {
-  let browser, server, page, address;
+  const session = new Session();
+  let page;
 
-  before(async () => {
-    const program = findProgram();
-    assert.ok(program, "the program embody is not built: build it, or set EMBODY_PROGRAM");
-    server = new RealServer(program, prepareDatabase(program));
-    address = await server.start(SANDBOX);
-    browser = await openBrowser();
-  });
-  after(async () => {
-    await browser?.close();
-    await server?.discard();
-  });
+  before(() => session.start(SANDBOX));
+  after(() => session.end());
   beforeEach(async () => {
-    await page?.context().close();
-    page = await openStudio(browser, address);
+    page = await session.reopen();
     await command("scene.load", { scene: SANDBOX });
     await page.waitForFunction((sand) => window.embody.points(sand), SAND);
   });
 
-  // As another client of the same server would.
-  async function command(name, params) {
-    await page.evaluate(
-      async ([name, params]) => {
-        const socket = new WebSocket(`ws://${location.host}/ws`);
-        await new Promise((opened) => (socket.onopen = opened));
-        socket.send(JSON.stringify({ id: 1, command: name, params }));
-        const reply = await new Promise((got) => {
-          socket.onmessage = (event) => typeof event.data === "string" && event.data.includes('"ok"') && got(JSON.parse(event.data));
-        });
-        socket.close();
-        if (!reply.ok) throw new Error(JSON.stringify(reply.error));
-      },
-      [name, params],
-    );
-  }
+  const command = (name, params) => session.command(name, params);
   const points = (from = page) => from.evaluate((sand) => window.embody.points(sand), SAND);
   const state = () => page.evaluate((sand) => window.embody.entities().find((entity) => entity.index === sand).state, SAND);
 
@@ -76,7 +52,7 @@ describe("grains in the Studio", { timeout: 600000 }, () => {
     assert.ok(heap.upper[1] < filled.upper[1]);
 
     // Nothing moves any more, yet who comes later sees the heap.
-    const later = await openStudio(browser, address);
+    const later = await openStudio(session.browser, session.address);
     await later.waitForFunction((sand) => window.embody.points(sand), SAND);
     assert.deepEqual(await points(later), heap);
     await later.context().close();

@@ -279,8 +279,8 @@ export class MockServer {
   sendStatistics() {
     const count = (state) => [...this.bodies.values()].filter((body) => body.state === state).length;
     this.broadcast({
-      event: "statistics", time: this.simulation.time, step: this.simulation.step, bodies: this.bodies.size, active: count(0), wants_to_sleep: count(1),
-      asleep: count(2), contacts: 4, step_ms: 0.21, real_time_factor: 1,
+      event: "statistics", time: this.simulation.time, step: this.simulation.step, bodies: this.bodies.size, things: count(0) + count(1) + count(2),
+      active: count(0), wants_to_sleep: count(1), asleep: count(2), points: 0, contacts: 4, step_ms: 0.21, real_time_factor: 1,
     });
   }
 

@@ -2,8 +2,7 @@
 // Soft things in the Studio: their own form bends with the nodes, and the property panel changes their kind while they move.
 import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
-import { openBrowser, openStudio } from "./browser.mjs";
-import { findProgram, prepareDatabase, RealServer } from "./real_server.mjs";
+import { Session } from "./session.mjs";
 
 const BEAR = "sweethome3d:Blend Swap CC-0#teddyBear";
 const SCENE = {
@@ -25,37 +24,17 @@ const SCENE = {
 };
 
 describe("soft things in the Studio", { timeout: 600000 }, () => {
-  let browser, server, page;
+  const session = new Session();
+  let page;
 
   before(async () => {
-    const program = findProgram();
-    assert.ok(program, "the program embody is not built: build it, or set EMBODY_PROGRAM");
-    server = new RealServer(program, prepareDatabase(program));
-    const address = await server.start(SCENE);
-    browser = await openBrowser();
-    page = await openStudio(browser, address);
+    await session.start(SCENE);
+    page = await session.reopen();
     await page.waitForFunction(() => window.embody.bent(2) !== null && window.embody.bent(4) !== null, null, { timeout: 30000 });
   });
-  after(async () => {
-    await browser?.close();
-    await server?.discard();
-  });
+  after(() => session.end());
 
-  const send = (command, params) =>
-    page.evaluate(
-      async ([command, params]) => {
-        const socket = new WebSocket(`ws://${location.host}/ws`);
-        await new Promise((opened) => (socket.onopen = opened));
-        socket.send(JSON.stringify({ id: 1, command, params }));
-        const reply = await new Promise((got) => {
-          socket.onmessage = (event) => typeof event.data === "string" && event.data.includes('"ok"') && got(JSON.parse(event.data));
-        });
-        socket.close();
-        if (!reply.ok) throw new Error(JSON.stringify(reply.error));
-        return reply.result;
-      },
-      [command, params],
-    );
+  const send = (name, params) => session.command(name, params);
   const bent = (index) => page.evaluate((index) => window.embody.bent(index), index);
 
   it("draws them at rest exactly as they are", async () => {

@@ -2,8 +2,7 @@
 // The Studio as a user meets it: the real server, the real furniture catalogue, a real browser.
 import assert from "node:assert/strict";
 import { after, before, beforeEach, describe, it } from "node:test";
-import { openBrowser, openStudio } from "./browser.mjs";
-import { findProgram, prepareDatabase, RealServer } from "./real_server.mjs";
+import { Session } from "./session.mjs";
 
 const ASLEEP = 2;
 const FLOOR = { name: "Floor", shape: { type: "plane", normal: [0, 1, 0], offset: 0 }, attributes: { kind: "static" } };
@@ -15,37 +14,19 @@ const EMPTY_ROOM = {
 };
 
 describe("the Studio on the real catalogue", { timeout: 900000 }, () => {
-  let browser, server, page, address;
+  const session = new Session();
+  let page;
 
-  before(async () => {
-    const program = findProgram();
-    assert.ok(program, "the program embody is not built: build it, or set EMBODY_PROGRAM");
-    server = new RealServer(program, prepareDatabase(program));
-    address = await server.start(EMPTY_ROOM);
-    browser = await openBrowser();
-  });
-  after(async () => {
-    await browser?.close();
-    await server?.discard();
-  });
+  before(() => session.start(EMPTY_ROOM));
+  after(() => session.end());
   beforeEach(async () => {
-    await page?.context().close();
-    page = await openStudio(browser, address);
+    page = await session.reopen();
     await load(EMPTY_ROOM);
   });
 
   // Opens a scene as another client of the same server would.
   async function load(scene) {
-    await page.evaluate(async (scene) => {
-      const socket = new WebSocket(`ws://${location.host}/ws`);
-      await new Promise((opened) => (socket.onopen = opened));
-      socket.send(JSON.stringify({ id: 1, command: "scene.load", params: { scene } }));
-      const reply = await new Promise((got) => {
-        socket.onmessage = (event) => typeof event.data === "string" && event.data.includes('"ok"') && got(JSON.parse(event.data));
-      });
-      socket.close();
-      if (!reply.ok) throw new Error(JSON.stringify(reply.error));
-    }, scene);
+    await session.command("scene.load", { scene });
     await page.waitForFunction((title) => document.title.includes(title), scene.title);
     await page.waitForFunction((count) => window.embody.entities().filter((entity) => entity.drawn).length === count, scene.entities.length);
   }
@@ -179,8 +160,7 @@ describe("the Studio on the real catalogue", { timeout: 900000 }, () => {
     await page.waitForFunction(() => window.embody.entities().at(-1).position[1] < 1.999);
     assert.match(await page.getByTestId("stat-state").innerText(), /Paused/);
     await page.keyboard.press("Space");
-    await page.waitForFunction(() => /^\d+ bodies$/.test(document.querySelector("[data-testid=stat-bodies]").textContent));
-    assert.equal(await page.getByTestId("stat-bodies").innerText(), "2 bodies");
+    await page.waitForFunction(() => /^\d of 1 active$/.test(document.querySelector("[data-testid=stat-active]").textContent));
     await page.getByTestId("simulation.reset").click();
     await page.waitForFunction(() => window.embody.simulation().state === "stopped");
     await page.waitForFunction((height) => Math.abs(window.embody.entities().at(-1).position[1] - height) < 1e-3, 2);
@@ -229,9 +209,9 @@ describe("the Studio on the real catalogue", { timeout: 900000 }, () => {
   });
 
   it("says that the server is gone, and goes on when it is back", async () => {
-    await server.stop();
+    await session.server.stop();
     await page.getByTestId("connection-lost").waitFor();
-    await server.start(EMPTY_ROOM);
+    await session.server.start(EMPTY_ROOM);
     await page.getByTestId("connection-lost").waitFor({ state: "hidden", timeout: 30000 });
     await page.waitForFunction(() => window.embody.connected() && window.embody.loading() === 0, null, { timeout: 60000 });
   });

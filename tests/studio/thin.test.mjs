@@ -2,8 +2,7 @@
 // Cloth and ropes in the Studio: added from the list of primitives, bent by their nodes, blown by the wind, broken.
 import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
-import { openBrowser, openStudio } from "./browser.mjs";
-import { findProgram, prepareDatabase, RealServer } from "./real_server.mjs";
+import { Session } from "./session.mjs";
 
 const SCENE = {
   embody_scene: 1,
@@ -31,37 +30,17 @@ const SCENE = {
 };
 
 describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
-  let browser, server, page;
+  const session = new Session();
+  let page;
 
   before(async () => {
-    const program = findProgram();
-    assert.ok(program, "the program embody is not built: build it, or set EMBODY_PROGRAM");
-    server = new RealServer(program, prepareDatabase(program));
-    const address = await server.start(SCENE);
-    browser = await openBrowser();
-    page = await openStudio(browser, address);
+    await session.start(SCENE);
+    page = await session.reopen();
     await page.waitForFunction(() => window.embody.bent(2) !== null && window.embody.bent(3) !== null, null, { timeout: 30000 });
   });
-  after(async () => {
-    await browser?.close();
-    await server?.discard();
-  });
+  after(() => session.end());
 
-  const send = (command, params) =>
-    page.evaluate(
-      async ([command, params]) => {
-        const socket = new WebSocket(`ws://${location.host}/ws`);
-        await new Promise((opened) => (socket.onopen = opened));
-        socket.send(JSON.stringify({ id: 1, command, params }));
-        const reply = await new Promise((got) => {
-          socket.onmessage = (event) => typeof event.data === "string" && event.data.includes('"ok"') && got(JSON.parse(event.data));
-        });
-        socket.close();
-        if (!reply.ok) throw new Error(JSON.stringify(reply.error));
-        return reply.result;
-      },
-      [command, params],
-    );
+  const send = (name, params) => session.command(name, params);
   const bent = (index) => page.evaluate((index) => window.embody.bent(index), index);
 
   it("draws a sheet with its thickness and a slack rope as an arc", async () => {
@@ -96,6 +75,16 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
     assert.ok((await lowest()) > still + 0.05, `it is blown: ${await lowest()}`);
     const { normals } = await bent(2);
     assert.ok(Math.abs(normals - 1) < 1e-3, "normals have length one");
+    // What is active keeps its own colour, but for a glimmer; all over only where a person wants it so.
+    const covered = () => page.evaluate(() => window.embody.tintOf(2)[3]);
+    assert.ok((await covered()) > 0 && (await covered()) < 0.2, `${await covered()}`);
+    await page.evaluate(() => document.querySelector("[data-testid=canvas]").focus());
+    await page.getByTestId("view.options").click();
+    await page.getByTestId("option-view.fullTint").check();
+    await page.waitForFunction(() => window.embody.tintOf(2)[3] > 0.8);
+    await page.getByTestId("option-view.fullTint").uncheck();
+    await page.waitForFunction(() => window.embody.tintOf(2)[3] < 0.2);
+    await page.keyboard.press("Escape");
     assert.deepEqual(page.faults, []);
   });
 

@@ -100,10 +100,15 @@ export interface Simulation {
 export interface Statistics {
   time: number;
   step: number;
+  /** All entities in the world. */
   bodies: number;
+  /** Those that can move, and of them those in each state; a heap, a liquid or a cloth is one thing. */
+  things: number;
   active: number;
   wants_to_sleep: number;
   asleep: number;
+  /** Grains, drops and nodes of what is no single body. */
+  points: number;
   contacts: number;
   step_ms: number;
   real_time_factor: number;

@@ -16,7 +16,13 @@ const MOUSE: readonly (readonly [string, string])[] = [
   ["Left drag on a body with the move tool", "slide it sideways at its height"],
 ];
 
-/** Mouse and keys; a key can be changed by clicking on it. */
+const STATES: readonly (readonly [string, string, string])[] = [
+  ["active", "active", "moves, or something pulls at it"],
+  ["wants", "wants to sleep", "is quiet, and sleeps soon"],
+  ["asleep", "asleep", "rests and costs nothing until it is touched"],
+];
+
+/** Mouse, keys and colours; a key can be changed by clicking on it. */
 export function openHelp(studio: Studio, actions: readonly UserAction[]): void {
   const groups = new Map<string, UserAction[]>();
   for (const action of actions) {
@@ -32,6 +38,10 @@ export function openHelp(studio: Studio, actions: readonly UserAction[]): void {
       "div",
       { class: "help-columns" },
       section("Mouse", MOUSE.map(([gesture, what]) => line(element("span", { class: "gesture" }, gesture), what))),
+      section("Glimmer on things while there is a simulation", [
+        ...STATES.map(([state, name, what]) => line(element("span", {}, element("i", { class: `swatch ${state}` }), name), what)),
+        element("p", { class: "note" }, "The view options colour things all over; T turns it off."),
+      ]),
       ...[...groups].map(([title, group]) => section(title, group.map((action) => line(keyButton(studio, action), action.label)))),
     ),
     element(

@@ -28,6 +28,7 @@ export function openOptions(studio: Studio, actions: readonly UserAction[]): voi
       "div",
       { class: "options" },
       flip("view.tint"),
+      flip("view.fullTint"),
       flip("view.grid"),
       flip("view.collision"),
       flip("view.theme"),

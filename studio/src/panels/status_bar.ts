@@ -28,10 +28,10 @@ export class StatusBar {
       cell("state", "State of the simulation", "wide"),
       cell("hint", "The simulation begins from the scene as it is now"),
       cell("time", "Simulated time"),
-      cell("bodies", "Bodies in the world"),
-      cell("active", "Active bodies", "active"),
-      cell("wants", "Bodies that want to sleep", "wants"),
-      cell("asleep", "Bodies asleep", "asleep"),
+      cell("active", "Of all that can move, what does; a heap of grains, a liquid, a cloth or a rope is one thing", "active"),
+      cell("wants", "Things that are quiet and want to sleep", "wants"),
+      cell("asleep", "Things asleep: they cost nothing until something touches them", "asleep"),
+      cell("points", "Grains, drops and nodes of what is no single body"),
       cell("contacts", "Contacts"),
       cell("step", "Time the computer needs for one step of the simulation"),
       cell("rate", "Simulated seconds in one second of yours"),
@@ -72,8 +72,10 @@ export class StatusBar {
     // Before the first step there is nothing to measure.
     const begun = simulation.state !== "stopped";
     for (const [name, cell] of this.cells) if (name !== "state" && name !== "fps") show(cell, begun === (name !== "hint"));
-    this.put("bodies", `${statistics?.bodies ?? "–"} bodies`);
-    this.put("active", `${statistics?.active ?? "–"} active`);
+    this.put("active", statistics ? `${statistics.active} of ${statistics.things} active` : "– active");
+    const points = statistics?.points ?? 0;
+    this.put("points", `${points.toLocaleString("en")} points`);
+    show(this.cells.get("points")!, begun && points > 0);
     this.put("wants", `${statistics?.wants_to_sleep ?? "–"} want to sleep`);
     this.put("asleep", `${statistics?.asleep ?? "–"} asleep`);
     this.put("contacts", `${statistics?.contacts ?? "–"} contacts`);

@@ -156,10 +156,11 @@ async function keepPoses(studio: Studio): Promise<void> {
 
 function viewActions(studio: Studio, open: Openers): UserAction[] {
   const { preferences, view } = studio;
-  const flip = <Name extends "tint" | "grid" | "collision">(name: Name) => preferences.set(name, !preferences.get(name));
+  const flip = <Name extends "tint" | "fullTint" | "grid" | "collision">(name: Name) => preferences.set(name, !preferences.get(name));
   return [
     { id: "view.focus", label: "Focus on the selection", group: "View", keys: ["F"], run: () => focus(studio) },
-    { id: "view.tint", label: "Colour by state", group: "View", keys: ["T"], icon: "tint", on: () => preferences.get("tint"), run: () => flip("tint") },
+    { id: "view.tint", label: "Show what is active and what sleeps", group: "View", keys: ["T"], icon: "tint", on: () => preferences.get("tint"), run: () => flip("tint") },
+    { id: "view.fullTint", label: "In full colour: red, green and gray all over", group: "View", keys: [], on: () => preferences.get("fullTint"), run: () => flip("fullTint") },
     { id: "view.grid", label: "Grid", group: "View", keys: ["G"], on: () => preferences.get("grid"), run: () => flip("grid") },
     { id: "view.collision", label: "Collision shapes of the selection", group: "View", keys: ["C"], on: () => preferences.get("collision"), run: () => flip("collision") },
     {

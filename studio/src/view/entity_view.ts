@@ -13,12 +13,14 @@ import { opticsOf } from "./liquid_look";
 import { PointClouds } from "./point_clouds";
 import { drawShape, shapeKey } from "./shapes";
 import { SoftBodies } from "./soft_bodies";
-import { type Quality, STATE_TINT } from "./tint";
+import { type Quality, tintOf, type TintStrength } from "./tint";
 
 const WHITE = new Color(1, 1, 1);
 const STILL_COLOR = new Color(0.115, 0.12, 0.13);
 /** Of grains that nobody gave a colour. */
 const SAND = new Color(0.68, 0.5, 0.29);
+/** Of drops of a liquid that has no surface. */
+const DROPS = new Color(0.28, 0.5, 0.72);
 const PLACEHOLDER = shapeDrawable({ index: 0, shape: { type: "box", half_extents: [0.15, 0.15, 0.15] } });
 
 function shapeDrawable(entity: Entity): Drawable {
@@ -39,9 +41,11 @@ export class EntityView {
   /** A model's picture arrived or could not be had. */
   readonly loaded = new Signal<void>();
   readonly failed = new Signal<{ index: number; reason: string }>();
+  /** Surfaces of liquids cannot be made; they are drawn as drops from now on. */
+  readonly surfacesLost = new Signal<string>();
   /** An entity began or ceased to be drawn as points. */
   readonly pointed = new Signal<number>();
-  tinted = true;
+  tinted: TintStrength = "off";
   /** While something is dragged, where the user has it, and its scale; wins over what the server said. */
   readonly held = new Map<number, { position: Vector3; rotation: Quaternion; scale: number }>();
   /** Something was moved, added or removed since the shadows were drawn. */
@@ -68,6 +72,10 @@ export class EntityView {
     this.softs = new SoftBodies(connection);
     this.clouds = new PointClouds(quality);
     this.group.add(this.clouds.group);
+    this.clouds.lost.on(({ reason, indices }) => {
+      for (const index of indices) this.dressCloud(index, 0);
+      this.surfacesLost.emit(reason);
+    });
     this.clouds.surfaced.on(() => {
       this.shadowsAreOld = true;
       this.loaded.emit();
@@ -96,12 +104,7 @@ export class EntityView {
   /** Points of a frame; what has some is drawn as them. */
   takePoints(frame: Frame, now: number, smooth: boolean): void {
     if (frame.sets.length > 0) this.shadowsAreOld = true;
-    for (const index of this.clouds.take(frame, now, smooth)) {
-      this.colorCloud(index);
-      this.tint(index);
-      this.place(index, now);
-      this.pointed.emit(index);
-    }
+    for (const index of this.clouds.take(frame, now, smooth)) this.dressCloud(index, now);
     for (const index of this.softs.take(frame, now, smooth)) this.put(index);
   }
 
@@ -292,6 +295,14 @@ export class EntityView {
     else disposeDrawable(drawable);
   }
 
+  /** What is drawn of an entity began or ceased to be points, or is another kind of them. */
+  private dressCloud(index: number, now: number): void {
+    this.colorCloud(index);
+    this.tint(index);
+    this.place(index, now);
+    this.pointed.emit(index);
+  }
+
   private colorCloud(index: number): void {
     const cloud = this.clouds.of(index);
     const shown = this.batchOf.get(index);
@@ -301,7 +312,7 @@ export class EntityView {
       cloud.setColor(entity.color ? colorOf(entity) : null);
       void this.askOptics(index);
     } else if (entity.model) cloud.setColor(averageColor(shown.batch.drawable));
-    else cloud.setColor(entity.color ? colorOf(entity) : SAND);
+    else cloud.setColor(entity.color ? colorOf(entity) : cloud.isDrops ? DROPS : SAND);
   }
 
   private async askOptics(index: number): Promise<void> {
@@ -325,8 +336,7 @@ export class EntityView {
   }
 
   private tint(index: number): void {
-    const state = this.motion.state(index);
-    const tint = this.tinted ? STATE_TINT[state] : [0, 0, 0, 0];
+    const tint = tintOf(this.motion.state(index), this.tinted);
     this.batchOf.get(index)?.batch.setTint(index, tint);
     this.clouds.of(index)?.setTint(tint);
   }

@@ -31,7 +31,7 @@ import type { FromLiquidWorker, ToLiquidWorker } from "./liquid_worker";
 import type { Quality } from "./tint";
 
 /** Of the state colour, beside that of other things. */
-const SHARE_OF_TINT = 0.012;
+const SHARE_OF_TINT = 0.08;
 /** Of light that falls straight on water, what is thrown back: ((n − 1)/(n + 1))², n = 1.33. */
 const REFLECTANCE = 0.02;
 /** What a colour that a person gave is the look of, m of the liquid. */
@@ -92,7 +92,7 @@ export class LiquidSurface {
 
   constructor(
     readonly index: number,
-    set: PointSet,
+    public set: PointSet,
     quality: Quality,
     private readonly tell: (message: ToLiquidWorker) => void,
   ) {
@@ -138,6 +138,7 @@ export class LiquidSurface {
 
   /** Goes on to these places within `duration` ms. */
   take(set: PointSet, now: number, duration: number): void {
+    this.set = set;
     this.tell({ kind: "points", set });
     this.bounds.min.fromArray(set.lower);
     this.bounds.max.fromArray(set.size).add(this.bounds.min);

@@ -21,7 +21,7 @@ import type { PointSet } from "../connection/frame";
 import { MIX, type Quality } from "./tint";
 
 /** Of the state colour, beside that of other things. */
-const SHARE_OF_TINT = 0.3;
+const SHARE_OF_TINT = 0.6;
 
 // Each grain is a square that faces the eye, cut to a disc and lit as the ball that it stands for. `centre` is where it is now.
 const VERTEX_HEAD = `
@@ -75,6 +75,8 @@ function placed<M extends Material>(material: M, uniforms: Uniforms, head: strin
 export class PointCloud {
   readonly mesh: Mesh<InstancedBufferGeometry, Material>;
   readonly isLiquid = false;
+  /** Drops of a liquid, drawn one by one. */
+  readonly isDrops: boolean;
   readonly bounds = new Box3();
   private readonly uniforms: Uniforms = {
     fromLower: new Uniform(new Vector3()),
@@ -97,6 +99,7 @@ export class PointCloud {
     set: PointSet,
     quality: Quality,
   ) {
+    this.isDrops = set.liquid;
     const geometry = new InstancedBufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3));
     geometry.setAttribute("normal", new BufferAttribute(new Float32Array([0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1]), 3));
@@ -121,7 +124,7 @@ export class PointCloud {
   }
 
   accepts(set: PointSet): boolean {
-    return !set.liquid && this.count === set.positions.length / 3;
+    return set.liquid === this.isDrops && this.count === set.positions.length / 3;
   }
 
   /** Goes on to these places within `duration` ms. */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { Group } from "three";
-import type { Frame } from "../connection/frame";
+import type { Frame, PointSet } from "../connection/frame";
 import { Signal } from "../signal";
 import { LiquidSurface } from "./liquid_surface";
 import type { FromLiquidWorker, ToLiquidWorker } from "./liquid_worker";
@@ -16,7 +16,10 @@ export class PointClouds {
   /** A surface is ready to be drawn. */
   readonly surfaced = new Signal<number>();
   private readonly clouds = new Map<number, PointCloud | LiquidSurface>();
+  /** Surfaces cannot be made any more, and why; the entities that are drawn as drops now. */
+  readonly lost = new Signal<{ reason: string; indices: number[] }>();
   private worker: Worker | null = null;
+  private hasFailed = false;
   private lastFrame = 0;
 
   constructor(private quality: Quality) {}
@@ -45,14 +48,19 @@ export class PointClouds {
         continue;
       }
       this.drop(set.index);
-      const cloud = set.liquid
-        ? new LiquidSurface(set.index, set, this.quality, (message) => this.tell(message))
-        : new PointCloud(set.index, set, this.quality);
-      this.clouds.set(set.index, cloud);
-      this.group.add(cloud.mesh);
+      this.put(set);
       changed.push(set.index);
     }
     return changed;
+  }
+
+  private put(set: PointSet): void {
+    const cloud =
+      set.liquid && !this.hasFailed
+        ? new LiquidSurface(set.index, set, this.quality, (message) => this.tell(message))
+        : new PointCloud(set.index, set, this.quality);
+    this.clouds.set(set.index, cloud);
+    this.group.add(cloud.mesh);
   }
 
   /** Moves what is on its way; returns whether anything still is. */
@@ -81,15 +89,35 @@ export class PointClouds {
   }
 
   private tell(message: ToLiquidWorker): void {
-    if (!this.worker) {
-      this.worker = new Worker(new URL("./liquid_worker.ts", import.meta.url), { type: "module" });
-      this.worker.onmessage = (event: MessageEvent<FromLiquidWorker>) => {
-        const surface = this.clouds.get(event.data.index);
-        if (!surface?.isLiquid) return;
-        surface.show(event.data);
-        this.surfaced.emit(event.data.index);
-      };
-    }
+    if (this.hasFailed) return;
+    this.worker ??= this.start();
     this.worker.postMessage(message);
+  }
+
+  private start(): Worker {
+    const worker = new Worker(new URL("./liquid_worker.ts", import.meta.url), { type: "module" });
+    worker.onmessage = (event: MessageEvent<FromLiquidWorker>) => {
+      const surface = this.clouds.get(event.data.index);
+      if (!surface?.isLiquid) return;
+      surface.show(event.data);
+      this.surfaced.emit(event.data.index);
+    };
+    worker.onerror = (event) => this.fail(event.message || "its program could not be loaded");
+    worker.onmessageerror = () => this.fail("a message could not be read");
+    return worker;
+  }
+
+  /** The worker is of no use any more: the drops themselves are drawn. */
+  private fail(reason: string): void {
+    if (this.hasFailed) return;
+    this.hasFailed = true;
+    this.worker?.terminate();
+    this.worker = null;
+    const surfaces = [...this.clouds.values()].filter((cloud) => cloud.isLiquid);
+    for (const { index, set } of surfaces) {
+      this.drop(index);
+      this.put(set);
+    }
+    this.lost.emit({ reason, indices: surfaces.map(({ index }) => index) });
   }
 }

@@ -2,13 +2,24 @@
 import { type Material, MeshLambertMaterial, type MeshStandardMaterial } from "three";
 import { BodyState } from "../document/motion";
 
-/** Red, green and gray as in the paper's Fig. 9, linear; the fourth number is how much they replace the entity's own hue. */
-export const STATE_TINT: Record<BodyState, readonly [number, number, number, number]> = {
-  [BodyState.active]: [0.9, 0.05, 0.04, 0.92],
-  [BodyState.wantsToSleep]: [0.05, 0.62, 0.12, 0.92],
-  [BodyState.asleep]: [0.3, 0.31, 0.32, 0.95],
-  [BodyState.still]: [0, 0, 0, 0],
+/** How plainly the states are shown: in their own colour with a glimmer of the state's, or in the state's altogether. */
+export type TintStrength = "off" | "faint" | "full";
+
+/** Red, green and gray as in the paper's Fig. 9, linear. */
+const STATE_COLOR: Record<BodyState, readonly [number, number, number]> = {
+  [BodyState.active]: [0.9, 0.05, 0.04],
+  [BodyState.wantsToSleep]: [0.05, 0.62, 0.12],
+  [BodyState.asleep]: [0.3, 0.31, 0.32],
+  [BodyState.still]: [0, 0, 0],
 };
+/** How much the state's colour replaces the entity's own hue all over it. */
+const SHARE: Record<TintStrength, number> = { off: 0, faint: 0.1, full: 0.92 };
+
+/** Colour of a state and how much it covers. */
+export function tintOf(state: BodyState, strength: TintStrength): readonly [number, number, number, number] {
+  const share = state === BodyState.still ? 0 : SHARE[strength];
+  return share > 0 ? [...STATE_COLOR[state], share] : [0, 0, 0, 0];
+}
 
 export type Quality = "high" | "low";
 
@@ -17,6 +28,11 @@ export const MIX = `
 float ownLight = dot(diffuseColor.rgb, vec3(0.2126, 0.7152, 0.0722));
 diffuseColor.rgb = mix(diffuseColor.rgb, vTint.rgb * (0.45 + 0.9 * ownLight), vTint.a);
 #include <alphatest_fragment>`;
+/** A rim where the surface turns away from the eye: the state can be told, the thing keeps its colours. */
+const RIM = `
+float turned = 1.0 - abs(dot(normal, normalize(vViewPosition)));
+outgoingLight = mix(outgoingLight, vTint.rgb, step(0.001, vTint.a) * 0.5 * pow(turned, 3.0));
+#include <opaque_fragment>`;
 
 /** A copy of the material that takes its hue from the instanced attribute `tint`; low quality means matt, without reflections. */
 export function tintable(original: Material, quality: Quality): Material {
@@ -27,7 +43,8 @@ export function tintable(original: Material, quality: Quality): Material {
       .replace("#include <begin_vertex>", "#include <begin_vertex>\nvTint = tint;");
     shader.fragmentShader = shader.fragmentShader
       .replace("#include <common>", "#include <common>\nvarying vec4 vTint;")
-      .replace("#include <alphatest_fragment>", MIX);
+      .replace("#include <alphatest_fragment>", MIX)
+      .replace("#include <opaque_fragment>", RIM);
   };
   material.customProgramCacheKey = () => "tint";
   return material;
