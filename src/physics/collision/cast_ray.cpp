@@ -3,7 +3,7 @@
 // that lie on the part itself count, and the nearest wins. A ray from inside thus meets nothing.
 #include <cmath>
 
-#include "physics/collision/collision_shape.h"
+#include "physics/collision/cast_at_convex.h"
 #include "physics/collision/collision_shape_data.h"
 
 namespace embody::physics {
@@ -119,10 +119,8 @@ void cast_at_polytope(RayProbe& ray, const Polytope& polytope) {
     Vec3 normal;
     for (const Polytope::Face& face : polytope.faces) {
         const double height = dot(face.normal, ray.origin) - face.offset, speed = dot(face.normal, ray.direction);
-        if (speed == 0) {
-            if (height > 0) return;
-            continue;
-        }
+        if (height > 0 && height + speed * ray.max_distance > 0) return;  // wholly in front of this face
+        if (speed == 0) continue;
         const double t = -height / speed;
         if (speed > 0) {
             leave = std::fmin(leave, t);
@@ -173,6 +171,12 @@ void cast_at_surface(RayProbe& ray, const TriangleSurface& surface) {
 }
 
 }  // namespace
+
+std::optional<ShapeRayHit> cast_ray(const Convex& convex, Vec3 origin, Vec3 direction, double max_distance) {
+    RayProbe ray{origin, direction, max_distance, std::nullopt};
+    if (may_meet(ray, convex.bounds)) cast_at_convex(ray, convex);
+    return ray.hit;
+}
 
 std::optional<ShapeRayHit> cast_ray(const CollisionShape& shape, const Transform& pose, Vec3 origin, Vec3 direction,
                                     double max_distance) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/collision/cast_at_convex.h"
 #include "physics/collision/collision_shape_data.h"
 
 namespace embody::physics {
@@ -255,20 +256,33 @@ bool SolidProbe::is_thinner(Vec3 p, Vec3 normal, double depth) const {
     return crossing(p, behind).has_value();
 }
 
+std::optional<SolidProbe::Crossing> SolidProbe::crossing_of_pieces(Vec3 a, Vec3 direction, double whole) const {
+    Bounds box;
+    box.add(a);
+    box.add(a + direction * whole);
+    std::optional<Crossing> first;
+    double limit = whole;
+    for (const std::uint32_t index : near_pieces_) {
+        const Piece& piece = pieces_[index];
+        if (!overlaps(piece.bounds, box)) continue;
+        const auto hit = cast_ray(*piece.convex, rotate_back(piece.rotation, a - piece.position),
+                                  rotate_back(piece.rotation, direction), limit);
+        if (!hit) continue;
+        limit = hit->distance;
+        first = Crossing{hit->distance / whole, piece.rotation * hit->normal};
+    }
+    return first;
+}
+
 std::optional<SolidProbe::Crossing> SolidProbe::crossing(Vec3 a, Vec3 b) const {
     const Vec3 way = b - a;
     const double whole = length(way);
     if (!(whole > 0)) return std::nullopt;
-    if (!shape_->data().surface) {
-        Bounds box;
-        box.add(a);
-        box.add(b);
-        const auto may_meet = [&](std::uint32_t piece) { return overlaps(pieces_[piece].bounds, box); };
-        if (!shape_->data().is_plane && std::ranges::none_of(near_pieces_, may_meet)) return std::nullopt;
+    if (shape_->data().is_plane) {
         const auto hit = cast_ray(*shape_, pose_, a, way / whole, whole);
-        if (!hit) return std::nullopt;
-        return Crossing{hit->distance / whole, hit->normal};
+        return hit ? std::optional(Crossing{hit->distance / whole, hit->normal}) : std::nullopt;
     }
+    if (!shape_->data().surface) return crossing_of_pieces(a, way / whole, whole);
 
     // Both sides of triangles count. T. Möller, B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997.
     std::optional<Crossing> first;

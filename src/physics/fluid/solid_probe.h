@@ -57,6 +57,7 @@ private:
         Vec3 normal;
     };
     [[nodiscard]] SolidDistance nearest_triangle(Vec3 p) const;
+    [[nodiscard]] std::optional<Crossing> crossing_of_pieces(Vec3 a, Vec3 direction, double whole) const;
 
     const CollisionShape* shape_;
     Transform pose_;
