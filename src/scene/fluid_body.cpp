@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "scene/filled_region.h"
 #include "scene/fluid_filling.h"
@@ -35,7 +36,7 @@ Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liqu
                          std::to_string(static_cast<int>(std::ceil(filling.value().cell_size))) +
                          " m wide, more than 1 m",
                      "raise it, or fill a smaller shape"};
-    if (is_own) made->matter_.cell_size = std::max(filling.value().cell_size, 1e-3);
+    made->matter_.cell_size = is_own ? std::max(filling.value().cell_size, 1e-3) : cell;
 
     std::vector<Particle> particles;
     particles.reserve(filling.value().places.size());
@@ -52,24 +53,23 @@ Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liqu
 }
 
 FluidBody::~FluidBody() {
-    if (is_enabled_) liquids_.remove(share_);
+    if (share_) liquids_.remove(share_);
 }
 
 Result<void> FluidBody::put(const std::vector<Particle>& particles) {
     std::vector<Vec3> places;
     places.reserve(particles.size());
     for (const Particle& particle : particles) places.push_back(particle.position);
-    const Result<Liquids::Share> share = liquids_.add(matter_, places);
+    const Result<Liquids::Share*> share = liquids_.add(matter_, places);
     if (!share.ok())
         return Error{"shape", "holds no liquid: " + share.error().why,
                      "place it outside of solid things, or make it larger"};
     share_ = share.value();
-    is_enabled_ = true;
     if (std::ranges::all_of(particles, [](const Particle& particle) { return particle.velocity == Vec3{}; })) return {};
 
     // Those in solids were left out, so that the ids say nothing of the places, but their order is the same.
     std::size_t at = 0;
-    return world_.change_fluid(share_.fluid, share_.ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
+    return world_.change_fluid(share_->fluid, share_->ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
         constexpr double same_place = 1e-4;
         while (at < particles.size() && length(particles[at].position - position) > same_place) ++at;
         if (at < particles.size()) velocity = particles[at++].velocity;
@@ -78,44 +78,26 @@ Result<void> FluidBody::put(const std::vector<Particle>& particles) {
 }
 
 Result<void> FluidBody::set_definition(const PointsDefinition& definition) {
-    const physics::FluidDefinition& matter = std::get<LiquidDefinition>(definition).matter;
     const double cell_size = matter_.cell_size;
-    matter_ = matter;
+    matter_ = std::get<LiquidDefinition>(definition).matter;
     matter_.cell_size = cell_size;
-    const bool enabled = std::get<LiquidDefinition>(definition).enabled;
-    if (!is_enabled_) return set_enabled(enabled);
-    if (liquids_.is_alone(share_)) {
-        physics::FluidDefinition changed = *world_.fluid(share_.fluid);
-        changed.density = matter.density;
-        changed.viscosity = matter.viscosity;
-        changed.yield_stress = matter.yield_stress;
-        changed.allow_sleep = matter.allow_sleep;
-        if (Result<void> set = world_.set_fluid(share_.fluid, changed); !set.ok()) return set;
-        return set_enabled(enabled);
+    if (share_) {
+        if (Result<void> set = liquids_.set_matter(*share_, matter_); !set.ok()) return set;
     }
-    // The others of its fluid stay as they are.
-    if (Result<void> out = set_enabled(false); !out.ok()) return out;
-    return set_enabled(enabled);
+    return set_enabled(std::get<LiquidDefinition>(definition).enabled);
 }
 
 std::vector<FluidBody::Particle> FluidBody::particles() const {
-    if (!is_enabled_) return kept_;
-    const FluidParticles all = world_.fluid_particles(share_.fluid);
-    std::vector<Particle> own(share_.ids.last - share_.ids.first);
-    std::vector<bool> is_there(own.size());
-    for (std::size_t i = 0; i < all.ids.size(); ++i) {
-        if (!share_.ids.contains(all.ids[i])) continue;
-        const std::uint32_t at = all.ids[i] - share_.ids.first;
-        own[at] = {all.origin + to_vec3(all.positions[i]), to_vec3(all.velocities[i])};
-        is_there[at] = true;
-    }
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < own.size(); ++i) {
-        if (is_there[i]) own[count++] = own[i];
-    }
-    own.resize(count);
+    if (!share_) return kept_;
+    const FluidParticles all = world_.fluid_particles(share_->fluid);
+    std::vector<Particle> own;
+    own.reserve(count());
+    for (const std::uint32_t i : liquids_.particles_of(*share_))
+        own.push_back({all.origin + to_vec3(all.positions[i]), to_vec3(all.velocities[i])});
     return own;
 }
+
+std::size_t FluidBody::count() const { return share_ ? liquids_.particles_of(*share_).size() : kept_.size(); }
 
 void FluidBody::read(std::vector<Vec3>& positions) const {
     positions.clear();
@@ -123,17 +105,16 @@ void FluidBody::read(std::vector<Vec3>& positions) const {
 }
 
 double FluidBody::particle_mass() const {
-    const double cell =
-        is_enabled_ ? 2 * std::cbrt(world_.fluid_particles(share_.fluid).particle_volume) : matter_.cell_size;
+    const double cell = matter_.cell_size;
     return matter_.density * cell * cell * cell / 8;
 }
 
 double FluidBody::radius() const { return std::cbrt(3 * particle_mass() / (4 * std::numbers::pi * matter_.density)); }
 
 SleepState FluidBody::state() const {
-    const bool rests = !is_enabled_ || world_.fluid_particles(share_.fluid).is_asleep ||
-                       world_.fluid_particles(share_.fluid).is_frozen;
-    return rests ? SleepState::asleep : SleepState::active;
+    if (!share_) return SleepState::asleep;
+    const FluidParticles all = world_.fluid_particles(share_->fluid);
+    return all.is_asleep || all.is_frozen ? SleepState::asleep : SleepState::active;
 }
 
 Vec3 FluidBody::center_of_mass() const {
@@ -150,7 +131,7 @@ Vec3 FluidBody::linear_velocity() const {
     return own.empty() ? Vec3{} : sum / static_cast<double>(own.size());
 }
 
-double FluidBody::mass() const { return particle_mass() * static_cast<double>(particles().size()); }
+double FluidBody::mass() const { return particle_mass() * static_cast<double>(count()); }
 
 Bounds FluidBody::bounds() const {
     Bounds bounds;
@@ -197,28 +178,31 @@ std::optional<SurfaceHit> FluidBody::cast_ray(Vec3 origin, Vec3 direction, doubl
 
 Result<void> FluidBody::move(const Transform& motion) {
     for (Particle& particle : kept_) particle = {transform_point(motion, particle.position), {}};
-    if (!is_enabled_) return {};
-    return world_.change_fluid(share_.fluid, share_.ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
-        position = transform_point(motion, position);
-        velocity = {};
-        return true;
-    });
+    if (!share_) return {};
+    Result<void> moved =
+        world_.change_fluid(share_->fluid, share_->ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
+            position = transform_point(motion, position);
+            velocity = {};
+            return true;
+        });
+    if (!moved.ok()) return moved;
+    return liquids_.regroup(*share_);
 }
 
 Result<void> FluidBody::set_velocity(Vec3 linear, Vec3 angular) {
     const Vec3 center = center_of_mass();
     for (Particle& particle : kept_) particle.velocity = linear + cross(angular, particle.position - center);
-    if (!is_enabled_) return {};
-    return world_.change_fluid(share_.fluid, share_.ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
+    if (!share_) return {};
+    return world_.change_fluid(share_->fluid, share_->ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
         velocity = linear + cross(angular, position - center);
         return true;
     });
 }
 
 Result<void> FluidBody::apply_impulse(Vec3 impulse) {
-    if (!is_enabled_) return {};
+    if (!share_) return {};
     const Vec3 change = impulse / mass();
-    return world_.change_fluid(share_.fluid, share_.ids, [&](std::uint32_t, Vec3&, Vec3& velocity) {
+    return world_.change_fluid(share_->fluid, share_->ids, [&](std::uint32_t, Vec3&, Vec3& velocity) {
         velocity += change;
         return true;
     });
@@ -227,15 +211,14 @@ Result<void> FluidBody::apply_impulse(Vec3 impulse) {
 Result<void> FluidBody::apply_force(Vec3 force) { return apply_impulse(world_.settings().time_step * force); }
 
 Result<void> FluidBody::set_enabled(bool enabled) {
-    if (enabled == is_enabled_) return {};
+    if (enabled == (share_ != nullptr)) return {};
     if (enabled) {
         if (Result<void> in = put(kept_); !in.ok()) return in;
         kept_.clear();
         return {};
     }
     kept_ = particles();
-    liquids_.remove(share_);
-    is_enabled_ = false;
+    liquids_.remove(std::exchange(share_, nullptr));
     return {};
 }
 

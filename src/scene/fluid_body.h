@@ -45,16 +45,16 @@ private:
         Vec3 position, velocity;
     };
     FluidBody(physics::World& world, Liquids& liquids) : world_(world), liquids_(liquids) {}
-    [[nodiscard]] std::vector<Particle> particles() const;  ///< by id
+    [[nodiscard]] std::vector<Particle> particles() const;  ///< in the order of their ids
+    [[nodiscard]] std::size_t count() const;
     Result<void> put(const std::vector<Particle>& particles);
     [[nodiscard]] double particle_mass() const;
 
     physics::World& world_;
     Liquids& liquids_;
     physics::FluidDefinition matter_;
-    Liquids::Share share_;
-    std::vector<Particle> kept_;  ///< while it is disabled
-    bool is_enabled_ = false;     ///< share_ is in the world
+    Liquids::Share* share_ = nullptr;  ///< null while it is disabled
+    std::vector<Particle> kept_;       ///< while it is disabled
 };
 
 }  // namespace embody::scene

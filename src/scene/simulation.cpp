@@ -78,6 +78,7 @@ const physics::StepReport& Simulation::step() {
     state.actions->before_step(state.world->last_report().time);
     state.apply_timed_forces();
     const physics::StepReport& report = state.world->step();
+    state.liquids.part_far_ones();
     const auto sleeps = state.world->sleep_events();
     state.actions->after_step(contacts_between_entities(*state.world), {sleeps.begin(), sleeps.end()});
     return report;

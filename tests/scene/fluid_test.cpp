@@ -82,6 +82,75 @@ TEST(Fluids, OfAnotherSizeBesideEachOtherHaveTheirOwnVolume) {
     EXPECT_NEAR(simulation->points(large)->mass(), 998 * 0.216, 0.05 * 998 * 0.216);
 }
 
+TEST(Fluids, PutFarApartLoseNothingAndMixAgainWhenTheyMeet) {
+    Document document;
+    const EntityIndex left = add_box(document, "Left", {0.2, 0.1, 0.2}, {-0.3, 0.1, 0}, water(2000)).index;
+    const EntityIndex right = add_box(document, "Right", {0.2, 0.1, 0.2}, {0.3, 0.1, 0}, water(2000)).index;
+    const auto simulation = make(document);
+    ASSERT_TRUE(simulation);
+    ASSERT_EQ(simulation->world().fluids().size(), 1u);
+    const std::size_t count = points_of(*simulation, left).size();
+    ASSERT_EQ(points_of(*simulation, right).size(), count);
+    const auto put_right_at = [&](Vec3 place) {
+        Transform pose = simulation->pose(right);
+        pose.position = place;
+        ASSERT_TRUE(simulation->set_pose(right, pose).ok());
+        step(*simulation, 10);
+        EXPECT_EQ(points_of(*simulation, left).size(), count);
+        EXPECT_EQ(points_of(*simulation, right).size(), count);
+        EXPECT_NEAR(simulation->points(left)->center_of_mass().x, -0.3, 0.1);
+        EXPECT_NEAR(simulation->points(right)->center_of_mass().x, place.x, 0.1);
+    };
+    put_right_at({500, 5, 0});
+    EXPECT_EQ(simulation->world().fluids().size(), 2u);
+    put_right_at({0.3, 0, 0});
+    EXPECT_EQ(simulation->world().fluids().size(), 1u);
+    step(*simulation, 5);
+    ASSERT_TRUE(simulation->remove(left).ok());
+    EXPECT_EQ(points_of(*simulation, right).size(), count);
+}
+
+TEST(Fluids, ThatRunFarApartLoseNothing) {
+    // Their grid would have three million cells in the end, more than a fluid may.
+    Document document;
+    std::vector<EntityIndex> thrown;
+    for (const double side : {-1.0, 1.0})
+        thrown.push_back(add_box(document, "Water", {0.02, 0.02, 0.02}, {0.03 * side, 0, 0}, water(500)).index);
+    const auto simulation = make(document);
+    ASSERT_TRUE(simulation);
+    ASSERT_EQ(simulation->world().fluids().size(), 1u);
+    const std::size_t count = points_of(*simulation, thrown[0]).size();
+    for (const EntityIndex index : thrown)
+        ASSERT_TRUE(simulation->set_velocity(index, {0, index == thrown[0] ? 20.0 : -20.0, 0}, {}).ok());
+    step(*simulation, 40);
+    EXPECT_EQ(simulation->world().fluids().size(), 2u);
+    EXPECT_GT(simulation->points(thrown[0])->center_of_mass().y - simulation->points(thrown[1])->center_of_mass().y,
+              25);
+    for (const EntityIndex index : thrown) EXPECT_EQ(points_of(*simulation, index).size(), count);
+}
+
+TEST(Fluids, OfOneFluidKeepTheirVolumeWhenSwitchedOffAndOnInAnyOrder) {
+    Document document;
+    const EntityIndex small = add_box(document, "Small", {0.2, 0.2, 0.2}, {0, 0.2, 0}, water(2000)).index;
+    const EntityIndex large = add_box(document, "Large", {0.25, 0.25, 0.25}, {0.5, 0.25, 0}, water(2000)).index;
+    const auto simulation = make(document);
+    ASSERT_TRUE(simulation);
+    ASSERT_EQ(simulation->world().fluids().size(), 1u);
+    const double in_small = simulation->points(small)->mass(), in_large = simulation->points(large)->mass();
+    const auto set_enabled = [&](EntityIndex index, bool enabled) {
+        Entity changed = *simulation->definition(index);
+        changed.enabled = enabled;
+        ASSERT_TRUE(simulation->update(changed, true).ok());
+    };
+    for (const bool enabled : {false, true}) {
+        for (const EntityIndex index : enabled ? std::vector{large, small} : std::vector{small, large})
+            set_enabled(index, enabled);
+        EXPECT_NEAR(simulation->points(small)->mass(), in_small, 1e-9 * in_small);
+        EXPECT_NEAR(simulation->points(large)->mass(), in_large, 1e-9 * in_large);
+    }
+    EXPECT_EQ(simulation->world().fluids().size(), 1u);
+}
+
 TEST(FluidFilling, HasTheShapesVolume) {
     const double pi = std::acos(-1.0);
     const std::vector<std::pair<ShapeDefinition, double>> shapes = {

@@ -12,9 +12,10 @@ namespace {
 struct CellRange {
     Cell lower{}, upper{};
 
-    [[nodiscard]] std::size_t count() const {
-        std::size_t cells = 1;
-        for (int axis = 0; axis < 3; ++axis) cells *= static_cast<std::size_t>(upper[axis] - lower[axis] + 1);
+    // Of a box around it with the tiles that it needs beside it.
+    [[nodiscard]] double cells_of_box() const {
+        double cells = 1;
+        for (int axis = 0; axis < 3; ++axis) cells *= upper[axis] - lower[axis] + 5.0 * FluidGrid::tile[axis];
         return cells;
     }
 };
@@ -92,7 +93,7 @@ std::size_t FluidGrid::cover(std::vector<FluidParticle>& particles, TaskPool& wo
     }
     if (particles.empty()) return before;
     CellRange range = range_of(reach, cell_);
-    while (range.count() > std::max(fewest_cells, cells_by_particle * particles.size())) {
+    while (range.cells_of_box() > static_cast<double>(std::max(fewest_cells, cells_by_particle * particles.size()))) {
         trim(particles, range, cell_);
         range = range_of(reach_of(particles, workers), cell_);
     }

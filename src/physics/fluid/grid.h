@@ -21,7 +21,7 @@ class FluidGrid {
 public:
     static constexpr Cell tile{8, 4, 4};  ///< cells; active tiles are those with particles and all around them
     /// Of the box, by particle; strays that would need more are given up.
-    static constexpr std::size_t cells_by_particle = 16, fewest_cells = 500'000;
+    static constexpr std::size_t cells_by_particle = 16, fewest_cells = 2'000'000;
 
     explicit FluidGrid(double cell_size) : cell_(cell_size), per_cell_(static_cast<float>(1 / cell_size)) {}
 

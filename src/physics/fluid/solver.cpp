@@ -57,6 +57,27 @@ FluidIds FluidSolver::add_particles(std::span<const Vec3f> positions) {
     return {first, next_id_};
 }
 
+std::vector<FluidParticle> FluidSolver::take_particles(FluidIds ids) {
+    std::vector<FluidParticle> taken;
+    std::erase_if(particles_, [&](const FluidParticle& particle) {
+        if (ids.contains(particle.id)) taken.push_back(particle);
+        return ids.contains(particle.id);
+    });
+    std::ranges::sort(taken, {}, &FluidParticle::id);
+    return taken;
+}
+
+FluidIds FluidSolver::add_particles(std::vector<FluidParticle> particles, Vec3 origin) {
+    const std::uint32_t first = next_id_;
+    for (FluidParticle& particle : particles) {
+        for (int axis = 0; axis < 3; ++axis)
+            particle.position[axis] = static_cast<float>(particle.position[axis] + (origin - origin_)[axis]);
+        particle.id = next_id_++;
+    }
+    particles_.insert(particles_.end(), particles.begin(), particles.end());
+    return {first, next_id_};
+}
+
 void FluidSolver::change_particles(FluidIds ids, const FluidChange& change) {
     std::erase_if(particles_, [&](FluidParticle& particle) {
         if (!ids.contains(particle.id)) return false;

@@ -58,6 +58,10 @@ public:
     [[nodiscard]] double usual_speed(TaskPool& workers) const;
     /// At rest; their ids follow those that were ever given.
     FluidIds add_particles(std::span<const Vec3f> positions);
+    /// Takes those with these ids out, in their order.
+    std::vector<FluidParticle> take_particles(FluidIds ids);
+    /// As they are, from a frame of world axes at `origin`; their ids follow those that were ever given.
+    FluidIds add_particles(std::vector<FluidParticle> particles, Vec3 origin);
     /// Those with these ids as `change` says, in world coordinates.
     void change_particles(FluidIds ids, const FluidChange& change);
     /// Stops all motion.

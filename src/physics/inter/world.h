@@ -143,6 +143,9 @@ public:
     Result<FluidIds> add_to_fluid(FluidHandle fluid, std::span<const Vec3> places);
     /// Calls `change` for each particle with an id of these; what returns false goes. Wakes the fluid.
     Result<void> change_fluid(FluidHandle fluid, FluidIds ids, const FluidChange& change);
+    /// The particles with these ids go on as they are in another fluid of equal particles and cell_size; without one,
+    /// in a new fluid of the same matter. Both wake. Returns them there, in the order of their ids.
+    Result<FluidPart> move_between_fluids(FluidHandle from, FluidIds ids, FluidHandle to = {});
     /// Empty if stale.
     [[nodiscard]] FluidParticles fluid_particles(FluidHandle fluid) const;
     /// At a world point, Pa above the air's; 0 outside the liquid.

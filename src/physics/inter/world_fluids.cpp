@@ -1,8 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "physics/inter/world.h"
+
+#include <cmath>
+
 #include "physics/step/world_state.h"
 
 namespace embody::physics {
+
+namespace {
+
+// Volumes of particles that differ by no more are equal: a mean of as many as there are.
+constexpr double same_volume = 1e-9;
+
+}  // namespace
 
 Result<FluidHandle> World::create_fluid(const FluidDefinition& definition) {
     auto record = set_up_fluid(*state_, definition);
@@ -63,6 +73,31 @@ Result<void> World::change_fluid(FluidHandle fluid, FluidIds ids, const FluidCha
     return wake(fluid);
 }
 
+Result<FluidPart> World::move_between_fluids(FluidHandle from, FluidIds ids, FluidHandle to) {
+    FluidRecord* source = state_->fluids.find(from);
+    if (source == nullptr) return Error{"from", "is not one of this world"};
+    if (source->is_frozen) return Error{"from", "is frozen", "destroy it and create another one"};
+    FluidHandle target = to;
+    if (target.is_null()) {
+        target = state_->fluids.insert(fluid_around(*source, ids));
+        source = state_->fluids.find(from);
+    }
+    FluidRecord* record = state_->fluids.find(target);
+    if (record == nullptr) return Error{"to", "is not one of this world"};
+    if (record == source) return Error{"to", "is the fluid that they are in"};
+    if (record->is_frozen) return Error{"to", "is frozen", "destroy it and create another one"};
+    const double ratio = record->solver->properties().particle_volume / source->solver->properties().particle_volume;
+    if (record->definition.cell_size != source->definition.cell_size || std::fabs(ratio - 1) > same_volume)
+        return Error{"to", "has particles of another size"};
+    FluidPart part{target, move_particles(*source, ids, *record)};
+    for (FluidRecord* changed : {source, record}) read_particles(*changed, *state_->workers);
+    for (const FluidHandle changed : {from, target}) {
+        if (Result<void> awake = wake(changed); !awake) return awake.error();
+    }
+    if (to.is_null()) prepare_fluid(*state_, *record);
+    return part;
+}
+
 FluidParticles World::fluid_particles(FluidHandle fluid) const {
     const FluidRecord* record = state_->fluids.find(fluid);
     if (record == nullptr) return {};
@@ -71,9 +106,11 @@ FluidParticles World::fluid_particles(FluidHandle fluid) const {
             record->velocities,
             record->ids,
             record->solver->properties().particle_volume,
+            record->bounds,
             record->definition.cell_size,
             record->is_asleep,
-            record->is_frozen};
+            record->is_frozen,
+            record->version};
 }
 
 double World::fluid_pressure(FluidHandle fluid, Vec3 point) const {

@@ -111,6 +111,15 @@ void leave_out_solids(const WorldState& world, double cell_size, std::vector<Vec
     });
 }
 
+// Of the frame in which the particles' places are floats.
+Vec3 origin_amid(const std::vector<Vec3>& places) {
+    Bounds bounds;
+    for (const Vec3 p : places) bounds.add(p);
+    Vec3 origin;
+    for (int axis = 0; axis < 3 && !bounds.is_empty(); ++axis) origin[axis] = std::round(bounds.center()[axis]);
+    return origin;
+}
+
 }  // namespace
 
 void read_particles(FluidRecord& record, TaskPool& workers) {
@@ -127,6 +136,7 @@ void read_particles(FluidRecord& record, TaskPool& workers) {
             record.ids[i] = particles[i].id;
         }
     });
+    ++record.version;
     const ParticleReach reach = reach_of(particles, workers);
     record.fastest = std::sqrt(static_cast<double>(reach.fastest_squared));
     record.bounds = {};
@@ -169,11 +179,7 @@ Result<FluidRecord> set_up_fluid(const WorldState& world, const FluidDefinition&
                      "place the liquid outside of solids, in regions larger than cell_size / 2"};
     }
 
-    // Positions in float from an origin amid the liquid.
-    Bounds bounds;
-    for (const Vec3 p : filling.places) bounds.add(p);
-    Vec3 origin;
-    for (int axis = 0; axis < 3; ++axis) origin[axis] = std::round(bounds.center()[axis]);
+    const Vec3 origin = origin_amid(filling.places);
     std::vector<Vec3f> positions;
     positions.reserve(filling.places.size());
     for (const Vec3 p : filling.places) positions.push_back(to_vec3f(p - origin));
@@ -185,6 +191,25 @@ Result<FluidRecord> set_up_fluid(const WorldState& world, const FluidDefinition&
         std::make_unique<FluidSolver>(origin, definition.cell_size, properties, positions, definition.velocity);
     read_particles(record, *world.workers);
     return record;
+}
+
+FluidRecord fluid_around(const FluidRecord& other, FluidIds ids) {
+    FluidRecord record;
+    record.definition = other.definition;
+    record.definition.boxes.clear();
+    record.definition.hulls.clear();
+    record.definition.points.clear();
+    for (std::size_t i = 0; i < other.ids.size(); ++i) {
+        if (ids.contains(other.ids[i]))
+            record.definition.points.push_back(other.solver->origin() + to_vec3(other.positions[i]));
+    }
+    record.solver = std::make_unique<FluidSolver>(origin_amid(record.definition.points), other.definition.cell_size,
+                                                  other.solver->properties(), std::span<const Vec3f>{}, Vec3{});
+    return record;
+}
+
+FluidIds move_particles(FluidRecord& from, FluidIds ids, FluidRecord& to) {
+    return to.solver->add_particles(from.solver->take_particles(ids), from.solver->origin());
 }
 
 }  // namespace embody::physics

@@ -29,7 +29,8 @@ struct FluidRecord {
     std::map<std::uint32_t, SeenBody> seen;  ///< by slot: bodies near it in the last step
     double quiet_time = 0;                   ///< s
     bool is_asleep = false, is_frozen = false;
-    std::uint64_t lost = 0;  ///< particles that flew out of reach
+    std::uint64_t version = 0;  ///< of what is read
+    std::uint64_t lost = 0;     ///< particles that flew out of reach
 };
 
 /// A dynamic body in a fluid: what the next step expects of its contacts and joints (docs/physics/fluids.md).
@@ -44,6 +45,10 @@ struct FluidTouch {
 Result<FluidRecord> set_up_fluid(const WorldState& world, const FluidDefinition& definition);
 /// More particles for it, at rest, where no solid is. Fails where there are none or too many.
 Result<FluidIds> add_particles(const WorldState& world, FluidRecord& fluid, std::span<const Vec3> places);
+/// A fluid of the same matter and as large particles, without any yet, around the places of these.
+FluidRecord fluid_around(const FluidRecord& other, FluidIds ids);
+/// From one fluid to another, as they are; their ids there. read_particles has to follow for both.
+FluidIds move_particles(FluidRecord& from, FluidIds ids, FluidRecord& to);
 /// Measures the solids around a new fluid, which the first step would have to do.
 void prepare_fluid(WorldState& world, FluidRecord& fluid);
 /// Fills what is read of a fluid from its solver.

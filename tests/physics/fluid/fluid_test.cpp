@@ -96,6 +96,42 @@ TEST(Fluid, ParticlesFillTheVolumeButNoSolid) {
     for (const Vec3f p : particles.positions) EXPECT_GT(particles.origin.x + Vec3(p).x, 0.1);
 }
 
+TEST(Fluid, APartGoesOnInAnotherFluid) {
+    auto world = make_world({.gravity = {0, 0, 0}});
+    FluidDefinition definition = cube_of_water(0.2, 0.04);
+    definition.boxes.push_back({{0.5, 0, 0}, {0.7, 0.2, 0.2}});
+    definition.velocity = {0, 1, 0};
+    const FluidHandle first = world->create_fluid(definition).value();
+    for (int i = 0; i < 5; ++i) world->step();
+    const double mass = definition.density * 2 * 0.2 * 0.2 * 0.2;
+    const auto is_as_before = [&] {
+        std::size_t count = 0;
+        for (const FluidHandle fluid : world->fluids()) count += world->fluid_particles(fluid).ids.size();
+        EXPECT_EQ(count, 2000u);
+        EXPECT_NEAR(world->conserved().linear_momentum.y, mass, 1e-3 * mass);
+    };
+    const FluidPart own = world->move_between_fluids(first, {1000, 2000}).value();
+    EXPECT_EQ(own.ids.last - own.ids.first, 1000u);
+    EXPECT_EQ(world->fluids().size(), 2u);
+    EXPECT_GT(world->fluid_particles(own.fluid).bounds.lower.x, 0.45);
+    EXPECT_LT(world->fluid_particles(first).bounds.upper.x, 0.25);
+    is_as_before();
+    for (int i = 0; i < 5; ++i) world->step();
+    is_as_before();
+    const FluidPart back = world->move_between_fluids(own.fluid, own.ids, first).value();
+    EXPECT_EQ(back.ids.first, 2000u);
+    is_as_before();
+    EXPECT_TRUE(world->fluid_particles(own.fluid).ids.empty());
+    for (int i = 0; i < 5; ++i) world->step();
+    is_as_before();
+
+    const FluidHandle coarse = world->create_fluid(cube_of_water(0.2, 0.05)).value();
+    EXPECT_EQ(world->move_between_fluids(first, {0, 1000}, coarse).error().where, "to");
+    EXPECT_EQ(world->move_between_fluids(first, {0, 1000}, first).error().where, "to");
+    ASSERT_TRUE(world->destroy_fluid(coarse));
+    EXPECT_EQ(world->move_between_fluids(coarse, {0, 1000}).error().where, "from");
+}
+
 TEST(Fluid, ALumpInFreeFallKeepsItsMomentumButForGravity) {
     for (const double viscosity : {0.0, 20.0}) {
         auto world = make_world();

@@ -8,6 +8,7 @@
 
 #include "foundation/result.h"
 #include "math/bounds.h"
+#include "physics/inter/definitions/handles.h"
 
 namespace embody::physics {
 
@@ -39,9 +40,11 @@ struct FluidParticles {
     std::span<const Vec3f> velocities;   ///< m/s
     std::span<const std::uint32_t> ids;  ///< of each particle for its whole life; their order changes
     double particle_volume = 0;          ///< m³
+    Bounds bounds;                       ///< of the positions, world, m
     double cell_size = 0;                ///< m; neighbours in liquid at rest are half of it apart
     bool is_asleep = false;              ///< nothing has changed since the last step
     bool is_frozen = false;              ///< its numbers were no longer finite: it stands still for good
+    std::uint64_t version = 0;           ///< another one whenever any of them changed
 };
 
 /// Ids from `first` to below `last`.
@@ -49,6 +52,12 @@ struct FluidIds {
     std::uint32_t first = 0, last = 0;
 
     [[nodiscard]] bool contains(std::uint32_t id) const { return id >= first && id < last; }
+};
+
+/// Particles of a fluid.
+struct FluidPart {
+    FluidHandle fluid;
+    FluidIds ids;
 };
 
 /// Position (m, world) and velocity (m/s) of a particle, to be changed; false takes it away.
