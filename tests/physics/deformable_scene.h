@@ -66,11 +66,12 @@ struct DeformableScene {
     }
     // What the rigid solver would do: gravity, and the path that the pushes gave.
     void move_on(TouchedBody& body) const {
+        body.start.rotation = normalized(to_quat(body.rotation_at(substep.h)) * body.start.rotation);
         body.start_center = body.center_at(substep.h);
         body.start.position = body.start_center;
         if (body.inverse_mass == 0) return;
         body.path_velocity += body.velocity + substep.h * substep.gravity;
-        body.path_spin += body.spin;
+        body.path_turn = body.path_spin += body.spin;
         body.velocity = body.spin = {};
     }
     void run(double seconds) {

@@ -17,37 +17,6 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-// Lower factor of a dense symmetric matrix, n × n by rows, in place; false where it is not positive definite.
-bool factorize_dense(std::vector<double>& m, std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t k = 0; k <= i; ++k) {
-            double sum = m[i * n + k];
-            for (std::size_t j = 0; j < k; ++j) sum -= m[i * n + j] * m[k * n + j];
-            if (i == k && !(sum > 0)) return false;
-            m[i * n + k] = i == k ? std::sqrt(sum) : sum / m[k * n + k];
-        }
-    }
-    return true;
-}
-
-void solve_dense(const std::vector<double>& factor, std::size_t n, std::vector<double>& v) {
-    for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t k = 0; k < i; ++k) v[i] -= factor[i * n + k] * v[k];
-        v[i] /= factor[i * n + i];
-    }
-    for (std::size_t i = n; i-- > 0;) {
-        for (std::size_t k = i + 1; k < n; ++k) v[i] -= factor[k * n + i] * v[k];
-        v[i] /= factor[i * n + i];
-    }
-}
-
-// The move of a point at `arm` when the body's unknown c (three of its place, three of its turn) goes by one.
-Vec3 unit_move(std::size_t c, Vec3 arm) {
-    Vec3 axis;
-    axis[static_cast<int>(c % 3)] = 1;
-    return c < 3 ? axis : cross(axis, arm);
-}
-
 }  // namespace
 
 RopeLine::RopeLine(const DeformableDefinition& definition) : rope_(std::get<Rope>(definition.matter)) {
@@ -82,22 +51,20 @@ RopeLine::RopeLine(const DeformableDefinition& definition) : rope_(std::get<Rope
     springs_.radius = definition.contact_radius;
     springs_.friction = definition.friction;
     springs_.attachments = definition.attachments;
+    clamps_.set(definition.clamps);
     springs_.tolerance = 0.005;  // along a drum the errors add up in the exponent
 }
 
 RopeLine::Bend RopeLine::bend_at(std::size_t node, std::span<const Vec3> positions) const {
     Bend bend;
-    if (segments_[node - 1].is_broken || segments_[node].is_broken) return bend;
+    if (segments_[node - 1].is_broken || segments_[node].is_broken || clamps_.holds(node)) return bend;
     const Vec3 e0 = positions[node] - positions[node - 1], e1 = positions[node + 1] - positions[node];
-    const double l0 = std::max(length(e0), 0.01 * segments_[node - 1].length);
-    const double l1 = std::max(length(e1), 0.01 * segments_[node].length);
-    const Vec3 t0 = e0 / l0, t1 = e1 / l1;
+    const SegmentDirection before = direction_of(e0, segments_[node - 1].length);
+    const SegmentDirection after = direction_of(e1, segments_[node].length);
     bend.is_whole = true;
     bend.stiffness = rope_.bend_rigidity / ((segments_[node - 1].length + segments_[node].length) / 2);
-    bend.turn = t1 - t0;
-    const Mat3 before = (1 / l0) * (Mat3::identity() - outer(t0, t0));
-    const Mat3 after = (1 / l1) * (Mat3::identity() - outer(t1, t1));
-    bend.by_node = {before, -1.0 * (before + after), after};
+    bend.turn = after.way - before.way;
+    bend.by_node = {before.by_end, -1.0 * (before.by_end + after.by_end), after.by_end};
     return bend;
 }
 
@@ -133,12 +100,12 @@ void RopeLine::add_stretch(std::size_t segment, double h) {
     // foretold, not what its nodes' places say: those it has moved by d across, which lengthens the segment by d²/2l.
     const double across = std::max(pulls_[segment], 0.0) / std::max(now, 1e-12);
     const Mat3 stiffness = (tension.slope - across) * outer(way, way) + across * Mat3::identity();
-    matrix_.add(a, a, stiffness);
-    matrix_.add(b, b, stiffness);
-    matrix_.add(b, a, -1.0 * stiffness);
+    system_.band.add(a, a, stiffness);
+    system_.band.add(b, b, stiffness);
+    system_.band.add(b, a, -1.0 * stiffness);
     const Vec3 force = tension.force * way + stiffness * (moves_[a] - moves_[b]);
-    rhs_[a] += force;
-    rhs_[b] -= force;
+    system_.rhs[a] += force;
+    system_.rhs[b] -= force;
 }
 
 void RopeLine::add_bend(std::size_t node) {
@@ -149,10 +116,10 @@ void RopeLine::add_bend(std::size_t node) {
     for (std::size_t k = 0; k < 3; ++k) moved += bend.by_node[k] * moves_[node - 1 + k];
     for (std::size_t r = 0; r < 3; ++r) {
         const Mat3 turned = transpose(bend.by_node[r]), damped = transpose(start.by_node[r]) * start.damping;
-        rhs_[node - 1 + r] += bend.stiffness * (turned * (moved - bend.turn));
+        system_.rhs[node - 1 + r] += bend.stiffness * (turned * (moved - bend.turn));
         for (std::size_t c = 0; c <= r; ++c) {
-            matrix_.add(node - 1 + r, node - 1 + c,
-                        bend.stiffness * (turned * bend.by_node[c]) + damped * start.by_node[c]);
+            system_.band.add(node - 1 + r, node - 1 + c,
+                             bend.stiffness * (turned * bend.by_node[c]) + damped * start.by_node[c]);
         }
     }
 }
@@ -167,11 +134,7 @@ void RopeLine::begin_substep(double h) {
     bends_.assign(count, {});
     for (std::size_t i = 1; i + 1 < count; ++i) {
         Bend& bend = bends_[i] = bend_at(i, nodes_.position);
-        // Damping sees how the curvature grows, not how it turns with the rope.
-        const double size = length_squared(bend.turn), turning = size / (size + 1e-4);
-        const Vec3 axis = normalized(bend.turn);
-        bend.damping = (bend.stiffness * rope_.rayleigh_damping / h) *
-                       ((1 - turning) * Mat3::identity() + turning * outer(axis, axis));
+        bend.damping = damping_of_growth(bend.turn, bend.stiffness * rope_.rayleigh_damping / h);
     }
     pulls_ = tensions_;
 }
@@ -208,6 +171,7 @@ double RopeLine::merit(const Substep& substep, std::span<const BodyInertia> iner
         const Vec3 s = spring.lead(moves, body_moves);
         sum += 0.5 * dot(s, spring.matrix * s) - dot(spring.load, s);
     }
+    if (clamps_.holds_any()) sum += clamps_.energy(at, body_moves);
     return sum;
 }
 
@@ -237,93 +201,34 @@ bool RopeLine::take_step(const Substep& substep, std::span<const BodyInertia> in
     return std::isfinite(before);
 }
 
-void RopeLine::assemble(const Substep& substep) {
+void RopeLine::assemble(const Substep& substep, bool with_curvature) {
     const double h = substep.h;
     const std::size_t count = nodes_.size();
-    matrix_.reset(count);
-    rhs_.resize(count);
+    system_.reset(count);
     places_.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         places_[i] = nodes_.position[i] + moves_[i];
-        matrix_.add_diagonal(i, nodes_.mass[i] / (h * h));
-        rhs_[i] = nodes_.mass[i] * (nodes_.mean_velocity[i] / h + substep.gravity);
+        system_.band.add_diagonal(i, nodes_.mass[i] / (h * h));
+        system_.rhs[i] = nodes_.mass[i] * (nodes_.mean_velocity[i] / h + substep.gravity);
     }
     for (std::size_t s = 0; s < segments_.size(); ++s) add_stretch(s, h);
     for (std::size_t i = 1; i + 1 < count; ++i) add_bend(i);
+    if (clamps_.holds_any()) clamps_.add(places_, moves_, body_moves_, with_curvature, system_);
 }
 
-// One linear solve with springs and touched bodies: the band first, then the bodies by what it gives way to them.
-bool RopeLine::solve_round(std::span<const BodyInertia> inertias) {
-    std::vector<Vec3>& next = next_moves_;
+// One linear solve with springs, touched bodies and twists. Past the moments that the bent rope bears, without how they
+// press it sideways: that is left to the forces.
+bool RopeLine::solve_round(const Substep& substep, std::span<const BodyInertia> inertias) {
     next_body_moves_ = body_moves_;
-    std::vector<std::size_t> place(inertias.size(), 0);
-    std::vector<std::uint32_t> moving;
-    for (const TouchSpring& spring : springs_.springs()) {
-        if (!spring.acts) continue;
-        for (std::size_t a = 0; a < static_cast<std::size_t>(spring.count); ++a) {
-            rhs_[spring.node[a]] += spring.weight[a] * spring.load;
-            for (std::size_t b = 0; b <= a; ++b)
-                matrix_.add(spring.node[a], spring.node[b], (spring.weight[a] * spring.weight[b]) * spring.matrix);
-        }
-        if (spring.body == no_body || !inertias[spring.body].moves || place[spring.body] != 0) continue;
-        moving.push_back(spring.body);
-        place[spring.body] = moving.size();
-    }
-    for (std::size_t i = 0; i < fixed_.size(); ++i) {
-        if (!fixed_[i]) continue;
-        matrix_.fix(i);
-        rhs_[i] = {};
-    }
-    if (!matrix_.factorize()) return false;
-    next = rhs_;
-    matrix_.solve(next);
-    if (moving.empty()) return true;
-
-    // Columns of the springs between nodes and bodies, and what the band makes of them.
-    const std::size_t n = 6 * moving.size();
-    std::vector<std::vector<Vec3>> columns(n, std::vector<Vec3>(nodes_.size()));
-    std::vector<double> system(n * n, 0), load(n, 0);
-    for (std::size_t m = 0; m < moving.size(); ++m) {
-        const BodyInertia& inertia = inertias[moving[m]];
-        for (std::size_t r = 0; r < 3; ++r) {
-            system[(6 * m + r) * n + 6 * m + r] = inertia.mass;
-            for (std::size_t c = 0; c < 3; ++c)
-                system[(6 * m + r + 3) * n + 6 * m + c + 3] = inertia.inertia(static_cast<int>(r), static_cast<int>(c));
-        }
-    }
-    for (const TouchSpring& spring : springs_.springs()) {
-        if (!spring.acts || spring.body == no_body || !inertias[spring.body].moves) continue;
-        const std::size_t first = 6 * (place[spring.body] - 1);
-        for (std::size_t c = 0; c < 6; ++c) {
-            const Vec3 force = spring.matrix * unit_move(c, spring.arm);
-            for (std::size_t a = 0; a < static_cast<std::size_t>(spring.count); ++a) {
-                if (!fixed_[spring.node[a]]) columns[first + c][spring.node[a]] -= spring.weight[a] * force;
-            }
-            load[first + c] -= dot(unit_move(c, spring.arm), spring.load);
-            for (std::size_t r = 0; r < 6; ++r)
-                system[(first + r) * n + first + c] += dot(unit_move(r, spring.arm), force);
-        }
-    }
-    const auto product = [&](const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-        double sum = 0;
-        for (std::size_t i = 0; i < a.size(); ++i) sum += dot(a[i], b[i]);
-        return sum;
+    const auto solve = [&] {
+        return system_.solve(springs_.springs(), inertias, fixed_, next_moves_, next_body_moves_, moments_);
     };
-    std::vector<std::vector<Vec3>> given = columns;
-    for (std::size_t c = 0; c < n; ++c) {
-        matrix_.solve(given[c]);
-        load[c] -= product(columns[c], next);
-        for (std::size_t r = 0; r < n; ++r) system[r * n + c] -= product(columns[r], given[c]);
+    if (!solve()) {
+        if (!clamps_.has_twist()) return false;
+        assemble(substep, false);
+        if (!solve()) return false;
     }
-    if (!factorize_dense(system, n)) return false;
-    solve_dense(system, n, load);
-    for (std::size_t c = 0; c < n; ++c) {
-        for (std::size_t i = 0; i < next.size(); ++i) next[i] -= load[c] * given[c][i];
-    }
-    for (std::size_t m = 0; m < moving.size(); ++m) {
-        const double* v = &load[6 * m];
-        next_body_moves_[moving[m]] = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
-    }
+    clamps_.foretell(moments_);
     return true;
 }
 
@@ -331,7 +236,6 @@ bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> 
     constexpr int most_rounds = 12;
     constexpr double small = 1e-4;  // of a segment's length
     const std::vector<BodyInertia> inertias = inertias_of(bodies, substep.h);
-    body_moves_.assign(bodies.size(), {});
     TouchSprings chosen = springs_;
     chosen.choose(moves_, body_moves_, true);
     // From rest or from inertia, whichever is nearer to the end: what begins no higher than rest gains no energy.
@@ -343,7 +247,7 @@ bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> 
     for (rounds_ = 1;; ++rounds_) {
         springs_ = chosen;
         if (rounds_ > 1) assemble(substep);
-        if (!solve_round(inertias)) return false;
+        if (!solve_round(substep, inertias)) return false;
         const std::vector<Vec3> before = moves_;
         if (!take_step(substep, inertias)) return false;
         double change = 0;
@@ -371,8 +275,11 @@ void RopeLine::break_segments() {
     tensions_[tightest] = 0;
 }
 
-void RopeLine::break_as(const RopeLine& other) {
+void RopeLine::go_on_from(const RopeLine& other) {
     for (std::size_t s = 0; s < segments_.size(); ++s) segments_[s].is_broken = other.is_broken(s);
+    const std::vector<Clamp> own = clamps_.clamps();
+    clamps_ = other.clamps_;
+    clamps_.set(own);
 }
 
 void RopeLine::advance(const Substep& substep, std::span<const NodeContact> contacts,
@@ -380,11 +287,13 @@ void RopeLine::advance(const Substep& substep, std::span<const NodeContact> cont
                        std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies) {
     if (is_frozen_) return;
     const std::size_t count = nodes_.size();
+    springs_.attachment_bodies.assign(attachment_bodies.begin(), attachment_bodies.end());
+    clamps_.begin({rope_, segments_, nodes_, fixed_, springs_, bodies, substep});
     begin_substep(substep.h);
+    body_moves_.assign(bodies.size(), {});
     assemble(substep);
     node_stiffness_.resize(count);
-    for (std::size_t i = 0; i < count; ++i) node_stiffness_[i] = matrix_.diagonal_mean(i);
-    springs_.attachment_bodies.assign(attachment_bodies.begin(), attachment_bodies.end());
+    for (std::size_t i = 0; i < count; ++i) node_stiffness_[i] = system_.band.diagonal_mean(i);
     springs_.begin(nodes_, contacts, bodies, substep, node_stiffness_);
     for (const SegmentContact& contact : segment_contacts)
         springs_.add(nodes_, contact, bodies, substep, node_stiffness_);
@@ -394,13 +303,17 @@ void RopeLine::advance(const Substep& substep, std::span<const NodeContact> cont
         return;
     }
     const auto acts = [](const TouchSpring& spring) { return spring.acts; };
-    const bool is_whole = std::ranges::none_of(segments_, &Segment::is_broken);
+    const bool is_whole = std::ranges::none_of(segments_, &RopeSegment::is_broken);
     if (is_whole && std::ranges::find(fixed_, true) == fixed_.end() && std::ranges::none_of(springs_.springs(), acts)) {
         std::vector<Vec3> given(count);
         for (std::size_t i = 0; i < count; ++i) given[i] = substep.h * nodes_.mass[i] * substep.gravity;
         keep_momenta(nodes_, given, substep.h, moves_);
     }
     springs_.finish(moves_, body_moves_, substep, bodies);
+    if (clamps_.holds_any()) {
+        for (std::size_t i = 0; i < count; ++i) places_[i] = nodes_.position[i] + moves_[i];
+        clamps_.finish(places_, body_moves_, substep.h, bodies);
+    }
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3 mean = moves_[i] / substep.h;
         nodes_.velocity[i] = mean + 0.5 * (mean - nodes_.mean_velocity[i]);
@@ -420,7 +333,7 @@ double RopeLine::elastic_energy() const {
         const Bend bend = bend_at(i, nodes_.position);
         energy += bend.stiffness / 2 * length_squared(bend.turn);
     }
-    return energy;
+    return energy + clamps_.elastic_energy();
 }
 
 }  // namespace embody::physics

@@ -3,14 +3,14 @@
 
 #include <memory>
 
-#include "physics/deformable/band_cholesky.h"
 #include "physics/deformable/nodes.h"
-#include "physics/deformable/touch_springs.h"
+#include "physics/deformable/rope_clamps.h"
+#include "physics/deformable/rope_system.h"
 
 namespace embody::physics {
 
 /// A rope in motion: stretch and bending of a line of nodes by backward Euler, with Newton's method and a direct solve,
-/// so that it is exact for any stiffness (docs/physics/cloth.md).
+/// so that it is exact for any stiffness (docs/physics/ropes.md).
 class RopeLine {
 public:
     /// `definition` is valid and its matter is a rope.
@@ -23,6 +23,7 @@ public:
 
     /// Instead of the definition's.
     void set_attachments(const std::vector<Attachment>& attachments) { springs_.attachments = attachments; }
+    void set_clamps(const std::vector<Clamp>& clamps) { clamps_.set(clamps); }
     [[nodiscard]] Nodes& nodes() { return nodes_; }
     [[nodiscard]] const Nodes& nodes() const { return nodes_; }
     /// Of each segment, from node k to k + 1, N; below zero: pressed. 0 where it is broken.
@@ -34,8 +35,10 @@ public:
         double tension = 0;  ///< when it broke, N
     };
     [[nodiscard]] std::span<const Break> new_breaks() const { return new_breaks_; }
-    /// The same segments as of another rope of as many are broken.
-    void break_as(const RopeLine& other);
+    /// Between clamps that hold, in the last substep.
+    [[nodiscard]] std::span<const RopeTwist> twists() const { return clamps_.twists(); }
+    /// The same segments as of another rope of as many are broken, and it is twisted as that one.
+    void go_on_from(const RopeLine& other);
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_.springs(); }
     [[nodiscard]] double elastic_energy() const;
     /// True once a number was none: it stays where it last was.
@@ -44,10 +47,6 @@ public:
     [[nodiscard]] int rounds() const { return rounds_; }
 
 private:
-    struct Segment {
-        double length = 0;  ///< at rest, m
-        bool is_broken = false;
-    };
     // How the direction turns at a node, with its derivatives by the three nodes.
     struct Bend {
         bool is_whole = false;
@@ -61,10 +60,10 @@ private:
         double energy = 0;            // J
     };
     // The matrix and right side about `moves_`; forces of springs not yet.
-    void assemble(const Substep& substep);
+    void assemble(const Substep& substep, bool with_curvature = true);
     void add_stretch(std::size_t segment, double h);
     void add_bend(std::size_t node);
-    bool solve_round(std::span<const BodyInertia> inertias);
+    bool solve_round(const Substep& substep, std::span<const BodyInertia> inertias);
     // What the round's step minimises: inertia, elastic energy, damping and springs of these moves, J.
     [[nodiscard]] double merit(const Substep& substep, std::span<const BodyInertia> inertias,
                                std::span<const Vec3> moves, std::span<const BodyMove> body_moves) const;
@@ -78,20 +77,22 @@ private:
 
     Rope rope_;
     Nodes nodes_;
-    std::vector<Segment> segments_;
+    std::vector<RopeSegment> segments_;
     std::vector<bool> fixed_;
     TouchSprings springs_;
+    RopeClamps clamps_;
     std::vector<double> tensions_;
     std::vector<Break> new_breaks_;
 
     // Of the substep.
-    BandCholesky matrix_;
-    std::vector<Vec3> places_, rhs_, moves_, next_moves_;
+    RopeSystem system_;
+    std::vector<Vec3> places_, moves_, next_moves_;
     std::vector<Bend> bends_;            // by node, when the substep began
     std::vector<double> start_lengths_;  // of segments, then, m
     std::vector<double> pulls_;          // of segments, as the last round foretold them, N
     std::vector<double> node_stiffness_;
     std::vector<BodyMove> body_moves_, next_body_moves_;
+    std::vector<double> moments_;  // of twists, as the last round foretold them, N m
     bool is_frozen_ = false;
     int rounds_ = 0;
 };

@@ -25,14 +25,19 @@ void TouchedBody::enter_substep(double h) {
 
 void TouchedBody::push(Vec3 given, Vec3 arm, double h) {
     if (!is_dynamic) return;
-    const Vec3 angular = cross(arm, given);
-    const Vec3 faster = inverse_mass * given, turning = inverse_inertia * angular;
+    const Vec3 faster = inverse_mass * given;
     velocity += faster;
-    spin += turning;
     shift += h * faster;
-    turn += h * turning;
     impulse += given;
-    angular_impulse += angular;
+    push_turn(cross(arm, given), h);
+}
+
+void TouchedBody::push_turn(Vec3 given, double h) {
+    if (!is_dynamic) return;
+    const Vec3 turning = inverse_inertia * given;
+    spin += turning;
+    turn += h * turning;
+    angular_impulse += given;
 }
 
 }  // namespace embody::physics

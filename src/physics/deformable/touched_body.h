@@ -45,6 +45,8 @@ struct TouchedBody {
     void enter_substep(double h);
     /// Impulse (N s) at `arm` (m) from its centre of mass, in a substep of h seconds: moves it too.
     void push(Vec3 impulse, Vec3 arm, double h);
+    /// Angular impulse (N m s) in a substep of h seconds.
+    void push_turn(Vec3 angular_impulse, double h);
 
 private:
     // A path of constant acceleration is off the straight one by this times the acceleration, s².

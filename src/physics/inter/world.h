@@ -122,11 +122,15 @@ public:
     /// Other matter, pins, friction and the like, of the same nodes and elements; these stay where they are and go on
     /// as they move, whatever the definition says of pose and velocity. Wakes it.
     Result<void> set_deformable(DeformableHandle deformable, const DeformableDefinition& definition);
-    /// The attachments alone: costs nothing.
-    Result<void> set_attachments(DeformableHandle deformable, const std::vector<Attachment>& attachments);
+    /// The attachments and a rope's clamps alone: costs nothing. Between clamps that stay, a rope stays twisted.
+    Result<void> set_attachments(DeformableHandle deformable, const std::vector<Attachment>& attachments,
+                                 const std::vector<Clamp>& clamps = {});
     /// Of each segment of a rope, from node k to k + 1, N; below zero: pressed; 0 where it is broken. Empty for what is
     /// no rope. Valid until the next step or change.
     [[nodiscard]] std::span<const double> rope_tensions(DeformableHandle rope) const;
+    /// Of each span between two of a rope's clamps, in the last step. Empty for what is no rope or has none. Valid
+    /// until the next step or change.
+    [[nodiscard]] std::span<const RopeTwist> rope_twists(DeformableHandle rope) const;
     /// Segments that are broken, ascending.
     [[nodiscard]] std::vector<std::uint32_t> broken_segments(DeformableHandle rope) const;
 

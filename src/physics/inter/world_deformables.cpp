@@ -181,17 +181,19 @@ Result<void> World::set_deformable(DeformableHandle deformable, const Deformable
     changed->last_positions = nodes.position;
     changed->contacts = std::move(record->contacts);
     changed->touched_bodies = std::move(record->touched_bodies);
-    if (changed->rope && record->rope) changed->rope->break_as(*record->rope);
+    if (changed->rope && record->rope) changed->rope->go_on_from(*record->rope);
     *record = std::move(*changed);
     return {};
 }
 
-Result<void> World::set_attachments(DeformableHandle deformable, const std::vector<Attachment>& attachments) {
+Result<void> World::set_attachments(DeformableHandle deformable, const std::vector<Attachment>& attachments,
+                                    const std::vector<Clamp>& clamps) {
     DeformableRecord* record = state_->deformables.find(deformable);
     if (record == nullptr) return no_such_deformable;
     if (auto result = check_attachments(*this, attachments); !result) return result;
     DeformableDefinition changed = record->definition;
     changed.attachments = attachments;
+    changed.clamps = clamps;
     if (auto result = validate(changed); !result) return result;
     record->definition = std::move(changed);
     wake_up(*record);
@@ -201,6 +203,11 @@ Result<void> World::set_attachments(DeformableHandle deformable, const std::vect
 std::span<const double> World::rope_tensions(DeformableHandle rope) const {
     const DeformableRecord* record = state_->deformables.find(rope);
     return record != nullptr && record->rope ? record->rope->tensions() : std::span<const double>();
+}
+
+std::span<const RopeTwist> World::rope_twists(DeformableHandle rope) const {
+    const DeformableRecord* record = state_->deformables.find(rope);
+    return record != nullptr && record->rope ? record->rope->twists() : std::span<const RopeTwist>();
 }
 
 std::vector<std::uint32_t> World::broken_segments(DeformableHandle rope) const {

@@ -73,6 +73,12 @@ bool is_disturbed(const WorldState& world, const DeformableRecord& record) {
     for (const std::uint32_t slot : record.touched_deformables) {
         if (!world.deformables.used(slot) || !world.deformables.at(slot).is_asleep) return true;
     }
+    for (const Attachment& attachment : record.definition.attachments) {
+        if (world.bodies.find(attachment.body) == nullptr || world.is_asleep(attachment.body.index)) continue;
+        const BodyState& state = world.motion[attachment.body.index];
+        const bool is_led = world.record(attachment.body.index).definition.kind == BodyKind::kinematic_body;
+        if (is_led && (state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{})) return true;
+    }
     bool is_disturbed = false;
     for_each_body_near(world, record, [&](std::uint32_t slot) {
         if (world.record(slot).definition.kind == BodyKind::static_body || world.is_asleep(slot)) return;
@@ -222,13 +228,16 @@ void put_back_bodies(WorldState& world, const MovingDeformables& moving) {
         if (world.is_asleep(body.body)) {
             const double mass = 1 / world.motion[body.body].inverse_mass;
             const double weight = mass * length(world.settings.gravity);
-            if (length(force - record.deformable_force) > noticed_change * weight) world.to_wake.push_back(body.body);
+            const double more = std::max(length(force - record.deformable_force),
+                                         length(torque - record.deformable_torque) / std::max(record.reach, 1e-6));
+            if (more > noticed_change * weight) world.to_wake.push_back(body.body);
             continue;
         }
         record.deformable_force = force;
         record.deformable_torque = torque;
         if (force != Vec3{} || torque != Vec3{}) world.pushed_bodies.push_back(body.body);
-        if (force == Vec3{} && body.expected_force == Vec3{}) continue;
+        if (force == Vec3{} && body.expected_force == Vec3{} && torque == Vec3{} && body.expected_torque == Vec3{})
+            continue;
         BodyState& state = world.motion[body.body];
         state.center += body.shift;
         state.rotation = normalized(cayley(body.turn) * state.rotation);

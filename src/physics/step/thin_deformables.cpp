@@ -79,6 +79,7 @@ void advance_thin(ThinDeformable& thin, const Substep& substep, std::span<Touche
         record.cloth->advance(substep, thin.contacts, thin.attachment_bodies, bodies, workers);
     } else {
         record.rope->set_attachments(attachments);
+        record.rope->set_clamps(record.definition.clamps);
         record.rope->advance(substep, thin.contacts, thin.segment_contacts, thin.attachment_bodies, bodies);
     }
 }

@@ -46,6 +46,27 @@ Result<void> check_nodes(const DeformableDefinition& definition) {
     return {};
 }
 
+Result<void> check_clamps(const DeformableDefinition& definition) {
+    if (definition.clamps.empty()) return {};
+    if (!std::holds_alternative<Rope>(definition.matter))
+        return Error{"clamps", "are of ropes alone", "pin or attach several nodes instead"};
+    std::vector<bool> may_clamp(definition.nodes.size(), false);
+    for (const std::uint32_t node : definition.pinned) may_clamp[node] = true;
+    for (const Attachment& attachment : definition.attachments) may_clamp[attachment.node] = true;
+    for (std::size_t i = 0; i < definition.clamps.size(); ++i) {
+        const Clamp& clamp = definition.clamps[i];
+        if (clamp.node >= definition.nodes.size()) return Error{item("clamps", i), "holds no node"};
+        if (!may_clamp[clamp.node]) {
+            return Error{item("clamps", i), "holds a node that is neither pinned nor attached, or clamped already",
+                         "pin the node, attach it, or leave the clamp out"};
+        }
+        may_clamp[clamp.node] = false;
+        if (!(std::fabs(length_squared(clamp.direction) - 1) < 1e-6))
+            return Error{item("clamps", i) + ".direction", "has not the length 1", "normalise it"};
+    }
+    return {};
+}
+
 // Corners that are nodes, and an extent that is more than rounding.
 template <std::size_t corners>
 Result<void> check_element(const DeformableDefinition& definition, const std::string& name,
@@ -125,6 +146,7 @@ Result<void> check_matter(const DeformableDefinition& definition, const Rope& ro
 
 Result<void> validate(const DeformableDefinition& definition) {
     if (auto result = check_nodes(definition); !result) return result;
+    if (auto result = check_clamps(definition); !result) return result;
     const auto check = [&](const auto& matter) { return check_matter(definition, matter); };
     if (auto result = std::visit(check, definition.matter); !result) return result;
     return first_error(check_vector("pose.position", definition.pose.position, largest_coordinate, "m"),

@@ -55,12 +55,28 @@ struct Attachment {
     Vec3 anchor;  ///< in the body's frame, m
 };
 
+/// A rope's direction, held by what holds its node: the world a pinned one, its body an attached one. It bends from
+/// there on as a clamped rod, and is twisted by what its clamps turn against each other.
+struct Clamp {
+    std::uint32_t node = 0;
+    Vec3 direction{1, 0, 0};  ///< unit, along the rope towards its later nodes; in the world's or the body's frame
+    friend bool operator==(const Clamp&, const Clamp&) = default;
+};
+
+/// How far a rope is twisted between two neighbouring clamps.
+struct RopeTwist {
+    std::uint32_t from = 0, to = 0;  ///< nodes
+    double angle = 0;                ///< of the second against the first, about the rope's direction, rad; turns count
+    double moment = 0;               ///< N m: it turns the second by -moment and the first by moment
+};
+
 /// A body that changes its form: nodes, and elastic matter between them. Lengths in m, in the deformable's own frame.
 struct DeformableDefinition {
     std::vector<Vec3> nodes;  ///< at rest
     std::variant<SoftSolid, Cloth, Rope> matter;
     std::vector<std::uint32_t> pinned;    ///< nodes that stay where they are placed
     std::vector<Attachment> attachments;  ///< at most one a node, and none for a pinned one
+    std::vector<Clamp> clamps;            ///< of a rope: at most one a node, which is pinned or attached
     Transform pose;                       ///< of its frame at the start
     Vec3 linear_velocity;                 ///< of all nodes at the start, m/s
     Vec3 angular_velocity;                ///< about the centre of mass, world axes, rad/s

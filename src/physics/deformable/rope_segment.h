@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+
+#include "math/mat3.h"
+
+namespace embody::physics {
+
+struct RopeSegment {
+    double length = 0;  ///< at rest, m
+    bool is_broken = false;
+};
+
+/// Which way a segment goes, and how that changes with the place of its end (with that of its start: the opposite).
+struct SegmentDirection {
+    Vec3 way;     ///< unit, shorter where the segment has next to no length
+    Mat3 by_end;  ///< 1/m
+};
+inline SegmentDirection direction_of(Vec3 edge, double rest_length) {
+    const double l = std::max(length(edge), 0.01 * rest_length);
+    const Vec3 t = edge / l;
+    return {t, (1 / l) * (Mat3::identity() - outer(t, t))};
+}
+
+/// Damping sees how a turn of direction grows, not how it turns with the rope.
+inline Mat3 damping_of_growth(Vec3 turn, double damping) {
+    const double size = length_squared(turn), turning = size / (size + 1e-4);
+    const Vec3 axis = normalized(turn);
+    return damping * ((1 - turning) * Mat3::identity() + turning * outer(axis, axis));
+}
+
+}  // namespace embody::physics
