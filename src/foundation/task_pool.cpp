@@ -14,11 +14,15 @@ namespace embody {
 
 namespace {
 
-// Rounds of looking before a thread gives its core away: some 20 microseconds at a barrier, 100 between tasks, a
-// millisecond between those of a row.
-constexpr int spins_at_barrier = 1000, spins_between_tasks = 5000, spins_while_awake = 50000;
+// A thread that waits looks so often, some 20 microseconds, before it offers its core with each further look: the one
+// it waits for may need that core where other programs run.
+constexpr int looks_alone = 1000;
+// And so often altogether before it sleeps: some 100 microseconds between tasks, a millisecond between those of a row,
+// if nobody takes the core.
+constexpr int looks_between_tasks = looks_alone + 200, looks_while_awake = looks_alone + 2000;
 
-void relax() {
+void wait_a_little(int look) {
+    if (look >= looks_alone) return std::this_thread::yield();
 #if defined(__x86_64__)
     _mm_pause();
 #endif
@@ -34,30 +38,18 @@ void Barrier::wait() {
         round_.store(round + 1, std::memory_order_release);
         return;
     }
-    for (int i = 0; round_.load(std::memory_order_acquire) == round; ++i) {
-        if (i < spins_at_barrier) {
-            relax();
-        } else {
-            std::this_thread::yield();
-        }
-    }
+    for (int i = 0; round_.load(std::memory_order_acquire) == round; ++i) wait_a_little(i);
 }
 
 void Progress::wait_for(std::uint64_t count) const {
-    for (int i = 0; count_.load(std::memory_order_acquire) < count; ++i) {
-        if (i < spins_at_barrier) {
-            relax();
-        } else {
-            std::this_thread::yield();
-        }
-    }
+    for (int i = 0; count_.load(std::memory_order_acquire) < count; ++i) wait_a_little(i);
 }
 
 struct TaskPool::State {
     const std::function<void(int)>* task = nullptr;  // of the present round
     std::atomic<unsigned> round{0};
     std::atomic<unsigned> calls{0};  // another one with each round and with each StayAwake: what sleeping threads watch
-    std::atomic<int> spins{spins_between_tasks};
+    std::atomic<int> looks{looks_between_tasks};
     std::atomic<int> running{0};
     std::atomic<bool> stops{false};
     int workers = 1;
@@ -79,9 +71,9 @@ struct TaskPool::State {
     void await_round(unsigned seen) {
         while (true) {
             const unsigned call = calls.load(std::memory_order_acquire);
-            for (int i = 0; i < spins.load(std::memory_order_relaxed); ++i) {
+            for (int i = 0; i < looks.load(std::memory_order_relaxed); ++i) {
                 if (round.load(std::memory_order_acquire) != seen) return;
-                relax();
+                wait_a_little(i);
             }
             if (round.load(std::memory_order_acquire) != seen) return;
             calls.wait(call, std::memory_order_acquire);
@@ -102,11 +94,11 @@ struct TaskPool::State {
 
 TaskPool::StayAwake::StayAwake(TaskPool& pool) : pool_(pool) {
     pool_.state_->start();
-    pool_.state_->spins.store(spins_while_awake, std::memory_order_relaxed);
+    pool_.state_->looks.store(looks_while_awake, std::memory_order_relaxed);
     pool_.state_->call();
 }
 
-TaskPool::StayAwake::~StayAwake() { pool_.state_->spins.store(spins_between_tasks, std::memory_order_relaxed); }
+TaskPool::StayAwake::~StayAwake() { pool_.state_->looks.store(looks_between_tasks, std::memory_order_relaxed); }
 
 TaskPool::TaskPool(int workers) : state_(std::make_unique<State>()) {
     EMBODY_ASSERT(workers >= 1);
@@ -136,13 +128,7 @@ void TaskPool::run(const std::function<void(int)>& task) {
     s.round.fetch_add(1, std::memory_order_release);
     s.call();
     task(0);
-    for (int i = 0; s.running.load(std::memory_order_acquire) > 0; ++i) {
-        if (i < spins_at_barrier) {
-            relax();
-        } else {
-            std::this_thread::yield();
-        }
-    }
+    for (int i = 0; s.running.load(std::memory_order_acquire) > 0; ++i) wait_a_little(i);
 }
 
 }  // namespace embody
