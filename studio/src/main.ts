@@ -16,6 +16,7 @@ import { ModelFields } from "./panels/model_fields";
 import { openOptions } from "./panels/options_menu";
 import { Overlays } from "./panels/overlays";
 import { openPalette } from "./panels/palette";
+import { PinFields } from "./panels/pin_fields";
 import { SceneFields } from "./panels/scene_fields";
 import { StatusBar } from "./panels/status_bar";
 import { Toasts } from "./panels/toasts";
@@ -73,7 +74,7 @@ function start(): void {
   app.append(
     toolbar.root,
     left.root,
-    element("aside", { class: "panel right", "aria-label": "Properties", "data-testid": "properties" }, new SceneFields(studio).root, new ModelFields(studio).root, entityFields.root, attributes.root),
+    element("aside", { class: "panel right", "aria-label": "Properties", "data-testid": "properties" }, new SceneFields(studio).root, new ModelFields(studio).root, entityFields.root, new PinFields(studio).root, attributes.root),
     new StatusBar(studio).root,
   );
   scene.append(new Overlays(studio).root);

@@ -23,6 +23,8 @@ export interface TestHook {
   points(index: number): { count: number; liquid: boolean; lower: number[]; upper: number[] } | null;
   /** Size of the box around a soft thing's drawn form in its own frame, its vertices and the mean length of their normals; null for others. */
   bent(index: number): { size: number[]; vertices: number; normals: number } | null;
+  /** Nodes of the selection that are marked as held. */
+  pinned(): number;
   /** Parts of collision shapes that are drawn over the selection. */
   collisionParts(): number;
   pick(x: number, y: number): number | null;
@@ -64,6 +66,7 @@ export function offerTestHook(studio: Studio): void {
       return cloud ? { count: cloud.count, liquid: cloud.isLiquid, lower: cloud.bounds.min.toArray(), upper: cloud.bounds.max.toArray() } : null;
     },
     bent: (index) => studio.entities.softs.skinOf(index)?.measure() ?? null,
+    pinned: () => studio.view.pins.count,
     collisionParts: () => studio.view.collision.parts,
     pick: (x, y) => studio.view.pick(x, y)?.index ?? null,
     halt: () => studio.view.halt(),

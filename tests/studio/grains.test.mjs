@@ -86,4 +86,13 @@ describe("grains in the Studio", { timeout: 600000 }, () => {
     await page.waitForFunction((sand) => window.embody.points(sand), SAND);
     assert.deepEqual(page.faults, []);
   });
+
+  it("can be added as a primitive, by its category alone", async () => {
+    await page.locator("[data-testid=primitive-sand]").dblclick();
+    await page.waitForFunction(() => window.embody.points(3)?.count > 100);
+    const kind = page.locator("[data-testid=attribute-kind] select").first();
+    assert.equal(await kind.inputValue(), "granular");
+    assert.match(await page.locator("[data-testid=attribute-friction_angle]").first().innerText(), /sand/i);
+    assert.deepEqual(page.faults, []);
+  });
 });

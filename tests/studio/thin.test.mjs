@@ -107,8 +107,43 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
     await page.waitForFunction(() => Math.abs((window.embody.bent(3)?.size[1] ?? 0) - 1.23) < 0.05 && window.embody.bent(3).normals > 0.99);
   });
 
-  it("offers cloth, round cloth and rope among the primitives", async () => {
-    for (const name of ["cloth", "round-cloth", "rope"]) {
+  it("is pinned by hand: at its edge, at a place that is clicked on, to another thing; and undo takes each back", async () => {
+    const at = await page.evaluate(() => window.embody.seenAt(2));
+    await page.mouse.click(at.x, at.y);
+    await page.waitForFunction(() => window.embody.selection()[0] === 2);
+    const said = page.getByTestId("pin-count");
+    const says = (text) => page.waitForFunction((text) => document.querySelector("[data-testid=pin-count]").textContent.startsWith(text), text);
+    await says("2 places are held");
+    await page.waitForFunction(() => window.embody.pinned() === 2);
+    await page.getByTestId("pin-none").click();
+    await says("Nothing holds it");
+    await page.getByTestId("pin-edge").click();
+    await says("17 places");
+    await page.keyboard.press("Control+z");
+    await says("Nothing holds it");
+    await page.getByTestId("pin-pick").click();
+    await page.mouse.click(at.x, at.y);
+    await says("1 place is held");
+    await page.getByTestId("pin-holder").selectOption({ label: "Floor" });
+    await page.waitForFunction(() => document.querySelector("[data-testid=pin-holder]").value === "1");
+    // Held by its middle alone it hangs down around that, while it plays, too.
+    await send("simulation.step", { count: 60 });
+    await page.waitForFunction(() => window.embody.bent(2).size[1] > 0.15);
+    await page.getByTestId("pin-corners").click();
+    await says("5 places");
+    await page.waitForFunction(() => window.embody.pinned() === 5);
+    await page.keyboard.press("Control+z");
+    await says("1 place is held");
+    assert.ok(await said.isVisible());
+    await page.keyboard.press("Escape");
+    await page.waitForFunction(() => window.embody.selection().length === 0 && window.embody.pinned() === 0);
+    assert.equal(await page.getByTestId("pins").isVisible(), false);
+    await send("simulation.reset", {});
+    assert.deepEqual(page.faults, []);
+  });
+
+  it("offers cloth, round cloth, rope and cushion among the primitives", async () => {
+    for (const name of ["cloth", "round-cloth", "rope", "cushion"]) {
       const before = (await page.evaluate(() => window.embody.entities())).length;
       await page.locator(`[data-testid=primitive-${name}]`).dblclick();
       await page.waitForFunction((before) => window.embody.entities().length === before + 1, before);

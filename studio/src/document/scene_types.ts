@@ -23,6 +23,14 @@ export type Shape =
   | { type: "mesh"; positions: Vector[]; triangles: Vector[] }
   | { type: "compound"; children: (ConvexShape & Pose)[] };
 
+/** Where something that bends is held: its nodes at rest within the radius, or the nearest. */
+export interface Pin {
+  position?: Vector;
+  radius?: number;
+  /** The entity that it goes with; without, the world. */
+  to?: number;
+}
+
 export interface Entity {
   index: number;
   name?: string;
@@ -36,6 +44,7 @@ export interface Entity {
   angular_velocity?: Vector;
   force?: Vector;
   torque?: Vector;
+  pins?: Pin[];
   enabled?: boolean;
   start_asleep?: boolean;
   allow_sleep?: boolean;

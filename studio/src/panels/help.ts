@@ -22,6 +22,15 @@ const STATES: readonly (readonly [string, string, string])[] = [
   ["asleep", "asleep", "rests and costs nothing until it is touched"],
 ];
 
+const MATTER: readonly (readonly [string, string])[] = [
+  ["Add one", "cloth, rope, water, sand and a cushion are among the primitives on the left"],
+  ["Physical kind", "in the panel on the right makes any thing rigid, soft, cloth, rope, fluid or granular, also while it plays"],
+  ["Category", "of a primitive, such as honey, curtain, gravel: it takes kind and numbers of that"],
+  ["Pins", "hold edges, corners, ends or a place you click on; by the world or by another thing"],
+  ["Wind", "and gusts are under Air, with nothing selected"],
+  ["Keep poses", "keeps where things lie, not dents, folds, heaps or puddles"],
+];
+
 /** Mouse, keys and colours; a key can be changed by clicking on it. */
 export function openHelp(studio: Studio, actions: readonly UserAction[]): void {
   const groups = new Map<string, UserAction[]>();
@@ -38,6 +47,7 @@ export function openHelp(studio: Studio, actions: readonly UserAction[]): void {
       "div",
       { class: "help-columns" },
       section("Mouse", MOUSE.map(([gesture, what]) => line(element("span", { class: "gesture" }, gesture), what))),
+      section("Soft things, cloth, ropes, liquids, grains", MATTER.map(([name, what]) => line(element("span", { class: "gesture" }, name), what))),
       section("Glimmer on things while there is a simulation", [
         ...STATES.map(([state, name, what]) => line(element("span", {}, element("i", { class: `swatch ${state}` }), name), what)),
         element("p", { class: "note" }, "The view options colour things all over; T turns it off."),

@@ -150,8 +150,14 @@ function simulationActions(studio: Studio): UserAction[] {
 }
 
 async function keepPoses(studio: Studio): Promise<void> {
-  if (await studio.command("simulation.keep", {}))
-    studio.notice.emit({ level: "info", text: "The present poses are now the scene's; undo takes them back" });
+  if (!(await studio.command("simulation.keep", {}))) return;
+  const { document, entities } = studio;
+  const changeForm = [...document.entities.keys()].some((index) => entities.softs.has(index) || entities.clouds.of(index));
+  studio.notice.emit({
+    level: "info",
+    text: "The present poses are now the scene's; undo takes them back",
+    ...(changeForm && { remedy: "Of soft things, cloth and ropes the place is kept, not dents and folds; grains and liquids start as before." }),
+  });
 }
 
 function viewActions(studio: Studio, open: Openers): UserAction[] {

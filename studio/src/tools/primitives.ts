@@ -19,6 +19,11 @@ function ofKind(name: string, kind: "cloth" | "rope" | "fluid", label: string, d
   return { name, label, drawing, entity: () => ({ name: label, shape, attributes: { kind }, ...(pose ? { pose } : {}) }) };
 }
 
+/** A primitive that is what its category says. */
+function ofCategory(category: string, label: string, drawing: string, shape: Shape): Primitive {
+  return { name: category, label, drawing, entity: () => ({ name: label, shape, category }) };
+}
+
 /** The analytical models, at the size of things one holds in two hands. */
 export const PRIMITIVES: readonly Primitive[] = [
   primitive("Box", "M6 11l10-5 10 5v11l-10 5-10-5zM6 11l10 5 10-5M16 16v11", { type: "box", half_extents: [0.2, 0.2, 0.2] }),
@@ -32,5 +37,7 @@ export const PRIMITIVES: readonly Primitive[] = [
     rotation: [0, 0, Math.SQRT1_2, Math.SQRT1_2],
   }),
   ofKind("water", "fluid", "Water", "M16 5c5 7 8 10 8 14a8 8 0 0 1-16 0c0-4 3-7 8-14zM12 20a4 4 0 0 0 4 4", { type: "box", half_extents: [0.2, 0.2, 0.2] }),
+  ofCategory("sand", "Sand", "M3 25c4-1 8-15 13-15s9 14 13 15zM11 20l.1 0M16 15l.1 0M16 21l.1 0M21 20l.1 0", { type: "cylinder", radius: 0.15, half_height: 0.12 }),
+  ofCategory("cushion", "Cushion", "M5 9c4 2 18 2 22 0 1 4 1 11 0 15-4-2-18-2-22 0-1-4-1-11 0-15z", { type: "box", half_extents: [0.22, 0.08, 0.22] }),
   primitive("Plane", "M3 20l8-8h18l-8 8zM16 16V7M16 7l-2.5 3M16 7l2.5 3", { type: "plane", normal: [0, 1, 0], offset: 0 }),
 ];

@@ -32,6 +32,11 @@ export class SoftBodies {
     return this.all.has(index);
   }
 
+  /** Where its nodes are now, world: x, y, z of each; null where it is not soft. */
+  placesOf(index: number): Float32Array | null {
+    return this.all.get(index)?.now ?? null;
+  }
+
   skinOf(index: number): SoftSkin | null {
     return this.all.get(index)?.skin ?? null;
   }

@@ -7,6 +7,7 @@ import { CameraRig } from "./camera_rig";
 import { CollisionOverlay } from "./collision_overlay";
 import type { EntityView } from "./entity_view";
 import { Environment, type Theme } from "./environment";
+import { PinMarks } from "./pin_marks";
 import { Outline } from "./outline";
 import type { Quality } from "./tint";
 
@@ -32,6 +33,7 @@ export class View {
   readonly environment: Environment;
   readonly outline: Outline;
   readonly collision: CollisionOverlay;
+  readonly pins: PinMarks;
   /** Just before a picture is drawn, with the page's clock in milliseconds. */
   readonly beforeFrame = new Signal<number>();
   /** Motion is not fluent here, for the last SLOW_PICTURES pictures; said once. */
@@ -59,7 +61,8 @@ export class View {
     this.environment = new Environment(this.scene, this.renderer);
     this.outline = new Outline(entities);
     this.collision = new CollisionOverlay(entities);
-    this.scene.add(entities.group, this.outline.group, this.collision.group);
+    this.pins = new PinMarks(entities.softs);
+    this.scene.add(entities.group, this.outline.group, this.collision.group, this.pins.points);
     this.rig.changed.on(() => this.invalidate());
     entities.loaded.on(() => this.invalidate());
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
@@ -164,6 +167,7 @@ export class View {
     this.beforeFrame.emit(now);
     this.entities.update(now);
     this.collision.update(now);
+    this.pins.update();
     this.outline.update(now, this.renderer.getDrawingBufferSize(this.size));
     const sunMoved = this.environment.follow(this.rig.target, this.rig.distance);
     if (sunMoved || this.entities.shadowsAreOld) this.renderer.shadowMap.needsUpdate = true;

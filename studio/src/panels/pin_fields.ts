@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+import type { SimulationMesh } from "../connection/messages";
+import { heldNodes, nearestNode, pinsAt, PLACE_LABELS, placesOf } from "../document/pins";
+import { nameOf } from "../document/scene_document";
+import type { Entity, Pin, Vector } from "../document/scene_types";
+import type { Studio } from "../studio";
+import { element, setText, show } from "./element";
+
+const WORLD = "";
+/** Of a large scene only so many are offered to pin to. */
+const MOST_HOLDERS = 300;
+
+/** Where the selected cloth, rope or soft thing is held, and by what. */
+export class PinFields {
+  readonly root: HTMLElement;
+  private readonly buttons = element("div", { class: "pin-buttons" });
+  private readonly said = element("p", { class: "note", "data-testid": "pin-count" });
+  private readonly holder = element("select", { "aria-label": "Held by", "data-testid": "pin-holder", onchange: () => this.holdBy() });
+  private index = 0;
+  private mesh: SimulationMesh | null = null;
+  /** The next click on the thing pins it there. */
+  private picking = false;
+
+  constructor(private readonly studio: Studio) {
+    const group = element(
+      "details",
+      { class: "group", open: true },
+      element("summary", {}, "Pins"),
+      this.said,
+      this.buttons,
+      element("div", { class: "attribute" }, element("span", { class: "attribute-label", title: "What the pinned places go with" }, "Held by"), this.holder),
+    );
+    this.root = element("section", { class: "entity", "data-testid": "pins", "aria-label": "Pins" }, group);
+    show(this.root, false);
+    for (const signal of [studio.selection.changed, studio.document.changed, studio.entities.loaded, studio.simulationChanged]) signal.on(() => void this.follow());
+    studio.entities.pointed.on(() => void this.follow());
+    studio.view.canvas.addEventListener("pointerdown", (event) => this.pinHere(event), { capture: true });
+    addEventListener("keydown", (event) => event.key === "Escape" && this.pick(false));
+  }
+
+  private get entity(): Entity | null {
+    const { selection, document } = this.studio;
+    return selection.indices.length === 1 ? (document.entities.get(selection.indices[0]!) ?? null) : null;
+  }
+
+  /** Shows what is selected, if it bends. */
+  private async follow(): Promise<void> {
+    const { entity, studio } = this;
+    const index = entity && studio.entities.softs.has(entity.index) ? entity.index : 0;
+    const isOther = index !== this.index;
+    const places = studio.entities.softs.placesOf(index);
+    if (isOther || places?.length !== this.mesh?.nodes.length) {
+      if (isOther) this.pick(false);
+      this.index = index;
+      this.mesh = null;
+      const told = index ? await studio.command("entity.simulation_mesh", { index }) : undefined;
+      // What is selected may have changed while the answer was on its way.
+      if (this.index !== index) return;
+      this.mesh = told?.mesh ?? null;
+      this.offer();
+    }
+    this.update();
+  }
+
+  private offer(): void {
+    const { mesh } = this;
+    const button = (text: string, title: string, name: string, run: () => void) => element("button", { title, "data-testid": `pin-${name}`, onclick: run }, text);
+    this.buttons.replaceChildren(
+      ...(mesh ? placesOf(mesh).map((place) => button(PLACE_LABELS[place], "Pin it there", place, () => this.add((entity) => pinsAt(place, mesh, entity)))) : []),
+      button("A place…", "Then click on the thing where it shall be held", "pick", () => this.pick(!this.picking)),
+      button("Remove all", "Nothing holds it any more", "none", () => this.put([])),
+    );
+  }
+
+  private update(): void {
+    const { entity, mesh, studio } = this;
+    show(this.root, this.index !== 0);
+    const pins = (entity && this.index && entity.pins) || [];
+    studio.view.pins.show(this.index, mesh && pins.length > 0 ? heldNodes(pins, mesh.nodes) : []);
+    studio.view.invalidate();
+    if (!this.index) return;
+    setText(this.said, this.picking ? "Click on it where it shall be held; Escape ends that." : pins.length === 0 ? "Nothing holds it." : `${pins.length} ${pins.length === 1 ? "place is" : "places are"} held, shown as dots.`);
+    const holders = [...studio.document.entities.values()].filter(({ index }) => index !== this.index && !studio.entities.softs.has(index) && !studio.entities.clouds.of(index));
+    this.holder.replaceChildren(
+      element("option", { value: WORLD }, "the world"),
+      ...holders.slice(0, MOST_HOLDERS).map((each) => element("option", { value: String(each.index) }, nameOf(each))),
+    );
+    this.holder.value = pins[0]?.to === undefined ? WORLD : String(pins[0].to);
+  }
+
+  private get to(): Pick<Pin, "to"> {
+    return this.holder.value === WORLD ? {} : { to: Number(this.holder.value) };
+  }
+
+  private add(make: (entity: Entity) => Pin[]): void {
+    const { entity } = this;
+    if (!entity) return;
+    const known = new Set((entity.pins ?? []).map(({ position }) => JSON.stringify(position)));
+    const added = make(entity).filter(({ position }) => !known.has(JSON.stringify(position)));
+    this.put([...(entity.pins ?? []), ...added.map((pin) => ({ ...pin, ...this.to }))]);
+  }
+
+  private put(pins: Pin[]): void {
+    this.pick(false);
+    void this.studio.command("entity.update", { index: this.index, entity: { pins } });
+  }
+
+  private holdBy(): void {
+    const { entity } = this;
+    if (!entity?.pins?.length) return;
+    const { to } = this;
+    this.put(entity.pins.map(({ position, radius }) => ({ ...(position && { position }), ...(radius !== undefined && { radius }), ...to })));
+  }
+
+  private pick(picking: boolean): void {
+    if (this.picking === picking) return;
+    this.picking = picking;
+    this.studio.view.canvas.style.cursor = picking ? "crosshair" : "";
+    this.update();
+  }
+
+  private pinHere(event: PointerEvent): void {
+    if (!this.picking || event.button !== 0 || !this.mesh) return;
+    event.stopImmediatePropagation();
+    const places = this.studio.entities.softs.placesOf(this.index);
+    const hit = this.studio.view.pick(event.clientX, event.clientY);
+    if (!places || hit?.index !== this.index) {
+      setText(this.said, "That is not it: click on the thing itself, or press Escape.");
+      return;
+    }
+    const node = nearestNode(places, hit.point);
+    const position = this.mesh.nodes.slice(3 * node, 3 * node + 3) as Vector;
+    this.add(() => [{ position }]);
+  }
+}
