@@ -5,75 +5,9 @@
 #include <cmath>
 #include <map>
 
+#include "physics/deformable/nearest_points.h"
+
 namespace embody::physics {
-
-namespace {
-
-constexpr double cell_share = 1.5;  // cells over mean edge
-constexpr double most_cells = 8;    // that a box spans along an axis
-constexpr double farthest_cell = 1e9;
-
-struct Cell {
-    int x = 0, y = 0, z = 0;
-};
-
-Cell cell_of(Vec3 p, double size) {
-    const auto index = [&](double x) {
-        return static_cast<int>(std::floor(std::max(-farthest_cell, std::min(farthest_cell, x / size))));
-    };
-    return {index(p.x), index(p.y), index(p.z)};
-}
-
-// Teschner and others, "Optimized spatial hashing for collision detection of deformable objects" (2003).
-std::size_t bucket_of(int x, int y, int z, std::size_t buckets) {
-    const auto part = [](int value, std::uint32_t factor) { return static_cast<std::uint32_t>(value) * factor; };
-    return (part(x, 73856093u) ^ part(y, 19349663u) ^ part(z, 83492791u)) & (buckets - 1);
-}
-
-template <class Visit>
-void for_each_bucket(const Bounds& box, double size, std::size_t buckets, Visit visit) {
-    const Cell low = cell_of(box.lower, size), high = cell_of(box.upper, size);
-    for (int z = low.z; z <= high.z; ++z) {
-        for (int y = low.y; y <= high.y; ++y) {
-            for (int x = low.x; x <= high.x; ++x) visit(bucket_of(x, y, z, buckets));
-        }
-    }
-}
-
-// Barycentric weights of the triangle's point nearest to p (C. Ericson, Real-Time Collision Detection, 5.1.5).
-std::array<double, 3> nearest_weights(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
-    const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-    const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-    if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
-    const double d3 = dot(ab, bp), d4 = dot(ac, bp);
-    if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
-    const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
-    const double d5 = dot(ab, cp), d6 = dot(ac, cp);
-    if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
-    const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
-    const double va = d3 * d6 - d5 * d4;
-    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-        const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return {0, 1 - w, w};
-    }
-    const double sum = va + vb + vc;
-    return {va / sum, vb / sum, vc / sum};
-}
-
-// Where between two segments the nearest points lie, 0 … 1 each; false where either is at an end, or they are parallel.
-bool nearest_inside(Vec3 a, Vec3 b, Vec3 c, Vec3 d, double& s, double& t) {
-    const Vec3 u = b - a, v = d - c, w = a - c;
-    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w), vw = dot(v, w);
-    const double spread = uu * vv - uv * uv;
-    if (!(spread > 1e-6 * uu * vv)) return false;
-    s = (uv * vw - vv * uw) / spread;
-    t = (uu * vw - uv * uw) / spread;
-    return s > 0 && s < 1 && t > 0 && t < 1;
-}
-
-}  // namespace
 
 struct ClothLayers::Search {
     const Nodes& nodes;
@@ -151,27 +85,6 @@ void ClothLayers::find_boxes(const Search& search) {
     for (std::size_t t = 0; t < triangles_.size(); ++t) triangle_boxes_[t] = joined(triangles_[t]);
 }
 
-// Counting sort of the triangles into the cells that they may reach.
-void ClothLayers::fill_grid() {
-    std::size_t buckets = 1;
-    while (buckets < 2 * triangles_.size()) buckets *= 2;
-    double longest = 0;
-    for (const Bounds& box : triangle_boxes_) {
-        const Vec3 sides = box.upper - box.lower;
-        longest = std::max({longest, sides.x, sides.y, sides.z});
-    }
-    cell_size_ = std::max(cell_share * edge_length_, longest / most_cells);
-    const double size = cell_size_;
-    cell_start_.assign(buckets + 1, 0);
-    for (const Bounds& box : triangle_boxes_)
-        for_each_bucket(box, size, buckets, [&](std::size_t b) { ++cell_start_[b + 1]; });
-    for (std::size_t b = 0; b < buckets; ++b) cell_start_[b + 1] += cell_start_[b];
-    cell_triangles_.resize(cell_start_.back());
-    std::vector<std::uint32_t> next(cell_start_.begin(), cell_start_.end() - 1);
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-        for_each_bucket(triangle_boxes_[t], size, buckets, [&](std::size_t b) { cell_triangles_[next[b]++] = t; });
-}
-
 void ClothLayers::search_node(const Search& search, std::uint32_t node, std::vector<std::uint32_t>& seen,
                               std::vector<LayerContact>& found) const {
     const std::vector<Vec3>& x = search.nodes.position;
@@ -182,17 +95,14 @@ void ClothLayers::search_node(const Search& search, std::uint32_t node, std::vec
     const auto is_near = [&](std::uint32_t p, std::uint32_t q, std::uint32_t r) {
         return are_neighbours(node, p) || are_neighbours(node, q) || are_neighbours(node, r);
     };
-    for_each_bucket(box, cell_size_, cell_start_.size() - 1, [&](std::size_t b) {
-        for (std::uint32_t k = cell_start_[b]; k < cell_start_[b + 1]; ++k) {
-            const std::uint32_t t = cell_triangles_[k];
-            if (!overlaps(triangle_boxes_[t], box) || seen[t] == node) continue;
-            seen[t] = node;
-            const auto [p, q, r] = triangles_[t];
-            if (node == p || node == q || node == r || (is_fine && is_near(p, q, r))) continue;
-            const auto weight = nearest_weights(x[node], x[p], x[q], x[r]);
-            const Vec3 away = x[node] - (weight[0] * x[p] + weight[1] * x[q] + weight[2] * x[r]);
-            search.add({{node, p, q, r}, {1, -weight[0], -weight[1], -weight[2]}, {}, 0}, away, found);
-        }
+    grid_.visit(box, [&](std::uint32_t t) {
+        if (!overlaps(triangle_boxes_[t], box) || seen[t] == node) return;
+        seen[t] = node;
+        const auto [p, q, r] = triangles_[t];
+        if (node == p || node == q || node == r || (is_fine && is_near(p, q, r))) return;
+        const auto weight = nearest_weights(x[node], x[p], x[q], x[r]);
+        const Vec3 away = x[node] - (weight[0] * x[p] + weight[1] * x[q] + weight[2] * x[r]);
+        search.add({{node, p, q, r}, {1, -weight[0], -weight[1], -weight[2]}, {}, 0}, away, found);
     });
     // Whatever the order of the cells.
     const auto order = [](const LayerContact& a, const LayerContact& b) { return a.node < b.node; };
@@ -205,20 +115,17 @@ void ClothLayers::search_edge(const Search& search, std::uint32_t edge, std::vec
     const auto [a, b] = edges_[edge];
     const Bounds& box = edge_boxes_[edge];
     const std::size_t first_found = found.size();
-    for_each_bucket(box, cell_size_, cell_start_.size() - 1, [&](std::size_t bucket) {
-        for (std::uint32_t k = cell_start_[bucket]; k < cell_start_[bucket + 1]; ++k) {
-            const std::uint32_t t = cell_triangles_[k];
-            if (!overlaps(triangle_boxes_[t], box)) continue;
-            for (const std::uint32_t other : edges_of_triangle_[t]) {
-                if (other <= edge || seen[other] == edge) continue;
-                seen[other] = edge;
-                const auto [c, d] = edges_[other];
-                if (a == c || a == d || b == c || b == d || !overlaps(edge_boxes_[other], box)) continue;
-                double s = 0, u = 0;
-                if (!nearest_inside(x[a], x[b], x[c], x[d], s, u)) continue;
-                const Vec3 away = (1 - s) * x[a] + s * x[b] - (1 - u) * x[c] - u * x[d];
-                search.add({{a, b, c, d}, {1 - s, s, u - 1, -u}, {}, 0}, away, found);
-            }
+    grid_.visit(box, [&](std::uint32_t t) {
+        if (!overlaps(triangle_boxes_[t], box)) return;
+        for (const std::uint32_t other : edges_of_triangle_[t]) {
+            if (other <= edge || seen[other] == edge) continue;
+            seen[other] = edge;
+            const auto [c, d] = edges_[other];
+            if (a == c || a == d || b == c || b == d || !overlaps(edge_boxes_[other], box)) continue;
+            double s = 0, u = 0;
+            if (!nearest_inside(x[a], x[b], x[c], x[d], s, u)) continue;
+            const Vec3 away = (1 - s) * x[a] + s * x[b] - (1 - u) * x[c] - u * x[d];
+            search.add({{a, b, c, d}, {1 - s, s, u - 1, -u}, {}, 0}, away, found);
         }
     });
     const auto order = [](const LayerContact& p, const LayerContact& q) { return p.node < q.node; };
@@ -229,7 +136,7 @@ void ClothLayers::find(const Nodes& nodes, double thickness, std::span<const Vec
     const std::size_t count = nodes.size();
     const Search search{nodes, moves, thickness};
     find_boxes(search);
-    fill_grid();
+    grid_.fill(triangle_boxes_, edge_length_);
     const int number = std::max(1, workers.workers());
     std::vector<std::vector<LayerContact>> of_nodes(static_cast<std::size_t>(number)), of_edges(of_nodes);
     share_among(workers, count, count >= 1000, [&](int worker, Share share) {

@@ -8,6 +8,7 @@
 
 #include "foundation/task_pool.h"
 #include "math/bounds.h"
+#include "physics/deformable/box_grid.h"
 #include "physics/deformable/nodes.h"
 
 namespace embody::physics {
@@ -37,6 +38,8 @@ public:
                                      TaskPool& workers);
     /// Mean, m.
     [[nodiscard]] double edge_length() const { return edge_length_; }
+    /// Each once.
+    [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> edges() const { return edges_; }
     /// Of the last call.
     [[nodiscard]] std::span<const LayerContact> contacts() const { return contacts_; }
 
@@ -44,7 +47,6 @@ private:
     struct Search;
     void find(const Nodes& nodes, double thickness, std::span<const Vec3> moves, TaskPool& workers);
     void find_boxes(const Search& search);
-    void fill_grid();
     void search_node(const Search& search, std::uint32_t node, std::vector<std::uint32_t>& seen,
                      std::vector<LayerContact>& found) const;
     void search_edge(const Search& search, std::uint32_t edge, std::vector<std::uint32_t>& seen,
@@ -57,11 +59,9 @@ private:
     std::vector<std::uint32_t> neighbour_start_, neighbours_;  // of nodes
     double edge_length_ = 0;                                   // mean, m
 
-    // Of the substep. Boxes hold the way that something goes, without that of the whole, and the thickness around it;
-    // triangles are kept by the cells of a grid that theirs reach, cells by a hash.
+    // Of the substep. Boxes hold the way that something goes, without that of the whole, and the thickness around it.
     std::vector<Bounds> node_boxes_, edge_boxes_, triangle_boxes_;
-    double cell_size_ = 0;  // m
-    std::vector<std::uint32_t> cell_start_, cell_triangles_;
+    BoxGrid grid_;  // of triangles
     std::vector<LayerContact> contacts_;
 };
 

@@ -255,8 +255,8 @@ bool ClothSheet::solve_moves(const Substep& substep, std::span<const TouchedBody
     rounds_ = solves_ = 0;
     constexpr int most_solves = 4;
     for (;;) {
-        const int rounds = solver.solve(matrix_, rhs_, small_load_, fixed_, springs_.springs(), inertias_, moves_,
-                                        body_moves_, workers);
+        const int rounds =
+            solver.solve(std::array{system()}, {}, springs_.springs(), inertias_, moves_, body_moves_, workers);
         if (rounds == ClothSolver::not_finite) return false;
         rounds_ += rounds;
         ++solves_;
@@ -275,16 +275,17 @@ bool ClothSheet::solve_moves(const Substep& substep, std::span<const TouchedBody
     return true;
 }
 
-// Only while nothing outside but weight and air acts.
-void ClothSheet::keep_momentum(const Substep& substep) {
+// Only while nothing outside but weight, air and what is `given` acts.
+void ClothSheet::keep_momentum(const Substep& substep, std::span<const Vec3> given) {
     const double h = substep.h;
-    std::vector<Vec3> given(nodes_.size());
-    for (std::size_t i = 0; i < nodes_.size(); ++i) given[i] = h * weight_[i];
+    std::vector<Vec3> all(nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) all[i] = h * weight_[i];
+    for (std::size_t i = 0; i < given.size(); ++i) all[i] += h * given[i];
     for (std::size_t t = 0; t < triangles_.size(); ++t) {  // the air as it acted
         for (const std::uint32_t node : triangles_[t].node)
-            given[node] += dot(air_[t], h * winds_[t] - moves_[node]) * air_[t];
+            all[node] += dot(air_[t], h * winds_[t] - moves_[node]) * air_[t];
     }
-    keep_momenta(nodes_, given, h, moves_);
+    keep_momenta(nodes_, all, h, moves_);
 }
 
 // What lies on a body gives way last.
@@ -318,20 +319,18 @@ int ClothSheet::parts_of(double h, TaskPool& workers) {
 void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> contacts,
                          std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies,
                          TaskPool& workers) {
-    std::vector<std::pair<Vec3, Vec3>> velocities;
-    for (const TouchedBody& body : bodies) velocities.emplace_back(body.velocity, body.spin);
+    const PartPushes pushes(bodies);
+    if (is_frozen_) return;
     const int parts = parts_of(substep.h, workers);
     int rounds = 0, solves = 0;
     for (int part = 0; part < parts; ++part) {
         Substep own = substep;
         own.h = substep.h / parts;
         own.time = substep.time + part * own.h;
-        // What earlier parts have pushed goes on in this one.
-        for (std::size_t b = 0; b < bodies.size() && part > 0; ++b) {
-            bodies[b].shift += own.h * (bodies[b].velocity - velocities[b].first);
-            bodies[b].turn += own.h * (bodies[b].spin - velocities[b].second);
-        }
-        advance_part(own, contacts, attachment_bodies, bodies, workers);
+        if (part > 0) pushes.go_on(bodies, own.h);
+        begin(own, contacts, attachment_bodies, bodies, workers);
+        if (!solve_moves(own, bodies, workers)) return freeze();
+        end(own, moves_, body_moves_, {}, bodies, workers);
         rounds += rounds_;
         solves += solves_;
     }
@@ -339,23 +338,28 @@ void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> co
     solves_ = solves;
 }
 
-void ClothSheet::advance_part(const Substep& substep, std::span<const NodeContact> contacts,
-                              std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies,
-                              TaskPool& workers) {
-    if (is_frozen_) return;
+void ClothSheet::begin(const Substep& substep, std::span<const NodeContact> contacts,
+                       std::span<const std::uint32_t> attachment_bodies, std::span<const TouchedBody> bodies,
+                       TaskPool& workers) {
     find_strains(substep, workers);
     fill_rows(substep, workers);
     springs_.attachment_bodies.assign(attachment_bodies.begin(), attachment_bodies.end());
     springs_.begin(nodes_, contacts, bodies, substep, node_stiffness_);
-    if (!solve_moves(substep, bodies, workers)) {
-        is_frozen_ = true;
-        for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.mean_velocity[i] = nodes_.velocity[i] = {};
-        return;
-    }
+}
+
+void ClothSheet::freeze() {
+    is_frozen_ = true;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.mean_velocity[i] = nodes_.velocity[i] = {};
+}
+
+void ClothSheet::end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
+                     std::span<const Vec3> given, std::span<TouchedBody> bodies, TaskPool& workers) {
+    if (moves.data() != moves_.data()) moves_.assign(moves.begin(), moves.end());
     const auto acts = [](const TouchSpring& spring) { return spring.acts; };
     const bool is_held = std::any_of(fixed_.begin(), fixed_.end(), [](std::uint8_t f) { return f != 0; });
-    if (!is_held && std::none_of(springs_.springs().begin(), springs_.springs().end(), acts)) keep_momentum(substep);
-    springs_.finish(moves_, body_moves_, substep, bodies);
+    if (!is_held && std::none_of(springs_.springs().begin(), springs_.springs().end(), acts))
+        keep_momentum(substep, given);
+    springs_.finish(moves_, body_moves, substep, bodies);
     part_layers(workers);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const Vec3 mean = moves_[i] / substep.h;

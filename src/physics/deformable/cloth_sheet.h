@@ -25,6 +25,29 @@ public:
     void advance(const Substep& substep, std::span<const NodeContact> contacts,
                  std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies, TaskPool& workers);
 
+    // The same in parts, where sheets and ropes that touch each other are solved together (docs/physics/cloth.md):
+    /// How many parts the substep takes.
+    [[nodiscard]] int parts_of(double h, TaskPool& workers);
+    /// Finds system() and touch() for the part.
+    void begin(const Substep& substep, std::span<const NodeContact> contacts,
+               std::span<const std::uint32_t> attachment_bodies, std::span<const TouchedBody> bodies,
+               TaskPool& workers);
+    /// What the solve needs of it, valid until the next begin().
+    [[nodiscard]] SheetSystem system() const { return {&matrix_, rhs_, small_load_, fixed_}; }
+    [[nodiscard]] TouchSprings& touch() { return springs_; }
+    /// How each node resists on its own, N/m, since begin().
+    [[nodiscard]] std::span<const double> node_stiffness() const { return node_stiffness_; }
+    /// Goes by these moves, which touch() was solved with. `given`: forces on the nodes besides, N; none or one a node.
+    /// Pushes the bodies.
+    void end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
+             std::span<const Vec3> given, std::span<TouchedBody> bodies, TaskPool& workers);
+    /// Stops it for good where it is.
+    void freeze();
+    /// Each edge of its triangles once.
+    [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> edges() const { return layers_->edges(); }
+    /// Mean, m.
+    [[nodiscard]] double edge_length() const { return layers_->edge_length(); }
+
     /// Instead of the definition's.
     void set_attachments(const std::vector<Attachment>& attachments) { springs_.attachments = attachments; }
     [[nodiscard]] Nodes& nodes() { return nodes_; }
@@ -62,14 +85,10 @@ private:
     void fill_rows(const Substep& substep, TaskPool& workers);
     void fill_row(std::size_t i, const Substep& substep);
     bool solve_moves(const Substep& substep, std::span<const TouchedBody> bodies, TaskPool& workers);
-    void keep_momentum(const Substep& substep);
+    void keep_momentum(const Substep& substep, std::span<const Vec3> given);
     void part_layers(TaskPool& workers);
-    [[nodiscard]] int parts_of(double h, TaskPool& workers);
     // Layers lie as far from each other as two of them from a body between.
     [[nodiscard]] double apart() const { return std::max(cloth_.thickness, 2 * springs_.radius); }
-    void advance_part(const Substep& substep, std::span<const NodeContact> contacts,
-                      std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies,
-                      TaskPool& workers);
 
     Cloth cloth_;
     Nodes nodes_;

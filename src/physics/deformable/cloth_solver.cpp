@@ -73,37 +73,77 @@ void add_at_arm(std::array<double, 36>& to, const Mat3& m, Vec3 arm) {
     }
 }
 
-bool is_coupled(const TouchSpring& spring, std::span<const BodyInertia> bodies) {
-    return spring.count > 1 || (spring.body != no_body && bodies[spring.body].moves);
-}
-
 bool moves_body(const TouchSpring& spring, std::span<const BodyInertia> bodies) {
     return spring.body != no_body && bodies[spring.body].moves;
 }
 
 }  // namespace
 
-void ClothSolver::prepare(const ClothMatrix& matrix, std::span<const std::uint8_t> fixed,
+// Whether the preconditioner holds all of it: one node, or nodes of one line, and no body that moves.
+bool ClothSolver::is_contained(const TouchSpring& spring, std::span<const BodyInertia> bodies) const {
+    if (moves_body(spring, bodies)) return false;
+    for (std::size_t k = 1; k < static_cast<std::size_t>(spring.count); ++k) {
+        if (!is_same_block(spring.node[0], spring.node[k])) return false;
+    }
+    return true;
+}
+
+void ClothSolver::lay_out(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines) {
+    nodes_ = 0;
+    chunks_.clear();
+    sheet_first_.clear();
+    for (std::uint32_t s = 0; s < sheets.size(); ++s) {
+        const std::size_t count = sheets[s].rhs.size();
+        sheet_first_.push_back(nodes_);
+        for (std::size_t first = 0; first < count; first += chunk_size)
+            chunks_.push_back({s, nodes_ + first, nodes_ + std::min(count, first + chunk_size)});
+        nodes_ += count;
+    }
+    line_of_.clear();
+    line_fixed_.clear();
+    line_first_ = {0};
+    for (std::uint32_t l = 0; l < lines.size(); ++l) {
+        line_of_.insert(line_of_.end(), lines[l].rhs.size(), l);
+        line_fixed_.insert(line_fixed_.end(), lines[l].fixed->begin(), lines[l].fixed->end());
+        line_first_.push_back(line_of_.size());
+    }
+    for (auto* vector : {&direction_, &product_, &residual_, &better_, &answer_}) vector->assign(nodes_, Float4{});
+    for (auto* vector :
+         {&line_direction_, &line_own_product_, &line_product_, &line_residual_, &line_better_, &line_answer_})
+        vector->assign(line_of_.size(), {});
+}
+
+bool ClothSolver::prepare(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
                           std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies) {
-    nodes_ = matrix.diagonal.size();
-    own_ = matrix.diagonal;
+    own_.clear();
+    for (const SheetSystem& sheet : sheets)
+        own_.insert(own_.end(), sheet.matrix->diagonal.begin(), sheet.matrix->diagonal.end());
     coupled_.clear();
     for (std::uint32_t s = 0; s < springs.size(); ++s) {
         const TouchSpring& spring = springs[s];
         if (!spring.acts) continue;
         for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k) {
+            if (spring.node[k] >= nodes_) continue;
             const Block added = to_block(spring.weight[k] * spring.weight[k] * spring.matrix);
             Block& own = own_[spring.node[k]];
             own.x += added.x;
             own.y += added.y;
             own.z += added.z;
         }
-        if (is_coupled(spring, bodies)) coupled_.push_back(s);
+        if (!is_contained(spring, bodies)) coupled_.push_back(s);
     }
     inverse_.resize(nodes_);
-    for (std::size_t i = 0; i < nodes_; ++i)
-        inverse_[i] = fixed[i] != 0 ? Block{} : to_block(inverse_or_zero(to_matrix(own_[i])));
+    for (std::size_t s = 0; s < sheets.size(); ++s) {
+        for (std::size_t i = 0; i < sheets[s].rhs.size(); ++i) {
+            const std::size_t at = sheet_first_[s] + i;
+            inverse_[at] = sheets[s].fixed[i] != 0 ? Block{} : to_block(inverse_or_zero(to_matrix(own_[at])));
+        }
+    }
+    prepare_bodies(springs, bodies);
+    return prepare_lines(lines, springs);
+}
 
+void ClothSolver::prepare_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies) {
     body_factors_.assign(bodies.size(), {});
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         auto& factor = body_factors_[b].factor;
@@ -121,49 +161,101 @@ void ClothSolver::prepare(const ClothMatrix& matrix, std::span<const std::uint8_
         const Mat3& k = spring.matrix;
         auto& factor = body_factors_[spring.body].factor;
         // A single node gives way: K - K D⁻¹ K is what the body feels of it.
-        const Mat3 felt = spring.count == 1 ? k - k * to_matrix(inverse_[spring.node[0]]) * k : k;
+        const bool is_single = spring.count == 1 && spring.node[0] < nodes_;
+        const Mat3 felt = is_single ? k - k * to_matrix(inverse_[spring.node[0]]) * k : k;
         add_at_arm(factor, felt, spring.arm);
     }
     for (BodyFactor& body : body_factors_) factorize(body.factor);
 }
 
-void ClothSolver::multiply_rows(const ClothMatrix& matrix, std::size_t chunk) {
+bool ClothSolver::prepare_lines(std::span<const LineSystem> lines, std::span<const TouchSpring> springs) {
+    factors_.clear();
+    for (const LineSystem& line : lines) factors_.push_back(line.matrix);
+    if (lines.empty()) return true;
+    for (const TouchSpring& spring : springs) {
+        if (!spring.acts) continue;
+        for (std::size_t a = 0; a < static_cast<std::size_t>(spring.count); ++a) {
+            if (spring.node[a] < nodes_) continue;
+            const std::size_t line = line_of_[spring.node[a] - nodes_], first = nodes_ + line_first_[line];
+            for (std::size_t b = 0; b < static_cast<std::size_t>(spring.count); ++b) {
+                // Each pair of nodes once, the later one as the row.
+                if (spring.node[b] > spring.node[a] || !is_same_block(spring.node[a], spring.node[b])) continue;
+                lines[line].matrix->add(spring.node[a] - first, spring.node[b] - first,
+                                        (spring.weight[a] * spring.weight[b]) * spring.matrix);
+            }
+        }
+    }
+    for (const LineSystem& line : lines) {
+        for (std::size_t i = 0; i < line.rhs.size(); ++i) {
+            if ((*line.fixed)[i]) line.matrix->fix(i);
+        }
+        if (!line.matrix->factorize()) return false;
+    }
+    return true;
+}
+
+void ClothSolver::solve_lines(std::span<Vec3> rhs) const {
+    for (std::size_t l = 0; l < factors_.size(); ++l)
+        factors_[l]->solve(rhs.subspan(line_first_[l], line_first_[l + 1] - line_first_[l]));
+}
+
+void ClothSolver::multiply_rows(std::span<const SheetSystem> sheets, std::size_t chunk) {
+    const auto [sheet, first, last] = chunks_[chunk];
+    const ClothMatrix& matrix = *sheets[sheet].matrix;
+    const std::size_t before = sheet_first_[sheet];
+    const Float4* direction = direction_.data() + before;
     double sum = 0;
-    const std::size_t last = std::min(nodes_, (chunk + 1) * chunk_size);
-    for (std::size_t i = chunk * chunk_size; i < last; ++i) {
+    for (std::size_t i = first; i < last; ++i) {
+        const std::size_t own = i - before;
         Float4 row = operator_times(own_[i], direction_[i]);
-        for (std::uint32_t k = matrix.start[i]; k < matrix.start[i + 1]; ++k)
-            row += operator_times(matrix.block[k], direction_[matrix.column[k]]);
-        for (std::uint32_t k = matrix.far_start[i]; k < matrix.far_start[i + 1]; ++k)
-            row += matrix.far_value[k] * direction_[matrix.far_column[k]];
+        for (std::uint32_t k = matrix.start[own]; k < matrix.start[own + 1]; ++k)
+            row += operator_times(matrix.block[k], direction[matrix.column[k]]);
+        for (std::uint32_t k = matrix.far_start[own]; k < matrix.far_start[own + 1]; ++k)
+            row += matrix.far_value[k] * direction[matrix.far_column[k]];
         product_[i] = row;
         sum += product(row, direction_[i]);
     }
     parts_[chunk] = sum;
 }
 
-// What springs add between nodes and to bodies: a node's own part is in its block already.
+Vec3 ClothSolver::direction_of(std::uint32_t node) const {
+    return node < nodes_ ? to_vec3(direction_[node]) : line_direction_[node - nodes_];
+}
+
+// What springs add between nodes and to bodies: what the blocks of nodes and lines hold is in their products already.
 void ClothSolver::add_springs(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies) {
     double sum = 0;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         body_product_[b] = {bodies[b].mass * body_direction_[b].shift, bodies[b].inertia * body_direction_[b].turn};
         sum += product(body_product_[b], body_direction_[b]);
     }
+    line_product_ = line_own_product_;
     for (const std::uint32_t index : coupled_) {
         const TouchSpring& spring = springs[index];
+        const auto count = static_cast<std::size_t>(spring.count);
         const Mat3& k = spring.matrix;
         const bool has_body = moves_body(spring, bodies);
+        std::array<Vec3, 4> way;
         Vec3 stretch;
         if (has_body) stretch -= at_arm(body_direction_[spring.body], spring.arm);
-        for (std::size_t n = 0; n < static_cast<std::size_t>(spring.count); ++n)
-            stretch += spring.weight[n] * to_vec3(direction_[spring.node[n]]);
+        for (std::size_t n = 0; n < count; ++n) {
+            way[n] = spring.weight[n] * direction_of(spring.node[n]);
+            stretch += way[n];
+        }
         const Vec3 force = k * stretch;
-        for (std::size_t n = 0; n < static_cast<std::size_t>(spring.count); ++n) {
-            const double w = spring.weight[n];
-            const Vec3 p = to_vec3(direction_[spring.node[n]]);
-            const Vec3 added = w * (force - w * (k * p));
-            product_[spring.node[n]] += to_float4(added);
-            sum += dot(added, p);
+        for (std::size_t n = 0; n < count; ++n) {
+            const std::uint32_t node = spring.node[n];
+            Vec3 held;
+            for (std::size_t m = 0; m < count; ++m) {
+                if (is_same_block(node, spring.node[m])) held += way[m];
+            }
+            const Vec3 added = spring.weight[n] * (force - k * held);
+            if (node < nodes_) {
+                product_[node] += to_float4(added);
+                sum += dot(added, to_vec3(direction_[node]));
+            } else {
+                line_product_[node - nodes_] += added;
+            }
         }
         if (!has_body) continue;
         const BodyMove on_body{-force, -cross(spring.arm, force)};
@@ -171,13 +263,19 @@ void ClothSolver::add_springs(std::span<const TouchSpring> springs, std::span<co
         body_product_[spring.body].turn += on_body.turn;
         sum += product(on_body, body_direction_[spring.body]);
     }
+    for (std::size_t i = 0; i < line_product_.size(); ++i) {
+        if (line_fixed_[i]) line_product_[i] = {};
+        sum += dot(line_product_[i], line_direction_[i]);
+    }
     parts_.back() = sum;
 }
 
 // z = D⁻¹ r is done; now the bodies, and what their moves change at the nodes that they touch.
 void ClothSolver::precondition_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies) {
     body_better_ = body_residual_;
-    const auto is_held = [&](std::uint32_t s) { return springs[s].count == 1 && moves_body(springs[s], bodies); };
+    const auto is_held = [&](std::uint32_t s) {
+        return springs[s].count == 1 && springs[s].node[0] < nodes_ && moves_body(springs[s], bodies);
+    };
     for (const std::uint32_t s : coupled_) {
         if (!is_held(s)) continue;
         const TouchSpring& spring = springs[s];
@@ -196,37 +294,69 @@ void ClothSolver::precondition_bodies(std::span<const TouchSpring> springs, std:
     }
 }
 
+void ClothSolver::precondition_lines() {
+    line_better_ = line_residual_;
+    solve_lines(line_better_);
+}
+
 double ClothSolver::sum_of(const std::vector<double>& parts) const {
     double sum = 0;
     for (const double part : parts) sum += part;
     return sum;
 }
 
-void ClothSolver::iterate(const ClothMatrix& matrix, std::span<const TouchSpring> springs,
+// The next direction of bodies and lines. Of what a line's factor L Lᵀ = A makes of it: A z = r.
+void ClothSolver::go_on(std::span<const BodyInertia> bodies, double turn) {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        body_direction_[b] = {body_better_[b].shift + turn * body_direction_[b].shift,
+                              body_better_[b].turn + turn * body_direction_[b].turn};
+    }
+    for (std::size_t i = 0; i < line_direction_.size(); ++i) {
+        line_direction_[i] = line_better_[i] + turn * line_direction_[i];
+        line_own_product_[i] = line_residual_[i] + turn * line_own_product_[i];
+    }
+}
+
+void ClothSolver::go_along(double way, std::size_t bodies) {
+    for (std::size_t b = 0; b < bodies; ++b) {
+        body_answer_[b].shift += way * body_direction_[b].shift;
+        body_answer_[b].turn += way * body_direction_[b].turn;
+        body_residual_[b].shift -= way * body_product_[b].shift;
+        body_residual_[b].turn -= way * body_product_[b].turn;
+    }
+    for (std::size_t i = 0; i < line_answer_.size(); ++i) {
+        line_answer_[i] += way * line_direction_[i];
+        line_residual_[i] -= way * line_product_[i];
+    }
+}
+
+void ClothSolver::iterate(std::span<const SheetSystem> sheets, std::span<const TouchSpring> springs,
                           std::span<const BodyInertia> bodies, double enough, int worker, Barrier& barrier) {
-    const std::size_t chunks = parts_.size() - 1;
-    const Share share = share_of(chunks, worker, workers_);
-    const bool has_springs = !coupled_.empty();
+    const Share share = share_of(chunks_.size(), worker, workers_);
+    const std::size_t first = share.first < chunks_.size() ? chunks_[share.first].first : nodes_;
+    const std::size_t last = share.last < chunks_.size() ? chunks_[share.last].first : nodes_;
+    const bool has_others = !coupled_.empty() || !factors_.empty();
     const auto precondition = [&] {
-        for (std::size_t c = share.first; c < share.last; ++c) {
-            for (std::size_t i = c * chunk_size; i < std::min(nodes_, (c + 1) * chunk_size); ++i)
-                better_[i] = operator_times(inverse_[i], residual_[i]);
-        }
-        if (has_springs) {
+        for (std::size_t i = first; i < last; ++i) better_[i] = operator_times(inverse_[i], residual_[i]);
+        if (has_others) {
             barrier.wait();
-            if (worker == 0) precondition_bodies(springs, bodies);
+            if (worker == 0) {
+                precondition_bodies(springs, bodies);
+                precondition_lines();
+            }
             barrier.wait();
         }
         for (std::size_t c = share.first; c < share.last; ++c) {
             double sum = 0;
-            for (std::size_t i = c * chunk_size; i < std::min(nodes_, (c + 1) * chunk_size); ++i)
-                sum += product(better_[i], residual_[i]);
+            for (std::size_t i = chunks_[c].first; i < chunks_[c].last; ++i) sum += product(better_[i], residual_[i]);
             other_parts_[c] = sum;
         }
         if (worker == 0) {
             other_parts_.back() = 0;
-            for (std::size_t b = 0; b < bodies.size() && has_springs; ++b)
+            for (std::size_t b = 0; b < bodies.size() && has_others; ++b)
                 other_parts_.back() += product(body_better_[b], body_residual_[b]);
+            for (std::size_t i = 0; i < line_better_.size(); ++i)
+                other_parts_.back() += dot(line_better_[i], line_residual_[i]);
         }
         barrier.wait();
         return sum_of(other_parts_);
@@ -237,19 +367,13 @@ void ClothSolver::iterate(const ClothMatrix& matrix, std::span<const TouchSpring
     int round = 0;
     bool is_finite = std::isfinite(size);
     for (; round < most_rounds && size > enough; ++round) {
-        const auto turn = static_cast<float>(round == 0 ? 0 : size / previous);
-        for (std::size_t i = share.first * chunk_size; i < std::min(nodes_, share.last * chunk_size); ++i)
-            direction_[i] = better_[i] + turn * direction_[i];
-        if (worker == 0 && has_springs) {
-            for (std::size_t b = 0; b < bodies.size(); ++b) {
-                const double t = round == 0 ? 0 : size / previous;
-                body_direction_[b] = {body_better_[b].shift + t * body_direction_[b].shift,
-                                      body_better_[b].turn + t * body_direction_[b].turn};
-            }
-        }
+        const double turn = round == 0 ? 0 : size / previous;
+        const auto turn_f = static_cast<float>(turn);
+        for (std::size_t i = first; i < last; ++i) direction_[i] = better_[i] + turn_f * direction_[i];
+        if (worker == 0 && has_others) go_on(bodies, turn);
         barrier.wait();
-        for (std::size_t c = share.first; c < share.last; ++c) multiply_rows(matrix, c);
-        if (has_springs) {
+        for (std::size_t c = share.first; c < share.last; ++c) multiply_rows(sheets, c);
+        if (has_others) {
             barrier.wait();
             if (worker == 0) add_springs(springs, bodies);
         }
@@ -259,68 +383,101 @@ void ClothSolver::iterate(const ClothMatrix& matrix, std::span<const TouchSpring
         if (!(bend > 0) || !is_finite) break;
         const double way = size / bend;
         const auto step = static_cast<float>(way);
-        for (std::size_t i = share.first * chunk_size; i < std::min(nodes_, share.last * chunk_size); ++i) {
+        for (std::size_t i = first; i < last; ++i) {
             answer_[i] += step * direction_[i];
             residual_[i] -= step * product_[i];
         }
-        if (worker == 0 && has_springs) {
-            for (std::size_t b = 0; b < bodies.size(); ++b) {
-                body_answer_[b].shift += way * body_direction_[b].shift;
-                body_answer_[b].turn += way * body_direction_[b].turn;
-                body_residual_[b].shift -= way * body_product_[b].shift;
-                body_residual_[b].turn -= way * body_product_[b].turn;
-            }
-        }
+        if (worker == 0 && has_others) go_along(way, bodies.size());
         previous = size;
         size = precondition();
     }
     if (worker == 0) rounds_ = is_finite && std::isfinite(size) ? round : not_finite;
 }
 
-int ClothSolver::solve(const ClothMatrix& matrix, std::span<const Vec3> rhs, std::span<const Vec3> small_load,
-                       std::span<const std::uint8_t> fixed, std::span<const TouchSpring> springs,
-                       std::span<const BodyInertia> bodies, std::span<Vec3> moves, std::span<BodyMove> body_moves,
-                       TaskPool& workers) {
-    prepare(matrix, fixed, springs, bodies);
-    const std::size_t chunks = (nodes_ + chunk_size - 1) / chunk_size;
-    parts_.assign(chunks + 1, 0);
-    other_parts_.assign(chunks + 1, 0);
-    for (auto* vector : {&direction_, &product_, &residual_, &better_, &answer_}) vector->assign(nodes_, Float4{});
-    for (auto* vector : {&body_direction_, &body_product_, &body_residual_, &body_better_, &body_answer_})
-        vector->assign(bodies.size(), {});
-
-    // Residual of the guess, forces of springs with it.
+// Lines begin with what they would do alone. Returns the square of the small loads in the preconditioner's norm.
+double ClothSolver::guess(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
+                          std::span<const TouchSpring> springs, std::span<const Vec3> moves) {
     double load = 0;
-    for (std::size_t i = 0; i < nodes_; ++i) {
-        answer_[i] = direction_[i] = fixed[i] != 0 ? Float4{} : to_float4(moves[i]);
-        const Float4 small = to_float4(small_load[i]);
-        load += product(operator_times(inverse_[i], small), small);
+    for (std::size_t s = 0; s < sheets.size(); ++s) {
+        for (std::size_t i = 0; i < sheets[s].rhs.size(); ++i) {
+            const std::size_t at = sheet_first_[s] + i;
+            answer_[at] = direction_[at] = sheets[s].fixed[i] != 0 ? Float4{} : to_float4(moves[at]);
+            const Float4 small = to_float4(sheets[s].small_load[i]);
+            load += product(operator_times(inverse_[at], small), small);
+        }
     }
-    for (std::size_t b = 0; b < bodies.size(); ++b) body_answer_[b] = body_direction_[b] = body_moves[b];
-    share_among(workers, chunks, nodes_ >= 1000, [&](int, Share share) {
-        for (std::size_t c = share.first; c < share.last; ++c) multiply_rows(matrix, c);
+    if (lines.empty()) return load;
+    std::vector<Vec3> small;
+    for (std::size_t l = 0; l < lines.size(); ++l) {
+        std::ranges::copy(lines[l].rhs, line_own_product_.begin() + static_cast<std::ptrdiff_t>(line_first_[l]));
+        small.insert(small.end(), lines[l].small_load.begin(), lines[l].small_load.end());
+    }
+    for (const TouchSpring& spring : springs) {
+        for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count) && spring.acts; ++k) {
+            if (spring.node[k] >= nodes_) line_own_product_[spring.node[k] - nodes_] += spring.weight[k] * spring.load;
+        }
+    }
+    for (std::size_t i = 0; i < line_of_.size(); ++i) {
+        if (line_fixed_[i]) line_own_product_[i] = small[i] = {};
+    }
+    line_answer_ = line_own_product_;
+    solve_lines(line_answer_);
+    line_direction_ = line_answer_;
+    std::vector<Vec3> given = small;
+    solve_lines(given);
+    for (std::size_t i = 0; i < small.size(); ++i) load += dot(given[i], small[i]);
+    return load;
+}
+
+// Of the guess, forces of springs with it.
+void ClothSolver::find_residual(std::span<const SheetSystem> sheets, std::span<const TouchSpring> springs,
+                                std::span<const BodyInertia> bodies, TaskPool& workers) {
+    share_among(workers, chunks_.size(), nodes_ >= 1000, [&](int, Share share) {
+        for (std::size_t c = share.first; c < share.last; ++c) multiply_rows(sheets, c);
     });
     add_springs(springs, bodies);
-    for (std::size_t i = 0; i < nodes_; ++i) residual_[i] = to_float4(rhs[i]) - product_[i];
+    for (std::size_t s = 0; s < sheets.size(); ++s) {
+        for (std::size_t i = 0; i < sheets[s].rhs.size(); ++i)
+            residual_[sheet_first_[s] + i] = to_float4(sheets[s].rhs[i]) - product_[sheet_first_[s] + i];
+    }
     for (std::size_t b = 0; b < bodies.size(); ++b)
         body_residual_[b] = {-body_product_[b].shift, -body_product_[b].turn};
     for (const TouchSpring& spring : springs) {
         if (!spring.acts) continue;
-        for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
-            residual_[spring.node[k]] += to_float4(spring.weight[k] * spring.load);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k) {
+            if (spring.node[k] < nodes_) residual_[spring.node[k]] += to_float4(spring.weight[k] * spring.load);
+        }
         if (!moves_body(spring, bodies)) continue;
         body_residual_[spring.body].shift -= spring.load;
         body_residual_[spring.body].turn -= cross(spring.arm, spring.load);
     }
+    // A line's own equations hold, so what is left is what couples it.
+    for (std::size_t i = 0; i < line_of_.size(); ++i)
+        line_residual_[i] = line_fixed_[i] ? Vec3{} : line_own_product_[i] - line_product_[i];
+}
+
+int ClothSolver::solve(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
+                       std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies, std::span<Vec3> moves,
+                       std::span<BodyMove> body_moves, TaskPool& workers) {
+    lay_out(sheets, lines);
+    if (!prepare(sheets, lines, springs, bodies)) return not_finite;
+    parts_.assign(chunks_.size() + 1, 0);
+    other_parts_.assign(chunks_.size() + 1, 0);
+    for (auto* vector : {&body_direction_, &body_product_, &body_residual_, &body_better_, &body_answer_})
+        vector->assign(bodies.size(), {});
+    const double load = guess(sheets, lines, springs, moves);
+    for (std::size_t b = 0; b < bodies.size(); ++b) body_answer_[b] = body_direction_[b] = body_moves[b];
+    find_residual(sheets, springs, bodies, workers);
     // Fixed nodes give way to nothing: their part of the residual is the force that holds them.
     const double enough = tolerance * tolerance * load;
     workers_ = nodes_ >= 1000 ? workers.workers() : 1;
     Barrier barrier(workers_);
     if (workers_ > 1)
-        workers.run([&](int worker) { iterate(matrix, springs, bodies, enough, worker, barrier); });
+        workers.run([&](int worker) { iterate(sheets, springs, bodies, enough, worker, barrier); });
     else
-        iterate(matrix, springs, bodies, enough, 0, barrier);
+        iterate(sheets, springs, bodies, enough, 0, barrier);
     for (std::size_t i = 0; i < nodes_; ++i) moves[i] = to_vec3(answer_[i]);
+    std::ranges::copy(line_answer_, moves.begin() + static_cast<std::ptrdiff_t>(nodes_));
     for (std::size_t b = 0; b < bodies.size(); ++b) body_moves[b] = body_answer_[b];
     return rounds_;
 }

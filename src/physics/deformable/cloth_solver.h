@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "foundation/task_pool.h"
+#include "physics/deformable/band_cholesky.h"
 #include "physics/deformable/touch_springs.h"
 
 namespace embody::physics {
@@ -27,20 +28,35 @@ struct ClothMatrix {
     std::vector<float> far_value;
 };
 
+/// A sheet's part of the equations, an entry a node.
+struct SheetSystem {
+    const ClothMatrix* matrix = nullptr;
+    std::span<const Vec3> rhs;            ///< N
+    std::span<const Vec3> small_load;     ///< N
+    std::span<const std::uint8_t> fixed;  ///< nodes that do not move
+};
+
+/// A rope's part of them. The solver adds the springs to `matrix` and factorises it.
+struct LineSystem {
+    BandCholesky* matrix = nullptr;
+    std::span<const Vec3> rhs;         ///< N
+    std::span<const Vec3> small_load;  ///< N
+    const std::vector<bool>* fixed = nullptr;
+};
+
 /// Conjugate gradients for the moves of nodes and touched bodies,
 ///   (A + springs) d = rhs.
-/// Preconditioned by the inverse of everything that couples a node with itself and with the bodies that hold it:
-/// springs of any stiffness cost no rounds. In floats, sums in doubles and in a fixed order: same bits for any worker
-/// count.
+/// Preconditioned by the inverse of everything that couples a node with itself and with the bodies that hold it, and of
+/// all that couples the nodes of a line: springs and lines of any stiffness cost no rounds. Sheets in floats, sums in
+/// doubles and in a fixed order: same bits for any worker count.
 class ClothSolver {
 public:
-    /// `fixed`: nodes that do not move. `moves`: first guess and answer. It ends when
-    /// the residual is `tolerance` of `small_load` (N) in the norm of the preconditioner.
-    /// Returns the rounds that it took, or not_finite where numbers have broken.
-    int solve(const ClothMatrix& matrix, std::span<const Vec3> rhs, std::span<const Vec3> small_load,
-              std::span<const std::uint8_t> fixed, std::span<const TouchSpring> springs,
-              std::span<const BodyInertia> bodies, std::span<Vec3> moves, std::span<BodyMove> body_moves,
-              TaskPool& workers);
+    /// Nodes are counted through, sheet after sheet, then line after line: by those numbers springs name them. `moves`:
+    /// first guess and answer. It ends when the residual is `tolerance` of the small loads in the norm of the
+    /// preconditioner. Returns the rounds that it took, or not_finite where numbers have broken.
+    int solve(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
+              std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies, std::span<Vec3> moves,
+              std::span<BodyMove> body_moves, TaskPool& workers);
 
     static constexpr int not_finite = -1;
     double tolerance = 5e-3;
@@ -50,22 +66,51 @@ private:
     struct BodyFactor {
         std::array<double, 36> factor{};  // of its mass and what springs add, what nodes give way taken off
     };
-    void prepare(const ClothMatrix& matrix, std::span<const std::uint8_t> fixed, std::span<const TouchSpring> springs,
-                 std::span<const BodyInertia> bodies);
-    void multiply_rows(const ClothMatrix& matrix, std::size_t chunk);
+    // A run of nodes of one sheet.
+    struct Chunk {
+        std::uint32_t sheet = 0;
+        std::size_t first = 0, last = 0;
+    };
+    void lay_out(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines);
+    bool prepare(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
+                 std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
+    void prepare_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
+    bool prepare_lines(std::span<const LineSystem> lines, std::span<const TouchSpring> springs);
+    double guess(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
+                 std::span<const TouchSpring> springs, std::span<const Vec3> moves);
+    void find_residual(std::span<const SheetSystem> sheets, std::span<const TouchSpring> springs,
+                       std::span<const BodyInertia> bodies, TaskPool& workers);
+    void multiply_rows(std::span<const SheetSystem> sheets, std::size_t chunk);
     void add_springs(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
     void precondition_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
-    void iterate(const ClothMatrix& matrix, std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies,
-                 double enough, int worker, Barrier& barrier);
+    void precondition_lines();
+    void solve_lines(std::span<Vec3> rhs) const;
+    void go_on(std::span<const BodyInertia> bodies, double turn);
+    void go_along(double way, std::size_t bodies);
+    [[nodiscard]] Vec3 direction_of(std::uint32_t node) const;
+    [[nodiscard]] bool is_contained(const TouchSpring& spring, std::span<const BodyInertia> bodies) const;
+    [[nodiscard]] bool is_same_block(std::uint32_t a, std::uint32_t b) const {
+        return a == b || (a >= nodes_ && b >= nodes_ && line_of_[a - nodes_] == line_of_[b - nodes_]);
+    }
+    void iterate(std::span<const SheetSystem> sheets, std::span<const TouchSpring> springs,
+                 std::span<const BodyInertia> bodies, double enough, int worker, Barrier& barrier);
     [[nodiscard]] double sum_of(const std::vector<double>& parts) const;
 
     std::vector<Block> own_, inverse_;  // node's own block, springs with it, and its inverse
     std::vector<Float4> direction_, product_, residual_, better_, answer_;  // p, q, r, z, d
     std::vector<BodyMove> body_direction_, body_product_, body_residual_, body_better_, body_answer_;
     std::vector<BodyFactor> body_factors_;
-    std::vector<std::uint32_t> coupled_;  // springs of more than one node or a body that moves
+    // Of nodes of lines; product: of the line's own factor, and with what couples it.
+    std::vector<Vec3> line_direction_, line_own_product_, line_product_, line_residual_, line_better_, line_answer_;
+    std::vector<std::uint32_t> line_of_;
+    std::vector<std::size_t> line_first_;  // of line_of_, one more than lines
+    std::vector<bool> line_fixed_;
+    std::vector<const BandCholesky*> factors_;
+    std::vector<Chunk> chunks_;
+    std::vector<std::size_t> sheet_first_;
+    std::vector<std::uint32_t> coupled_;  // springs that the preconditioner's blocks do not hold
     std::vector<double> parts_, other_parts_;
-    std::size_t nodes_ = 0;
+    std::size_t nodes_ = 0;  // of sheets
     int workers_ = 1, rounds_ = 0;
 };
 

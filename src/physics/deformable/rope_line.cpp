@@ -149,6 +149,7 @@ double RopeLine::merit(const Substep& substep, std::span<const BodyInertia> iner
         if (fixed_[i]) continue;
         const Vec3 away = moves[i] - h * nodes_.mean_velocity[i] - h * h * substep.gravity;
         sum += nodes_.mass[i] / (2 * h * h) * length_squared(away);
+        if (!given_.empty()) sum -= dot(given_[i], moves[i]);
     }
     for (std::size_t s = 0; s < segments_.size(); ++s) {
         if (segments_[s].is_broken) continue;
@@ -210,6 +211,7 @@ void RopeLine::assemble(const Substep& substep, bool with_curvature) {
         places_[i] = nodes_.position[i] + moves_[i];
         system_.band.add_diagonal(i, nodes_.mass[i] / (h * h));
         system_.rhs[i] = nodes_.mass[i] * (nodes_.mean_velocity[i] / h + substep.gravity);
+        if (!given_.empty()) system_.rhs[i] += given_[i];
     }
     for (std::size_t s = 0; s < segments_.size(); ++s) add_stretch(s, h);
     for (std::size_t i = 1; i + 1 < count; ++i) add_bend(i);
@@ -282,10 +284,9 @@ void RopeLine::go_on_from(const RopeLine& other) {
     clamps_.set(own);
 }
 
-void RopeLine::advance(const Substep& substep, std::span<const NodeContact> contacts,
-                       std::span<const SegmentContact> segment_contacts,
-                       std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies) {
-    if (is_frozen_) return;
+void RopeLine::begin(const Substep& substep, std::span<const NodeContact> contacts,
+                     std::span<const SegmentContact> segment_contacts, std::span<const std::uint32_t> attachment_bodies,
+                     std::span<const TouchedBody> bodies) {
     const std::size_t count = nodes_.size();
     springs_.attachment_bodies.assign(attachment_bodies.begin(), attachment_bodies.end());
     clamps_.begin({rope_, segments_, nodes_, fixed_, springs_, bodies, substep});
@@ -297,18 +298,40 @@ void RopeLine::advance(const Substep& substep, std::span<const NodeContact> cont
     springs_.begin(nodes_, contacts, bodies, substep, node_stiffness_);
     for (const SegmentContact& contact : segment_contacts)
         springs_.add(nodes_, contact, bodies, substep, node_stiffness_);
-    if (!solve_moves(substep, bodies)) {
-        is_frozen_ = true;
-        for (std::size_t i = 0; i < count; ++i) nodes_.mean_velocity[i] = nodes_.velocity[i] = {};
-        return;
-    }
+}
+
+LineSystem RopeLine::linearize(const Substep& substep, std::span<const Vec3> moves) {
+    moves_.assign(moves.begin(), moves.end());
+    assemble(substep, false);                                     // without what may not be positive
+    const double least = std::max(length(substep.gravity), 1.0);  // m/s²: an acceleration that matters anywhere
+    small_load_.resize(nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) small_load_[i] = {0, nodes_.mass[i] * least, 0};
+    return {&system_.band, system_.rhs, small_load_, &fixed_};
+}
+
+void RopeLine::freeze() {
+    is_frozen_ = true;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.mean_velocity[i] = nodes_.velocity[i] = {};
+}
+
+void RopeLine::advance(const Substep& substep, std::span<const NodeContact> contacts,
+                       std::span<const SegmentContact> segment_contacts,
+                       std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies,
+                       std::span<const Vec3> given) {
+    if (is_frozen_) return;
+    const std::size_t count = nodes_.size();
+    given_.assign(given.begin(), given.end());
+    begin(substep, contacts, segment_contacts, attachment_bodies, bodies);
+    if (!solve_moves(substep, bodies)) return freeze();
     const auto acts = [](const TouchSpring& spring) { return spring.acts; };
     const bool is_whole = std::ranges::none_of(segments_, &RopeSegment::is_broken);
     if (is_whole && std::ranges::find(fixed_, true) == fixed_.end() && std::ranges::none_of(springs_.springs(), acts)) {
-        std::vector<Vec3> given(count);
-        for (std::size_t i = 0; i < count; ++i) given[i] = substep.h * nodes_.mass[i] * substep.gravity;
-        keep_momenta(nodes_, given, substep.h, moves_);
+        std::vector<Vec3> all(count);
+        for (std::size_t i = 0; i < count; ++i) all[i] = substep.h * nodes_.mass[i] * substep.gravity;
+        for (std::size_t i = 0; i < given.size(); ++i) all[i] += substep.h * given[i];
+        keep_momenta(nodes_, all, substep.h, moves_);
     }
+    given_.clear();
     springs_.finish(moves_, body_moves_, substep, bodies);
     if (clamps_.holds_any()) {
         for (std::size_t i = 0; i < count; ++i) places_[i] = nodes_.position[i] + moves_[i];

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "physics/deformable/cloth_solver.h"
 #include "physics/deformable/nodes.h"
 #include "physics/deformable/rope_clamps.h"
 #include "physics/deformable/rope_system.h"
@@ -16,10 +17,24 @@ public:
     /// `definition` is valid and its matter is a rope.
     explicit RopeLine(const DeformableDefinition& definition);
 
-    /// One substep. `attachment_bodies`: where the attachments hold in `bodies`. Pushes the bodies.
+    /// One substep. `attachment_bodies`: where the attachments hold in `bodies`; `given`: forces on the nodes besides,
+    /// N; none or one a node. Pushes the bodies.
     void advance(const Substep& substep, std::span<const NodeContact> contacts,
                  std::span<const SegmentContact> segment_contacts, std::span<const std::uint32_t> attachment_bodies,
-                 std::span<TouchedBody> bodies);
+                 std::span<TouchedBody> bodies, std::span<const Vec3> given = {});
+
+    // For a solve together with other sheets and ropes that it touches, before advance() (docs/physics/cloth.md):
+    /// Finds touch() and node_stiffness() for the substep.
+    void begin(const Substep& substep, std::span<const NodeContact> contacts,
+               std::span<const SegmentContact> segment_contacts, std::span<const std::uint32_t> attachment_bodies,
+               std::span<const TouchedBody> bodies);
+    /// The equations about these moves, without springs; valid until the next call. Their answer are moves again.
+    LineSystem linearize(const Substep& substep, std::span<const Vec3> moves);
+    [[nodiscard]] const TouchSprings& touch() const { return springs_; }
+    /// How each node resists on its own, N/m, since begin().
+    [[nodiscard]] std::span<const double> node_stiffness() const { return node_stiffness_; }
+    /// Stops it for good where it is.
+    void freeze();
 
     /// Instead of the definition's.
     void set_attachments(const std::vector<Attachment>& attachments) { springs_.attachments = attachments; }
@@ -87,9 +102,10 @@ private:
     // Of the substep.
     RopeSystem system_;
     std::vector<Vec3> places_, moves_, next_moves_;
-    std::vector<Bend> bends_;            // by node, when the substep began
-    std::vector<double> start_lengths_;  // of segments, then, m
-    std::vector<double> pulls_;          // of segments, as the last round foretold them, N
+    std::vector<Vec3> given_, small_load_;  // N
+    std::vector<Bend> bends_;               // by node, when the substep began
+    std::vector<double> start_lengths_;     // of segments, then, m
+    std::vector<double> pulls_;             // of segments, as the last round foretold them, N
     std::vector<double> node_stiffness_;
     std::vector<BodyMove> body_moves_, next_body_moves_;
     std::vector<double> moments_;  // of twists, as the last round foretold them, N m

@@ -10,14 +10,57 @@ namespace {
 
 constexpr double stiffness_factor = 20;  // over what the node's neighbours resist with
 
-Vec3 across(Vec3 v, Vec3 normal) { return v - dot(v, normal) * normal; }
-
 // How the surface of a body goes on its path within the substep.
 Vec3 path_of(const TouchedBody& body, Vec3 arm, double h) {
     return h * (body.path_velocity + body.velocity + cross(body.path_spin + body.spin, arm));
 }
 
+// Friction: k (hold + slip) up to its limit. Beyond it the secant through that limit at the slip to be expected, which
+// can only stop what slides; where the slip is so long that friction cannot end it in this substep, the limit itself.
+// Expected of what stuck is what the point would do alone with the limit instead of the larger force that it had.
+// Returns by how much the force is another than before, N.
+double choose_friction(TouchSpring& spring, Vec3 s, double limit, bool is_foretold) {
+    const Mat3 plane = Mat3::identity() - outer(spring.normal, spring.normal);
+    const Vec3 loose = spring.hold - across(spring.carried, spring.normal);  // stretch with s = 0
+    const Vec3 stretch = loose + across(s, spring.normal), force = across(spring.force(s), spring.normal);
+    const double size = length(stretch);
+    const double excess = length(force) - limit;
+    const bool has_stuck = length(force) > 0.99 * spring.stiffness * size;
+    const double expected = !is_foretold && has_stuck && excess > 0 ? size + excess / spring.inertia : size;
+    const bool sticks = limit > 0 && spring.stiffness * expected <= limit;
+    const double tangent = sticks ? spring.stiffness : limit > 0 ? limit / expected : 0;
+    spring.matrix = tangent * plane;
+    spring.load = -tangent * loose;
+    if (!sticks && spring.inertia * expected > 2 * limit && size > 0) {
+        const Vec3 way = stretch / size;
+        spring.load -= (limit - tangent * dot(way, loose)) * way;
+        spring.matrix = spring.matrix - tangent * outer(way, way);
+    }
+    return length(force - (spring.load - spring.matrix * s));
+}
+
 }  // namespace
+
+void choose_contact(TouchSpring& spring, Vec3 s, bool is_foretold, SpringChange& sum) {
+    const double push_before = dot(spring.pull, spring.normal);
+    const double depth = -(spring.gap + dot(spring.normal, s)), push = push_before + spring.stiffness * depth;
+    const bool is_new = !spring.acts;
+    if (is_new != (push <= 0)) sum.change += std::fabs(push);
+    // What pushed in the last substep is let go by a solve alone: the stiff spring calls every breath a leave.
+    sum.near += std::fabs(push);
+    spring.acts = push > 0 || (is_foretold && push_before > 0);
+    if (!spring.acts) {
+        spring.matrix = Mat3::zero();
+        spring.load = {};
+        return;
+    }
+    sum.acting += std::fabs(push);
+    // How deep something came that was not held back tells what it takes to stop it, not what the spring would push.
+    const double expected = is_foretold ? push_before : is_new ? push_before + spring.inertia * depth : push;
+    sum.change += choose_friction(spring, s, spring.friction * expected, is_foretold);
+    spring.matrix += spring.stiffness * outer(spring.normal, spring.normal);
+    spring.load += (push_before - spring.stiffness * spring.gap) * spring.normal;
+}
 
 std::vector<BodyInertia> inertias_of(std::span<const TouchedBody> bodies, double h) {
     std::vector<BodyInertia> inertias;
@@ -126,32 +169,8 @@ void TouchSprings::begin(const Nodes& nodes, std::span<const NodeContact> contac
     }
 }
 
-// Friction: k (hold + slip) up to its limit. Beyond it the secant through that limit at the slip to be expected, which
-// can only stop what slides; where the slip is so long that friction cannot end it in this substep, the limit itself.
-// Expected of what stuck is what the point would do alone with the limit instead of the larger force that it had.
-// Returns by how much the force is another than before, N.
-double TouchSprings::choose_friction(TouchSpring& spring, Vec3 s, double limit, bool is_foretold) {
-    const Mat3 plane = Mat3::identity() - outer(spring.normal, spring.normal);
-    const Vec3 loose = spring.hold - across(spring.carried, spring.normal);  // stretch with s = 0
-    const Vec3 stretch = loose + across(s, spring.normal), force = across(spring.force(s), spring.normal);
-    const double size = length(stretch);
-    const double excess = length(force) - limit;
-    const bool has_stuck = length(force) > 0.99 * spring.stiffness * size;
-    const double expected = !is_foretold && has_stuck && excess > 0 ? size + excess / spring.inertia : size;
-    const bool sticks = limit > 0 && spring.stiffness * expected <= limit;
-    const double tangent = sticks ? spring.stiffness : limit > 0 ? limit / expected : 0;
-    spring.matrix = tangent * plane;
-    spring.load = -tangent * loose;
-    if (!sticks && spring.inertia * expected > 2 * limit && size > 0) {
-        const Vec3 way = stretch / size;
-        spring.load -= (limit - tangent * dot(way, loose)) * way;
-        spring.matrix = spring.matrix - tangent * outer(way, way);
-    }
-    return length(force - (spring.load - spring.matrix * s));
-}
-
 bool TouchSprings::choose(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, bool is_foretold) {
-    double change = 0, all = 0;
+    SpringChange sum;
     for (TouchSpring& spring : springs_) {
         if (spring.is_attachment) {
             spring.acts = true;
@@ -159,36 +178,33 @@ bool TouchSprings::choose(std::span<const Vec3> node_moves, std::span<const Body
             spring.load = spring.pull - spring.stiffness * spring.carried;
             continue;
         }
-        const Vec3 s = spring.lead(node_moves, body_moves);
-        const double push_before = dot(spring.pull, spring.normal);
-        const double depth = -(spring.gap + dot(spring.normal, s)), push = push_before + spring.stiffness * depth;
-        const bool is_new = !spring.acts;
-        if (is_new != (push <= 0)) change += std::fabs(push);
-        // What pushed in the last substep is let go by a solve alone: the stiff spring calls every breath a leave.
-        spring.acts = push > 0 || (is_foretold && push_before > 0);
-        all += std::fabs(push);
-        if (!spring.acts) {
-            spring.matrix = Mat3::zero();
-            spring.load = {};
-            continue;
-        }
-        // How deep something came that was not held back tells what it takes to stop it, not what the spring would
-        // push.
-        const double expected = is_foretold ? push_before : is_new ? push_before + spring.inertia * depth : push;
-        change += choose_friction(spring, s, spring.friction * expected, is_foretold);
-        spring.matrix += spring.stiffness * outer(spring.normal, spring.normal);
-        spring.load += (push_before - spring.stiffness * spring.gap) * spring.normal;
+        choose_contact(spring, spring.lead(node_moves, body_moves), is_foretold, sum);
     }
-    return change > tolerance * all;
+    return sum.change > tolerance * sum.near;
 }
 
-void TouchSprings::finish(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves,
-                          const Substep& substep, std::span<TouchedBody> bodies) {
+// What has come in where no solve has seen a contact, since it was not worth another, is stopped on its own.
+bool TouchSprings::stop(TouchSpring& spring, std::span<Vec3> node_moves, std::span<const BodyMove> body_moves) {
+    if (spring.count != 1 || spring.is_attachment) return false;
+    const Vec3 s = spring.lead(node_moves, body_moves), slip = across(s - spring.carried, spring.normal);
+    const double depth = -(spring.gap + dot(spring.normal, s));
+    if (depth <= 0) return false;
+    const double push = spring.inertia * depth, size = length(slip);
+    spring.felt = push * spring.normal;
+    if (size > 0) spring.felt -= (std::min(spring.friction * push, spring.inertia * size) / size) * slip;
+    node_moves[spring.node[0]] += spring.felt / spring.inertia;
+    return spring.acts = true;
+}
+
+void TouchSprings::finish(std::span<Vec3> node_moves, std::span<const BodyMove> body_moves, const Substep& substep,
+                          std::span<TouchedBody> bodies) {
     memory_.clear();
     for (TouchSpring& spring : springs_) {
-        if (!spring.acts) continue;
-        const Vec3 s = spring.lead(node_moves, body_moves);
-        const Vec3 force = spring.felt = spring.force(s);
+        if (spring.acts)
+            spring.felt = spring.force(spring.lead(node_moves, body_moves));
+        else if (!stop(spring, node_moves, body_moves))
+            continue;
+        const Vec3 s = spring.lead(node_moves, body_moves), force = spring.felt;
         if (spring.body == no_body) continue;
         bodies[spring.body].push(-substep.h * force, spring.arm, substep.h);
         Memory memory{

@@ -63,6 +63,17 @@ struct TouchSpring {
     [[nodiscard]] Vec3 lead(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves) const;
 };
 
+/// How much of contacts' forces has changed, N, beside those of contacts that act, and those that all that are near
+/// would have: the finer and the coarser measure.
+struct SpringChange {
+    double change = 0, acting = 0, near = 0;
+};
+/// Whether a contact acts, and how its friction does, for that lead (m). `is_foretold`: of moves by inertia alone, no
+/// measure of forces: those of the last substep are.
+void choose_contact(TouchSpring& spring, Vec3 s, bool is_foretold, SpringChange& sum);
+/// The part of v along a plane.
+inline Vec3 across(Vec3 v, Vec3 normal) { return v - dot(v, normal) * normal; }
+
 /// Contacts and attachments of one deformable as springs with memory. A spring starts where it left off in the last
 /// substep, so its force grows until nothing gives way any more: stiff as it is, it acts like a hard contact (method of
 /// multipliers, one round a substep; stable from a stiffness of the node's own on). Friction is a spring along the
@@ -77,10 +88,10 @@ public:
     void add(const Nodes& nodes, const SegmentContact& contact, std::span<const TouchedBody> bodies,
              const Substep& substep, std::span<const double> node_stiffness);
     /// Which springs act, and how friction does, for these moves. True where that has changed by more than a solve is
-    /// worth. `is_foretold`: of moves by inertia alone, no measure of forces: those of the last substep are.
+    /// worth. `is_foretold`: as of choose_contact().
     bool choose(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, bool is_foretold);
-    /// Pushes the bodies, and remembers.
-    void finish(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, const Substep& substep,
+    /// Pushes the bodies, and remembers. Changes moves of nodes that came in where no spring acted.
+    void finish(std::span<Vec3> node_moves, std::span<const BodyMove> body_moves, const Substep& substep,
                 std::span<TouchedBody> bodies);
 
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_; }
@@ -107,7 +118,7 @@ private:
                   const Substep& substep, std::span<const double> node_stiffness, TouchSpring& spring);
     [[nodiscard]] bool is_attached(std::uint32_t node, std::uint32_t body) const;
     void recall(const TouchedBody& body, TouchSpring& spring) const;
-    static double choose_friction(TouchSpring& spring, Vec3 s, double limit, bool is_foretold);
+    static bool stop(TouchSpring& spring, std::span<Vec3> node_moves, std::span<const BodyMove> body_moves);
 
     std::vector<TouchSpring> springs_;
     std::vector<Memory> memory_;  // by node

@@ -40,4 +40,15 @@ void TouchedBody::push_turn(Vec3 given, double h) {
     angular_impulse += given;
 }
 
+PartPushes::PartPushes(std::span<const TouchedBody> bodies) {
+    for (const TouchedBody& body : bodies) velocities_.emplace_back(body.velocity, body.spin);
+}
+
+void PartPushes::go_on(std::span<TouchedBody> bodies, double h) const {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        bodies[b].shift += h * (bodies[b].velocity - velocities_[b].first);
+        bodies[b].turn += h * (bodies[b].spin - velocities_[b].second);
+    }
+}
+
 }  // namespace embody::physics

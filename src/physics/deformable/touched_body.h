@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "math/mat3.h"
 #include "math/transform.h"
@@ -51,6 +53,18 @@ struct TouchedBody {
 private:
     // A path of constant acceleration is off the straight one by this times the acceleration, s².
     [[nodiscard]] double bend(double time) const { return time * (time - step_time) / 2; }
+};
+
+/// Carries bodies through the parts of a substep: what earlier parts have pushed goes on in the next.
+class PartPushes {
+public:
+    /// Before the first part.
+    explicit PartPushes(std::span<const TouchedBody> bodies);
+    /// Before each further one, of h seconds.
+    void go_on(std::span<TouchedBody> bodies, double h) const;
+
+private:
+    std::vector<std::pair<Vec3, Vec3>> velocities_;  // off the path, and spins
 };
 
 }  // namespace embody::physics

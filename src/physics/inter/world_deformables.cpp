@@ -5,6 +5,7 @@
 
 #include "physics/deformable/rotation_part.h"
 #include "physics/inter/world.h"
+#include "physics/step/thin_groups.h"
 #include "physics/step/world_state.h"
 
 namespace embody::physics {
@@ -82,6 +83,7 @@ Result<void> World::destroy_deformable(DeformableHandle deformable) {
         if (state_->is_used(body)) state_->to_wake.push_back(body);
     }
     state_->deformables.remove(deformable);
+    forget_thin_contacts(*state_, deformable.index);
     for (std::uint32_t slot = 0; slot < state_->deformables.slot_count(); ++slot) {
         if (!state_->deformables.used(slot)) continue;
         std::erase_if(state_->deformables.at(slot).surface_pushes,
@@ -164,6 +166,7 @@ Result<void> World::set_nodes(DeformableHandle deformable, std::span<const Vec3>
     record->set_motion(positions, velocities, nearest_rigid_motion(*record).rotation);
     record->last_positions = record->nodes().position;
     record->contacts.clear();
+    forget_thin_contacts(*state_, deformable.index);
     wake_up(*record);
     return {};
 }

@@ -30,7 +30,7 @@ struct DeformableRecord {
     std::vector<std::uint32_t> segment_capsule;             ///< by segment: index of its capsule
     std::vector<SolidContact> contacts;                     ///< a solid's of the last step
     std::vector<std::uint32_t> touched_bodies;              ///< slots: those that it pushed in the last step
-    std::vector<std::uint32_t> touched_deformables;         ///< slots: a solid's
+    std::vector<std::uint32_t> touched_deformables;         ///< slots
     std::vector<SurfacePush> surface_pushes;                ///< a sheet's or rope's, of its last substep
     std::uint32_t slot = 0;                                 ///< its own, while it moves
     double quiet_time = 0;                                  ///< s

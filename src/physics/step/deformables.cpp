@@ -8,7 +8,7 @@
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/step/solid_contact_search.h"
 #include "physics/step/step.h"
-#include "physics/step/thin_on_solids.h"
+#include "physics/step/thin_groups.h"
 
 namespace embody::physics {
 
@@ -103,6 +103,7 @@ struct MovingDeformables {
     std::vector<DeformableRecord*> solid_records;  ///< those of solids
     std::vector<SolidDeformable*> solids;          ///< of these, in their order
     std::vector<ThinDeformable> thin;              ///< sheets and ropes
+    std::vector<ThinGroup> groups;                 ///< of these
     std::vector<TouchedBody> bodies;               ///< by slot
     std::vector<SolidContact> contacts;            ///< solid after solid
     [[nodiscard]] std::uint32_t index_of(std::uint32_t slot) const {
@@ -138,37 +139,6 @@ void find_contacts_of(const WorldState& world, const MovingDeformables& moving, 
         thin.attachment_bodies.push_back(is_there ? moving.index_of(attachment.body.index) : no_body);
     }
     find_thin_contacts(moving.bodies, colliding, world.settings.time_step, world.settings.gravity, thin);
-}
-
-void note_breaks(WorldState& world, const DeformableRecord& record) {
-    const std::vector<Vec3>& nodes = record.nodes().position;
-    for (const auto& [segment, tension] : record.rope->new_breaks()) {
-        const DeformableHandle rope = world.deformables.handle_at(record.slot);
-        world.rope_break_events.push_back(
-            {rope, record.definition.user_data, segment, tension, (nodes[segment] + nodes[segment + 1]) / 2});
-    }
-}
-
-// Ropes in each substep; cloth, whose solve is dear, once for the whole step after the last of the others.
-void advance_thin_ones(WorldState& world, MovingDeformables& moving, int k) {
-    const int substeps = world.settings.deformable_substeps;
-    const double step = world.settings.time_step, h = step / substeps;
-    const Wind wind = world.wind();
-    ThinOnSolids solids(world);
-    for (ThinDeformable& thin : moving.thin) {
-        if (thin.record->cloth && k < substeps) continue;
-        Substep substep{.h = h, .time = (k - 1) * h};
-        if (thin.record->cloth) substep = {.h = step, .time = 0};
-        substep.gravity = thin.record->definition.gravity_factor * world.settings.gravity;
-        substep.wind = wind;
-        substep.air_density = world.settings.air_density;
-        const std::size_t bodies = moving.bodies.size();
-        solids.add(thin, moving.bodies, substep.h);
-        advance_thin(thin, substep, moving.bodies, *world.workers);
-        if (thin.record->rope) note_breaks(world, *thin.record);
-        solids.take(thin, moving.bodies, bodies);
-        moving.bodies.resize(bodies);
-    }
 }
 
 // What sheets and ropes pushed the solids in their last substep.
@@ -211,7 +181,7 @@ void run_substeps(WorldState& world, MovingDeformables& moving) {
         share_solids(world, moving, [&](std::size_t i, TaskPool& workers) { moving.solids[i]->solve(workers); });
         world.solid_contacts.solve(moving.contacts, moving.solids, moving.bodies, h, k * h, *world.workers);
         share_solids(world, moving, [&](std::size_t i, TaskPool&) { moving.solids[i]->finish(); });
-        advance_thin_ones(world, moving, k);
+        advance_thin_groups(world, moving.groups, moving.thin, moving.bodies, k);
     }
 }
 
@@ -279,6 +249,12 @@ void keep_contacts(WorldState& world, MovingDeformables& moving) {
             world.deformables.at(push.slot).touched_deformables.push_back(record->slot);
         }
     }
+    for (const auto& [slots, contacts] : world.thin_contacts) {
+        if (world.deformables.at(slots.first).is_asleep) continue;  // it keeps what it touched
+        if (std::ranges::none_of(contacts, [](const ThinContact& contact) { return contact.push > 0; })) continue;
+        world.deformables.at(slots.first).touched_deformables.push_back(slots.second);
+        world.deformables.at(slots.second).touched_deformables.push_back(slots.first);
+    }
     for (DeformableRecord* record : moving.records) {
         sort_out(record->touched_bodies);
         sort_out(record->touched_deformables);
@@ -338,6 +314,7 @@ void put_to_sleep(WorldState& world, MovingDeformables& moving) {
 
 void advance_deformables(WorldState& world) {
     MovingDeformables moving;
+    wake_touched_thin(world);
     for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
         if (!world.deformables.used(slot)) continue;
         DeformableRecord& record = world.deformables.at(slot);
@@ -359,6 +336,7 @@ void advance_deformables(WorldState& world) {
     gather_bodies(world, moving);
     moving.contacts = find_solid_contacts(world, moving.solid_records, moving.bodies);
     for (ThinDeformable& thin : moving.thin) find_contacts_of(world, moving, thin);
+    moving.groups = find_thin_groups(world, moving.thin);
     run_substeps(world, moving);
     put_back_bodies(world, moving);
     keep_contacts(world, moving);

@@ -14,8 +14,10 @@ namespace embody::physics {
 /// a body that cannot be moved; what the sheet pushes acts on the solid from its next substep on.
 class ThinOnSolids {
 public:
+    /// Surfaces of solids as they lie now, by slot, found when they are asked for.
+    using Surfaces = std::map<std::uint32_t, PlacedSurface>;
     /// All enabled solids of the world as they lie now, asleep or not.
-    explicit ThinOnSolids(WorldState& world) : world_(world) {}
+    ThinOnSolids(WorldState& world, Surfaces& surfaces) : world_(world), surfaces_(surfaces) {}
 
     /// Appends the solids near `thin` to the bodies that it touches, and contacts of its nodes with them. `h` is its
     /// substep, s.
@@ -40,7 +42,7 @@ private:
     void find_following(SolidDeformable& solid, const Nodes& sheet, double h, std::span<Held> held);
 
     WorldState& world_;
-    std::map<std::uint32_t, PlacedSurface> surfaces_;
+    Surfaces& surfaces_;
     std::vector<Held> held_;                // of the sheet at hand, in the order of its contacts
     std::vector<NodeContact> with_bodies_;  // its contacts without solids
     std::vector<Vec3> push_, move_;

@@ -14,6 +14,8 @@
 #include "physics/constraint/direct_contact_solver.h"
 #include "physics/constraint/joint_system.h"
 #include "physics/constraint/wide_contact_solver.h"
+#include "physics/deformable/cloth_solver.h"
+#include "physics/deformable/pair_springs.h"
 #include "physics/deformable/solid_contacts.h"
 #include "physics/dynamic/wind.h"
 #include "physics/inter/definitions/events.h"
@@ -127,6 +129,8 @@ struct WorldState {
     std::vector<Vec3> kicked_velocity;                        // substeps: linear velocity before the constraints, m/s
 
     SolidContacts solid_contacts;              // deformables: memory only
+    ThinContacts thin_contacts;                // deformables: contacts between sheets and ropes
+    ClothSolver pair_solver;                   // deformables: memory only
     std::vector<std::uint32_t> pushed_bodies;  // deformables: slots whose deformable_force is not zero
 
     std::map<std::uint32_t, SleepingGroup> sleepers;  // sleep, wake

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+
+#include "math/vec3.h"
+
+namespace embody::physics {
+
+/// Barycentric weights of the triangle's point nearest to p.
+std::array<double, 3> nearest_weights(Vec3 p, Vec3 a, Vec3 b, Vec3 c);
+
+/// Where on the segment from a to b the point nearest to p lies, 0 … 1.
+double nearest_along(Vec3 p, Vec3 a, Vec3 b);
+
+/// Where between the segments ab and cd the nearest points lie, 0 … 1 each; false where either is at an end, or they
+/// are parallel.
+bool nearest_inside(Vec3 a, Vec3 b, Vec3 c, Vec3 d, double& s, double& t);
+
+}  // namespace embody::physics
