@@ -50,3 +50,35 @@ export async function takePicture(page, path) {
   await page.screenshot({ path });
   await page.evaluate(() => window.embody.resume());
 }
+
+/** The scene as it is drawn, without the panels. */
+export async function pictureOfScene(page) {
+  // Without the ring around what has the keyboard.
+  await page.evaluate(() => document.activeElement?.blur());
+  await page.waitForTimeout(500);
+  await page.evaluate(() => window.embody.halt());
+  const picture = await page.getByTestId("canvas").screenshot();
+  await page.evaluate(() => window.embody.resume());
+  return picture;
+}
+
+/** The share of pixels of two pictures of the same size that differ by more than a person may overlook. */
+export function difference(page, one, other) {
+  return page.evaluate(
+    async (pictures) => {
+      const [a, b] = await Promise.all(
+        pictures.map(async (base64) => {
+          const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${base64}`)).blob());
+          const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+          const context = canvas.getContext("2d");
+          context.drawImage(bitmap, 0, 0);
+          return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+        }),
+      );
+      let different = 0;
+      for (let at = 0; at < a.length; at += 4) if ([0, 1, 2].some((channel) => Math.abs(a[at + channel] - b[at + channel]) > 24)) ++different;
+      return different / (a.length / 4);
+    },
+    [one.toString("base64"), other.toString("base64")],
+  );
+}

@@ -2,6 +2,7 @@
 // Liquids in the Studio: drawn as one surface, run apart, chosen, changed, and there to add.
 import assert from "node:assert/strict";
 import { after, before, beforeEach, describe, it } from "node:test";
+import { difference, openStudio, pictureOfScene } from "./browser.mjs";
 import { Session } from "./session.mjs";
 
 const WATER = 2;
@@ -58,6 +59,26 @@ describe("liquids in the Studio", { timeout: 600000 }, () => {
     const row = page.locator("[data-testid=attribute-fluid_cell_size]").first();
     await row.waitFor();
     assert.match(await row.innerText(), /particles, eight in a cell/);
+    assert.deepEqual(page.faults, []);
+  });
+
+  it("is drawn as it is after it was selected and let go", async () => {
+    const seen = await page.evaluate((index) => window.embody.seenAt(index), WATER);
+    await page.mouse.click(seen.x, seen.y);
+    await page.waitForFunction((index) => window.embody.selection()[0] === index, WATER);
+    await page.waitForTimeout(500);
+    await page.keyboard.press("Escape");
+    await page.waitForFunction(() => window.embody.selection().length === 0);
+    await page.waitForTimeout(500);
+    await command("simulation.step", { count: 20 });
+    await page.waitForFunction((water) => window.embody.points(water).upper[0] > 0.13, WATER);
+    const drawn = await pictureOfScene(page);
+    // As who comes now sees it.
+    const other = await openStudio(session.browser, session.address);
+    await other.waitForFunction((water) => window.embody.points(water)?.count > 100, WATER);
+    const share = await difference(page, drawn, await pictureOfScene(other));
+    await other.context().close();
+    assert.ok(share < 0.002, `${share} of the pixels differ`);
     assert.deepEqual(page.faults, []);
   });
 

@@ -2,6 +2,7 @@
 // Cloth and ropes in the Studio: added from the list of primitives, bent by their nodes, blown by the wind, broken.
 import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
+import { difference, openStudio, pictureOfScene } from "./browser.mjs";
 import { Session } from "./session.mjs";
 
 const SCENE = {
@@ -105,6 +106,30 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
     assert.deepEqual(page.faults, []);
     await send("simulation.reset", {});
     await page.waitForFunction(() => Math.abs((window.embody.bent(3)?.size[1] ?? 0) - 1.23) < 0.05 && window.embody.bent(3).normals > 0.99);
+  });
+
+  it("is drawn as it is after it was selected and let go", async () => {
+    await send("simulation.step", { count: 1 });
+    await page.waitForFunction(() => window.embody.simulation().step === 1);
+    const seen = await page.evaluate((index) => window.embody.seenAt(index), 2);
+    await page.mouse.click(seen.x, seen.y);
+    await page.waitForFunction((index) => window.embody.selection()[0] === index, 2);
+    await page.waitForTimeout(500);
+    await page.keyboard.press("Escape");
+    await page.waitForFunction(() => window.embody.selection().length === 0);
+    await page.waitForTimeout(500);
+    await send("simulation.step", { count: 60 });
+    await page.waitForFunction(() => window.embody.simulation().step === 61);
+    const drawn = await pictureOfScene(page);
+    // As who comes now sees it.
+    const other = await openStudio(session.browser, session.address);
+    await other.waitForFunction(() => window.embody.bent(2) !== null && window.embody.bent(3) !== null);
+    const share = await difference(page, drawn, await pictureOfScene(other));
+    await other.context().close();
+    assert.ok(share < 0.002, `${share} of the pixels differ`);
+    await send("simulation.reset", {});
+    await page.waitForFunction(() => window.embody.simulation().state === "stopped");
+    assert.deepEqual(page.faults, []);
   });
 
   it("is pinned by hand: at its edge, at a place that is clicked on, to another thing; and undo takes each back", async () => {

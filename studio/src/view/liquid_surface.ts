@@ -167,9 +167,10 @@ export class LiquidSurface {
   show(made: FromLiquidWorker): void {
     this.isWaiting = false;
     this.thickness = made.area > 0 ? Math.max((2 * made.volume) / made.area, 1e-4) : 0.1;
-    this.write("position", made.positions);
-    this.write("normal", made.normals);
-    this.writeIndex(made.indices);
+    this.makeRoom(made.positions.length / 3, made.indices.length);
+    renew(this.geometry.getAttribute("position") as BufferAttribute, made.positions);
+    renew(this.geometry.getAttribute("normal") as BufferAttribute, made.normals);
+    renew(this.geometry.index!, made.indices);
     this.geometry.setDrawRange(0, made.indices.length);
     const size = this.bounds.getSize(new Vector3());
     this.geometry.boundingSphere = new Sphere(this.bounds.getCenter(new Vector3()), size.length() / 2);
@@ -242,30 +243,16 @@ export class LiquidSurface {
     return material;
   }
 
-  // Buffers grow with the mesh and are kept.
-  private write(name: "position" | "normal", values: Float32Array): void {
-    let attribute = this.geometry.getAttribute(name) as BufferAttribute;
-    if (attribute.array.length < values.length) {
-      attribute = this.grown(new Float32Array(3 * Math.ceil(values.length / 2)), 3);
-      this.geometry.setAttribute(name, attribute);
-    }
-    renew(attribute, values);
-  }
-
-  private writeIndex(values: Uint32Array): void {
-    let attribute = this.geometry.index!;
-    if (attribute.array.length < values.length) {
-      attribute = this.grown(new Uint32Array(Math.ceil(1.5 * values.length)), 1);
-      this.geometry.setIndex(attribute);
-    }
-    renew(attribute, values);
-  }
-
-  private grown(array: Float32Array | Uint32Array, size: number): BufferAttribute {
+  // Buffers grow with the mesh and are kept. All at once are made anew: the outline, which shares them, binds new ones.
+  private makeRoom(vertices: number, indices: number): void {
+    const { position } = this.geometry.attributes;
+    if (position!.count >= vertices && this.geometry.index!.count >= indices) return;
     this.geometry.dispose();
-    const attribute = new BufferAttribute(array, size);
-    attribute.setUsage(DynamicDrawUsage);
-    return attribute;
+    const room = (count: number): number => Math.ceil(1.5 * count);
+    const made = (array: Float32Array | Uint32Array, size: number) => new BufferAttribute(array, size).setUsage(DynamicDrawUsage);
+    this.geometry.setAttribute("position", made(new Float32Array(3 * room(vertices)), 3));
+    this.geometry.setAttribute("normal", made(new Float32Array(3 * room(vertices)), 3));
+    this.geometry.setIndex(made(new Uint32Array(room(indices)), 1));
   }
 
   private meet(raycaster: Raycaster, hits: Intersection[]): void {

@@ -47,7 +47,7 @@ export class Outline {
   /** Outlines these entities, as they are drawn now, and no others. */
   show(indices: readonly number[]): void {
     for (const { meshes, ofCloud } of this.shown)
-      for (const mesh of meshes) ofCloud ? (mesh.material as MeshBasicMaterial).dispose() : mesh.geometry.dispose();
+      for (const mesh of meshes) ofCloud ? (mesh.material as MeshBasicMaterial).dispose() : release(mesh.geometry);
     this.group.clear();
     this.shown = [];
     for (const index of indices) {
@@ -114,6 +114,13 @@ function maskGeometry(original: BufferGeometry): BufferGeometry {
   geometry.setIndex(original.index);
   geometry.setAttribute("position", original.getAttribute("position"));
   return geometry;
+}
+
+/** The buffers are those of what is drawn: taken away with this, that would be drawn as it is now for ever. */
+function release(geometry: BufferGeometry): void {
+  geometry.setIndex(null);
+  geometry.deleteAttribute("position");
+  geometry.dispose();
 }
 
 /** The same triangles as they are now. */
