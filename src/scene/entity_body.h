@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 
 #include "attributes/attribute.h"
@@ -12,13 +13,10 @@
 #include "physics/inter/definitions/body_definition.h"
 #include "physics/inter/definitions/shape_definition.h"
 #include "scene/document.h"
+#include "scene/form_cache.h"
 #include "scene/points_definition.h"
-#include "scene/thin_form.h"
 
 namespace embody::scene {
-
-/// What a thing of kind cloth or rope is computed on.
-using ThinForm = std::variant<attributes::SheetMesh, LineForm>;
 
 /// Whether an entity is one body or points.
 struct EntityForm {
@@ -31,8 +29,12 @@ struct EntityForm {
 /// models it has looked up.
 class EntityBodies {
 public:
-    /// `catalog` may be null; it outlives this.
-    explicit EntityBodies(catalog::Catalog* catalog) : catalog_(catalog) {}
+    /// `catalog` may be null; it outlives this. `forms` may have been filled by others before.
+    explicit EntityBodies(catalog::Catalog* catalog, std::shared_ptr<FormCache> forms = std::make_shared<FormCache>())
+        : catalog_(catalog),
+          forms_(std::move(forms)),
+          soft_meshes_(forms_->soft_meshes),
+          thin_forms_(forms_->thin_forms) {}
 
     /// The attributes as they act: the model's or the primitive's, with the entity's own over them. Errors name the
     /// field of the entity.
@@ -97,10 +99,11 @@ private:
 
     catalog::Catalog* catalog_;
     std::map<std::string, Model> models_;
-    std::map<std::string, attributes::ModelFacts> primitives_;      ///< by their text
-    attributes::ModelFacts last_primitive_;                         ///< of one without a short text
-    std::map<std::string, Result<catalog::SoftMesh>> soft_meshes_;  ///< by model or text; "": the last without one
-    std::map<std::string, std::map<std::string, Result<ThinForm>>> thin_forms_;  ///< the same; in it by kind and count
+    std::map<std::string, attributes::ModelFacts> primitives_;  ///< by their text
+    attributes::ModelFacts last_primitive_;                     ///< of one without a short text
+    std::shared_ptr<FormCache> forms_;
+    std::map<std::string, Result<catalog::SoftMesh>>& soft_meshes_;
+    std::map<std::string, std::map<std::string, Result<ThinForm>>>& thin_forms_;
 };
 
 /// Nodes at rest that the pin holds: those within its radius, or the nearest.

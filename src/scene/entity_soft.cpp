@@ -34,6 +34,7 @@ Result<const catalog::SoftMesh*> EntityBodies::soft_mesh(const Entity& entity) {
     auto found = soft_meshes_.find(key);
     if (key.empty() || found == soft_meshes_.end()) {
         found = soft_meshes_.insert_or_assign(key, make_soft_mesh(entity)).first;
+        ++forms_->made;
     }
     if (!found->second.ok()) return found->second.error();
     return &found->second.value();

@@ -62,13 +62,13 @@ Document new_document(const std::string& title) {
 }
 
 SessionState::SessionState(catalog::Catalog* used_catalog, SessionOptions used_options)
-    : catalog(used_catalog), options(std::move(used_options)), bodies(used_catalog) {}
+    : catalog(used_catalog), options(std::move(used_options)), bodies(used_catalog, forms) {}
 
 // Simulation
 // -----------------------------------------------------------------------------------------------------------
 
 Result<void> SessionState::rebuild_simulation() {
-    Result<std::unique_ptr<Simulation>> made = Simulation::create(document, catalog);
+    Result<std::unique_ptr<Simulation>> made = Simulation::create(document, catalog, forms);
     if (!made.ok()) return made.error();
     simulation = std::move(made).value();
     simulation_is_pristine = true;
@@ -328,7 +328,7 @@ Result<std::string> SessionState::redo() {
 }
 
 Result<void> SessionState::open(Document opened, std::string opened_name) {
-    Result<std::unique_ptr<Simulation>> made = Simulation::create(opened, catalog);
+    Result<std::unique_ptr<Simulation>> made = Simulation::create(opened, catalog, forms);
     if (!made.ok()) return made.error();
     document = std::move(opened);
     name = std::move(opened_name);

@@ -28,6 +28,7 @@ struct SessionState {
 
     catalog::Catalog* catalog = nullptr;
     SessionOptions options;
+    std::shared_ptr<FormCache> forms = std::make_shared<FormCache>();  ///< of all simulations of this session
     EntityBodies bodies;
 
     Document document;

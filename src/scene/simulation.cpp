@@ -32,11 +32,15 @@ Error not_in_world(EntityIndex entity) {
 Simulation::Simulation() = default;
 Simulation::~Simulation() = default;
 
-Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document, catalog::Catalog* catalog) {
+Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document, catalog::Catalog* catalog,
+                                                       std::shared_ptr<FormCache> forms) {
     Result<std::unique_ptr<physics::World>> world = physics::World::create(document.settings);
     if (!world.ok()) return Error{"settings." + world.error().where, world.error().why, world.error().remedy};
     std::unique_ptr<Simulation> simulation(new Simulation);
-    simulation->state_ = std::make_unique<State>(std::move(world).value(), document.settings, catalog);
+    if (!forms) forms = std::make_shared<FormCache>();
+    forms->begin();
+    simulation->state_ =
+        std::make_unique<State>(std::move(world).value(), document.settings, catalog, std::move(forms));
     State& state = *simulation->state_;
     if (catalog != nullptr) {
         Result<void> set = state.world->set_surface_pairs(catalog->taxonomy().surfaces().table());

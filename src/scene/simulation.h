@@ -17,6 +17,8 @@
 
 namespace embody::scene {
 
+struct FormCache;
+
 /// An action that was carried out in the last step.
 struct ActionFired {
     std::uint32_t id = 0;
@@ -34,8 +36,10 @@ struct Activity {
 /// A document brought to life: each entity a body, each joint a joint, the actions running.
 class Simulation {
 public:
-    /// `catalog` may be null for documents without models. The error names the entity and field.
-    static Result<std::unique_ptr<Simulation>> create(const Document& document, catalog::Catalog* catalog);
+    /// `catalog` may be null for documents without models. `forms` has what simulations before made, and takes what
+    /// this one makes. The error names the entity and field.
+    static Result<std::unique_ptr<Simulation>> create(const Document& document, catalog::Catalog* catalog,
+                                                      std::shared_ptr<FormCache> forms = nullptr);
     ~Simulation();
 
     /// One time step: due actions, physics, triggers of what happened.

@@ -45,8 +45,9 @@ struct TimedForce {
 /// What a simulation consists of. Entities are made and changed in simulation_entities.cpp, what holds them together in
 /// simulation_holds.cpp, what actions do to them in simulation_effects.cpp.
 struct Simulation::State {
-    State(std::unique_ptr<physics::World> made, const physics::WorldSettings& asked, catalog::Catalog* catalog)
-        : world(std::move(made)), settings(asked), bodies(catalog), shapes(*world), liquids(*world) {}
+    State(std::unique_ptr<physics::World> made, const physics::WorldSettings& asked, catalog::Catalog* catalog,
+          std::shared_ptr<FormCache> forms)
+        : world(std::move(made)), settings(asked), bodies(catalog, std::move(forms)), shapes(*world), liquids(*world) {}
 
     std::unique_ptr<physics::World> world;
     physics::WorldSettings settings;  ///< the document's

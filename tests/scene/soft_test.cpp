@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/mass_properties.h"
+#include "scene/form_cache.h"
 #include "scene/live_scene.h"
 #include "scene/sample_documents.h"
 #include "scene/scene_file.h"
@@ -160,6 +161,25 @@ TEST(Soft, WhatCannotBeSoftStaysRigidAndSaysWhy) {
     EXPECT_NE(simulation->notes()[0].find("Box is simulated as rigid, because its surface encloses nothing"),
               std::string::npos)
         << simulation->notes()[0];
+}
+
+TEST(Soft, IsMeshedOnceHoweverOftenTheSceneIsReset) {
+    const auto forms = std::make_shared<FormCache>();
+    Document document = a_cushion();
+    std::vector<Vec3> nodes;
+    for (int reset = 0; reset < 3; ++reset) {
+        const auto made = Simulation::create(document, nullptr, forms);
+        ASSERT_TRUE(made.ok());
+        if (reset > 0) {
+            EXPECT_EQ(points_of(*made.value()), nodes);
+        }
+        nodes = points_of(*made.value());
+    }
+    EXPECT_EQ(forms->made, 1u);
+    document.entities[1].geometry = ShapeDefinition{BoxShape{{0.2, 0.2, 0.2}}};
+    ASSERT_TRUE(Simulation::create(document, nullptr, forms).ok());
+    EXPECT_EQ(forms->made, 2u);
+    EXPECT_EQ(forms->soft_meshes.size(), 2u) << "the one before may come back by undo";
 }
 
 TEST(SoftPins, HoldItInTheWorldAndToOtherThings) {

@@ -4,28 +4,26 @@
 
 Usage: measure_streaming.py EMBODY DATABASE SCENE.json…    prints a table in Markdown (docs/protocol.md)
 
-Rates are per second of simulated time, so that a slow computer changes nothing; who plays in real time gets as much in a second.
+A second while things move is 60 frames, one a step, however slow this computer is; at rest it is what came in a second of simulated time.
 """
 import pathlib
 import sys
 import time
 
-from viewer import HEAD, Server, Viewer
+from viewer import Server, Viewer
 
-MOVING_S, REST_STEPS, RESTING_S = 4, 1500, 4
+MOVING_S, RESTING_S, MOST_WAITED_S = 4, 4, 90
 
 
 def play(viewer: Viewer, seconds: float) -> dict:
     """Plays for so long and counts what comes."""
     viewer.do("simulation.play")
-    frames, texts, sets, first, last, statistics = [], 0, 0, None, None, {}
+    frames, texts, first, last, statistics = [], 0, None, None, {}
     until = time.monotonic() + seconds
     while time.monotonic() < until:
         message = viewer.read()
         if isinstance(message, bytes):
-            head = HEAD.unpack_from(message)
             frames.append(len(message))
-            sets += head[4]
         else:
             texts += len(str(message))
             if message.get("event") == "statistics":
@@ -34,8 +32,20 @@ def play(viewer: Viewer, seconds: float) -> dict:
                 last = message["time"]
     viewer.do("simulation.pause")
     simulated = max((last or 0) - (first or 0), 1e-9)
-    return {"frames": len(frames), "frame": sum(frames) / max(len(frames), 1), "rate": (sum(frames) + texts) / simulated,
-            "texts": texts / simulated, "statistics": statistics}
+    return {"frame": sum(frames) / max(len(frames), 1), "rate": (sum(frames) + texts) / simulated, "statistics": statistics}
+
+
+def wait_for_rest(viewer: Viewer):
+    """Steps until nothing is active any more, or for as long as one waits."""
+    until = time.monotonic() + MOST_WAITED_S
+    while time.monotonic() < until:
+        viewer.do("simulation.step", count=60)
+        viewer.do("simulation.play")
+        while not (isinstance(message := viewer.read(), dict) and message.get("event") == "statistics"):
+            pass
+        viewer.do("simulation.pause")
+        if message["active"] + message["wants_to_sleep"] == 0:
+            return
 
 
 def main() -> int:
@@ -47,10 +57,10 @@ def main() -> int:
             viewer = Viewer(server.port)
             viewer.do("hello")
             moving = play(viewer, MOVING_S)
-            viewer.do("simulation.step", count=REST_STEPS)
+            wait_for_rest(viewer)
             resting = play(viewer, RESTING_S)
             now = resting["statistics"]
-            print(f"| {pathlib.Path(scene).stem} | {now['things']}, {now['points']:,} | {moving['frame'] / 1e3:.1f} kB | {moving['rate'] / 1e6:.2f} MB"
+            print(f"| {pathlib.Path(scene).stem} | {now['things']}, {now['points']:,} | {moving['frame'] / 1e3:.1f} kB | {60 * moving['frame'] / 1e3:,.0f} kB"
                   f" | {resting['rate'] / 1e3:.1f} kB | {now['active'] + now['wants_to_sleep']} | {server.memory(peak=True) >> 20} MiB |", flush=True)
             viewer.close()
     return 0
