@@ -20,6 +20,8 @@ void BoxGrid::fill(std::span<const Bounds> boxes, double usual_size) {
     for (std::size_t b = 0; b < buckets; ++b) start_[b + 1] += start_[b];
     boxes_.resize(start_.back());
     next_.assign(start_.begin(), start_.end() - 1);
+    rounded_.clear();
+    for (const Bounds& box : boxes) rounded_.push_back(rounded(box));
     for (std::uint32_t t = 0; t < boxes.size(); ++t)
         for_each_bucket(boxes[t], [&](std::size_t b) { boxes_[next_[b]++] = t; });
 }

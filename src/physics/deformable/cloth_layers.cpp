@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <set>
 
 #include "physics/deformable/nearest_points.h"
 
@@ -27,21 +27,17 @@ struct ClothLayers::Search {
 
 ClothLayers::ClothLayers(const std::vector<std::array<std::uint32_t, 3>>& triangles, const std::vector<Vec3>& nodes)
     : triangles_(triangles) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
+    std::set<std::pair<std::uint32_t, std::uint32_t>> known;
     std::vector<std::vector<std::uint32_t>> around(nodes.size());
     for (const auto& triangle : triangles_) {
-        std::array<std::uint32_t, 3> own{};
         for (std::size_t k = 0; k < 3; ++k) {
             const auto [a, b] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
-            const auto [at, is_new] = known.try_emplace({a, b}, static_cast<std::uint32_t>(edges_.size()));
-            own[k] = at->second;
-            if (!is_new) continue;
+            if (!known.emplace(a, b).second) continue;
             edges_.push_back({a, b});
             around[a].push_back(b);
             around[b].push_back(a);
             edge_length_ += length(nodes[b] - nodes[a]);
         }
-        edges_of_triangle_.push_back(own);
     }
     edge_length_ /= static_cast<double>(edges_.size());
     neighbour_start_.push_back(0);
@@ -115,18 +111,15 @@ void ClothLayers::search_edge(const Search& search, std::uint32_t edge, std::vec
     const auto [a, b] = edges_[edge];
     const Bounds& box = edge_boxes_[edge];
     const std::size_t first_found = found.size();
-    grid_.visit(box, [&](std::uint32_t t) {
-        if (!overlaps(triangle_boxes_[t], box)) return;
-        for (const std::uint32_t other : edges_of_triangle_[t]) {
-            if (other <= edge || seen[other] == edge) continue;
-            seen[other] = edge;
-            const auto [c, d] = edges_[other];
-            if (a == c || a == d || b == c || b == d || !overlaps(edge_boxes_[other], box)) continue;
-            double s = 0, u = 0;
-            if (!nearest_inside(x[a], x[b], x[c], x[d], s, u)) continue;
-            const Vec3 away = (1 - s) * x[a] + s * x[b] - (1 - u) * x[c] - u * x[d];
-            search.add({{a, b, c, d}, {1 - s, s, u - 1, -u}, {}, 0}, away, found);
-        }
+    edge_grid_.visit(box, [&](std::uint32_t other) {
+        if (other <= edge || seen[other] == edge) return;
+        seen[other] = edge;
+        const auto [c, d] = edges_[other];
+        if (a == c || a == d || b == c || b == d || !overlaps(edge_boxes_[other], box)) return;
+        double s = 0, u = 0;
+        if (!nearest_inside(x[a], x[b], x[c], x[d], s, u)) return;
+        const Vec3 away = (1 - s) * x[a] + s * x[b] - (1 - u) * x[c] - u * x[d];
+        search.add({{a, b, c, d}, {1 - s, s, u - 1, -u}, {}, 0}, away, found);
     });
     const auto order = [](const LayerContact& p, const LayerContact& q) { return p.node < q.node; };
     std::sort(found.begin() + static_cast<std::ptrdiff_t>(first_found), found.end(), order);
@@ -137,6 +130,7 @@ void ClothLayers::find(const Nodes& nodes, double thickness, std::span<const Vec
     const Search search{nodes, moves, thickness};
     find_boxes(search);
     grid_.fill(triangle_boxes_, edge_length_);
+    edge_grid_.fill(edge_boxes_, edge_length_);
     const int number = std::max(1, workers.workers());
     std::vector<std::vector<LayerContact>> of_nodes(static_cast<std::size_t>(number)), of_edges(of_nodes);
     share_among(workers, count, count >= 1000, [&](int worker, Share share) {

@@ -54,14 +54,13 @@ private:
     [[nodiscard]] bool are_neighbours(std::uint32_t a, std::uint32_t b) const;
 
     std::vector<std::array<std::uint32_t, 3>> triangles_;
-    std::vector<std::array<std::uint32_t, 3>> edges_of_triangle_;
     std::vector<std::array<std::uint32_t, 2>> edges_;
     std::vector<std::uint32_t> neighbour_start_, neighbours_;  // of nodes
     double edge_length_ = 0;                                   // mean, m
 
     // Of the substep. Boxes hold the way that something goes, without that of the whole, and the thickness around it.
     std::vector<Bounds> node_boxes_, edge_boxes_, triangle_boxes_;
-    BoxGrid grid_;  // of triangles
+    BoxGrid grid_, edge_grid_;  // of triangles, of edges
     std::vector<LayerContact> contacts_;
 };
 
