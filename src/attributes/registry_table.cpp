@@ -259,8 +259,11 @@ void add_fluid(Rows& rows) {
     fluid.number({"turbidity", "F", "Scattering of light",
                   "Reduced scattering coefficient: clear water has next to none, milk thousands."},
                  "1/m", 0.03, 0, 1e7);
+    fluid.number({"surface_tension", "F", "Surface tension",
+                  "Against air; walls are met at a right angle. Simulated where fluid_cell_size is less than twice the "
+                  "capillary length √(σ/(ρ g)), of water 5.4 mm: on coarser cells gravity is all that shows."},
+                 "N/m", 0.072, 0, 10);
     const Group unsimulated{rows, "fluid", false};
-    unsimulated.number({"surface_tension", "F", "Surface tension", "Against air."}, "N/m", 0.072, 0, 10);
     unsimulated.number({"contact_angle", "F", "Contact angle", "On a solid wall."}, "deg", 60, 0, 180);
 }
 

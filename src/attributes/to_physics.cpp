@@ -270,6 +270,7 @@ physics::FluidDefinition fluid_from_attributes(const AttributeSet& attributes) {
     fluid.density = std::max(number_or_standard(attributes, "rest_density"), least_density);
     fluid.viscosity = std::min(number_or_standard(attributes, "dynamic_viscosity"), most_viscosity);
     fluid.yield_stress = std::min(number_or_standard(attributes, "yield_stress_fluid"), most_yield_stress);
+    fluid.surface_tension = number_or_standard(attributes, "surface_tension");
     fluid.cell_size = number_or_standard(attributes, "fluid_cell_size");
     return fluid;
 }

@@ -17,7 +17,8 @@ constexpr double most_cells = 500'000, margin = 24;
 
 bool is_same_matter(const FluidDefinition& a, const FluidDefinition& b) {
     return a.density == b.density && a.viscosity == b.viscosity && a.yield_stress == b.yield_stress &&
-           a.gravity_factor == b.gravity_factor && a.allow_sleep == b.allow_sleep;
+           a.surface_tension == b.surface_tension && a.gravity_factor == b.gravity_factor &&
+           a.allow_sleep == b.allow_sleep;
 }
 
 double cells_of(const Bounds& bounds, double cell) {
@@ -143,6 +144,7 @@ Result<void> Liquids::set_matter(Share& share, const FluidDefinition& matter) {
     changed.density = matter.density;
     changed.viscosity = matter.viscosity;
     changed.yield_stress = matter.yield_stress;
+    changed.surface_tension = matter.surface_tension;
     changed.allow_sleep = matter.allow_sleep;
     if (Result<void> set = world_.set_fluid(share.fluid, changed); !set.ok()) return set;
     return regroup(share);

@@ -171,7 +171,25 @@ void outflow(const FluidGrid& grid, const FluidSolids& solids, const PressureSys
     }
 }
 
-void subtract_gradient(FluidGrid& grid, std::span<const double> x, double scale,
+void add_surface_pressure(const FluidGrid& grid, const PressureSystem& system, const SurfacePressure& surface,
+                          std::vector<double>& b, TaskPool& workers) {
+    share_among(workers, b.size(), b.size() > 2000, [&](int, Share share) {
+        for (std::size_t row = share.first; row < share.last; ++row) {
+            const auto cell = static_cast<int>(system.cell(row));
+            for (int axis = 0; axis < 3; ++axis) {
+                const int stride = grid.stride(axis);
+                for (const int other : {cell - stride, cell + stride}) {
+                    const float open = grid.open[axis][std::max(cell, other)];
+                    if (open <= 0 || grid.row[other] >= 0) continue;
+                    const float gap = PressureSystem::gap_share(grid.surface[cell], grid.surface[other]);
+                    b[row] += static_cast<double>(open) / gap * surface.at(cell, other, gap);
+                }
+            }
+        }
+    });
+}
+
+void subtract_gradient(FluidGrid& grid, std::span<const double> x, const SurfacePressure& surface, double scale,
                        std::array<std::vector<float>, 3>& field, TaskPool& workers) {
     grid.for_tiles(workers, [&](const Cell& corner) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -187,9 +205,15 @@ void subtract_gradient(FluidGrid& grid, std::span<const double> x, double scale,
                     known = 0;
                     return;
                 }
-                double difference = (upper >= 0 ? x[upper] : 0) - (lower >= 0 ? x[lower] : 0);
-                if (upper < 0) difference /= PressureSystem::gap_share(grid.surface[below], grid.surface[cell]);
-                if (lower < 0) difference /= PressureSystem::gap_share(grid.surface[cell], grid.surface[below]);
+                double difference = 0;
+                if (upper >= 0 && lower >= 0) {
+                    difference = x[upper] - x[lower];
+                } else {
+                    const int liquid = upper >= 0 ? cell : below, air = upper >= 0 ? below : cell;
+                    const float gap = PressureSystem::gap_share(grid.surface[liquid], grid.surface[air]);
+                    const double outside = surface.is_none() ? 0 : surface.at(liquid, air, gap);
+                    difference = (x[grid.row[liquid]] - outside) / (upper >= 0 ? gap : -gap);
+                }
                 field[axis][cell] -= static_cast<float>(difference * scale);
                 known = 1;
             });

@@ -5,6 +5,7 @@
 #include "physics/fluid/grid.h"
 #include "physics/fluid/pressure_system.h"
 #include "physics/fluid/solids.h"
+#include "physics/fluid/surface_tension.h"
 
 namespace embody::physics {
 
@@ -23,9 +24,13 @@ void follow_solids(FluidGrid& grid, const FluidSolids& solids, double sticking, 
 void outflow(const FluidGrid& grid, const FluidSolids& solids, const PressureSystem& system, std::vector<double>& flow,
              TaskPool& workers);
 
+/// Adds to the right hand side of the pressure's equation what the pressure at the surface does.
+void add_surface_pressure(const FluidGrid& grid, const PressureSystem& system, const SurfacePressure& surface,
+                          std::vector<double>& b, TaskPool& workers);
+
 /// Adds −`scale` ∂x to the open faces of liquid cells (∂x: difference over the way to the neighbour or the surface, in
-/// cells). Other faces become unknown.
-void subtract_gradient(FluidGrid& grid, std::span<const double> x, double scale,
+/// cells), with x at the surface as it says. Other faces become unknown.
+void subtract_gradient(FluidGrid& grid, std::span<const double> x, const SurfacePressure& surface, double scale,
                        std::array<std::vector<float>, 3>& field, TaskPool& workers);
 
 }  // namespace embody::physics

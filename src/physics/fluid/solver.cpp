@@ -8,6 +8,7 @@
 #include "physics/fluid/faces.h"
 #include "physics/fluid/small_body.h"
 #include "physics/fluid/transfer.h"
+#include "physics/fluid/wall_friction.h"
 
 namespace embody::physics {
 
@@ -116,8 +117,11 @@ FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidSolid>
     for (FluidSolid& solid : solids) solid.impulse = solid.angular_impulse = {};
     if (particles_.empty()) return outcome;
     speed_ = usual_speed(workers);
-    const double cells = (speed_ + length(gravity) * dt) * dt / (longest_way * grid_.cell_size());
-    outcome.parts = static_cast<int>(std::clamp(std::ceil(cells), 1.0, static_cast<double>(most_parts)));
+    const double h = grid_.cell_size(), cells = (speed_ + length(gravity) * dt) * dt / (longest_way * h);
+    const double tension = properties_.surface_tension, density = properties_.density;
+    is_tense_ = is_tense(tension, density, length(gravity), h);
+    const double parts = std::max(cells, is_tense_ ? std::sqrt(tension / steady_tension(density, h, dt)) : 0.0);
+    outcome.parts = static_cast<int>(std::clamp(std::ceil(parts), 1.0, static_cast<double>(most_parts)));
     outcome.is_slowed = cells > most_parts;
     solids_.begin(solids, grid_);
     const double part = dt / outcome.parts;
@@ -175,9 +179,12 @@ void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, T
     extrapolate(grid_, grid_.velocity, 2, workers);
 
     system_.build(grid_, workers);
+    lumps_.begin(grid_, system_, solids_, particles_, is_tense_);
     solids_.list_areas(grid_);
     const Viscosity liquid{properties_.density, properties_.viscosity, properties_.yield_stress};
     if (is_viscous(liquid, h, dt)) shear(liquid, dt, outcome);
+    rub_along_walls(grid_, solids_, properties_.density, properties_.viscosity,
+                    properties_.density * properties_.particle_volume, dt, workers);
     for (MovingSolid& moving : solids_.moving()) {
         bind_liquid(grid_, properties_.density, gravity, moving);
         drag_small_body(grid_, properties_.density, properties_.viscosity,
@@ -191,6 +198,7 @@ void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, T
     follow_solids(grid_, solids_, sticking_of(liquid, h, speed_), workers);
     spread_out(workers);
     move_particles(dt, workers);
+    lumps_.end(gravity * dt, solids_, properties_.density * properties_.particle_volume, particles_);
     solids_.advance(dt);
 }
 
@@ -231,13 +239,15 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
         flow_[row] *= -rho / h;
         impulse_[row] = grid_.pressure[system_.cell(row)] * dt;
     }
+    surface_.clear();
+    if (is_tense_) tighten(dt, workers);
     system_.set_bodies(solids_.moving(), rho / h);
     const double tolerance = allowed_change * rho * h * h / dt;
     const int iterations = system_.solve(flow_, impulse_, tolerance, most_iterations, workers);
     outcome.pressure_iterations += iterations;
     outcome.is_solved = outcome.is_solved && iterations <= most_iterations;
 
-    subtract_gradient(grid_, impulse_, 1 / (rho * h), grid_.velocity, workers);
+    subtract_gradient(grid_, impulse_, surface_, 1 / (rho * h), grid_.velocity, workers);
     push_solids(impulse_);
     grid_.for_tiles(workers, [&](const Cell& corner) {
         grid_.for_cells(corner, [&](int cell, const Cell&) {
@@ -245,6 +255,13 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
             grid_.pressure[cell] = row < 0 ? 0.0f : static_cast<float>(impulse_[row] / dt);
         });
     });
+}
+
+// The pressure at the surface by its curvature. Where the parts of a step are too few, as much tension as they bear.
+void FluidSolver::tighten(double dt, TaskPool& workers) {
+    const double most = steady_tension(properties_.density, grid_.cell_size(), dt);
+    surface_.measure(std::min(properties_.surface_tension, most) * dt, grid_, workers);
+    add_surface_pressure(grid_, system_, surface_, flow_, workers);
 }
 
 void FluidSolver::push_solids(std::span<const double> impulse) {
@@ -288,7 +305,7 @@ void FluidSolver::spread_out(TaskPool& workers) {
             for (auto& field : grid_.shift) std::fill_n(field.begin() + first, FluidGrid::tile[0], 0.0f);
         });
     });
-    subtract_gradient(grid_, potential_, grid_.cell_size(), grid_.shift, workers);
+    subtract_gradient(grid_, potential_, {}, grid_.cell_size(), grid_.shift, workers);
 }
 
 void FluidSolver::move_particles(double dt, TaskPool& workers) {
@@ -300,6 +317,7 @@ void FluidSolver::move_particles(double dt, TaskPool& workers) {
             const FieldSample sample = sample_field(grid_, grid_.velocity, places_[i].data());
             float shift[3], end[3];
             sample_value(grid_, grid_.shift, places_[i].data(), shift);
+            if (is_tense_) surface_.draw_in(grid_, places_[i].data(), shift);
             // A drop reads back what it wrote: a gradient that it took along would stay for ever.
             const float steepest = is_drop(grid_, places_[i].data()) ? 0 : 1 / time;
             for (int a = 0; a < 3; ++a) {

@@ -4,9 +4,11 @@
 #include <span>
 #include <vector>
 
+#include "physics/fluid/free_lumps.h"
 #include "physics/fluid/grid.h"
 #include "physics/fluid/pressure_system.h"
 #include "physics/fluid/solids.h"
+#include "physics/fluid/surface_tension.h"
 #include "physics/fluid/viscosity.h"
 #include "physics/inter/definitions/fluid_definition.h"
 #include "physics/inter/definitions/step_report.h"
@@ -18,6 +20,7 @@ struct FluidProperties {
     double viscosity = 0.001;    ///< Pa s
     double yield_stress = 0;     ///< Pa
     double particle_volume = 0;  ///< m³
+    double surface_tension = 0;  ///< N/m
 };
 
 /// What a step of a fluid came to.
@@ -47,10 +50,11 @@ public:
     [[nodiscard]] const FluidProperties& properties() const { return properties_; }
     [[nodiscard]] const FluidGrid& grid() const { return grid_; }
     [[nodiscard]] const std::vector<FluidParticle>& particles() const { return particles_; }
-    void set_matter(double density, double viscosity, double yield_stress) {
-        properties_.density = density;
-        properties_.viscosity = viscosity;
-        properties_.yield_stress = yield_stress;
+    /// Of particles as large.
+    void set_matter(const FluidProperties& matter) {
+        const double volume = properties_.particle_volume;
+        properties_ = matter;
+        properties_.particle_volume = volume;
     }
     /// Energies and momenta, of the particles as points.
     [[nodiscard]] Conserved conserved(Vec3 gravity) const;
@@ -77,6 +81,7 @@ private:
     void accelerate(Vec3 change, TaskPool& workers);
     void project(double dt, FluidOutcome& outcome, TaskPool& workers);
     void shear(const Viscosity& liquid, double dt, FluidOutcome& outcome);
+    void tighten(double dt, TaskPool& workers);
     void spread_out(TaskPool& workers);
     void move_particles(double dt, TaskPool& workers);
     void push_solids(std::span<const double> impulse);
@@ -87,11 +92,14 @@ private:
     FluidSolids solids_;
     PressureSystem system_;
     ViscositySystem viscosity_;
+    SurfacePressure surface_;
+    FreeLumps lumps_;
     std::vector<FluidParticle> particles_;
     std::uint32_t next_id_ = 0;
     std::vector<std::array<float, 3>> places_;  // where they meet the grid
     std::vector<double> flow_, impulse_, potential_;
-    double speed_ = 0;  // usual one when the step began, m/s
+    double speed_ = 0;       // usual one when the step began, m/s
+    bool is_tense_ = false;  // its surface has tension in this step
 };
 
 }  // namespace embody::physics

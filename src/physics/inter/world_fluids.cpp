@@ -51,7 +51,10 @@ Result<void> World::set_fluid(FluidHandle fluid, const FluidDefinition& definiti
     if (definition.cell_size != record->definition.cell_size)
         return Error{"cell_size", "cannot change", "destroy the fluid and create another one"};
     record->definition = definition;
-    record->solver->set_matter(definition.density, definition.viscosity, definition.yield_stress);
+    record->solver->set_matter({.density = definition.density,
+                                .viscosity = definition.viscosity,
+                                .yield_stress = definition.yield_stress,
+                                .surface_tension = definition.surface_tension});
     return wake(fluid);
 }
 

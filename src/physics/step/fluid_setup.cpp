@@ -183,8 +183,8 @@ Result<FluidRecord> set_up_fluid(const WorldState& world, const FluidDefinition&
     std::vector<Vec3f> positions;
     positions.reserve(filling.places.size());
     for (const Vec3 p : filling.places) positions.push_back(to_vec3f(p - origin));
-    const FluidProperties properties{definition.density, definition.viscosity, definition.yield_stress,
-                                     particle_volume};
+    const FluidProperties properties{definition.density, definition.viscosity, definition.yield_stress, particle_volume,
+                                     definition.surface_tension};
     FluidRecord record;
     record.definition = definition;
     record.solver =

@@ -51,6 +51,7 @@ Result<void> validate(const FluidDefinition& definition) {
                        check_number("density", d.density, 1, 25'000, "kg/m³"),
                        check_number("viscosity", d.viscosity, 0, 10'000, "Pa s"),
                        check_number("yield_stress", d.yield_stress, 0, 10'000, "Pa"),
+                       check_number("surface_tension", d.surface_tension, 0, 10, "N/m"),
                        check_number("cell_size", d.cell_size, 0.001, 1, "m"),
                        check_number("gravity_factor", d.gravity_factor, -10, 10));
 }
