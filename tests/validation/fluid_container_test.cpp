@@ -148,5 +148,19 @@ TEST(FluidContainer, VolumeStaysWhileWaterSloshes) {
     EXPECT_LT(height, 1.04 * expected);
 }
 
+TEST(FluidContainer, WaterDroppedIntoATubComesToRestAndSleeps) {
+    // Half full, walls of two cells.
+    auto world = make_world({});
+    add_tank(*world, {{0, 0, 0}, {0.4, 0.3, 0.4}}, 0.05);
+    const FluidHandle water =
+        world->create_fluid({.boxes = {{{0, 0.05, 0}, {0.4, 0.2, 0.4}}}, .cell_size = 0.025}).value();
+    const std::size_t count = world->fluid_particles(water).positions.size();
+    for (int i = 0; i < 10 * 60 && !world->fluid_particles(water).is_asleep; ++i) world->step();
+    RecordProperty("asleep_after", std::to_string(world->last_report().time));
+    EXPECT_TRUE(world->fluid_particles(water).is_asleep);
+    EXPECT_EQ(world->fluid_particles(water).positions.size(), count);
+    EXPECT_NEAR(mean_height(*world, water), 0.075, 0.05 * 0.075);
+}
+
 }  // namespace
 }  // namespace embody::physics
