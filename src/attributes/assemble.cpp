@@ -33,6 +33,26 @@ bool applies_to(std::string_view attribute, std::string_view physical_kind) {
     return description->applies_to.find(letter) != std::string::npos;
 }
 
+namespace {
+
+// Of a round rod of one material GJ / EI = 1 / (1 + ν): where nobody knows the twist rigidity, or only the other was
+// set by a person.
+void put_twist_rigidity(AttributeSet& set) {
+    constexpr double poisson_ratio = 0.3;
+    const AttributeEntry* held = set.find("twist_rigidity");
+    if (held == nullptr || (held->level != AttributeLevel::standard && !is_manual(set, "bend_rigidity"))) return;
+    const AttributeDescription& range = *describe("twist_rigidity");
+    const double rigidity = set.number("bend_rigidity", 1e-3) / (1 + poisson_ratio);
+    replace(set, {"twist_rigidity",
+                  std::clamp(rigidity, *range.low, *range.high),
+                  {},
+                  {},
+                  "bend rigidity / (1 + Poisson's ratio of 0.3), as of a round rod",
+                  AttributeLevel::model});
+}
+
+}  // namespace
+
 void complete_for_kind(AttributeSet& set) {
     const std::string kind = set.word("kind", "rigid");
     for (const AttributeDescription& description : registry()) {
@@ -43,6 +63,7 @@ void complete_for_kind(AttributeSet& set) {
             set.put({description.name, description.standard, {}, {}, "default", AttributeLevel::standard});
         }
     }
+    if (kind == "rope") put_twist_rigidity(set);
 }
 
 bool is_manual(const AttributeSet& set, std::string_view name) {

@@ -12,7 +12,8 @@ namespace embody::attributes {
 /// Whether an attribute concerns things of this physical kind; things that are only drawn have the identity attributes.
 bool applies_to(std::string_view attribute, std::string_view physical_kind);
 
-/// Defaults for what concerns the set's kind and is missing; what does not concern it goes, unless a person set it.
+/// Defaults for what concerns the set's kind and is missing; what does not concern it goes, unless a person set it. A
+/// rope's twist rigidity follows from its bend rigidity where it is no more than a default.
 void complete_for_kind(AttributeSet& set);
 
 /// Friction, rolling and bounciness of the material. Replaces what is there unless a person set it.

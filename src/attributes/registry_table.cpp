@@ -223,14 +223,14 @@ void add_rope(Rows& rows) {
     rope.number({"linear_density", "P", "Linear density", "Mass of a metre."}, "kg/m", 0.07, 1e-6, 1e4);
     rope.number({"axial_stiffness", "P", "Axial stiffness EA", "Force per unit strain."}, "N", 1e4, 1e-3, 1e12);
     rope.number({"bend_rigidity", "P", "Bend rigidity EI", "Moment per curvature."}, "N m²", 1e-3, 1e-12, 1e9);
+    rope.number({"twist_rigidity", "P", "Twist rigidity GJ",
+                 "Moment per twist of a metre, between pins that are clamped; of a round rod EI / (1 + ν)."},
+                "N m²", 1e-3, 1e-12, 1e9);
     rope.number({"break_tension", "P", "Breaking tension", "Tension that breaks it."}, "N", infinity, 0, infinity);
     rope.number({"slack", "P", "Slack",
                  "How much longer it is than the way between its ends: a slack one starts as an arc that hangs."},
                 "1", 0, 0, 10);
     rope.whole({"rope_segments", "P", "Segments", "Straight pieces that it is computed with."}, 50, 2, 2000);
-    const Group rope_later{rows, "rope", false};
-    rope_later.number({"twist_rigidity", "P", "Twist rigidity GJ", "Moment per twist of a metre."}, "N m²", 1e-3, 1e-12,
-                      1e9);
 }
 
 void add_fluid(Rows& rows) {

@@ -35,6 +35,7 @@ struct Pin {
     Vec3 position;                  ///< in the entity's frame, m
     double radius = 0.01;           ///< m; where it catches no point, the nearest is held
     std::optional<EntityIndex> to;  ///< a rigid entity; open: the world
+    bool clamped = false;           ///< of a rope: holds its direction and twist too
     friend bool operator==(const Pin&, const Pin&) = default;
 };
 

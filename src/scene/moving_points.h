@@ -10,6 +10,7 @@
 #include "math/transform.h"
 #include "physics/inter/world.h"
 #include "scene/points_definition.h"
+#include "scene/slack_line.h"
 
 namespace embody::scene {
 
@@ -64,10 +65,16 @@ public:
     /// Other matter, masses, damping and the like of the same points; they stay where they are and go on as they move.
     /// The definition is of their own kind and has as many.
     virtual Result<void> set_definition(const PointsDefinition& definition) = 0;
-    /// Holds some to bodies, besides those that a hand holds; only of what is deformable().
-    virtual Result<void> attach(std::vector<physics::Attachment>) { return {}; }
+    /// Where a slack rope begins, between the nodes that pins hold at these places: as arcs that no body stands in.
+    /// Only once, when everything around it is there.
+    virtual Result<void> hang(std::vector<HeldNode>) { return {}; }
+    /// Holds some to bodies, and a rope's directions there or where it is pinned, besides those that a hand holds; only
+    /// of what is deformable().
+    virtual Result<void> attach(std::vector<physics::Attachment>, std::vector<physics::Clamp>) { return {}; }
     /// To bodies that are still there; not those of a hand.
     [[nodiscard]] virtual std::vector<physics::Attachment> attachments() const { return {}; }
+    /// Of nodes that are pinned or held so.
+    [[nodiscard]] virtual std::vector<physics::Clamp> clamps() const { return {}; }
     /// Carries all of them along as one rigid thing; they are at rest then.
     virtual Result<void> move(const Transform& motion) = 0;
     /// As of one rigid thing that turns about its centre of mass.

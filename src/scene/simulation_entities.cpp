@@ -138,7 +138,10 @@ Result<void> Simulation::State::update_points(LiveEntity& before, LiveEntity& af
     if (!definition.ok()) return definition.error();
     const bool same_pins = before.definition.pins == after.definition.pins;
     auto* deformable = std::get_if<physics::DeformableDefinition>(&definition.value());
-    if (deformable && same_pins) deformable->attachments = before.points->attachments();
+    if (deformable && same_pins) {
+        deformable->attachments = before.points->attachments();
+        deformable->clamps = before.points->clamps();
+    }
     if (Result<void> set = before.points->set_definition(definition.value()); !set.ok()) return set;
     after.points = std::move(before.points);
     after.frame = before.frame;

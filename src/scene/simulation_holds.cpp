@@ -9,6 +9,28 @@ namespace embody::scene {
 using physics::BodyHandle;
 using physics::JointHandle;
 
+namespace {
+
+// Which way a rope goes at a node, towards later ones.
+Vec3 direction_at(const std::vector<Vec3>& line, std::uint32_t node) {
+    const std::size_t before = node > 0 ? node - 1 : 0, after = std::min<std::size_t>(node + 1, line.size() - 1);
+    return normalized(line[after] - line[before], {1, 0, 0});
+}
+
+// With their places at the start: a node that is the nearest to a pin without being within its radius is drawn there.
+std::vector<HeldNode> held_nodes(const Entity& entity, const physics::DeformableDefinition& deformable) {
+    std::vector<HeldNode> held;
+    for (const Pin& pin : entity.pins) {
+        for (const std::uint32_t node : pinned_nodes(pin, deformable.nodes)) {
+            const bool is_near = length(deformable.nodes[node] - pin.position) <= pin.radius;
+            held.push_back({node, transform_point(deformable.pose, is_near ? deformable.nodes[node] : pin.position)});
+        }
+    }
+    return held;
+}
+
+}  // namespace
+
 bool Simulation::State::is_held_as_body(EntityIndex index) const {
     if (to_be_held.contains(index)) return true;
     const auto joins = [index](const auto& item) {
@@ -26,26 +48,42 @@ Result<void> Simulation::State::fasten(const LiveEntity& entity) {
     const physics::DeformableDefinition* deformable = entity.points ? entity.points->deformable() : nullptr;
     if (!deformable) return {};
     std::vector<physics::Attachment> attachments;
-    std::vector<bool> is_held(deformable->nodes.size(), false);
+    std::vector<physics::Clamp> clamps;
+    const bool is_rope = std::holds_alternative<physics::Rope>(deformable->matter);
+    std::vector<bool> is_held(deformable->nodes.size(), false), is_clamped = is_held;
     for (const std::uint32_t node : deformable->pinned) is_held[node] = true;
+    const std::vector<HeldNode> at = held_nodes(entity.definition, *deformable);
+    if (Result<void> hung = entity.points->hang(at); !hung.ok()) return of_entity(entity.definition, hung.error());
     std::vector<Vec3> positions;
     entity.points->read(positions);
     for (std::size_t i = 0; i < entity.definition.pins.size(); ++i) {
         const Pin& pin = entity.definition.pins[i];
-        if (!pin.to) continue;
+        const std::vector<std::uint32_t> nodes = pinned_nodes(pin, deformable->nodes);
+        // Of neighbours the outer ones: those between hold each other.
+        const auto clamp = [&](std::uint32_t node, Quat holder) {
+            const auto has = [&](std::uint32_t other) { return std::ranges::binary_search(nodes, other); };
+            if (!is_rope || !pin.clamped || is_clamped[node] || (node > 0 && has(node - 1) && has(node + 1))) return;
+            is_clamped[node] = true;
+            clamps.push_back({node, rotate_inverse(holder, direction_at(positions, node))});
+        };
+        if (!pin.to) {
+            for (const std::uint32_t node : nodes) clamp(node, {});
+            continue;
+        }
         const LiveEntity* other = find(*pin.to);
         const std::string where = "pins[" + std::to_string(i) + "].to";
         if (!other) return of_entity(entity.definition, {where, "entity " + std::to_string(*pin.to) + " is not there"});
         if (other->points)
             return of_entity(entity.definition, {where, "is no single body", "pin it to a rigid or static thing"});
         const Transform pose = world->pose(other->body);
-        for (const std::uint32_t node : pinned_nodes(pin, deformable->nodes)) {
+        for (const std::uint32_t node : nodes) {
             if (is_held[node]) continue;
             is_held[node] = true;
             attachments.push_back({node, other->body, inverse_transform_point(pose, positions[node])});
+            clamp(node, pose.rotation);
         }
     }
-    return entity.points->attach(std::move(attachments));
+    return entity.points->attach(std::move(attachments), std::move(clamps));
 }
 
 Result<void> Simulation::State::fasten_all(std::optional<EntityIndex> came) {

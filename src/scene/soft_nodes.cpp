@@ -9,12 +9,12 @@
 
 #include "geometry/tetrahedra/tetrahedral_mesh.h"
 #include "math/mat3.h"
-#include "scene/thin_form.h"
 
 namespace embody::scene {
 
 using physics::Attachment;
 using physics::BodyHandle;
+using physics::Clamp;
 using physics::DeformableDefinition;
 
 namespace {
@@ -55,19 +55,30 @@ Result<std::unique_ptr<SoftNodes>> SoftNodes::create(physics::World& world, cons
     nodes->faces_ = outer_faces(definition);
     nodes->surface_ = nodes_of(nodes->faces_, definition.nodes.size());
     nodes->attachments_ = definition.attachments;
-    if (auto hung = nodes->hang(); !hung) return hung.error();
+    nodes->clamps_ = definition.clamps;
     return nodes;
 }
 
-// A slack rope is not pressed straight between its ends: it begins as an arc.
-Result<void> SoftNodes::hang() {
+// Whether a body that the rope collides with is there.
+bool SoftNodes::is_blocked(Vec3 place) const {
+    const double radius = deformable()->contact_radius;
+    const Vec3 half{radius, radius, radius};
+    return std::ranges::any_of(world_.overlap_box({place - half, place + half}), [&](BodyHandle handle) {
+        const std::optional<physics::BodyDefinition> body = world_.body(handle);
+        return body && body->enabled && (body->collision_mask & deformable()->collision_group) != 0 &&
+               (deformable()->collision_mask & body->collision_group) != 0;
+    });
+}
+
+// A slack rope is not pressed straight between its ends.
+Result<void> SoftNodes::hang(std::vector<HeldNode> held) {
     const auto* rope = std::get_if<physics::Rope>(&deformable()->matter);
-    if (!rope || !(rope->slack > 0)) return {};
-    std::vector<Vec3> positions;
-    read(positions);
-    const Vec3 down = normalized(world_.settings().gravity, {0, -1, 0});
+    if (!rope || !(rope->slack > 0) || std::exchange(has_hung_, true)) return {};
+    SlackRope slack{.held = std::move(held), .slack = rope->slack};
+    read(slack.line);
+    slack.down = normalized(world_.settings().gravity, {0, -1, 0});
     const auto velocities = world_.node_velocities(handle_);
-    return world_.set_nodes(handle_, hanging_arc(positions, rope->slack, down),
+    return world_.set_nodes(handle_, slack_line(slack, [this](Vec3 place) { return is_blocked(place); }),
                             std::vector<Vec3>(velocities.begin(), velocities.end()));
 }
 
@@ -82,11 +93,13 @@ Result<void> SoftNodes::set_definition(const PointsDefinition& definition) {
     let_go();
     if (auto set = world_.set_deformable(handle_, taken); !set) return set;
     attachments_ = taken.attachments;
+    clamps_ = taken.clamps;
     return {};
 }
 
-Result<void> SoftNodes::attach(std::vector<Attachment> attachments) {
+Result<void> SoftNodes::attach(std::vector<Attachment> attachments, std::vector<Clamp> clamps) {
     attachments_ = std::move(attachments);
+    clamps_ = std::move(clamps);
     return apply_attachments();
 }
 
@@ -96,13 +109,29 @@ std::vector<Attachment> SoftNodes::attachments() const {
     return there;
 }
 
+std::vector<Clamp> SoftNodes::clamps() const {
+    const std::vector<Attachment> there = attachments();
+    const std::vector<std::uint32_t>& pinned = deformable()->pinned;
+    std::vector<Clamp> held = clamps_;
+    std::erase_if(held, [&](const Clamp& clamp) {
+        return std::ranges::find(pinned, clamp.node) == pinned.end() &&
+               std::ranges::find(there, clamp.node, &Attachment::node) == there.end();
+    });
+    return held;
+}
+
 // What is held by the hand is not held by anything else meanwhile.
 Result<void> SoftNodes::apply_attachments() {
+    const auto is_in_hand = [this](std::uint32_t node) {
+        return std::ranges::find(held_, node, &Attachment::node) != held_.end();
+    };
     std::vector<Attachment> all = held_;
     for (const Attachment& attachment : attachments()) {
-        if (std::ranges::find(held_, attachment.node, &Attachment::node) == held_.end()) all.push_back(attachment);
+        if (!is_in_hand(attachment.node)) all.push_back(attachment);
     }
-    return world_.set_attachments(handle_, all);
+    std::vector<Clamp> held = clamps();
+    std::erase_if(held, [&](const Clamp& clamp) { return is_in_hand(clamp.node); });
+    return world_.set_attachments(handle_, all, held);
 }
 
 const DeformableDefinition* SoftNodes::deformable() const { return world_.deformable(handle_); }
@@ -238,6 +267,12 @@ Result<void> SoftNodes::move(const Transform& motion) {
     std::vector<Vec3> positions;
     read(positions);
     for (Vec3& position : positions) position = transform_point(motion, position);
+    const auto& pinned = deformable()->pinned;
+    for (Clamp& clamp : clamps_) {
+        if (std::ranges::find(pinned, clamp.node) != pinned.end())
+            clamp.direction = rotate(motion.rotation, clamp.direction);
+    }
+    if (auto turned = apply_attachments(); !turned) return turned;
     return world_.set_nodes(handle_, positions, std::vector<Vec3>(positions.size()));
 }
 
@@ -263,6 +298,7 @@ Result<void> SoftNodes::set_enabled(bool enabled) {
     DeformableDefinition changed = *deformable();
     changed.enabled = enabled;
     changed.attachments = attachments();
+    changed.clamps = clamps();
     return set_definition(changed);
 }
 

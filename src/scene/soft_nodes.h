@@ -35,8 +35,10 @@ public:
     [[nodiscard]] physics::BodyHandle hold(Vec3 position) override;
     void let_go() override;
     Result<void> set_definition(const PointsDefinition& definition) override;
-    Result<void> attach(std::vector<physics::Attachment> attachments) override;
+    Result<void> hang(std::vector<HeldNode> held) override;
+    Result<void> attach(std::vector<physics::Attachment> attachments, std::vector<physics::Clamp> clamps) override;
     [[nodiscard]] std::vector<physics::Attachment> attachments() const override;
+    [[nodiscard]] std::vector<physics::Clamp> clamps() const override;
     Result<void> move(const Transform& motion) override;
     Result<void> set_velocity(Vec3 linear, Vec3 angular) override;
     Result<void> apply_impulse(Vec3 impulse) override;
@@ -46,7 +48,7 @@ public:
 private:
     SoftNodes(physics::World& world, physics::DeformableHandle handle) : world_(world), handle_(handle) {}
     Result<void> apply_attachments();
-    Result<void> hang();
+    [[nodiscard]] bool is_blocked(Vec3 place) const;
     [[nodiscard]] std::optional<SurfaceHit> meet_line(Vec3 origin, Vec3 direction, double most) const;
     [[nodiscard]] std::optional<SurfaceHit> meet_faces(Vec3 origin, Vec3 direction, double most) const;
 
@@ -56,6 +58,8 @@ private:
                                                        ///< those of cloth; none of a rope
     std::vector<std::uint32_t> surface_;               ///< their nodes, ascending
     std::vector<physics::Attachment> attachments_, held_;
+    std::vector<physics::Clamp> clamps_;
+    bool has_hung_ = false;
     physics::BodyHandle hand_;
     physics::ShapeHandle hand_shape_;
 };

@@ -267,42 +267,4 @@ Result<LineForm> line_of(const ShapeDefinition& shape, int segments) {
     return line_of(*surface, segments);
 }
 
-// A parabola of the length that is asked for, its sag by halving.
-std::vector<Vec3> hanging_arc(const std::vector<Vec3>& line, double slack, Vec3 down) {
-    if (!(slack > 0) || line.size() < 2) return line;
-    const Vec3 from = line.front(), way = line.back() - from;
-    const Vec3 ahead = normalized(way, {1, 0, 0});
-    const Vec3 across = std::fabs(ahead.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 0, 1};
-    const Vec3 sag = normalized(down - dot(down, ahead) * ahead, normalized(cross(ahead, across), {0, 0, 1}));
-    double wanted = 0;
-    for (std::size_t i = 1; i < line.size(); ++i) wanted += (1 + slack) * length(line[i] - line[i - 1]);
-
-    constexpr int steps = 2000, halvings = 60;
-    std::vector<double> along(steps + 1, 0);  // way along the arc
-    const auto place = [&](double t, double depth) { return from + t * way + 4 * depth * t * (1 - t) * sag; };
-    const auto measure = [&](double depth) {
-        for (int i = 1; i <= steps; ++i) {
-            const double t = static_cast<double>(i) / steps;
-            along[static_cast<std::size_t>(i)] =
-                along[static_cast<std::size_t>(i) - 1] + length(place(t, depth) - place(t - 1.0 / steps, depth));
-        }
-        return along.back();
-    };
-    double low = 0, high = wanted;
-    for (int i = 0; i < halvings; ++i) {
-        const double middle = (low + high) / 2;
-        (measure(middle) < wanted ? low : high) = middle;
-    }
-    measure(low);
-    std::vector<Vec3> arc;
-    std::size_t next = 1;
-    for (std::size_t k = 0; k < line.size(); ++k) {
-        const double at = along.back() * static_cast<double>(k) / static_cast<double>(line.size() - 1);
-        while (next < steps && along[next] < at) ++next;
-        const double before = along[next - 1], part = (at - before) / std::max(along[next] - before, 1e-12);
-        arc.push_back(place((static_cast<double>(next) - 1 + std::clamp(part, 0.0, 1.0)) / steps, low));
-    }
-    return arc;
-}
-
 }  // namespace embody::scene

@@ -27,8 +27,4 @@ Result<attributes::SheetMesh> sheet_of(const geometry::TriangleMesh& surface, in
 Result<LineForm> line_of(const physics::ShapeDefinition& shape, int segments);
 Result<LineForm> line_of(const geometry::TriangleMesh& surface, int segments);
 
-/// As many places (m) evenly along an arc that hangs between the first and the last of `line`, longer than the way
-/// along the line by `slack` of it; `down` is a unit vector. The line itself without slack.
-std::vector<Vec3> hanging_arc(const std::vector<Vec3>& line, double slack, Vec3 down);
-
 }  // namespace embody::scene

@@ -112,24 +112,5 @@ TEST(LineForm, FollowsTheMiddleOfASurface) {
     EXPECT_NEAR(line->diameter, 0.02, 0.004);
 }
 
-TEST(HangingArc, HasTheLengthThatTheSlackSaysAndHangsDown) {
-    const std::vector<Vec3> line{{-1, 2, 0}, {0, 2, 0}, {1, 2, 0}};
-    for (const double slack : {0.05, 0.5, 3.0}) {
-        std::vector<Vec3> fine;
-        for (int i = 0; i <= 200; ++i) fine.push_back({-1 + i * 0.01, 2, 0});
-        const std::vector<Vec3> arc = hanging_arc(fine, slack, {0, -1, 0});
-        EXPECT_NEAR(length_of(arc), 2 * (1 + slack), 2e-3 * (1 + slack));
-        EXPECT_EQ(arc.front(), fine.front());
-        EXPECT_LT(distance(arc.back(), fine.back()), 1e-9);
-        EXPECT_LT(arc[100].y, 2 - 0.1);
-        for (std::size_t i = 1; i < arc.size(); ++i)
-            EXPECT_NEAR(distance(arc[i], arc[i - 1]), 0.01 * (1 + slack), 2e-3 * (1 + slack)) << i;
-    }
-    EXPECT_EQ(hanging_arc(line, 0, {0, -1, 0}), line);
-    // One that stands upright has no side that is down: it goes aside.
-    const std::vector<Vec3> upright{{0, 0, 0}, {0, 1, 0}, {0, 2, 0}};
-    EXPECT_GT(length_of(hanging_arc(upright, 0.5, {0, -1, 0})), 2.1);
-}
-
 }  // namespace
 }  // namespace embody::scene

@@ -77,6 +77,7 @@ void read_pins(FieldReader& reader, Entity& entity) {
         item.number("radius", pin.radius, {0, 1e4});
         std::uint32_t to = 0;
         if (item.whole("to", to, 1, last_document_index)) pin.to = to;
+        item.truth("clamped", pin.clamped);
         if (pin.to == entity.index && entity.index != 0) reader.fail(item.path("to"), "must be another entity");
         if (item.finish()) entity.pins.push_back(pin);
     }
@@ -87,6 +88,7 @@ json pins_to_json(const std::vector<Pin>& pins) {
     for (const Pin& pin : pins) {
         out.push_back({{"position", vector_to_json(pin.position)}, {"radius", pin.radius}});
         if (pin.to) out.back()["to"] = *pin.to;
+        if (pin.clamped) out.back()["clamped"] = true;
     }
     return out;
 }

@@ -29,6 +29,8 @@ export interface Pin {
   radius?: number;
   /** The entity that it goes with; without, the world. */
   to?: number;
+  /** Of a rope: holds its direction and twist too. */
+  clamped?: boolean;
 }
 
 export interface Entity {

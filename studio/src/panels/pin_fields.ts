@@ -16,6 +16,8 @@ export class PinFields {
   private readonly buttons = element("div", { class: "pin-buttons" });
   private readonly said = element("p", { class: "note", "data-testid": "pin-count" });
   private readonly holder = element("select", { "aria-label": "Held by", "data-testid": "pin-holder", onchange: () => this.holdBy() });
+  private readonly clamped = element("input", { type: "checkbox", "aria-label": "Clamped", "data-testid": "pin-clamped", onchange: () => this.clamp() });
+  private readonly clampedRow = element("label", { class: "attribute" }, element("span", { class: "attribute-label", title: "Holds the rope's direction and its turn about itself too" }, "Clamped"), this.clamped);
   private index = 0;
   private mesh: SimulationMesh | null = null;
   /** The next click on the thing pins it there. */
@@ -29,6 +31,7 @@ export class PinFields {
       this.said,
       this.buttons,
       element("div", { class: "attribute" }, element("span", { class: "attribute-label", title: "What the pinned places go with" }, "Held by"), this.holder),
+      this.clampedRow,
     );
     this.root = element("section", { class: "entity", "data-testid": "pins", "aria-label": "Pins" }, group);
     show(this.root, false);
@@ -86,6 +89,8 @@ export class PinFields {
       ...holders.slice(0, MOST_HOLDERS).map((each) => element("option", { value: String(each.index) }, nameOf(each))),
     );
     this.holder.value = pins[0]?.to === undefined ? WORLD : String(pins[0].to);
+    show(this.clampedRow, mesh !== null && !mesh.triangles && !mesh.tetrahedra);
+    this.clamped.checked = pins.length > 0 && pins.every(({ clamped }) => clamped);
   }
 
   private get to(): Pick<Pin, "to"> {
@@ -97,7 +102,7 @@ export class PinFields {
     if (!entity) return;
     const known = new Set((entity.pins ?? []).map(({ position }) => JSON.stringify(position)));
     const added = make(entity).filter(({ position }) => !known.has(JSON.stringify(position)));
-    this.put([...(entity.pins ?? []), ...added.map((pin) => ({ ...pin, ...this.to }))]);
+    this.put([...(entity.pins ?? []), ...added.map((pin) => ({ ...pin, ...this.to, ...(this.clamped.checked && !this.clampedRow.hidden && { clamped: true }) }))]);
   }
 
   private put(pins: Pin[]): void {
@@ -109,7 +114,13 @@ export class PinFields {
     const { entity } = this;
     if (!entity?.pins?.length) return;
     const { to } = this;
-    this.put(entity.pins.map(({ position, radius }) => ({ ...(position && { position }), ...(radius !== undefined && { radius }), ...to })));
+    this.put(entity.pins.map(({ to: _, ...pin }) => ({ ...pin, ...to })));
+  }
+
+  private clamp(): void {
+    const { entity } = this;
+    const { checked } = this.clamped;
+    if (entity?.pins?.length) this.put(entity.pins.map(({ clamped: _, ...pin }) => ({ ...pin, ...(checked && { clamped: true }) })));
   }
 
   private pick(picking: boolean): void {
