@@ -57,7 +57,10 @@ export async function pictureOfScene(page) {
   await page.evaluate(() => document.activeElement?.blur());
   await page.waitForTimeout(500);
   await page.evaluate(() => window.embody.halt());
+  // Nor with messages that lie over it.
+  const style = await page.addStyleTag({ content: ".toasts, .overlays { visibility: hidden !important; }" });
   const picture = await page.getByTestId("canvas").screenshot();
+  await style.evaluate((element) => element.remove());
   await page.evaluate(() => window.embody.resume());
   return picture;
 }
