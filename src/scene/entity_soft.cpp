@@ -73,6 +73,7 @@ Result<physics::DeformableDefinition> EntityBodies::deformable(const Entity& ent
     deformable.pose = entity.pose;
     deformable.linear_velocity = entity.linear_velocity;
     deformable.angular_velocity = entity.angular_velocity;
+    deformable.force = entity.force;
     deformable.enabled = entity.enabled;
     deformable.user_data = entity.index;
     for (const Pin& pin : entity.pins) {

@@ -21,6 +21,7 @@ Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liqu
     if (!region.ok()) return region.error();
     std::unique_ptr<FluidBody> made(new FluidBody(world, liquids));
     made->matter_ = definition.matter;
+    made->force_ = definition.force;
     const Bounds bounds = transformed(definition.pose, region.value().bounds());
     // Particles of a fluid that is there already have that one's volume, however many it takes.
     const double cell = liquids.cell_size(definition.matter, bounds);
@@ -65,6 +66,7 @@ Result<void> FluidBody::put(const std::vector<Particle>& particles) {
         return Error{"shape", "holds no liquid: " + share.error().why,
                      "place it outside of solid things, or make it larger"};
     share_ = share.value();
+    share_->force = force_;
     if (std::ranges::all_of(particles, [](const Particle& particle) { return particle.velocity == Vec3{}; })) return {};
 
     // Those in solids were left out, so that the ids say nothing of the places, but their order is the same.
@@ -78,13 +80,16 @@ Result<void> FluidBody::put(const std::vector<Particle>& particles) {
 }
 
 Result<void> FluidBody::set_definition(const PointsDefinition& definition) {
+    const auto& liquid = std::get<LiquidDefinition>(definition);
     const double cell_size = matter_.cell_size;
-    matter_ = std::get<LiquidDefinition>(definition).matter;
+    matter_ = liquid.matter;
+    force_ = liquid.force;
     matter_.cell_size = cell_size;
     if (share_) {
+        share_->force = force_;
         if (Result<void> set = liquids_.set_matter(*share_, matter_); !set.ok()) return set;
     }
-    return set_enabled(std::get<LiquidDefinition>(definition).enabled);
+    return set_enabled(liquid.enabled);
 }
 
 std::vector<FluidBody::Particle> FluidBody::particles() const {

@@ -16,6 +16,8 @@ Result<std::unique_ptr<GrainBodies>> GrainBodies::create(physics::World& world, 
     made->balls_.reserve(definition.centers.size());
     const Transform frame{definition.body.position, definition.body.rotation};
     physics::BodyDefinition ball = definition.body;
+    ball.force = definition.body.force / static_cast<double>(definition.centers.size());
+    ball.torque = {};
     ball.shape = made->shape_;
     for (const Vec3& center : definition.centers) {
         ball.position = transform_point(frame, center);
@@ -39,6 +41,8 @@ Result<void> GrainBodies::set_definition(const PointsDefinition& definition) {
     return world_.change_bodies(balls_, [&](physics::BodyDefinition& ball) {
         const physics::BodyDefinition now = ball;
         ball = body;
+        ball.force = body.force / static_cast<double>(balls_.size());
+        ball.torque = {};
         ball.shape = shape_;
         ball.position = now.position;
         ball.rotation = now.rotation;

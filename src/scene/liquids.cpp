@@ -57,14 +57,16 @@ Result<Liquids::Share*> Liquids::add(const FluidDefinition& matter, std::span<co
     if (const Shared* shared = to_join(matter, bounds, 1)) {
         const Result<physics::FluidIds> ids = world_.add_to_fluid(shared->fluid, places);
         if (!ids.ok()) return ids.error();
-        *share = {shared->fluid, ids.value(), {}};
+        share->fluid = shared->fluid;
+        share->ids = ids.value();
     } else {
         FluidDefinition definition = matter;
         definition.points.assign(places.begin(), places.end());
         const Result<FluidHandle> fluid = world_.create_fluid(definition);
         if (!fluid.ok()) return fluid.error();
         const auto count = static_cast<std::uint32_t>(world_.fluid_particles(fluid.value()).ids.size());
-        *share = {fluid.value(), {0, count}, {}};
+        share->fluid = fluid.value();
+        share->ids = {0, count};
     }
     put(std::move(share));
     return added;
@@ -130,7 +132,8 @@ Result<void> Liquids::hand_over(Share& share, FluidHandle to) {
     const Result<physics::FluidPart> part = world_.move_between_fluids(share.fluid, share.ids, to);
     if (!part.ok()) return part.error();
     std::unique_ptr<Share> taken = take(share);
-    *taken = {part.value().fluid, part.value().ids, {}};
+    taken->fluid = part.value().fluid;
+    taken->ids = part.value().ids;
     put(std::move(taken));
     return {};
 }
@@ -158,6 +161,26 @@ Result<void> Liquids::regroup(Share& share) {
     const Shared* other = to_join(*world_.fluid(share.fluid), bounds_of(share), 1, share.fluid);
     if (is_alone && !other) return {};
     return hand_over(share, other ? other->fluid : FluidHandle{});
+}
+
+void Liquids::push(double dt) {
+    for (const Shared& shared : fluids_) {
+        const FluidDefinition& matter = *world_.fluid(shared.fluid);
+        const double particle = matter.density * matter.cell_size * matter.cell_size * matter.cell_size / 8;
+        for (const auto& share : shared.shares) {
+            const std::size_t count = share->force == Vec3{} ? 0 : particles_of(*share).size();
+            if (count == 0 || world_.fluid_particles(shared.fluid).is_frozen) continue;
+            const Vec3 change = dt / (particle * static_cast<double>(count)) * share->force;
+            // A fluid that is in the world does not refuse.
+            (void)world_
+                .change_fluid(shared.fluid, share->ids,
+                              [change](std::uint32_t, Vec3&, Vec3& velocity) {
+                                  velocity += change;
+                                  return true;
+                              })
+                .ok();
+        }
+    }
 }
 
 void Liquids::part_far_ones() {

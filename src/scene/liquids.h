@@ -26,6 +26,7 @@ public:
         physics::FluidHandle fluid;
         physics::FluidIds ids;
         std::vector<std::uint32_t> places;  ///< see particles_of
+        Vec3 force;                         ///< constant, N, shared among its particles; push() applies it
     };
     /// Cells that a body of this matter within these bounds has to be filled for: those of the fluid that it would
     /// join, else its own.
@@ -42,6 +43,8 @@ public:
     Result<void> set_matter(Share& share, const physics::FluidDefinition& matter);
     /// After its particles were put elsewhere: it leaves a fluid that it is too far away from, or joins another one.
     Result<void> regroup(Share& share);
+    /// Before a step of `dt` seconds: the shares' own forces.
+    void push(double dt);
     /// After a step: shares that have run far apart no longer share a fluid, whose grid would have to span them all.
     void part_far_ones();
 

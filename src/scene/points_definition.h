@@ -16,7 +16,7 @@ namespace embody::scene {
 struct GrainDefinition {
     std::vector<Vec3> centers;     ///< in the entity's frame, m
     double diameter = 0.01;        ///< of a ball, m
-    physics::BodyDefinition body;  ///< of each ball but for place and shape; its pose is the entity's
+    physics::BodyDefinition body;  ///< of each ball but for place and shape; pose and force are the entity's
 };
 
 /// A body of liquid as it begins.
@@ -26,6 +26,7 @@ struct LiquidDefinition {
     physics::FluidDefinition matter;         ///< neither volume nor velocity
     std::size_t particle_budget = 0;         ///< most particles
     Vec3 linear_velocity, angular_velocity;  ///< m/s, rad/s, as of one rigid thing
+    Vec3 force;                              ///< constant, N, shared among the particles
     bool enabled = true;
 };
 

@@ -81,6 +81,7 @@ const physics::StepReport& Simulation::step() {
     // Due actions, physics, what the physics set off.
     state.actions->before_step(state.world->last_report().time);
     state.apply_timed_forces();
+    state.liquids.push(state.world->settings().time_step);
     const physics::StepReport& report = state.world->step();
     state.liquids.part_far_ones();
     const auto sleeps = state.world->sleep_events();

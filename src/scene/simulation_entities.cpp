@@ -36,6 +36,8 @@ Result<LiveEntity> Simulation::State::describe(const Entity& entity) {
     described.attributes = std::move(set).value();
     described.frame = entity.pose;
     described.form = bodies.form(entity, described.attributes, is_held_as_body(entity.index));
+    if (described.form.has_points && entity.torque != Vec3{})
+        described.form.note = "is not turned by its torque, because it is not one rigid body";
     if (!described.form.has_points) described.shape_key = EntityBodies::shape_key(entity, described.attributes);
     return described;
 }

@@ -66,6 +66,14 @@ bool DeformableRecord::is_finite() const {
     return solid ? solid->is_finite() : !(cloth ? cloth->is_frozen() : rope->is_frozen());
 }
 
+Vec3 DeformableRecord::acceleration(Vec3 gravity) const {
+    const Vec3 pull = definition.gravity_factor * gravity;
+    if (definition.force == Vec3{}) return pull;
+    double mass = 0;
+    for (const double own : nodes().mass) mass += own;
+    return pull + definition.force / mass;
+}
+
 Conserved DeformableRecord::conserved(Vec3 gravity) const {
     if (solid) return solid->conserved(gravity);
     Conserved sum;

@@ -41,6 +41,8 @@ struct DeformableRecord {
     [[nodiscard]] Bounds bounds() const;
     [[nodiscard]] bool is_finite() const;
     [[nodiscard]] Conserved conserved(Vec3 gravity) const;
+    /// What gravity (m/s², the world's) and its constant force give each node, m/s².
+    [[nodiscard]] Vec3 acceleration(Vec3 gravity) const;
     /// Whether both are solids of the same tetrahedra.
     [[nodiscard]] bool has_tetrahedra_of(const DeformableRecord& other) const;
     /// Not far from how the whole is turned.

@@ -172,8 +172,7 @@ void run_substeps(WorldState& world, MovingDeformables& moving) {
     const double h = world.settings.time_step / substeps;
     for (int k = 1; k <= substeps; ++k) {
         share_solids(world, moving, [&](std::size_t i, TaskPool&) {
-            moving.solids[i]->begin_substep(
-                h, moving.solid_records[i]->definition.gravity_factor * world.settings.gravity);
+            moving.solids[i]->begin_substep(h, moving.solid_records[i]->acceleration(world.settings.gravity));
         });
         push_solids(world, moving);
         for (TouchedBody& body : moving.bodies) body.enter_substep(h);

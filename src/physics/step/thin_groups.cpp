@@ -58,7 +58,7 @@ std::uint32_t root_of(std::vector<std::uint32_t>& group, std::uint32_t i) {
 
 Substep substep_of(const WorldState& world, const DeformableRecord& record, double h, double time) {
     Substep substep{.h = h, .time = time};
-    substep.gravity = record.definition.gravity_factor * world.settings.gravity;
+    substep.gravity = record.acceleration(world.settings.gravity);
     substep.wind = world.wind();
     substep.air_density = world.settings.air_density;
     return substep;

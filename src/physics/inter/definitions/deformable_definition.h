@@ -81,6 +81,7 @@ struct DeformableDefinition {
     Vec3 linear_velocity;                 ///< of all nodes at the start, m/s
     Vec3 angular_velocity;                ///< about the centre of mass, world axes, rad/s
     double gravity_factor = 1;            ///< -10 … 10
+    Vec3 force;                           ///< constant, N, world axes, shared among the nodes by mass
     double friction = 0.5;                ///< Coulomb coefficient of its surface, 0 … 2
     double contact_radius = 1e-3;         ///< distance that nodes keep from other surfaces, m, 1e-5 … 1
     bool enabled = true;                  ///< a disabled one neither moves nor collides
