@@ -10,6 +10,8 @@
 #include "attributes/registry.h"
 #include "attributes/resolver.h"
 #include "attributes/to_physics.h"
+#include "geometry/convex_hull.h"
+#include "geometry/volume_estimate.h"
 #include "physics/inter/world.h"
 #include "scene/json/parts.h"
 
@@ -83,13 +85,20 @@ std::string category_of(const Entity& entity) {
     return word ? *word : entity.category;
 }
 
+// What a person makes of triangles that would be static otherwise.
+bool is_moved(const Entity& entity) {
+    const auto own = entity.attributes.find("kind");
+    if (own == entity.attributes.end()) return !category_of(entity).empty();
+    return own->second != attributes::AttributeValue(std::string("static"));
+}
+
 // A primitive that no category makes soft or the like is solid, of the default density, and its form is known exactly.
 AttributeSet solid_attributes(const std::string& category, const physics::ShapeDefinition& shape,
                               const ModelFacts& facts) {
     AttributeSet set;
     const std::string name = physics::shape_name(shape);
     if (!category.empty()) set.put({"category", category, {}, {}, "the entity's category", AttributeLevel::category});
-    if (physics::is_static_only(shape)) {
+    if (physics::is_static_only(shape) && !(facts.geometry.volume > 0)) {
         set.put({"kind", std::string("static"), {}, {}, "a " + name + " can't move", AttributeLevel::kind});
     } else {
         const double density = std::get<double>(attributes::describe("density")->standard);
@@ -112,6 +121,24 @@ AttributeSet solid_attributes(const std::string& category, const physics::ShapeD
 // How fine the grains or the liquid are, of this size of the thing.
 void complete_fineness(AttributeSet& set, const attributes::GeometryFacts& geometry) {
     attributes::put_fineness(set, geometry, attributes::form_of(geometry, {0.5, 0.5, 0.5}));
+}
+
+// Triangles have the volume that they enclose; none where they enclose nothing.
+void put_enclosed(const physics::MeshShape& mesh, attributes::GeometryFacts& form) {
+    const geometry::TriangleMesh surface{mesh.positions, mesh.triangles};
+    if (!geometry::validate(surface).ok()) return;
+    const geometry::VolumeEstimate enclosed = geometry::estimate_volume(surface);
+    form.closed = enclosed.method == geometry::VolumeMethod::closed_mesh;
+    form.volume_method = geometry::name(enclosed.method);
+    if (enclosed.method == geometry::VolumeMethod::no_volume) return;
+    form.volume = enclosed.solid.volume;
+    form.center_of_volume = enclosed.solid.center;
+    form.unit_inertia = enclosed.solid.inertia;
+    std::vector<Vec3> points;
+    points.reserve(mesh.positions.size());
+    for (const Vec3f& position : mesh.positions) points.push_back(to_vec3(position));
+    const Result<geometry::ConvexHull> hull = geometry::build_convex_hull(points);
+    form.hull_volume = hull.ok() ? geometry::integrate_hull(hull.value()).volume : form.volume;
 }
 
 // Large shapes have no short name to be found by.
@@ -201,6 +228,17 @@ ModelFacts primitive_facts(const physics::ShapeDefinition& shape) {
     return facts;
 }
 
+const ModelFacts& EntityBodies::primitive(const Entity& entity, const physics::ShapeDefinition& shape) {
+    const auto* mesh = std::get_if<physics::MeshShape>(&shape);
+    if (!mesh || !is_moved(entity)) return primitive(shape);
+    if (last_mesh_.first.positions == mesh->positions && last_mesh_.first.triangles == mesh->triangles)
+        return last_mesh_.second;
+    ModelFacts facts = primitive_facts(shape);
+    put_enclosed(*mesh, facts.geometry);
+    last_mesh_ = {*mesh, std::move(facts)};
+    return last_mesh_.second;
+}
+
 const ModelFacts& EntityBodies::primitive(const physics::ShapeDefinition& shape) {
     const std::string text = short_text(shape);
     if (text.empty()) return last_primitive_ = primitive_facts(shape);
@@ -257,7 +295,7 @@ Result<AttributeSet> EntityBodies::attributes(const Entity& entity) {
     Result<std::vector<AttributeEntry>> own = own_entries(entity);
     if (!own.ok()) return own.error();
     if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry)) {
-        const ModelFacts& facts = primitive(*shape);
+        const ModelFacts& facts = primitive(entity, *shape);
         AttributeSet set = lay_over(primitive_attributes(entity, *shape, facts), own.value(), facts);
         set.erase("collision_shape");
         complete_fineness(set, facts.geometry);
@@ -328,9 +366,17 @@ Result<physics::BodyDefinition> EntityBodies::body(const Entity& entity, const A
     if (std::holds_alternative<physics::ShapeDefinition>(entity.geometry)) {
         const std::string kind = attributes.word("kind", "rigid");
         const bool is_thin = kind == "cloth" || kind == "rope";
-        if (!is_thin && !attributes::is_manual(attributes, "mass")) body.mass.mass.reset();
-        if (!attributes::is_manual(attributes, "center_of_mass")) body.mass.center_of_mass.reset();
-        if (!attributes::is_manual(attributes, "inertia")) body.mass.inertia.reset();
+        // It collides as its hull, but weighs by what its triangles enclose.
+        const bool is_mesh =
+            std::holds_alternative<physics::MeshShape>(std::get<physics::ShapeDefinition>(entity.geometry));
+        const auto is_known = [&](const char* name) {
+            const AttributeEntry* held = attributes.find(name);
+            return held &&
+                   (held->level == AttributeLevel::manual || (is_mesh && held->level != AttributeLevel::standard));
+        };
+        if (!is_thin && !is_known("mass")) body.mass.mass.reset();
+        if (!is_known("center_of_mass")) body.mass.center_of_mass.reset();
+        if (!is_known("inertia")) body.mass.inertia.reset();
         body.mass.density *= attributes.number("fill_fraction", 1);
     }
 

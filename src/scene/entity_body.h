@@ -92,6 +92,8 @@ private:
     /// With pose, velocities and what its pins hold in the world.
     Result<physics::DeformableDefinition> deformable(const Entity& entity, const attributes::AttributeSet& attributes);
     const attributes::ModelFacts& primitive(const physics::ShapeDefinition& shape);
+    /// The same, of triangles that move with what they enclose.
+    const attributes::ModelFacts& primitive(const Entity& entity, const physics::ShapeDefinition& shape);
     /// Without its own: what its category says where that is no rigid thing's, else those of something solid.
     [[nodiscard]] attributes::AttributeSet primitive_attributes(const Entity& entity,
                                                                 const physics::ShapeDefinition& shape,
@@ -99,8 +101,9 @@ private:
 
     catalog::Catalog* catalog_;
     std::map<std::string, Model> models_;
-    std::map<std::string, attributes::ModelFacts> primitives_;  ///< by their text
-    attributes::ModelFacts last_primitive_;                     ///< of one without a short text
+    std::map<std::string, attributes::ModelFacts> primitives_;         ///< by their text
+    attributes::ModelFacts last_primitive_;                            ///< of one without a short text
+    std::pair<physics::MeshShape, attributes::ModelFacts> last_mesh_;  ///< that moves
     std::shared_ptr<FormCache> forms_;
     std::map<std::string, Result<catalog::SoftMesh>>& soft_meshes_;
     std::map<std::string, std::map<std::string, Result<ThinForm>>>& thin_forms_;
