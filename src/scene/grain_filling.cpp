@@ -18,6 +18,8 @@ constexpr double spacing = 1.1;  // of the rows, in diameters: 0.74 / 1.1³ = 0.
 constexpr double shake = 0.028;
 // Places looked at: so many are a second's work.
 constexpr std::size_t most_places = 50'000'000;
+// The rule for the diameter counts no edges: so much of what fits may be left out at the top.
+constexpr double most_left_out = 0.5;
 
 }  // namespace
 
@@ -36,11 +38,10 @@ Result<std::vector<Vec3>> fill_with_grains(const physics::ShapeDefinition& shape
     const Vec3 size = bounds.size();
     Random random(seed);
     std::vector<Vec3> centers;
-    std::size_t looked_at = 0;
+    std::size_t looked_at = 0, left_out = 0;
     for (std::int64_t iy = 0; iy < count(size.y, layer); ++iy) {
         for (std::int64_t iz = 0; iz < count(size.z, row); ++iz) {
             for (std::int64_t ix = 0; ix < count(size.x, a); ++ix) {
-                if (centers.size() == most) return centers;
                 if (++looked_at > most_places)
                     return Error{"simulated_diameter", "is too small to fill so large a shape", "make it larger"};
                 const double shift_x = static_cast<double>((iz + iy % 3) % 2) * a / 2;
@@ -51,7 +52,15 @@ Result<std::vector<Vec3>> fill_with_grains(const physics::ShapeDefinition& shape
                                    Vec3{static_cast<double>(ix) * a + shift_x, static_cast<double>(iy) * layer,
                                         static_cast<double>(iz) * row + shift_z} +
                                    shaken * diameter;
-                if (region.value().holds_ball(place, diameter / 2)) centers.push_back(place);
+                if (!region.value().holds_ball(place, diameter / 2)) continue;
+                if (centers.size() < most) {
+                    centers.push_back(place);
+                } else if (static_cast<double>(++left_out) > most_left_out * static_cast<double>(most)) {
+                    return Error{"grain_budget",
+                                 "of " + std::to_string(most) + " grains of " + std::to_string(diameter) +
+                                     " m does not fill the shape",
+                                 "raise it, make simulated_diameter larger, or fill a smaller shape"};
+                }
             }
         }
     }

@@ -10,7 +10,8 @@
 namespace embody::scene {
 
 /// Centres of balls of this diameter (m) that fill a shape as loosely as poured grains lie, in the shape's frame, from
-/// the lowest layer upwards, at most `most`. The same seed gives the same places. The error says why none fits.
+/// the lowest layer upwards, at most `most`. The same seed gives the same places. The error says why none fits, or that
+/// half as many again as `most` would.
 Result<std::vector<Vec3>> fill_with_grains(const physics::ShapeDefinition& shape, double diameter, std::size_t most,
                                            std::uint64_t seed);
 
