@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <string_view>
 #include <utility>
 
@@ -129,15 +130,32 @@ Result<physics::ShapeDefinition> decomposed_shape(const AttributeSet& attributes
     return physics::ShapeDefinition{std::move(compound)};
 }
 
+// With digits enough to tell what is just beyond a limit from the limit.
+std::string exact_number(double value) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%.7g", value);
+    return buffer;
+}
+
 // The mass over the amount of what it fills (m³, m² or m), where some matter is as dense as that.
 Result<double> spread(const AttributeSet& set, const char* name, double amount, const char* unit, const char* thing) {
     const AttributeDescription& range = *describe(name);
+    const AttributeDescription& masses = *describe("mass");
+    const AttributeEntry* held = set.find("mass");
+    const double usual = number_or_standard(set, name) * amount;
+    if ((held == nullptr || held->level == AttributeLevel::standard) &&
+        !(usual >= *masses.low && usual <= *masses.high))
+        return Error{"mass",
+                     "would be " + short_number(usual) + " kg: " + short_number(number_or_standard(set, name)) + " " +
+                         range.unit + " × " + short_number(amount) + " " + unit,
+                     "make the thing " + std::string(usual > *masses.high ? "smaller" : "larger") + ": from " +
+                         short_number(*masses.low) + " to " + short_number(*masses.high) + " kg can be simulated"};
     const double mass = number_or_standard(set, "mass"), density = mass / amount;
     if (density >= *range.low && density <= *range.high) return density;
     return Error{"mass",
-                 short_number(mass) + " kg in " + short_number(amount) + " " + unit + " are " + short_number(density) +
+                 exact_number(mass) + " kg in " + exact_number(amount) + " " + unit + " are " + exact_number(density) +
                      " " + range.unit,
-                 std::string("a ") + thing + " needs " + short_number(*range.low) + " to " + short_number(*range.high) +
+                 std::string("a ") + thing + " needs " + exact_number(*range.low) + " to " + exact_number(*range.high) +
                      " " + range.unit};
 }
 

@@ -209,6 +209,22 @@ TEST(ToPhysics, SoftAttributesArriveWithinWhatTheSolverTakes) {
     const auto too_dense = soft_solid_from_attributes(set, unit_tetrahedron());
     ASSERT_FALSE(too_dense.ok());
     EXPECT_EQ(too_dense.error().where, "mass");
+    // Just beyond the most that matter weighs: the digits tell.
+    put("mass", 22601.0 / 6);
+    EXPECT_NE(soft_solid_from_attributes(set, unit_tetrahedron()).error().message().find("22601"), std::string::npos);
+}
+
+TEST(ToPhysics, WhatNobodySetTheMassOfAndIsTooLargeOrSmallSaysWhatItWouldWeigh) {
+    for (const auto& [size, would_weigh] : {std::pair{1000.0, "1.67e+11 kg"}, {1e-6, "1.67e-16 kg"}}) {
+        AttributeSet set;
+        set.put({"mass", 1.0, {}, {}, "default", AttributeLevel::standard});
+        geometry::TetrahedralMesh mesh = unit_tetrahedron();
+        for (Vec3& node : mesh.nodes) node *= size;
+        const auto soft = soft_solid_from_attributes(set, mesh);
+        ASSERT_FALSE(soft.ok());
+        EXPECT_EQ(soft.error().where, "mass");
+        EXPECT_NE(soft.error().message().find(would_weigh), std::string::npos) << soft.error().message();
+    }
 }
 
 TEST(ToPhysics, ClothWeighsWhatItsMassSaysOnAnySheet) {
