@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "catalog/prepare/byte_stream.h"
 #include "geometry/tetrahedra/fill.h"
@@ -12,11 +13,14 @@
 namespace embody::catalog {
 namespace {
 
-constexpr int revision = 1;          // of make_soft_mesh(): a change makes all of them anew
+constexpr int revision = 2;          // of make_soft_mesh(): a change makes all of them anew
 constexpr double least_share = 0.4;  // of the volume: with less it is mostly thin parts
 constexpr double least_piece = 0.5;  // of the mesh: with less there is no piece that the others hang on
 constexpr double weld_share = 1e-6;  // of the size, as the volume estimate welds
 constexpr std::size_t most_nodes = 100'000;
+// More than this many times what was asked for is no accident of the lattice: it is flat.
+constexpr double most_surplus = 1.3;
+constexpr double greatest_flatness = 8;
 
 // Two of the lattice's cubes across the thickness, with 12 tetrahedra each. Thickness is the least extent, or for what
 // is hollow or branched that of a plate of as much surface, and half of it more for edges: 3 V/A (ball: half its
@@ -32,6 +36,51 @@ int wanted_tetrahedra(double volume, double area, Vec3 size) {
 Error cannot_be_soft(std::string why, std::string remedy) { return {"soft mesh", std::move(why), std::move(remedy)}; }
 
 std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
+
+bool has_too_many(const geometry::TetrahedralMesh& mesh) {
+    return static_cast<double>(mesh.tetrahedra.size()) > most_surplus * most_soft_tetrahedra;
+}
+
+// Across the thinnest extent, by a factor.
+template <class Points>
+void stretch(Points& points, Vec3 size, double factor) {
+    const int axis = size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2;
+    for (auto& point : points) {
+        Vec3 moved = Vec3{point.x, point.y, point.z};
+        moved[axis] *= factor;
+        if constexpr (std::is_same_v<std::decay_t<decltype(point)>, Vec3>)
+            point = moved;
+        else
+            point = to_vec3f(moved);
+    }
+}
+
+struct Filled {
+    geometry::TetrahedralFilling filling;
+    double flatness = 1;
+};
+
+// As it is, or where that takes too many cubes as if it were thicker, which makes them flat.
+Result<Filled> fill(const geometry::TriangleMesh& welded, double volume, Vec3 size) {
+    geometry::TetrahedralParameters parameters;
+    parameters.tetrahedra = wanted_tetrahedra(volume, geometry::surface_area(welded), size);
+    auto filling = geometry::fill_with_tetrahedra(welded, parameters);
+    if (!filling) return filling.error();
+    Filled filled{std::move(*filling), 1};
+    while (has_too_many(filled.filling.mesh)) {
+        const double flatness = 2 * filled.flatness;
+        if (flatness > greatest_flatness)
+            return Error{"surface", "is too flat: even with cells 8 times as wide as thick it takes " +
+                                        std::to_string(filled.filling.mesh.tetrahedra.size()) + " tetrahedra"};
+        geometry::TriangleMesh thicker = welded;
+        stretch(thicker.positions, size, flatness);
+        auto flat = geometry::fill_with_tetrahedra(thicker, parameters);
+        if (!flat) return flat.error();
+        filled = {std::move(*flat), flatness};
+        stretch(filled.filling.mesh.nodes, size, 1 / flatness);
+    }
+    return filled;
+}
 
 // The largest piece alone: the others would fall apart from it.
 Result<std::size_t> keep_largest(geometry::TetrahedralMesh& mesh) {
@@ -62,15 +111,15 @@ Result<SoftMesh> make_soft_mesh(const geometry::TriangleMesh& surface) {
     const geometry::VolumeEstimate estimate = geometry::estimate_volume(welded);
     if (estimate.method == geometry::VolumeMethod::no_volume)
         return cannot_be_soft("its surface encloses nothing", "make it rigid, or cloth if it is a sheet");
-    geometry::TetrahedralParameters parameters;
-    parameters.tetrahedra = wanted_tetrahedra(estimate.solid.volume, geometry::surface_area(welded), size);
-    auto filled = geometry::fill_with_tetrahedra(welded, parameters);
-    if (!filled) return cannot_be_soft("its surface " + filled.error().why, "make it rigid, or cloth if it is a sheet");
+    auto made = fill(welded, estimate.solid.volume, size);
+    if (!made) return cannot_be_soft("its surface " + made.error().why, "make it rigid, or cloth if it is a sheet");
+    geometry::TetrahedralFilling* filled = &made->filling;
     if (filled->volume_share < least_share)
         return cannot_be_soft("it is too thin: " + std::to_string(filled->mesh.tetrahedra.size()) +
                                   " tetrahedra fill only " + percent(filled->volume_share) + " of its volume",
                               "make it rigid, or cloth if it is a sheet");
-    SoftMesh soft{std::move(filled->mesh), filled->cell, filled->volume_share, filled->left_out_components};
+    SoftMesh soft{std::move(filled->mesh), filled->cell, made->flatness, filled->volume_share,
+                  filled->left_out_components};
     const auto left_out = keep_largest(soft.mesh);
     if (!left_out) return left_out.error();
     soft.left_out += *left_out;
@@ -88,6 +137,7 @@ database::StoredSimulationMesh stored_form(const Result<SoftMesh>& mesh) {
     }
     ByteWriter out;
     out.number(mesh->cell);
+    out.number(mesh->flatness);
     out.number(mesh->volume_share);
     out.number(static_cast<std::uint64_t>(mesh->left_out));
     out.number(static_cast<std::uint64_t>(mesh->mesh.nodes.size()));
@@ -113,6 +163,7 @@ Result<SoftMesh> soft_mesh_from(const database::StoredSimulationMesh& stored) {
     ByteReader in(stored.mesh);
     SoftMesh soft;
     soft.cell = in.number<double>();
+    soft.flatness = in.number<double>();
     soft.volume_share = in.number<double>();
     soft.left_out = static_cast<std::size_t>(in.number<std::uint64_t>());
     soft.mesh.nodes.resize(in.count(most_nodes, 3 * sizeof(float)));

@@ -12,6 +12,7 @@ namespace embody::catalog {
 struct SoftMesh {
     geometry::TetrahedralMesh mesh;  ///< in the thing's frame; nodes have single precision, as stored ones have
     double cell = 0;                 ///< m, side of the cubes of the lattice that it is cut from
+    double flatness = 1;             ///< how many times as wide as thick these are made where cubes would be too many
     double volume_share = 0;         ///< of what the surface encloses: what it lacks is thinner than a cell
     std::size_t left_out = 0;        ///< pieces of the thing that do not hang together with it and go along with it
 };
@@ -19,8 +20,9 @@ struct SoftMesh {
 inline constexpr int fewest_soft_tetrahedra = 300, most_soft_tetrahedra = 2000;
 
 /// Fills what the surface encloses, two cells across its thickness where 300 to 2,000 tetrahedra allow it
-/// (docs/import.md: Soft things). Same surface, same mesh. The error says why the thing cannot be soft: nothing
-/// enclosed, nearly all of it too thin, or several things that do not hang together.
+/// (docs/import.md: Soft things); what is so flat that cubes would be too many is cut from flat cells, up to 8 times as
+/// wide as thick. Same surface, same mesh. The error says why the thing cannot be soft: nothing enclosed, nearly all of
+/// it too thin, or several things that do not hang together.
 Result<SoftMesh> make_soft_mesh(const geometry::TriangleMesh& surface);
 
 /// As the database has it: the mesh, or why there is none.

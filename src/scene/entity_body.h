@@ -22,7 +22,7 @@ namespace embody::scene {
 struct EntityForm {
     bool has_points = false;
     std::string points_key;  ///< the same, the same points; empty: nobody else has them
-    std::string note;        ///< why it is not what its kind says; empty: it is
+    std::string note;        ///< what of its kind it is not simulated with, and why; empty: nothing
 };
 
 /// Makes bodies of entities: the way from geometric and physical attributes to what the physics needs. Remembers the

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Which entities are points instead of one body, and of what they are made.
+#include <cmath>
+
 #include "scene/entity_body.h"
 
 namespace embody::scene {
@@ -50,7 +52,13 @@ EntityForm EntityBodies::form(const Entity& entity, const attributes::AttributeS
         if (made.ok()) return EntityForm{true, deformable_key(entity, attributes), {}};
         return EntityForm{false, {}, "is simulated as rigid, because " + made.error().why};
     };
-    return kind == "soft" ? or_rigid(soft_mesh(entity)) : or_rigid(thin_form(entity, attributes));
+    if (kind != "soft") return or_rigid(thin_form(entity, attributes));
+    const Result<const catalog::SoftMesh*> mesh = soft_mesh(entity);
+    EntityForm soft = or_rigid(mesh);
+    if (mesh.ok() && mesh.value()->flatness > 1)
+        soft.note = "is so flat that it is computed coarsely, on cells " +
+                    std::to_string(std::lround(mesh.value()->flatness)) + " times as wide as thick";
+    return soft;
 }
 
 Result<PointsDefinition> EntityBodies::points(const Entity& entity, const attributes::AttributeSet& attributes) {

@@ -31,6 +31,26 @@ TEST(SoftMesh, CountFollowsTheFormNotTheSize) {
     EXPECT_GT(cushion->cell, 0.05) << "and not three";
 }
 
+TEST(SoftMesh, FlatThingsAreCutFromFlatCells) {
+    for (const Vec3 size : {Vec3{0.6, 0.01, 0.6}, {0.02, 0.6, 0.6}, {2, 1, 0.05}, {1, 0.01, 0.02}}) {
+        const auto flat = make_soft_mesh(box(size));
+        ASSERT_TRUE(flat) << flat.error().message();
+        EXPECT_GT(flat->flatness, 1);
+        EXPECT_LE(flat->flatness, 8);
+        EXPECT_LE(flat->mesh.tetrahedra.size(), 2600u);
+        EXPECT_LE(flat->mesh.nodes.size(), 1000u);
+        EXPECT_GT(geometry::volume(flat->mesh) / (size.x * size.y * size.z), 0.7);
+        Bounds bounds;
+        for (const Vec3 node : flat->mesh.nodes) bounds.add(node);
+        EXPECT_LT(length(bounds.size() - size), 0.1 * length(size));
+        EXPECT_EQ(soft_mesh_from(stored_form(flat))->flatness, flat->flatness);
+    }
+    EXPECT_EQ(make_soft_mesh(box({0.4, 0.15, 0.4}))->flatness, 1) << "a cushion is not flat";
+    const auto too_flat = make_soft_mesh(box({2, 0.01, 2}));
+    ASSERT_FALSE(too_flat) << too_flat->mesh.tetrahedra.size();
+    EXPECT_FALSE(too_flat.error().remedy.empty());
+}
+
 TEST(SoftMesh, WhatCannotBeSoftSaysWhy) {
     geometry::TriangleMesh sheet;
     sheet.positions = {{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}};

@@ -182,6 +182,19 @@ TEST(Soft, IsMeshedOnceHoweverOftenTheSceneIsReset) {
     EXPECT_EQ(forms->soft_meshes.size(), 2u) << "the one before may come back by undo";
 }
 
+TEST(Soft, WhatIsFlatIsComputedCoarselyAndSaysSo) {
+    Document document = a_cushion(0.02);
+    document.entities[1].geometry = ShapeDefinition{BoxShape{{0.3, 0.005, 0.3}}};
+    const auto simulation = make(document);
+    ASSERT_TRUE(simulation);
+    ASSERT_TRUE(simulation->points(cushion));
+    EXPECT_LT(simulation->points(cushion)->deformable()->nodes.size(), 1000u);
+    ASSERT_EQ(simulation->notes().size(), 1u);
+    EXPECT_NE(simulation->notes()[0].find("4 times as wide as thick"), std::string::npos) << simulation->notes()[0];
+    step(*simulation, 60);
+    EXPECT_NEAR(simulation->points(cushion)->center_of_mass().y, 0.005, 0.005) << "it lies on the floor";
+}
+
 TEST(SoftPins, HoldItInTheWorldAndToOtherThings) {
     Document document = a_cushion(2);
     document.entities[1].pins = {{{0.2, 0.1, 0.2}, 0.05, {}}, {{-0.2, 0.1, 0.2}, 0.0, {}}};
