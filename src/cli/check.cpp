@@ -15,6 +15,7 @@ namespace {
 
 struct Checked {
     std::size_t entities = 0;
+    std::vector<std::string> notes;     ///< what is not simulated as its kind says
     std::vector<Error> contradictions;  ///< between attributes of an entity that a person set; the scene runs with them
 };
 
@@ -28,7 +29,7 @@ Result<Checked> check_scene(const std::filesystem::path& file, catalog::Catalog*
         error.where = file.string() + ": " + error.where;
         return error;
     }
-    Checked checked{document->entities.size(), {}};
+    Checked checked{document->entities.size(), (*simulation)->notes(), {}};
     scene::EntityBodies bodies(catalog);
     for (std::size_t i = 0; i < document->entities.size(); ++i) {
         const auto found = bodies.contradictions(document->entities[i]);
@@ -46,6 +47,7 @@ void print_row(const nlohmann::json& row, std::size_t entities) {
     if (row.contains("error")) return fmt::print("{}\n", row["error"].get<std::string>());
     for (const auto& contradiction : row["contradictions"]) fmt::print("{}\n", contradiction.get<std::string>());
     const std::string file = row["file"];
+    for (const auto& note : row["notes"]) fmt::print("{}: note: {}\n", file, note.get<std::string>());
     if (row["right"]) return fmt::print("{}: right, {} entities\n", file, entities);
     fmt::print("{}: can be simulated, but its attributes contradict each other\n", file);
 }
@@ -61,10 +63,14 @@ int run_check(const CheckArguments& arguments) {
         const auto checked = check_scene(file, catalog->get());
         const bool right = checked.ok() && checked->contradictions.empty();
         all_right = all_right && right;
-        nlohmann::json row = {{"file", file.string()}, {"right", right}, {"contradictions", nlohmann::json::array()}};
+        nlohmann::json row = {{"file", file.string()},
+                              {"right", right},
+                              {"contradictions", nlohmann::json::array()},
+                              {"notes", nlohmann::json::array()}};
         if (!checked) {
             row["error"] = checked.error().message();
         } else {
+            row["notes"] = checked->notes;
             for (const Error& one : checked->contradictions) row["contradictions"].push_back(one.message());
         }
         if (!arguments.json) print_row(row, checked ? checked->entities : 0);

@@ -25,6 +25,7 @@ struct Summary {
     std::uint32_t limits = 0;
     bool paused = false;
     std::size_t actions = 0;
+    std::vector<std::string> notes;  ///< what was not simulated as its kind says, at the start
 };
 
 nlohmann::json to_json(const Summary& summary, const scene::Simulation& simulation) {
@@ -46,6 +47,7 @@ nlohmann::json to_json(const Summary& summary, const scene::Simulation& simulati
             {"paused", summary.paused},
             {"energy", sums.kinetic_energy + sums.potential_energy},
             {"limits", summary.limits},
+            {"notes", summary.notes},
             {"state_hash", std::to_string(simulation.world().state_hash())}};
 }
 
@@ -62,6 +64,7 @@ void print(const Summary& summary, const scene::Simulation& simulation) {
     const auto reached = [&](physics::StepLimit limit) {
         return (summary.limits & static_cast<std::uint32_t>(limit)) != 0;
     };
+    for (const std::string& note : summary.notes) print_line("note: " + note);
     using physics::StepLimit;
     if (reached(StepLimit::linear_speed_clamped)) print_line("note: a body was slowed to settings.max_linear_speed");
     if (reached(StepLimit::angular_speed_clamped)) print_line("note: a body was slowed to settings.max_angular_speed");
@@ -100,6 +103,7 @@ int run_simulate(const SimulateArguments& arguments) {
     }
 
     Summary summary;
+    summary.notes = (*simulation)->notes();
     const auto steps =
         static_cast<std::uint64_t>(std::llround(arguments.seconds / (*simulation)->world().settings().time_step));
     ProgressBar bar("Simulating");

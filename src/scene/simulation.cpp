@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene/simulation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -132,12 +133,21 @@ void Simulation::let_go() {
 }
 
 std::vector<std::string> Simulation::notes() const {
-    std::vector<std::string> notes;
+    // Things of one name are told of together, where the first of them stands.
+    std::vector<std::pair<std::string, int>> told;
     for (const auto& [index, entity] : state_->live) {
         if (entity.form.note.empty()) continue;
         const std::string& name = entity.definition.name;
-        notes.push_back((name.empty() ? "Entity " + std::to_string(index) : name) + " " + entity.form.note + ".");
+        const std::string note = (name.empty() ? "Entity " + std::to_string(index) : name) + " " + entity.form.note;
+        const auto same = std::ranges::find(told, note, &std::pair<std::string, int>::first);
+        if (same == told.end())
+            told.emplace_back(note, 1);
+        else
+            ++same->second;
     }
+    std::vector<std::string> notes;
+    for (const auto& [note, count] : told)
+        notes.push_back(note + (count > 1 ? " (" + std::to_string(count) + " of this name)." : "."));
     return notes;
 }
 

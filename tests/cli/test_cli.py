@@ -291,6 +291,22 @@ class Scenes(unittest.TestCase):
         self.assertEqual(simulated.returncode, 1)
         self.assertIn("colour", simulated.stderr)
 
+    def test_what_is_not_simulated_as_its_kind_says_is_told(self):
+        ball = {"name": "Ball", "shape": {"type": "sphere", "radius": 0.2}, "attributes": {"kind": "cloth"}}
+        scene = self.path / "balls.json"
+        scene.write_text(json.dumps({"embody_scene": 1, "entities": [{**ball, "index": 1},
+                                                                     {**ball, "index": 2, "pose": {"position": [1, 0, 0]}}]}))
+        told = "Ball is simulated as rigid, because"
+        for words in (("check", str(scene)), ("simulate", str(scene), "--seconds", "0.1")):
+            plain = run(*words)
+            self.assertEqual(plain.returncode, 0, plain.stderr)
+            self.assertEqual(plain.stdout.count(told), 1, plain.stdout)
+            self.assertIn("(2 of this name)", plain.stdout)
+            as_json = json.loads(run(*words, "--json").stdout)
+            notes = as_json["scenes"][0]["notes"] if words[0] == "check" else as_json["notes"]
+            self.assertEqual(len(notes), 1)
+            self.assertIn(told, notes[0])
+
     def test_the_scenes_that_come_with_embody_can_be_read(self):
         primitives_only = [p for p in sorted((SOURCE / "data" / "scenes").glob("*.json"))
                            if '"model"' not in p.read_text()]
