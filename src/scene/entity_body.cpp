@@ -329,12 +329,15 @@ Result<std::vector<attributes::Issue>> EntityBodies::contradictions(const Entity
         acting.value().entries(), [](const AttributeEntry& entry) { return entry.level == AttributeLevel::manual; });
     // What nobody set is as it was resolved; of primitives the physics knows the form itself.
     const auto* model = std::get_if<ModelReference>(&entity.geometry);
-    if (!is_changed || !model) return std::vector<attributes::Issue>{};
-    ModelFacts facts = find(model->key).value()->facts;
-    facts.geometry = attributes::scaled(facts.geometry, entity.scale);
-    std::vector<attributes::Issue> issues = attributes::check(acting.value(), facts);
+    std::vector<attributes::Issue> issues;
+    if (!is_changed) return issues;
+    if (model) {
+        ModelFacts facts = find(model->key).value()->facts;
+        facts.geometry = attributes::scaled(facts.geometry, entity.scale);
+        issues = attributes::check(acting.value(), facts);
+    }
     const AttributeEntry* material = acting.value().find("surface_material");
-    if (material) {
+    if (material && taxonomy() && attributes::is_manual(acting.value(), "surface_material")) {
         const auto known = attributes::known_value(*taxonomy(), material->name, material->value);
         if (!known) issues.push_back({material->name, known.error().why});
     }

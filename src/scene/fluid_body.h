@@ -53,7 +53,7 @@ private:
     physics::World& world_;
     Liquids& liquids_;
     physics::FluidDefinition matter_;
-    Vec3 force_;  ///< constant, N
+    Vec3 force_;                       ///< constant, N
     Liquids::Share* share_ = nullptr;  ///< null while it is disabled
     std::vector<Particle> kept_;       ///< while it is disabled
 };

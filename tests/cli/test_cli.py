@@ -129,6 +129,11 @@ class Database(unittest.TestCase):
         self.assertEqual(checked.returncode, 1)
         for name in ("friction_dynamic", "surface_material"):
             self.assertIn("entities[0].attributes." + name, checked.stdout)
+        ball = {"index": 1, "shape": {"type": "sphere", "radius": 0.2}, "attributes": {"surface_material": "unobtainium"}}
+        scene.write_text(json.dumps({"embody_scene": 1, "entities": [ball]}))
+        checked = run("check", "--database", self.database, str(scene))
+        self.assertEqual(checked.returncode, 1)
+        self.assertIn("entities[0].attributes.surface_material", checked.stdout)
 
     def test_import_search_show_set_reset(self):
         broken = self.path / "models" / "broken.glb"
