@@ -67,7 +67,8 @@ void read_attributes(FieldReader& reader, const std::string& where, CategoryData
                        true);
         inner.word("source", attribute.source, true);
         if (auto error = inner.finish()) return reader.fail(field, error->message());
-        std::erase_if(category.attributes, [&](const CategoryAttribute& of_parent) { return of_parent.name == name; });
+        std::erase_if(category.attributes,
+                      [&](const CategoryAttribute& of_parent) { return of_parent.name == attribute.name; });
         category.attributes.push_back(std::move(attribute));
     }
 }

@@ -344,6 +344,47 @@ TEST(SoftSolid, TurnedInsideOutOrFlatItComesBack) {
     }
 }
 
+// A cube of 20 cm and 8 kg, E = 100 kPa.
+DeformableDefinition soft_cube(double damping) { return brick({0.2, 0.2, 0.2}, {4, 4, 4}, 1000, 1e5, 0.3, damping); }
+
+TEST(SoftSolid, AnImpactAtAnySpeedMakesNoEnergy) {
+    // Up to four times its own size a substep.
+    for (const double speed : {20.0, 40.0, 100.0}) {
+        const auto world = make_world({});
+        add_plane(*world, friction(0.5));
+        DeformableDefinition cube = soft_cube(0.02);
+        cube.pose.position = {0, 1, 0};
+        cube.linear_velocity = {0, -speed, 0};
+        const DeformableHandle handle = world->create_deformable(cube).value();
+        const double start = energy(*world);
+        double most = start;
+        for (int i = 0; i < 240; ++i) {
+            world->step();
+            most = std::max(most, energy(*world));
+        }
+        EXPECT_LT(most, 1.05 * start) << speed;
+        EXPECT_LT(world->conserved().kinetic_energy, 0.05 * start) << speed;
+        const Vec3 center = world->center_of_mass(handle);
+        EXPECT_GT(center.y, 0) << speed;
+        EXPECT_LT(length(center), 10) << speed;
+    }
+}
+
+TEST(SoftSolid, DampingDoesNotDriveAFastSpin) {
+    for (const double damping : {0.02, 1.0}) {
+        const auto world = make_world({.gravity = {}});
+        DeformableDefinition cube = soft_cube(damping);
+        cube.angular_velocity = {0, 50, 0};
+        ASSERT_TRUE(world->create_deformable(cube).ok());
+        const Conserved start = world->conserved();
+        run(*world, 4);
+        const Conserved end = world->conserved();
+        EXPECT_LT(end.kinetic_energy + end.potential_energy, 1.15 * start.kinetic_energy) << damping;
+        EXPECT_LT(length(end.angular_momentum - start.angular_momentum), 0.1 * length(start.angular_momentum))
+            << damping;
+    }
+}
+
 TEST(SoftSolid, TheSameBitsForAnyNumberOfWorkers) {
     std::uint64_t first = 0;
     for (const int workers : {1, 2, 3, 4}) {

@@ -2,6 +2,8 @@
 #include "physics/deformable/solid_deformable.h"
 
 #include <algorithm>
+#include <cmath>
+#include <ranges>
 
 #include "geometry/tetrahedra/tetrahedral_mesh.h"
 
@@ -11,6 +13,10 @@ namespace {
 
 // Of the true stiffness along a move over the metric's.
 constexpr double stiffest_ratio = 1.3;
+// Of its energy: as much may come from nowhere, by rounding and by rotations that lag.
+constexpr double most_surplus = 0.05;
+// Nodes that go less than this of a triangle's side in a substep make none.
+constexpr double slow_share = 0.02;
 
 }  // namespace
 
@@ -22,7 +28,7 @@ SolidDeformable::SolidDeformable(const DeformableDefinition& definition)
     find_surface();
     elements_.reset_rotations(normalized(definition.pose.rotation));
     const std::size_t count = nodes_.size();
-    for (auto* vector : {&start_, &pushes_, &unsettled_, &force_, &rate_, &move_}) vector->resize(count);
+    for (auto* vector : {&start_, &pushes_, &unsettled_, &force_, &move_}) vector->resize(count);
     for (auto* vector : {&turned_, &product_}) vector->resize(count);
     for (const double mass : nodes_.inverse_mass) is_pinned_.push_back(mass > 0 ? 0 : 1);
     factor_.analyse(rest_, elements_.edges());
@@ -104,6 +110,8 @@ void SolidDeformable::begin_substep(double h, Vec3 gravity) {
         pushes_[i] = {};
         unsettled_[i] = {};
     }
+    kinetic_energy_at_start_ = kinetic_energy();
+    if (is_new_) elastic_energy_.reset();
     is_new_ = false;
 }
 
@@ -115,11 +123,11 @@ void SolidDeformable::push(std::uint32_t node, Vec3 force) {
 void SolidDeformable::solve(TaskPool& workers) {
     // r = M (x_old + h u + h² g - x)/h² + f(x, (x - x_old)/h) + pushes
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        rate_[i] = (nodes_.position[i] - start_[i]) / h_;
-        force_[i] = nodes_.mass[i] * (gravity_ + (nodes_.mean_velocity[i] - rate_[i]) / h_) + pushes_[i];
+        const Vec3 rate = (nodes_.position[i] - start_[i]) / h_;
+        force_[i] = nodes_.mass[i] * (gravity_ + (nodes_.mean_velocity[i] - rate) / h_) + pushes_[i];
         unsettled_[i] = {};
     }
-    elements_.linearise(nodes_.position, rate_, force_);
+    elements_.linearise(nodes_.position, start_, h_, force_);
     press();
     find_gas_move(workers);
     quasi_newton_move(force_, move_, workers);
@@ -209,6 +217,89 @@ void SolidDeformable::finish() {
         nodes_.velocity[i] = mean + 0.5 * (mean - last);
         nodes_.mean_velocity[i] = mean;
     }
+    keep_energy();
+}
+
+double SolidDeformable::kinetic_energy() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        if (nodes_.inverse_mass[i] > 0) sum += nodes_.mass[i] / 2 * length_squared(nodes_.mean_velocity[i]);
+    }
+    return sum;
+}
+
+double SolidDeformable::elastic_energy(std::span<const Vec3> positions) const {
+    double sum = elements_.energy(positions);
+    if (gas_) {
+        EnclosedGas gas = *gas_;
+        gas.measure(surface_, positions);
+        sum += gas.energy();
+    }
+    return sum;
+}
+
+// One round of Newton's method leads too far where nodes go a large part of the solid in a substep. What is more energy
+// than there was and than the pushes have done is taken off: the move of the substep beyond that of the whole is made
+// shorter, down to none, which leaves the elastic energy that was there.
+void SolidDeformable::keep_energy() {
+    const auto is_slow = [&](std::size_t i) {
+        return length_squared(nodes_.position[i] - start_[i]) < slow_share * slow_share * mean_side_ * mean_side_;
+    };
+    if (std::ranges::all_of(std::views::iota(std::size_t{0}, nodes_.size()), is_slow)) return elastic_energy_.reset();
+    const double at_start = kinetic_energy_at_start_ + (elastic_energy_ ? *elastic_energy_ : elastic_energy(start_));
+    const auto surplus = [&] {
+        double work = 0;
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            if (nodes_.inverse_mass[i] > 0)
+                work += dot(pushes_[i] + nodes_.mass[i] * gravity_, nodes_.position[i] - start_[i]);
+        }
+        elastic_energy_ = elastic_energy(nodes_.position);
+        return surplus_ + kinetic_energy() + *elastic_energy_ - at_start - work;
+    };
+    const auto is_too_much = [&](double energy) {
+        return !(energy <= most_surplus * (at_start + *elastic_energy_ + kinetic_energy()));
+    };
+    double left = surplus();
+    if (is_too_much(left)) {
+        const RigidMove whole = is_free_ ? move_of_whole() : RigidMove{};
+        constexpr int most_halvings = 4;
+        for (int k = 1; k <= most_halvings && is_too_much(left); ++k) {
+            const double share = k < most_halvings ? 0.5 : 0;
+            for (std::size_t i = 0; i < nodes_.size(); ++i) {
+                if (!(nodes_.inverse_mass[i] > 0)) continue;
+                const Vec3 along = whole.at(start_[i]);
+                nodes_.position[i] = along + share * (nodes_.position[i] - along);
+                nodes_.velocity[i] = nodes_.mean_velocity[i] = (nodes_.position[i] - start_[i]) / h_;
+            }
+            left = surplus();
+        }
+    }
+    surplus_ = std::max(0.0, left);
+}
+
+// That of the nodes in this substep, by mass.
+SolidDeformable::RigidMove SolidDeformable::move_of_whole() const {
+    RigidMove move;
+    double mass = 0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        mass += nodes_.mass[i];
+        move.center += nodes_.mass[i] * start_[i];
+        move.shift += nodes_.mass[i] * (nodes_.position[i] - start_[i]);
+    }
+    move.center = move.center / mass;
+    move.shift = move.shift / mass;
+    Vec3 turning;
+    Mat3 inertia = Mat3::zero();
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        const Vec3 arm = start_[i] - move.center;
+        turning += nodes_.mass[i] * cross(arm, nodes_.position[i] - start_[i]);
+        inertia += nodes_.mass[i] * (length_squared(arm) * Mat3::identity() - outer(arm, arm));
+    }
+    // Arms that turn by an angle go sideways by its sine.
+    const Vec3 sideways = embody::solve(inertia, turning);
+    const double sine = length(sideways);
+    if (sine > 0) move.rotation = from_axis_angle(sideways / sine, std::asin(std::min(sine, 1.0)));
+    return move;
 }
 
 // Inner forces neither move nor turn the whole, and outer ones turn it by their arms where the nodes come to. Rounding
@@ -273,12 +364,7 @@ Conserved SolidDeformable::conserved(Vec3 gravity) const {
         sum.linear_momentum += mass * v;
         sum.angular_momentum += cross(x, mass * v);
     }
-    sum.potential_energy += elements_.energy(nodes_.position);
-    if (gas_) {
-        EnclosedGas gas = *gas_;
-        gas.measure(surface_, nodes_.position);
-        sum.potential_energy += gas.energy();
-    }
+    sum.potential_energy += elastic_energy(nodes_.position);
     return sum;
 }
 

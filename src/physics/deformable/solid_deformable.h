@@ -81,7 +81,18 @@ private:
     void metric_move(std::span<const Vec3> force, std::span<Vec3> move, TaskPool& workers);
     void find_gas_move(TaskPool& workers);
     [[nodiscard]] double stiffness_ratio();
+    /// As of a rigid body in a substep.
+    struct RigidMove {
+        Vec3 center, shift;
+        Quat rotation;
+
+        [[nodiscard]] Vec3 at(Vec3 p) const { return center + shift + rotate(rotation, p - center); }
+    };
+    [[nodiscard]] RigidMove move_of_whole() const;
     void keep_momenta();
+    void keep_energy();
+    [[nodiscard]] double kinetic_energy() const;
+    [[nodiscard]] double elastic_energy(std::span<const Vec3> positions) const;
 
     SolidElements elements_;
     double damping_ = 0;  // s
@@ -90,15 +101,17 @@ private:
     std::vector<std::array<std::uint32_t, 3>> surface_;
     std::vector<std::uint32_t> surface_nodes_;
     double mean_side_ = 0;
-    bool is_free_ = true;  // no node is pinned
-    bool is_new_ = true;   // has made no substep yet
+    bool is_free_ = true;                               // no node is pinned
+    bool is_new_ = true;                                // has made no substep yet
+    std::optional<double> elastic_energy_;              // at the end of the last substep, J; none: not measured
+    double kinetic_energy_at_start_ = 0, surplus_ = 0;  // of this substep; come from nowhere so far, J
 
     // Of the substep.
     double h_ = 0;
     Vec3 gravity_;
     std::vector<Vec3> start_, pushes_;  // m; N, all of the substep
     std::vector<Vec3> unsettled_;       // N, since the last solve
-    std::vector<Vec3> rate_, force_;    // m/s, N
+    std::vector<Vec3> force_;           // N
     std::vector<Vec3> move_;            // m
     std::vector<Vec3f> turned_, product_;
     double stretch_ = 1;

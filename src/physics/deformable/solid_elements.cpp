@@ -49,7 +49,8 @@ SolidElements::SolidElements(const SoftSolid& solid, std::span<const Vec3> rest)
     find_surroundings(rest.size());
     find_edges();
     deformation_.resize(size());
-    rate_.resize(size());
+    start_deformation_.resize(size());
+    start_stretch_.assign(size(), Mat3::zero());
     node_stress_.resize(rest.size());
     rotation_f_.resize(size());
     gradient_f_.resize(size());
@@ -121,14 +122,29 @@ Mat3 SolidElements::gradient(std::size_t element, std::span<const Vec3> values) 
            outer(values[corners[3]] - origin, g[2]);
 }
 
-// Elastic and damping stress.
-Mat3 SolidElements::stress(const Mat3& deformation, const Mat3& rate, Quat rotation, const Mat3& plastic) const {
-    const Mat3 r = to_matrix(rotation), back = transpose(r);
-    const Mat3 strain = symmetric_part(back * (deformation + damping_ * rate)) - Mat3::identity() - plastic;
+// Elastic and damping stress: the latter of β/h times the change of the stretch Rᵀ F.
+Mat3 SolidElements::stress(const Mat3& deformation, Quat rotation, const Mat3& plastic, const Mat3& start_stretch,
+                           double damping_rate) const {
+    const Mat3 r = to_matrix(rotation), stretch = symmetric_part(transpose(r) * deformation);
+    const Mat3 strain = stretch - Mat3::identity() - plastic + damping_rate * (stretch - start_stretch);
     return turned_stress(r, strain, mu_, lambda_);
 }
 
-void SolidElements::linearise(std::span<const Vec3> position, std::span<const Vec3> velocity, std::span<Vec3> force) {
+// Rᵀ F at the start of a substep, before it turned to `rotation`. Of small turns the square does not count.
+Mat3 SolidElements::start_stretch(const Mat3& deformation, Quat before, Quat rotation) {
+    constexpr double small = 1e-3;  // of the quaternion: half the angle, rad
+    const Vec3 turn{rotation.x - before.x, rotation.y - before.y, rotation.z - before.z};
+    Quat there = rotation;
+    if (length_squared(turn) > small * small) {
+        there = before;
+        follow_rotation(deformation, there);
+    }
+    return symmetric_part(transpose(to_matrix(there)) * deformation);
+}
+
+void SolidElements::linearise(std::span<const Vec3> position, std::span<const Vec3> start, double h,
+                              std::span<Vec3> force) {
+    const double damping_rate = damping_ / h;
     const auto to_single = [](Quat rotation) {
         const Mat3 r = to_matrix(rotation);
         Matrix m;
@@ -139,19 +155,27 @@ void SolidElements::linearise(std::span<const Vec3> position, std::span<const Ve
     };
     for (std::size_t e = 0; e < size(); ++e) {
         deformation_[e] = gradient(e, position);
-        rate_[e] = gradient(e, velocity);
+        const Quat before = rotation_[e];
         follow_rotation(deformation_[e], rotation_[e]);
+        if (damping_ > 0) {
+            start_deformation_[e] = gradient(e, start);
+            start_stretch_[e] = start_stretch(start_deformation_[e], before, rotation_[e]);
+        }
         rotation_f_[e] = to_single(rotation_[e]);
     }
     // Means around the nodes.
     for (std::size_t i = 0; i < node_rotation_.size(); ++i) {
-        const Mat3 deformation = mean_around(i, deformation_), rate = mean_around(i, rate_);
+        const Mat3 deformation = mean_around(i, deformation_);
+        const Quat before = node_rotation_[i];
         follow_rotation(deformation, node_rotation_[i]);
         node_rotation_f_[i] = to_single(node_rotation_[i]);
-        node_stress_[i] = stress(deformation, rate, node_rotation_[i], node_plastic_[i]);
+        const Mat3 at_start =
+            damping_ > 0 ? start_stretch(mean_around(i, start_deformation_), before, node_rotation_[i]) : Mat3::zero();
+        node_stress_[i] = stress(deformation, node_rotation_[i], node_plastic_[i], at_start, damping_rate);
     }
     for (std::size_t e = 0; e < size(); ++e) {
-        Mat3 whole = (1 - share_of_nodes) * stress(deformation_[e], rate_[e], rotation_[e], plastic_[e]);
+        Mat3 whole =
+            (1 - share_of_nodes) * stress(deformation_[e], rotation_[e], plastic_[e], start_stretch_[e], damping_rate);
         for (const std::uint32_t node : corners_[e]) whole += (share_of_nodes / 4) * node_stress_[node];
         whole = volume_[e] * whole;
         Vec3 sum;

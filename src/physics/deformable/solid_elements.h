@@ -17,7 +17,8 @@ namespace embody::physics {
 /// strain, taken off Rᵀ F - 1, follows at the end of each substep (flow()). Gas inside under pressure p pulls the
 /// matter taut, which resists a change of form by p/2 more in μ. A part of the volume is told by the tetrahedra, which
 /// alone bend too stiffly, the rest by the means of F around the nodes, which alone bend too softly (G. R. Liu, T.
-/// Nguyen-Thoi, K. Y. Lam, "A novel alpha finite element method", 2008). Damping is proportional to the rate of strain.
+/// Nguyen-Thoi, K. Y. Lam, "A novel alpha finite element method", 2008). Damping is proportional to the change of Rᵀ F
+/// in the substep, which no turn makes.
 class SolidElements {
 public:
     static constexpr double share_of_nodes = 0.7;
@@ -35,9 +36,9 @@ public:
     /// edge (row: edge[0]).
     void add_stiffness_blocks(double factor, std::span<Mat3> diagonal, std::span<Mat3> blocks) const;
 
-    /// Linearises at these positions (m) and velocities (m/s): finds the rotations and adds elastic and damping forces,
-    /// N.
-    void linearise(std::span<const Vec3> position, std::span<const Vec3> velocity, std::span<Vec3> force);
+    /// Linearises at these positions (m), to which the nodes have come from `start` in h seconds: finds the rotations
+    /// and adds elastic and damping forces, N.
+    void linearise(std::span<const Vec3> position, std::span<const Vec3> start, double h, std::span<Vec3> force);
     /// Adds what K makes of a move: `factor` times the stiffness of the last linearise(), rotations going along.
     void add_stiffness(float factor, std::span<const Vec3f> move, std::span<Vec3f> force);
     /// The rotation around each node, of the last linearise().
@@ -65,9 +66,11 @@ private:
         return {around_.data() + first_around_[node], first_around_[node + 1] - first_around_[node]};
     }
     [[nodiscard]] Mat3 gradient(std::size_t element, std::span<const Vec3> values) const;
-    [[nodiscard]] Mat3 stress(const Mat3& deformation, const Mat3& rate, Quat rotation, const Mat3& plastic) const;
+    [[nodiscard]] Mat3 stress(const Mat3& deformation, Quat rotation, const Mat3& plastic, const Mat3& start_stretch,
+                              double damping_rate) const;
     void flow(const Mat3& deformation, Quat rotation, Mat3& plastic) const;
     [[nodiscard]] Mat3 mean_around(std::size_t node, std::span<const Mat3> of_elements) const;
+    static Mat3 start_stretch(const Mat3& deformation, Quat before, Quat rotation);
     void find_edges();
     void find_surroundings(std::size_t nodes);
 
@@ -83,7 +86,7 @@ private:
     std::vector<std::array<std::uint32_t, 2>> edges_;
 
     // Of the last linearise(), for add_stiffness().
-    std::vector<Mat3> deformation_, rate_, node_stress_;
+    std::vector<Mat3> deformation_, start_deformation_, start_stretch_, node_stress_;
     std::vector<Matrix> rotation_f_, node_rotation_f_, gradient_f_, node_stress_f_;
 };
 

@@ -100,7 +100,7 @@ DeformableDefinition rope_between(Vec3 from, Vec3 to, double segment, Rope rope)
 DeformableDefinition tetrahedral_brick(Vec3 size, std::array<int, 3> cells, SoftSolid solid) {
     DeformableDefinition brick;
     solid.tetrahedra.clear();
-    const auto [nx, ny, nz] = cells;
+    const int nx = cells[0], ny = cells[1], nz = cells[2];
     const auto at = [&](int x, int y, int z) { return static_cast<std::uint32_t>((z * (ny + 1) + y) * (nx + 1) + x); };
     for (int z = 0; z <= nz; ++z) {
         for (int y = 0; y <= ny; ++y) {
