@@ -50,6 +50,14 @@ std::vector<ThinCandidate> candidates_of(const WorldState& world, const Deformab
 
 bool is_thin(const DeformableRecord& record) { return !record.solid && record.definition.enabled; }
 
+// What is wider than this has broken numbers, m: it will freeze, and nothing else is to know of it.
+constexpr double widest = 1e5;
+
+bool may_touch_others(const Bounds& bounds) {
+    const Vec3 size = bounds.size();
+    return size.x < widest && size.y < widest && size.z < widest;
+}
+
 // The group that member i belongs to: that of its first member.
 std::uint32_t root_of(std::vector<std::uint32_t>& group, std::uint32_t i) {
     while (group[i] != i) i = group[i] = group[group[i]];
@@ -293,7 +301,8 @@ void wake_touched_thin(WorldState& world) {
             if (!world.deformables.used(other)) continue;
             const DeformableRecord& awake = world.deformables.at(other);
             if (!is_thin(awake) || awake.is_asleep || !may_collide(awake.definition, sleeper.definition)) continue;
-            if (!overlaps(bounds, enlarged(awake.bounds(), reach_of(world, awake)))) continue;
+            const Bounds reach = enlarged(awake.bounds(), reach_of(world, awake));
+            if (!overlaps(bounds, reach) || !may_touch_others(reach)) continue;
             std::vector<std::array<std::uint32_t, 2>> segments_a, segments_b;
             const ThinSurface a = surface_of(awake, segments_a), b = surface_of(sleeper, segments_b);
             if (!will_touch(a, b, candidates_of(world, awake, sleeper), h, gravity)) continue;
@@ -314,6 +323,7 @@ std::vector<ThinGroup> find_thin_groups(WorldState& world, std::span<const ThinD
         for (std::uint32_t b = a + 1; b < thin.size(); ++b) {
             const DeformableRecord &one = *thin[a].record, &two = *thin[b].record;
             if (!overlaps(bounds[a], bounds[b]) || !may_collide(one.definition, two.definition)) continue;
+            if (!may_touch_others(bounds[a]) || !may_touch_others(bounds[b])) continue;
             ThinPair pair{a, b, candidates_of(world, one, two)};
             if (pair.candidates.empty()) continue;
             pairs.push_back(std::move(pair));
