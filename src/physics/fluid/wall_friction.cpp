@@ -55,6 +55,7 @@ void rub_along_walls(FluidGrid& grid, FluidSolids& solids, double density, doubl
         Vec3 center = grid.center(c);
         center[axis] -= h / 2;
         const int owner = grid.solid_owner[grid.solid[cell] < grid.solid[below] ? cell : below];
+        if (owner >= 0 && solids.moving()[static_cast<std::size_t>(owner)].solid->inverse_mass > 0) return;
         const float at[3] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)};
         float gradient[3];
         (void)sample_center(grid, grid.solid, at, gradient);
@@ -87,8 +88,6 @@ void rub_along_walls(FluidGrid& grid, FluidSolids& solids, double density, doubl
             const Vec3 moment = cross(face.center - moving.center, impulse);
             moving.solid->impulse += impulse;
             moving.solid->angular_impulse += moment;
-            moving.linear_velocity += moving.response.linear_change(impulse, moment);
-            moving.angular_velocity += moving.response.angular_change(impulse, moment);
         }
     }
 }

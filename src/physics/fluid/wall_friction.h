@@ -12,8 +12,8 @@ namespace embody::physics {
 /// fluids.md, "Walls").
 double turbulent_stress(double speed, double y, double kinematic_viscosity);
 
-/// The faces next to solids are slowed by the layer at the wall, which is thinner than a cell; moving solids are pulled
-/// along. `particle_mass` in kg.
+/// The faces next to solids that liquid does not move are slowed by the layer at the wall, which is thinner than a
+/// cell, and pull at them; on small bodies that move freely no such layer comes about. `particle_mass` in kg.
 void rub_along_walls(FluidGrid& grid, FluidSolids& solids, double density, double viscosity, double particle_mass,
                      double dt, TaskPool& workers);
 
