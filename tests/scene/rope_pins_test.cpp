@@ -6,9 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "scene/live_scene.h"
 #include "scene/sample_documents.h"
 #include "scene/scene_file.h"
-#include "scene/simulation.h"
 
 namespace embody::scene {
 namespace {
@@ -40,16 +40,6 @@ Document disc_on_a_rope(bool clamped) {
     return document;
 }
 
-std::unique_ptr<Simulation> make(const Document& document) {
-    auto made = Simulation::create(document, nullptr);
-    if (!made.ok()) ADD_FAILURE() << made.error().message();
-    return made.ok() ? std::move(made).value() : nullptr;
-}
-
-void step(Simulation& simulation, int count) {
-    for (int i = 0; i < count; ++i) simulation.step();
-}
-
 TEST(RopePins, DiscOnAClampedRopeIsATorsionPendulum) {
     // T = 2π √(I L / GJ), I = m r²/2.
     Document document = disc_on_a_rope(true);
@@ -59,7 +49,7 @@ TEST(RopePins, DiscOnAClampedRopeIsATorsionPendulum) {
     const auto read = document_from_json(document_to_json(document));
     ASSERT_TRUE(read.ok()) << read.error().message();
     EXPECT_EQ(read.value().entities[1].pins, document.entities[1].pins);
-    const auto simulation = make(read.value());
+    const auto simulation = samples::make(read.value());
     ASSERT_TRUE(simulation);
     const auto rope = simulation->world().deformables().front();
     double crossed = 0, before = 0, period = 0;
@@ -79,9 +69,9 @@ TEST(RopePins, DiscOnAClampedRopeIsATorsionPendulum) {
 }
 
 TEST(RopePins, DiscOnARopeThatIsNotClampedTurnsOn) {
-    const auto simulation = make(disc_on_a_rope(false));
+    const auto simulation = samples::make(disc_on_a_rope(false));
     ASSERT_TRUE(simulation);
-    step(*simulation, 120);
+    samples::step(*simulation, 120);
     EXPECT_TRUE(simulation->world().rope_twists(simulation->world().deformables().front()).empty());
     const Vec3 ahead = rotate(simulation->pose(other).rotation, {1, 0, 0});
     EXPECT_NEAR(std::atan2(-ahead.z, ahead.x), 2, 0.1) << "1 rad/s for 2 s";
@@ -98,12 +88,12 @@ TEST(RopePins, WhatIsTwistedWakesWhatHangsOnIt) {
     motor.attributes = {{"kinematic", true}};
     document.entities.back() = motor;
     document.entities[1].pins[0].to = motor.index;
-    const auto simulation = make(document);
+    const auto simulation = samples::make(document);
     ASSERT_TRUE(simulation);
-    step(*simulation, 600);
+    samples::step(*simulation, 600);
     ASSERT_EQ(simulation->sleep_state(other), physics::SleepState::asleep);
     ASSERT_TRUE(simulation->set_velocity(motor.index, {}, {0, 0.5, 0}).ok());
-    step(*simulation, 240);
+    samples::step(*simulation, 240);
     // Dragged along by half a turn in all: 2 rad.
     const Vec3 ahead = rotate(simulation->pose(other).rotation, {1, 0, 0});
     EXPECT_NEAR(std::atan2(-ahead.z, ahead.x), 2, 0.3);
@@ -127,7 +117,7 @@ std::vector<Vec3> nodes_of(const Simulation& simulation) {
 }
 
 TEST(SlackRope, BeginsAndStaysAboveTheFloor) {
-    const auto simulation = make(slack_rope(0.1));
+    const auto simulation = samples::make(slack_rope(0.1));
     ASSERT_TRUE(simulation);
     for (int i = 0; i < 120; ++i) {
         for (const Vec3 node : nodes_of(*simulation)) ASSERT_GT(node.y, 0.005) << "after " << i << " steps";
@@ -142,7 +132,7 @@ TEST(SlackRope, BeginsAndStaysAboveTheFloor) {
 TEST(SlackRope, KeepsWhatIsPinnedInItsMiddle) {
     Document document = slack_rope(3);
     document.entities[1].pins.push_back({{0, 0.2, 0}, 0.0, {}});
-    const auto simulation = make(document);
+    const auto simulation = samples::make(document);
     ASSERT_TRUE(simulation);
     const std::vector<Vec3> at_first = nodes_of(*simulation);
     const auto middle = std::ranges::min(at_first, {}, [](Vec3 p) { return std::fabs(p.x + 0.2); });
@@ -152,7 +142,7 @@ TEST(SlackRope, KeepsWhatIsPinnedInItsMiddle) {
         return nearest < 1e-9;
     };
     EXPECT_TRUE(is_there()) << middle.x << ' ' << middle.y;
-    step(*simulation, 120);
+    samples::step(*simulation, 120);
     EXPECT_TRUE(is_there());
     double low_left = 3, low_right = 3;
     for (const Vec3 node : nodes_of(*simulation))
@@ -166,7 +156,7 @@ TEST(SlackRope, GoesAroundWhatStandsInItsWay) {
     Document document = slack_rope(1);
     Entity& box = samples::add(document, "Box", ShapeDefinition{physics::BoxShape{{0.2, 0.45, 0.05}}}, {0, 0.5, 0});
     box.attributes = {{"kind", std::string("static")}};
-    const auto simulation = make(document);
+    const auto simulation = samples::make(document);
     ASSERT_TRUE(simulation);
     for (const Vec3 node : nodes_of(*simulation)) {
         const bool is_inside = std::fabs(node.x) < 0.2 && node.y < 0.95 && std::fabs(node.z) < 0.05;

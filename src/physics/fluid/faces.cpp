@@ -63,20 +63,13 @@ void list_next_layer(const FluidGrid& grid, const std::array<std::vector<float>,
     }
 }
 
-// Velocity at a shut face that slides along the solid; the components across are means of the four nearest faces.
+// Velocity at a shut face that slides along the solid.
 double sliding(const FluidGrid& grid, int axis, int cell, Vec3 center, Vec3 wall) {
-    const int below = cell - grid.stride(axis);
     const float at[3] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)};
     float gradient[3];
     sample_center(grid, grid.solid, at, gradient);
     const Vec3 normal = normalized(Vec3{gradient[0], gradient[1], gradient[2]});
-    Vec3 velocity;
-    for (int other = 0; other < 3; ++other) {
-        const auto& field = grid.velocity[other];
-        const int up = grid.stride(other);
-        velocity[other] =
-            other == axis ? field[cell] : 0.25 * (field[cell] + field[cell + up] + field[below] + field[below + up]);
-    }
+    const Vec3 velocity = velocity_around(grid, axis, cell);
     return velocity[axis] + normal[axis] * dot(wall - velocity, normal);
 }
 
@@ -97,6 +90,18 @@ float followed(const FluidGrid& grid, const FluidSolids& solids, double sticking
 }
 
 }  // namespace
+
+Vec3 velocity_around(const FluidGrid& grid, int axis, int cell) {
+    const int below = cell - grid.stride(axis);
+    Vec3 velocity;
+    for (int other = 0; other < 3; ++other) {
+        const auto& field = grid.velocity[other];
+        const int up = grid.stride(other);
+        velocity[other] =
+            other == axis ? field[cell] : 0.25 * (field[cell] + field[cell + up] + field[below] + field[below + up]);
+    }
+    return velocity;
+}
 
 void extrapolate(FluidGrid& grid, std::array<std::vector<float>, 3>& field, int layers, TaskPool& workers) {
     const auto tiles = grid.tiles();

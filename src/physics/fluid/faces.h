@@ -15,6 +15,9 @@ void extrapolate(FluidGrid& grid, std::array<std::vector<float>, 3>& field, int 
 /// Faces that particles reach but that are unknown are known by them.
 void admit_drops(FluidGrid& grid, TaskPool& workers);
 
+/// Velocity at a face; the components across are means of the four nearest faces, m/s.
+Vec3 velocity_around(const FluidGrid& grid, int axis, int cell);
+
 /// Shut faces move as the solid does: along its normal, or wholly where the solid is thin. As far as the liquid sticks
 /// (1: its layer at the wall is thicker than a cell, 0: much thinner) such that the velocity at the surface is the
 /// solid's.

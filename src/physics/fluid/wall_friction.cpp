@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/fluid/faces.h"
 #include "physics/fluid/transfer.h"
 
 namespace embody::physics {
@@ -19,19 +20,6 @@ struct SlowedFace {
     Vec3 center;
     double change;  // of its velocity, m/s
 };
-
-// Mean velocity around a face.
-Vec3 velocity_around(const FluidGrid& grid, int axis, int cell) {
-    const int below = cell - grid.stride(axis);
-    Vec3 velocity;
-    for (int other = 0; other < 3; ++other) {
-        const auto& field = grid.velocity[other];
-        const int up = grid.stride(other);
-        velocity[other] =
-            other == axis ? field[cell] : 0.25 * (field[cell] + field[cell + up] + field[below] + field[below + up]);
-    }
-    return velocity;
-}
 
 }  // namespace
 
