@@ -317,6 +317,39 @@ TEST(SoftSolid, CushionsLieOnEachOther) {
     EXPECT_NEAR(world->center_of_mass(cushions[2]).x, 0.06, 0.01);
 }
 
+TEST(SoftSolid, ThoseThatBeginWithinEachOtherPartGently) {
+    for (const double beside : {0.0, 0.05, 0.12}) {
+        const auto world = make_world({});
+        add_plane(*world, {});
+        std::array<DeformableHandle, 2> boxes;
+        for (std::size_t i = 0; i < 2; ++i) {
+            DeformableDefinition box = brick({0.2, 0.2, 0.2}, {4, 4, 4}, 1000, 1e5, 0.3, 0.03);
+            box.pose.position = {beside * static_cast<double>(i), 0.01, 0};
+            boxes[i] = world->create_deformable(box).value();
+        }
+        std::array<Vec3, 2> before;
+        double fastest = 0;
+        for (int k = 0; k < 6 * 60; ++k) {
+            world->step();
+            for (std::size_t i = 0; i < 2; ++i) {
+                const Vec3 now = world->center_of_mass(boxes[i]);
+                if (k > 0) fastest = std::max(fastest, 60 * length(now - before[i]));
+                before[i] = now;
+            }
+        }
+        EXPECT_LT(fastest, 1) << beside;  // m/s
+        const Vec3 apart = world->center_of_mass(boxes[1]) - world->center_of_mass(boxes[0]);
+        const Vec3 size = abs(apart);
+        EXPECT_GT(std::max({size.x, size.y, size.z}), 0.19) << beside;
+        for (const DeformableHandle box : boxes) {
+            EXPECT_TRUE(world->is_asleep(box)) << beside;
+            // Whole again: no corner is caught in the other.
+            const std::span<const Vec3> nodes = world->node_positions(box);
+            EXPECT_NEAR(length(nodes.back() - nodes.front()), std::sqrt(3.0) * 0.2, 0.01) << beside;
+        }
+    }
+}
+
 TEST(SoftSolid, TurnedInsideOutOrFlatItComesBack) {
     for (const bool is_flat : {false, true}) {
         DeformableDefinition block = brick({0.4, 0.2, 0.2}, {4, 2, 2}, 1000, 1e5, 0.3, 0.02);

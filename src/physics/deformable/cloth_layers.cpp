@@ -108,7 +108,7 @@ void ClothLayers::search_node(const Search& search, std::uint32_t node, std::vec
 void ClothLayers::search_edge(const Search& search, std::uint32_t edge, std::vector<std::uint32_t>& seen,
                               std::vector<LayerContact>& found) const {
     const std::vector<Vec3>& x = search.nodes.position;
-    const auto [a, b] = edges_[edge];
+    const std::uint32_t a = edges_[edge][0], b = edges_[edge][1];
     const Bounds& box = edge_boxes_[edge];
     const std::size_t first_found = found.size();
     edge_grid_.visit(box, [&](std::uint32_t other) {

@@ -19,8 +19,7 @@ Mat3 to_matrix(const Block& b) { return {to_vec3(b.x), to_vec3(b.y), to_vec3(b.z
 
 template <int lane>
 Float4 spread(Float4 v) {
-    using Lanes = std::int32_t __attribute__((vector_size(16)));
-    return __builtin_shuffle(v, Lanes{lane, lane, lane, lane});
+    return __builtin_shufflevector(v, v, lane, lane, lane, lane);
 }
 
 Float4 operator_times(const Block& b, Float4 v) { return b.x * spread<0>(v) + b.y * spread<1>(v) + b.z * spread<2>(v); }

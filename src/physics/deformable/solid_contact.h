@@ -29,6 +29,7 @@ struct SolidContact {
     double radius = 0;          ///< distance that the two keep, m
     double friction = 0;        ///< Coulomb coefficient of the pair
     bool holds = false;         ///< the point stays at the anchor, whatever it takes
+    bool parts = false;         ///< the two solids lie within each other and are being parted
     Vec3 force;                 ///< on the solid in the last substep, N; what the next one begins with
     [[nodiscard]] bool has_body() const { return other.count == 0; }
 };

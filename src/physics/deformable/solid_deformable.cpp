@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include "geometry/tetrahedra/tetrahedral_mesh.h"
 
@@ -242,10 +241,10 @@ double SolidDeformable::elastic_energy(std::span<const Vec3> positions) const {
 // than there was and than the pushes have done is taken off: the move of the substep beyond that of the whole is made
 // shorter, down to none, which leaves the elastic energy that was there.
 void SolidDeformable::keep_energy() {
-    const auto is_slow = [&](std::size_t i) {
-        return length_squared(nodes_.position[i] - start_[i]) < slow_share * slow_share * mean_side_ * mean_side_;
-    };
-    if (std::ranges::all_of(std::views::iota(std::size_t{0}, nodes_.size()), is_slow)) return elastic_energy_.reset();
+    double farthest = 0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+        farthest = std::max(farthest, length_squared(nodes_.position[i] - start_[i]));
+    if (farthest < slow_share * slow_share * mean_side_ * mean_side_) return elastic_energy_.reset();
     const double at_start = kinetic_energy_at_start_ + (elastic_energy_ ? *elastic_energy_ : elastic_energy(start_));
     const auto surplus = [&] {
         double work = 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace embody::physics {
 
@@ -78,8 +79,119 @@ std::optional<PlacedSurface::Place> PlacedSurface::find(Vec3 p, double reach) co
     return Place{*triangle, point.weight, distance > 1e-9 ? (side / distance) * apart : fallback, side * distance};
 }
 
+template <class Visit>
+void PlacedSurface::visit_crossings(Vec3 p, int axis, Visit&& visit) const {
+    const int across = (axis + 1) % 3, up = (axis + 2) % 3;
+    // A line through a node or along an edge would be counted twice or not at all: lines pass beside p by nearly
+    // nothing.
+    const double aside = 1e-6 * deepest_, x = p[across] + 0.755 * aside, y = p[up] + 0.570 * aside;
+    const auto side = [&](Vec3 a, Vec3 b) {
+        return (b[across] - a[across]) * (y - a[up]) - (b[up] - a[up]) * (x - a[across]);
+    };
+    Bounds line{p, p};
+    for (Vec3* end : {&line.lower, &line.upper}) {
+        (*end)[across] = x;
+        (*end)[up] = y;
+    }
+    line.lower[axis] = tree_.bounds().lower[axis];
+    line.upper[axis] = tree_.bounds().upper[axis];
+    tree_.query(line, [&](std::uint32_t t) {
+        const auto& corners = solid_.surface()[t];
+        const Vec3 a = at(corners[0]), b = at(corners[1]), c = at(corners[2]);
+        const std::array<double, 3> area{side(b, c), side(c, a), side(a, b)};
+        const bool is_left = area[0] > 0 && area[1] > 0 && area[2] > 0;
+        const bool is_right = area[0] < 0 && area[1] < 0 && area[2] < 0;
+        if (!is_left && !is_right) return;
+        const double sum = area[0] + area[1] + area[2];
+        const std::array<double, 3> weight{area[0] / sum, area[1] / sum, area[2] / sum};
+        visit(t, weight, (weight[0] * a + weight[1] * b + weight[2] * c)[axis]);
+    });
+}
+
+std::optional<PlacedSurface::Place> PlacedSurface::find_exit(Vec3 p, int axis, double sign) const {
+    std::optional<Place> last;
+    visit_crossings(p, axis, [&](std::uint32_t t, const std::array<double, 3>& weight, double at_axis) {
+        const double way = sign * (at_axis - p[axis]);
+        if (!(way > 0) || (last && -last->distance >= way)) return;
+        last = Place{solid_.surface()[t], weight, {}, -way};
+    });
+    if (last) last->normal[axis] = sign;
+    return last;
+}
+
+// By the number of crossings on both sides of p; where these disagree the surface is torn or turned there.
+bool PlacedSurface::encloses(Vec3 p) const {
+    std::size_t before = 0, after = 0;
+    visit_crossings(
+        p, 1, [&](std::uint32_t, const std::array<double, 3>&, double at_axis) { ++(at_axis < p.y ? before : after); });
+    return before % 2 == 1 && after % 2 == 1;
+}
+
+double PlacedSurface::share_within(const PlacedSurface& other, double depth) const {
+    constexpr std::size_t most = 64;
+    const std::vector<std::uint32_t>& nodes = solid_.surface_nodes();
+    const std::size_t step = (nodes.size() + most - 1) / most;
+    std::size_t inside = 0, asked = 0;
+    for (std::size_t k = 0; k < nodes.size(); k += step) {
+        const Vec3 normal = normal_[nodes[k]];
+        if (!(length(normal) > 0)) continue;
+        ++asked;
+        inside += other.encloses(at(nodes[k]) - (depth * deepest_ / length(normal)) * normal) ? 1 : 0;
+    }
+    return asked > 0 ? static_cast<double>(inside) / static_cast<double>(asked) : 0;
+}
+
+namespace {
+
+constexpr double much = 0.125;                         // of one within the other: not the work of contact
+constexpr double sure_depth = 0.5, least_depth = 0.1;  // of points asked, in mean sides
+
+/// The way on which one solid leaves another.
+struct WayOut {
+    int axis = 0;
+    double sign = 1;
+};
+
+double volume(const Bounds& box) {
+    const Vec3 size = box.size();
+    return box.is_empty() ? 0 : size.x * size.y * size.z;
+}
+
+// The shortest way on which the box of `one` leaves that of `two`; of equal ones the first upwards for the later one.
+WayOut shortest_way(const Bounds& one, const Bounds& two, bool is_later) {
+    WayOut best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const int axis : {1, 0, 2}) {
+        const double forth = two.upper[axis] - one.lower[axis];
+        const double back = one.upper[axis] - two.lower[axis];
+        if (!(std::min(forth, back) < least)) continue;
+        least = std::min(forth, back);
+        best = {axis, forth < back || (forth == back && is_later) ? 1.0 : -1.0};
+    }
+    return best;
+}
+
+// Where much of one of the two lies within the other, as a scene may begin; or where any does and they have been
+// parting.
+std::optional<WayOut> find_way_out(const SolidDeformable& one, const PlacedSurface& surface_one,
+                                   const SolidDeformable& two, const PlacedSurface& surface_two, bool is_later,
+                                   bool is_parting) {
+    const double depth = is_parting ? least_depth : sure_depth;
+    const double most =
+        std::max(surface_one.share_within(surface_two, depth), surface_two.share_within(surface_one, depth));
+    if (!(is_parting ? most > 0 : most >= much)) return std::nullopt;
+    return shortest_way(one.bounds(), two.bounds(), is_later);
+}
+
+bool may_be_within(const Bounds& one, const Bounds& two) {
+    const Bounds common{max(one.lower, two.lower), min(one.upper, two.upper)};
+    return volume(common) >= much * std::min(volume(one), volume(two));
+}
+
+}  // namespace
+
 void find_surface_contacts(const SolidDeformable& one, std::uint32_t one_number, const SolidDeformable& two,
-                           std::uint32_t two_number, double reach, double radius, double friction,
+                           std::uint32_t two_number, double reach, double radius, double friction, bool is_parting,
                            std::vector<SolidContact>& contacts) {
     const Bounds near = enlarged(two.bounds(), reach + radius);
     std::vector<std::uint32_t> nodes;
@@ -88,13 +200,21 @@ void find_surface_contacts(const SolidDeformable& one, std::uint32_t one_number,
     }
     if (nodes.empty()) return;
     const PlacedSurface surface(two);
+    std::optional<WayOut> way;
+    if (is_parting || may_be_within(one.bounds(), two.bounds()))
+        way = find_way_out(one, PlacedSurface(one), two, surface, one_number > two_number, is_parting);
     for (const std::uint32_t node : nodes) {
-        const auto place = surface.find(one.nodes().position[node], std::max(reach + radius, surface.deepest()));
+        const Vec3 p = one.nodes().position[node];
+        auto place = surface.find(p, std::max(reach + radius, surface.deepest()));
+        // What is too deep to be told where it came from, or would be pushed deeper.
+        if (way && (!place || way->sign * place->normal[way->axis] < 0))
+            place = surface.find_exit(p, way->axis, way->sign);
         if (!place) continue;
         SolidContact contact;
         contact.normal = place->normal;
         contact.other = {two_number, 3, place->triangle, place->weight};
         contact.point = {one_number, 1, {node}, {1}};
+        contact.parts = way.has_value();
         contact.radius = radius;
         contact.friction = friction;
         contacts.push_back(contact);

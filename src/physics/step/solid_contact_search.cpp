@@ -107,6 +107,11 @@ private:
     std::vector<TouchedBody> colliding_;
 };
 
+bool are_parting(const DeformableRecord& one, const DeformableRecord& two) {
+    const std::uint64_t partner = first_deformable_partner + two.slot;
+    return std::ranges::any_of(one.contacts, [&](const SolidContact& c) { return c.parts && c.partner == partner; });
+}
+
 void add_pairs(const WorldState& world, std::span<DeformableRecord* const> records, std::uint32_t number,
                std::vector<SolidContact>& contacts) {
     const DeformableRecord& record = *records[number];
@@ -114,9 +119,10 @@ void add_pairs(const WorldState& world, std::span<DeformableRecord* const> recor
     for (std::uint32_t other = 0; other < records.size(); ++other) {
         const DeformableRecord& two = *records[other];
         if (other == number || !may_collide(record.definition, two.definition)) continue;
+        const bool is_parting = are_parting(record, two) || are_parting(two, record);
         find_surface_contacts(*record.solid, number, *two.solid, other, reach + reach_of(world, two),
                               record.definition.contact_radius + two.definition.contact_radius,
-                              std::sqrt(record.definition.friction * two.definition.friction), contacts);
+                              std::sqrt(record.definition.friction * two.definition.friction), is_parting, contacts);
     }
 }
 
