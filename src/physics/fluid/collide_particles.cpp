@@ -32,8 +32,30 @@ Cell cell_at(const FluidGrid& grid, const float* position) {
 }  // namespace
 
 ParticleCollider::ParticleCollider(const FluidGrid& grid, const FluidSolids& solids, double dt)
-    : grid_(grid), solids_(solids), dt_(dt), fixed_(solids.fixed()) {
-    for (const MovingSolid& moving : solids.moving()) moving_.push_back(moving.probe);
+    : grid_(grid), solids_(solids), fixed_(solids.fixed()) {
+    for (const MovingSolid& moving : solids.moving()) {
+        Mover mover{moving.probe, &moving, {}, {}};
+        mover.before = mover.posed(moving.kept_center, moving.kept_rotation);
+        mover.end = mover.posed(moving.center + moving.linear_velocity * (dt / 2), moving.end_rotation(dt));
+        moving_.push_back(std::move(mover));
+    }
+}
+
+ParticleCollider::Pose ParticleCollider::Mover::posed(Vec3 center, Quat rotation) const {
+    return {center, rotation, solid->center, to_matrix(solid->rotation * conjugate(rotation))};
+}
+
+ParticleCollider::Pose ParticleCollider::Mover::at(double share) const {
+    if (share == 0) return before;
+    if (share == 1) return end;
+    const Pose middle{solid->center, solid->rotation, {}, {}};
+    const Pose &from = share < 0.5 ? before : middle, &to = share < 0.5 ? middle : end;
+    const double t = share < 0.5 ? 2 * share : 2 * share - 1;
+    const double other = dot(from.rotation, to.rotation) < 0 ? -t : t;
+    const Quat &a = from.rotation, &b = to.rotation;
+    const Quat between = normalized({a.x * (1 - t) + b.x * other, a.y * (1 - t) + b.y * other,
+                                     a.z * (1 - t) + b.z * other, a.w * (1 - t) + b.w * other});
+    return posed(from.center + (to.center - from.center) * t, between);
 }
 
 bool ParticleCollider::is_near_thin(const float* position) const {
@@ -46,11 +68,8 @@ bool ParticleCollider::sees(Vec3 from, Vec3 to) {
     box.add(to);
     const auto is_barred = [&](SolidProbe& probe) { return probe.look_at(box, 0) && probe.crossing(from, to); };
     if (std::any_of(fixed_.begin(), fixed_.end(), is_barred)) return false;
-    for (std::size_t i = 0; i < moving_.size(); ++i) {
-        const MovingSolid& moving = solids_.moving()[i];
-        if (moving.is_in_reach && !moving.is_small && is_barred(moving_[i])) return false;
-    }
-    return true;
+    return std::none_of(moving_.begin(), moving_.end(),
+                        [&](Mover& mover) { return mover.is_met() && is_barred(mover.probe); });
 }
 
 std::array<float, 3> ParticleCollider::place_of(const FluidParticle& particle) {
@@ -93,24 +112,32 @@ void ParticleCollider::stop_at(FluidParticle& particle, const Wall& wall) const 
     for (int axis = 0; axis < 3; ++axis) particle.velocity[axis] -= static_cast<float>(wall.normal[axis] * inwards);
 }
 
-void ParticleCollider::push_out(FluidParticle& particle, Vec3 before) const {
+void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span& when) const {
     constexpr float deep = -0.1f;  // cells
+    // The grid has a moving solid where it is in the middle of the part.
+    const int owner = grid_.solid_owner[grid_.index(cell_at(grid_, particle.position))];
+    const Mover* mover = owner >= 0 ? &moving_[static_cast<std::size_t>(owner)] : nullptr;
+    const Pose pose = mover != nullptr ? mover->at(when.last) : Pose{};
     float gradient[3];
-    const float distance = sample_center(grid_, grid_.solid, particle.position, gradient);
+    const auto distance_at = [&](Vec3 p) {
+        const float at[3] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+        return sample_center(grid_, grid_.solid, at, gradient);
+    };
+    const Vec3 inside = pose.seen(to_vec(particle.position));
+    const float distance = distance_at(inside);
     if (distance >= least_distance) return;
     const Vec3 normal = normalized(Vec3{gradient[0], gradient[1], gradient[2]});
-    set_position(particle, to_vec(particle.position) + normal * ((least_distance - distance) * grid_.cell_size()));
-    const int owner = grid_.solid_owner[grid_.index(cell_at(grid_, particle.position))];
-    const Vec3 wall = solids_.velocity_at(owner, to_vec(particle.position));
+    const Vec3 outside = inside + normal * ((least_distance - distance) * grid_.cell_size());
+    const Vec3 wall = solids_.velocity_at(owner, outside);
+    set_position(particle, pose.back(outside));
     stop_at(particle, {normal, wall});
 
     // Where that leads nowhere (the seam of two solids) it does not go on.
-    const float now = sample_center(grid_, grid_.solid, particle.position, gradient);
+    const float now = distance_at(outside);
     if (now > deep) return;
-    FluidParticle back = particle;
-    set_position(back, before);
-    if (sample_center(grid_, grid_.solid, back.position, gradient) < now) return;
-    std::copy_n(back.position, 3, particle.position);
+    const Vec3 stayed = mover != nullptr ? mover->at(when.first).seen(before) : before;
+    if (distance_at(stayed) < now) return;
+    set_position(particle, pose.back(stayed));
     for (int axis = 0; axis < 3; ++axis) particle.velocity[axis] = static_cast<float>(wall[axis]);
 }
 
@@ -144,7 +171,7 @@ bool ParticleCollider::bar(SolidProbe& probe, Vec3 from, Vec3& to, Vec3& normal)
 }
 
 // By the true shapes; a moving one is seen from the middle of its way.
-void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to) {
+void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to, const Span& when) {
     constexpr int rounds = 2;
     Vec3 normal;
     for (int round = 0; round < rounds; ++round) {
@@ -154,14 +181,14 @@ void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to) {
             any = true;
             stop_at(particle, {normal, {}});
         }
-        for (std::size_t i = 0; i < moving_.size(); ++i) {
-            const MovingSolid& moving = solids_.moving()[i];
-            if (!moving.is_in_reach || moving.is_small) continue;
-            const Vec3 seen_from = from + moving.velocity_at(from) * (dt_ / 2);
-            Vec3 seen_to = to - moving.velocity_at(to) * (dt_ / 2);
-            if (!bar(moving_[i], seen_from, seen_to, normal)) continue;
+        for (Mover& mover : moving_) {
+            if (!mover.is_met()) continue;
+            const MovingSolid& moving = *mover.solid;
+            const Pose before = mover.at(when.first), after = mover.at(when.last);
+            Vec3 seen_to = after.seen(to);
+            if (!bar(mover.probe, before.seen(from), seen_to, normal)) continue;
             any = true;
-            to = seen_to + moving.velocity_at(seen_to) * (dt_ / 2);
+            to = after.back(seen_to);
             stop_at(particle, {normal, moving.velocity_at(seen_to)});
         }
         if (!any) break;
@@ -179,23 +206,24 @@ void ParticleCollider::move(FluidParticle& particle, const float* end) {
         size = std::max(size, std::fabs(way[axis]));
     }
     const int strides = 1 + static_cast<int>(size / (1.5f * static_cast<float>(grid_.cell_size())));
+    const double piece = 1.0 / strides;
     for (int i = 0; i < strides; ++i) {
         float to[3];
         for (int axis = 0; axis < 3; ++axis) {
             to[axis] = particle.position[axis] + way[axis] / static_cast<float>(strides);
         }
-        stride(particle, to);
+        stride(particle, to, {i * piece, i + 1 < strides ? (i + 1) * piece : 1});
     }
 }
 
-void ParticleCollider::stride(FluidParticle& particle, const float* to) {
+void ParticleCollider::stride(FluidParticle& particle, const float* to, const Span& when) {
     if (is_near_thin(particle.position) || is_near_thin(to)) {
-        sweep(particle, to_vec(particle.position), to_vec(to));
+        sweep(particle, to_vec(particle.position), to_vec(to), when);
         return;
     }
     const Vec3 before = to_vec(particle.position);
     std::copy_n(to, 3, particle.position);
-    if (grid_.solid[grid_.index(cell_at(grid_, to))] < 1.5f) push_out(particle, before);
+    if (grid_.solid[grid_.index(cell_at(grid_, to))] < 1.5f) push_out(particle, before, when);
 }
 
 }  // namespace embody::physics

@@ -20,22 +20,44 @@ public:
     void move(FluidParticle& particle, const float* end);
 
 private:
+    /// A piece of the part, as shares of it.
+    struct Span {
+        double first = 0, last = 1;
+    };
     /// A wall that was met: its normal and velocity.
     struct Wall {
         Vec3 normal, velocity;
     };
-    void stride(FluidParticle& particle, const float* to);
-    void push_out(FluidParticle& particle, Vec3 before) const;
+    void stride(FluidParticle& particle, const float* to, const Span& when);
+    void push_out(FluidParticle& particle, Vec3 before, const Span& when) const;
     [[nodiscard]] bool sees(Vec3 from, Vec3 to);
-    void sweep(FluidParticle& particle, Vec3 from, Vec3 to);
+    void sweep(FluidParticle& particle, Vec3 from, Vec3 to, const Span& when);
     bool bar(SolidProbe& probe, Vec3 from, Vec3& to, Vec3& normal) const;
     void stop_at(FluidParticle& particle, const Wall& wall) const;
     [[nodiscard]] bool is_near_thin(const float* position) const;
 
+    /// Where a moving solid is at a time of the part, and places beside it as the middle of the part sees them.
+    struct Pose {
+        Vec3 center;
+        Quat rotation;
+        Vec3 middle;  ///< its centre there
+        Mat3 turn = Mat3::identity();
+        [[nodiscard]] Vec3 seen(Vec3 p) const { return middle + turn * (p - center); }
+        [[nodiscard]] Vec3 back(Vec3 p) const { return center + transpose(turn) * (p - middle); }
+    };
+    struct Mover {
+        SolidProbe probe;
+        const MovingSolid* solid;
+        Pose before, end;
+        [[nodiscard]] Pose at(double share) const;
+        [[nodiscard]] Pose posed(Vec3 center, Quat rotation) const;
+        [[nodiscard]] bool is_met() const { return solid->is_in_reach && !solid->is_small; }
+    };
+
     const FluidGrid& grid_;
     const FluidSolids& solids_;
-    double dt_;
-    std::vector<SolidProbe> fixed_, moving_;
+    std::vector<SolidProbe> fixed_;
+    std::vector<Mover> moving_;  // as solids.moving()
 };
 
 }  // namespace embody::physics

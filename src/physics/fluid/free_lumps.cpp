@@ -51,22 +51,39 @@ Mat3 FreeLumps::Lump::inertia() const {
     return Mat3::identity() * (1.001 * trace(central)) - central;
 }
 
-// A lump that shares a body with another one, or touches what does not move freely, is not free.
+std::int32_t FreeLumps::joined(std::int32_t lump) const {
+    while (joined_[static_cast<std::size_t>(lump)] != lump) lump = joined_[static_cast<std::size_t>(lump)];
+    return lump;
+}
+
+// A lump that touches what does not move freely is not free; one that shares a body with another is one with it.
 void FreeLumps::touch(const FluidGrid& grid, const FluidSolids& solids, int cell, std::int32_t lump) {
-    Lump& its = lumps_[static_cast<std::size_t>(lump)];
     const int owner = grid.solid_owner[cell];
     if (owner < 0 || !(solids.moving()[static_cast<std::size_t>(owner)].solid->inverse_mass > 0)) {
-        its.is_free = false;
+        lumps_[static_cast<std::size_t>(lump)].is_free = false;
         return;
     }
     Touched& body = bodies_[static_cast<std::size_t>(owner)];
-    if (body.lump >= 0 && body.lump != lump) lumps_[static_cast<std::size_t>(body.lump)].is_free = its.is_free = false;
     if (body.lump < 0) body.lump = lump;
+    const std::int32_t a = joined(body.lump), b = joined(lump);
+    joined_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+}
+
+// Of the cell that a place lies in or is next to; a drop at a body is with what touches the body.
+std::int32_t FreeLumps::lump_at(const FluidGrid& grid, const float* place) const {
+    constexpr float next_to = 1.5f;  // cells
+    const std::int32_t row = row_near(grid, place);
+    if (row >= 0) return lump_of_row_[static_cast<std::size_t>(row)];
+    Cell c{};
+    for (int axis = 0; axis < 3; ++axis) c[axis] = static_cast<int>(grid.in_cells(place[axis], axis));
+    const int cell = grid.index(c), owner = grid.solid_owner[cell];
+    return owner >= 0 && grid.solid[cell] < next_to ? bodies_[static_cast<std::size_t>(owner)].lump : -1;
 }
 
 // Rows that are neighbours are of one lump.
 void FreeLumps::find(const FluidGrid& grid, const PressureSystem& system, const FluidSolids& solids) {
     lumps_.clear();
+    joined_.clear();
     bodies_.clear();
     for (const MovingSolid& moving : solids.moving())
         bodies_.push_back({-1, moving.solid->impulse, moving.solid->angular_impulse});
@@ -76,6 +93,7 @@ void FreeLumps::find(const FluidGrid& grid, const PressureSystem& system, const 
         if (lump_of_row_[first] >= 0) continue;
         const auto lump = static_cast<std::int32_t>(lumps_.size());
         lumps_.push_back({.squares = Mat3::zero()});
+        joined_.push_back(lump);
         lump_of_row_[first] = lump;
         to_visit.push_back(first);
         while (!to_visit.empty()) {
@@ -94,6 +112,12 @@ void FreeLumps::find(const FluidGrid& grid, const PressureSystem& system, const 
             }
         }
     }
+    for (std::int32_t lump = 0; lump < static_cast<std::int32_t>(lumps_.size()); ++lump) {
+        const bool is_free = lumps_[static_cast<std::size_t>(lump)].is_free;
+        if (!is_free) lumps_[static_cast<std::size_t>(joined(lump))].is_free = false;
+    }
+    for (std::int32_t& lump : lump_of_row_) lump = joined(lump);
+    for (Touched& body : bodies_) body.lump = body.lump < 0 ? -1 : joined(body.lump);
 }
 
 void FreeLumps::begin(const FluidGrid& grid, const PressureSystem& system, const FluidSolids& solids,
@@ -104,9 +128,8 @@ void FreeLumps::begin(const FluidGrid& grid, const PressureSystem& system, const
     find(grid, system, solids);
     lump_of_particle_.assign(particles.size(), -1);
     for (std::size_t i = 0; i < particles.size(); ++i) {
-        const std::int32_t row = row_near(grid, particles[i].position);
-        if (row < 0) continue;
-        const std::int32_t lump = lump_of_row_[static_cast<std::size_t>(row)];
+        const std::int32_t lump = lump_at(grid, particles[i].position);
+        if (lump < 0) continue;
         Lump& its = lumps_[static_cast<std::size_t>(lump)];
         if (!its.is_free) continue;
         lump_of_particle_[i] = lump;

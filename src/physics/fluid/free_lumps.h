@@ -12,9 +12,9 @@
 
 namespace embody::physics {
 
-/// Lumps of liquid that touch nothing, or only bodies that move freely. What the cells do to a lump has a resultant and
-/// a moment that it must not have: the tension of its surface would push and turn it, and what a body gives it would
-/// not arrive, since the faces' masses are not the particles'.
+/// Lumps of liquid that touch nothing, or only bodies that move freely; those that share a body are one. What the cells
+/// do to a lump has a resultant and a moment that it must not have: the tension of its surface would push and turn it,
+/// and what a body gives it would not arrive, since the faces' masses are not the particles'.
 class FreeLumps {
 public:
     /// Finds them, and what momentum their particles and the bodies have. Unless `all`, only where the whole fluid is
@@ -44,8 +44,11 @@ private:
     };
     void find(const FluidGrid& grid, const PressureSystem& system, const FluidSolids& solids);
     void touch(const FluidGrid& grid, const FluidSolids& solids, int cell, std::int32_t lump);
+    [[nodiscard]] std::int32_t joined(std::int32_t lump) const;
+    [[nodiscard]] std::int32_t lump_at(const FluidGrid& grid, const float* place) const;
 
     std::vector<std::int32_t> lump_of_row_, lump_of_particle_;  // −1: a drop of its own
+    std::vector<std::int32_t> joined_;                          // by lump: an earlier one that it is part of, or itself
     std::vector<Lump> lumps_;
     std::vector<Touched> bodies_;  // as solids.moving()
 };

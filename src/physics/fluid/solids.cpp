@@ -10,6 +10,8 @@ namespace {
 
 // Faces of which less is open are shut: seams between solids that touch do not leak.
 constexpr float least_open = 0.02f;
+// A body that was put farther away than this from outside was not moved through the fluid, m.
+constexpr double farthest_put = 0.5;
 
 Quat turned(Quat rotation, Vec3 angular_velocity, double dt) {
     const Vec3 half = angular_velocity * (dt / 2);
@@ -23,6 +25,12 @@ Transform moved(const FluidSolid& solid, Vec3 origin, Vec3 center, Quat rotation
     return {center - origin + rotate(rotation, arm), rotation};
 }
 
+// The rotation vector that turned() makes of it: exact for one part, and for small ones.
+Vec3 turn_between(Quat from, Quat to) {
+    const Quat turn = to * conjugate(from);
+    return Vec3{turn.x, turn.y, turn.z} * (turn.w < 0 ? -2.0 : 2.0);
+}
+
 // A face that is shut though the solid does not fill it.
 void bind_face(MovingSolid& moving, const FluidGrid& grid, int axis, const Cell& c, float share) {
     if (share < least_open) return;
@@ -33,6 +41,22 @@ void bind_face(MovingSolid& moving, const FluidGrid& grid, int axis, const Cell&
 }
 
 }  // namespace
+
+// Where the last step left a body that it knew and that goes on from there.
+const FluidSolids::LeftBody* FluidSolids::left(const FluidSolid& solid) const {
+    const auto found = std::ranges::lower_bound(left_, solid.body, {}, &LeftBody::body);
+    if (found == left_.end() || found->body != solid.body) return nullptr;
+    if (found->version == solid.version) return &*found;
+    return length(found->center + origin_ - solid.center) < farthest_put ? &*found : nullptr;
+}
+
+void FluidSolids::put_where_it_is(MovingSolid& moving) const {
+    const FluidSolid& solid = *moving.solid;
+    moving.center = solid.center - origin_;
+    moving.rotation = solid.pose.rotation;
+    moving.linear_velocity = solid.linear_velocity;
+    moving.angular_velocity = solid.angular_velocity;
+}
 
 void FluidSolids::begin(std::span<FluidSolid> solids, FluidGrid& grid) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> versions;
@@ -47,10 +71,10 @@ void FluidSolids::begin(std::span<FluidSolid> solids, FluidGrid& grid) {
         }
         MovingSolid& moving = moving_[count++];
         moving.solid = &solid;
-        moving.center = solid.center - origin_;
-        moving.rotation = solid.pose.rotation;
-        moving.linear_velocity = solid.linear_velocity;
-        moving.angular_velocity = solid.angular_velocity;
+        put_where_it_is(moving);
+        const LeftBody* before = left(solid);
+        moving.kept_center = before != nullptr ? before->center : moving.center;
+        moving.kept_rotation = before != nullptr ? before->rotation : moving.rotation;
     }
     moving_.erase(moving_.begin() + static_cast<std::ptrdiff_t>(count), moving_.end());
     if (versions == fixed_versions_) return;
@@ -61,6 +85,29 @@ void FluidSolids::begin(std::span<FluidSolid> solids, FluidGrid& grid) {
         fixed_.emplace_back(*solid.shape, Transform{solid.pose.position - origin_, solid.pose.rotation});
     }
     std::fill(grid.is_static_known.begin(), grid.is_static_known.end(), 0);
+}
+
+double FluidSolids::surprise() const {
+    double farthest = 0;
+    for (const MovingSolid& moving : moving_) {
+        const double reach = length(moving.solid->shape->bounds(moving.solid->pose).half_extents());
+        const Vec3 turn = turn_between(moving.kept_rotation, moving.rotation);
+        farthest = std::max(farthest, length(moving.center - moving.kept_center) + length(turn) * reach);
+    }
+    return farthest;
+}
+
+void FluidSolids::begin_catching_up() {
+    for (MovingSolid& moving : moving_) {
+        moving.linear_velocity = moving.center - moving.kept_center;
+        moving.angular_velocity = turn_between(moving.kept_rotation, moving.rotation);
+        moving.center = moving.kept_center;
+        moving.rotation = moving.kept_rotation;
+    }
+}
+
+void FluidSolids::end_catching_up() {
+    for (MovingSolid& moving : moving_) put_where_it_is(moving);
 }
 
 void FluidSolids::measure_static_tile(FluidGrid& grid, const Cell& corner, std::vector<SolidProbe>& probes,
@@ -163,6 +210,14 @@ void FluidSolids::place_moving(MovingSolid& moving, int owner, FluidGrid& grid) 
     }
 }
 
+void FluidSolids::place() {
+    for (MovingSolid& moving : moving_) {
+        const FluidSolid& solid = *moving.solid;
+        const Transform placed = moved(solid, origin_, moving.center + origin_, moving.rotation);
+        moving.probe = SolidProbe(*solid.shape, placed);
+    }
+}
+
 void FluidSolids::measure(double dt, FluidGrid& grid, TaskPool& workers) {
     measure_static(grid, workers);
     grid.for_tiles(workers, [&](const Cell& corner) {
@@ -180,14 +235,10 @@ void FluidSolids::measure(double dt, FluidGrid& grid, TaskPool& workers) {
         });
     });
     for (MovingSolid& moving : moving_) {
-        const FluidSolid& solid = *moving.solid;
         moving.center += moving.linear_velocity * (dt / 2);
         moving.rotation = turned(moving.rotation, moving.angular_velocity, dt / 2);
-        moving.linear_velocity += solid.acceleration * dt;
-        moving.angular_velocity += solid.angular_acceleration * dt;
-        const Transform placed = moved(solid, origin_, moving.center + origin_, moving.rotation);
-        moving.probe = SolidProbe(*solid.shape, placed);
     }
+    place();
     share_among(workers, moving_.size(), moving_.size() > 1, [&](int, Share share) {
         for (std::size_t i = share.first; i < share.last; ++i) measure_moving(moving_[i], grid);
     });
@@ -203,6 +254,13 @@ void FluidSolids::measure(double dt, FluidGrid& grid, TaskPool& workers) {
             grid.solid[cell] = std::min(grid.solid[cell], -0.5f);
         });
     });
+}
+
+void FluidSolids::accelerate(double dt) {
+    for (MovingSolid& moving : moving_) {
+        moving.linear_velocity += moving.solid->acceleration * dt;
+        moving.angular_velocity += moving.solid->angular_acceleration * dt;
+    }
 }
 
 void FluidSolids::list_areas(const FluidGrid& grid) {
@@ -237,8 +295,19 @@ void FluidSolids::list_areas(const FluidGrid& grid) {
 void FluidSolids::advance(double dt) {
     for (MovingSolid& moving : moving_) {
         moving.center += moving.linear_velocity * (dt / 2);
-        moving.rotation = turned(moving.rotation, moving.angular_velocity, dt / 2);
+        moving.rotation = moving.end_rotation(dt);
+        moving.kept_center = moving.center;
+        moving.kept_rotation = moving.rotation;
     }
 }
+
+void FluidSolids::end() {
+    left_.clear();
+    for (const MovingSolid& moving : moving_) {
+        left_.push_back({moving.solid->body, moving.solid->version, moving.kept_center, moving.kept_rotation});
+    }
+}
+
+Quat MovingSolid::end_rotation(double dt) const { return turned(rotation, angular_velocity, dt / 2); }
 
 }  // namespace embody::physics

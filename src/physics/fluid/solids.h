@@ -16,7 +16,7 @@ namespace embody::physics {
 struct FluidSolid {
     std::uint32_t body = 0;  ///< caller's number; solids come in its order
     const CollisionShape* shape = nullptr;
-    std::uint32_t version = 0;  ///< another one after each change of a static body
+    std::uint32_t version = 0;  ///< another one after each change from outside
     bool is_static = false;     ///< never moves: measured once
     Transform pose;             ///< when the step begins, world
     Vec3 center;                ///< of mass, world, m
@@ -41,6 +41,8 @@ struct MovingSolid {
     Vec3 center;  ///< in the fluid's frame, in the middle of the part
     Quat rotation;
     Vec3 linear_velocity, angular_velocity;
+    Vec3 kept_center;  ///< where it was when particles were last kept out of it: when the part begins
+    Quat kept_rotation;
     SolidProbe probe;
     SolidRegion region;
     std::array<std::vector<float>, 3> share;  ///< of faces, by the region's index: what other solids left
@@ -51,6 +53,8 @@ struct MovingSolid {
     bool is_small = false;  ///< smaller than a cell: what it fills is spread around its centre
 
     [[nodiscard]] Vec3 velocity_at(Vec3 p) const { return linear_velocity + cross(angular_velocity, p - center); }
+    /// Rotation at the end of the part.
+    [[nodiscard]] Quat end_rotation(double dt) const;
 };
 
 /// Measures the solids on the grid: static ones once for each tile, the others in each part of a step.
@@ -60,12 +64,24 @@ public:
 
     /// Before the parts of a step.
     void begin(std::span<FluidSolid> solids, FluidGrid& grid);
-    /// Forces but the fluid's change velocities over `dt`; measures with the poses in the middle of it.
+    /// How far the solids are from where the last step left them, m: what they met there was not expected.
+    [[nodiscard]] double surprise() const;
+    /// Puts the solids where the last step left them, with velocities that bring them where they are in a second; then
+    /// back to where and as fast as they are.
+    void begin_catching_up();
+    void end_catching_up();
+    /// Puts the probes of the moving ones where they are.
+    void place();
+    /// Measures with the poses in the middle of the part.
     void measure(double dt, FluidGrid& grid, TaskPool& workers);
+    /// Forces but the fluid's change velocities.
+    void accelerate(double dt);
     /// Once rows are known.
     void list_areas(const FluidGrid& grid);
     /// Moves on to the end of the part.
     void advance(double dt);
+    /// After the parts of a step.
+    void end();
 
     [[nodiscard]] std::vector<MovingSolid>& moving() { return moving_; }
     [[nodiscard]] const std::vector<MovingSolid>& moving() const { return moving_; }
@@ -82,8 +98,18 @@ private:
     static void measure_moving(MovingSolid& moving, const FluidGrid& grid);
     static void place_moving(MovingSolid& moving, int owner, FluidGrid& grid);
 
+    /// Where a step left a body.
+    struct LeftBody {
+        std::uint32_t body, version;
+        Vec3 center;
+        Quat rotation;
+    };
+    [[nodiscard]] const LeftBody* left(const FluidSolid& solid) const;
+    void put_where_it_is(MovingSolid& moving) const;
+
     Vec3 origin_;
     std::vector<MovingSolid> moving_;
+    std::vector<LeftBody> left_;
     std::vector<SolidProbe> fixed_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> fixed_versions_;
 };

@@ -126,6 +126,7 @@ FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidSolid>
     solids_.begin(solids, grid_);
     const double part = dt / outcome.parts;
     for (int i = 0; i < outcome.parts && !particles_.empty(); ++i) advance_part(part, gravity, outcome, workers);
+    solids_.end();
 
     // Numbers that are none: no solid learns of them.
     for (const FluidSolid& solid : solids) {
@@ -172,6 +173,7 @@ void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, T
     if (particles_.empty()) return;
     grid_.sort(particles_, workers);
     solids_.measure(dt, grid_, workers);
+    solids_.accelerate(dt);
     find_places(dt, workers);
     particles_to_grid(grid_, particles_, places_, static_cast<float>(properties_.particle_volume / (h * h * h)),
                       workers);

@@ -46,6 +46,14 @@ public:
     /// Advances by dt; the solids' impulses are set.
     FluidOutcome advance(double dt, Vec3 gravity, std::span<FluidSolid> solids, TaskPool& workers);
 
+    /// After a step: the solids are where they came to by what they met, and the particles are kept out of them there.
+    struct Followed {
+        bool has_moved = false;  ///< any particle
+        bool is_solved = true;
+        std::size_t lost = 0;  ///< particles out of reach
+    };
+    Followed follow(std::span<FluidSolid> solids, TaskPool& workers);
+
     [[nodiscard]] Vec3 origin() const { return origin_; }
     [[nodiscard]] const FluidProperties& properties() const { return properties_; }
     [[nodiscard]] const FluidGrid& grid() const { return grid_; }
@@ -76,6 +84,8 @@ public:
     [[nodiscard]] double pressure_at(Vec3 p) const;
 
 private:
+    void keep_out(TaskPool& workers);
+    void displace(double share, Followed& followed, TaskPool& workers);
     void advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers);
     void find_places(double dt, TaskPool& workers);
     void accelerate(Vec3 change, TaskPool& workers);

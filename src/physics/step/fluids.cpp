@@ -87,6 +87,7 @@ FluidSolid dynamic_solid(WorldState& world, std::uint32_t slot, double density) 
     FluidSolid solid;
     solid.body = slot;
     solid.shape = world.record(slot).shape;
+    solid.version = world.record(slot).version;
     solid.pose = world.pose(slot);
     solid.center = state.center;
     if (world.is_asleep(slot)) return solid;
@@ -228,6 +229,20 @@ void advance_fluid(WorldState& world, FluidRecord& fluid) {
     fall_asleep_if_quiet(world, fluid);
 }
 
+// Particles stay outside of the bodies where these came to.
+void follow_bodies(WorldState& world, FluidRecord& fluid) {
+    std::vector<std::uint32_t> slots;
+    for (const auto& [slot, seen] : fluid.seen) {
+        if (world.is_used(slot)) slots.push_back(slot);
+    }
+    std::vector<FluidSolid> solids = solids_near(world, fluid, slots);
+    const FluidSolver::Followed followed = fluid.solver->follow(solids, *world.workers);
+    fluid.lost += followed.lost;
+    if (followed.lost > 0) report_limit(world, StepLimit::fluid_particles_lost);
+    if (!followed.is_solved) report_limit(world, StepLimit::fluid_unsolved);
+    if (followed.has_moved) read_particles(fluid, *world.workers);
+}
+
 }  // namespace
 
 void prepare_fluid(WorldState& world, FluidRecord& fluid) {
@@ -253,6 +268,14 @@ void advance_fluids(WorldState& world) {
     wake_pushed(world);
     gather_awake(world);
     note_touches(world);
+}
+
+void settle_fluids(WorldState& world) {
+    for (std::uint32_t slot = 0; slot < world.fluids.slot_count(); ++slot) {
+        if (!world.fluids.used(slot)) continue;
+        FluidRecord& fluid = world.fluids.at(slot);
+        if (!fluid.is_frozen && !fluid.is_asleep) follow_bodies(world, fluid);
+    }
 }
 
 }  // namespace embody::physics

@@ -19,6 +19,7 @@ void run_substeps(WorldState& world);
 void stop_tunnelling(WorldState& world);
 void advance_deformables(WorldState& world);
 void put_to_sleep(WorldState& world);
+void settle_fluids(WorldState& world);
 void write_report(WorldState& world);
 
 /// Slows awake bodies to the settings' greatest speeds; before a step, for what users did, and after its substeps.
