@@ -97,6 +97,38 @@ struct FacesOfCube {
     bool is_outside = false;
 };
 
+// How much thicker the hulls of a compound are met, m. Those of catalogue models lie up to 0.8 mm (a mug of 12 cm) to
+// 1.3 mm (a bathtub of 1.7 m) inside of the surface that they stand for.
+double seal_of(const CollisionShape& shape) {
+    constexpr double share = 0.01, most = 0.0015;  // of its longest side; m
+    const auto* compound = std::get_if<CompoundShape>(&shape.definition());
+    if (compound == nullptr || compound->children.size() < 2) return 0;
+    if (!std::holds_alternative<HullShape>(compound->children.front().shape)) return 0;
+    const Vec3 size = shape.local_bounds().size();
+    return std::min(most, share * std::max({size.x, size.y, size.z}));
+}
+
+// Where a way (unit direction) enters a polytope whose faces lie `seal` farther out; nothing from inside. By clipping
+// at its faces (M. Cyrus, J. Beck, "Generalized two- and three-dimensional clipping", 1978).
+std::optional<ShapeRayHit> enter(const Polytope& polytope, double seal, Vec3 origin, Vec3 direction, double limit) {
+    double first = 0, last = limit;
+    const Polytope::Face* entered = nullptr;
+    for (const Polytope::Face& face : polytope.faces) {
+        const double height = dot(face.normal, origin) - face.offset - seal, rate = dot(face.normal, direction);
+        if (height > 0 && rate >= 0) return std::nullopt;
+        if (rate == 0) continue;
+        const double at = -height / rate;
+        if (rate < 0 && height > 0 && at >= first) {
+            first = at;
+            entered = &face;
+        } else if (rate > 0) {
+            last = std::min(last, at);
+        }
+    }
+    if (entered == nullptr || first > last) return std::nullopt;
+    return ShapeRayHit{first, entered->normal};
+}
+
 constexpr int octants = 8;
 
 Vec3 octant_offset(int octant) {
@@ -136,11 +168,12 @@ Vec3 closest_on_triangle(Vec3 p, const std::array<Vec3, 3>& t) {
 }  // namespace
 
 SolidProbe::SolidProbe(const CollisionShape& shape, const Transform& pose)
-    : shape_(&shape), pose_(pose), bounds_(shape.bounds(pose)) {
+    : shape_(&shape), pose_(pose), bounds_(shape.bounds(pose)), seal_(seal_of(shape)) {
+    bounds_ = enlarged(bounds_, seal_);
     for (const ConvexPiece& piece : shape.data().pieces) {
         const Transform placed = pose * piece.local;
-        pieces_.push_back(
-            {&piece.convex, to_matrix(placed.rotation), placed.position, transformed(placed, piece.convex.bounds)});
+        pieces_.push_back({&piece.convex, to_matrix(placed.rotation), placed.position,
+                           enlarged(transformed(placed, piece.convex.bounds), seal_)});
     }
 }
 
@@ -211,7 +244,8 @@ SolidDistance SolidProbe::nearest(Vec3 p) const {
         const Piece& piece = pieces_[index];
         if (outside_of(piece.bounds, p) >= best.distance) continue;
         const Vec3 local = rotate_back(piece.rotation, p - piece.position);
-        const SolidDistance here = faces_near(*piece.convex, local).first;
+        SolidDistance here = faces_near(*piece.convex, local).first;
+        here.distance -= seal_;
         if (here.distance < best.distance) best = {here.distance, piece.rotation * here.normal};
     }
     return best;
@@ -265,8 +299,11 @@ std::optional<SolidProbe::Crossing> SolidProbe::crossing_of_pieces(Vec3 a, Vec3 
     for (const std::uint32_t index : near_pieces_) {
         const Piece& piece = pieces_[index];
         if (!overlaps(piece.bounds, box)) continue;
-        const auto hit = cast_ray(*piece.convex, rotate_back(piece.rotation, a - piece.position),
-                                  rotate_back(piece.rotation, direction), limit);
+        const Vec3 from = rotate_back(piece.rotation, a - piece.position);
+        const Vec3 along = rotate_back(piece.rotation, direction);
+        const bool is_sealed = seal_ > 0 && piece.convex->kind == ConvexKind::polytope;
+        const auto hit = is_sealed ? enter(piece.convex->polytope, seal_, from, along, limit)
+                                   : cast_ray(*piece.convex, from, along, limit);
         if (!hit) continue;
         limit = hit->distance;
         first = Crossing{hit->distance / whole, piece.rotation * hit->normal};

@@ -20,6 +20,8 @@ struct SolidDistance {
 
 /// A placed shape as a fluid asks it: signed distances, shares of small cubes, and whether a way is barred. Of meshes
 /// and heightfields the front of a triangle is outside and what lies behind it within the reach asked for is inside.
+/// The hulls of a compound, which stand for one surface, leave gaps: each is met as a millimetre or so thicker than it
+/// is (its shares of cubes are its own).
 class SolidProbe {
 public:
     SolidProbe(const CollisionShape& shape, const Transform& pose);
@@ -62,6 +64,7 @@ private:
     const CollisionShape* shape_;
     Transform pose_;
     Bounds bounds_;
+    double seal_ = 0;  // m: so much thicker are its hulls met
     std::vector<Piece> pieces_;
     double reach_ = 0;
     std::vector<std::uint32_t> near_pieces_;
