@@ -403,6 +403,34 @@ TEST(SoftSolid, AnImpactAtAnySpeedMakesNoEnergy) {
     }
 }
 
+// Every node is held to a box of an eighth of its mass and a hundredth of its inertia, which is struck as it sleeps.
+TEST(SoftSolid, HeldToALightBodyItGainsNoEnergy) {
+    const auto world = make_world({});
+    add_plane(*world, {});
+    DeformableDefinition block = brick({0.2, 0.2, 0.2}, {5, 5, 5}, 1000, 5e4, 0.3, 0.03);
+    block.pose.position = {-0.1, 0.4, -0.1};
+    const Vec3 at{0, 0.8, 0.1};
+    const BodyHandle box = add_box(*world, {0.05, 0.05, 0.05}, at, 1);
+    for (std::uint32_t i = 0; i < block.nodes.size(); ++i)
+        block.attachments.push_back({i, box, block.pose.position + block.nodes[i] - at});
+    const DeformableHandle soft = world->create_deformable(block).value();
+    const auto energy = [&] { return world->conserved().kinetic_energy + world->conserved().potential_energy; };
+    const double most = 1.001 * energy();
+    for (int k = 0; k < 120; ++k) {
+        world->step();
+        EXPECT_LT(energy(), most) << k;
+    }
+    ASSERT_TRUE(world->is_asleep(soft));
+    const double before = energy();
+    const Vec3 strike{6, 15, 0};  // N s
+    ASSERT_TRUE(world->apply_impulse(box, strike));
+    const double given = length_squared(strike) / 2;  // J, to 1 kg: most is lost as the two become one
+    for (int k = 0; k < 180; ++k) {
+        world->step();
+        EXPECT_LT(energy(), before + given) << k;
+    }
+}
+
 TEST(SoftSolid, DampingDoesNotDriveAFastSpin) {
     for (const double damping : {0.02, 1.0}) {
         const auto world = make_world({.gravity = {}});

@@ -361,12 +361,8 @@ void ClothSheet::end(const Substep& substep, std::span<const Vec3> moves, std::s
         keep_momentum(substep, given);
     springs_.finish(moves_, body_moves, substep, bodies);
     part_layers(workers);
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        const Vec3 mean = moves_[i] / substep.h;
-        nodes_.velocity[i] = mean + 0.5 * (mean - nodes_.mean_velocity[i]);
-        nodes_.mean_velocity[i] = mean;
-        nodes_.position[i] += moves_[i];
-    }
+    set_velocities(nodes_, moves_, substep.h);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += moves_[i];
 }
 
 double ClothSheet::elastic_energy() const {

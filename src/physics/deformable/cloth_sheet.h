@@ -54,6 +54,8 @@ public:
     [[nodiscard]] const Nodes& nodes() const { return nodes_; }
     [[nodiscard]] const std::vector<ClothTriangle>& triangles() const { return triangles_; }
     /// Energies of what it is now, J.
+    /// What it touches goes on as of another sheet of as many nodes.
+    void go_on_from(const ClothSheet& other) { springs_.go_on_from(other.springs_); }
     [[nodiscard]] double elastic_energy() const;
     /// Contacts and attachments of the last substep.
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_.springs(); }

@@ -38,4 +38,36 @@ void keep_momenta(const Nodes& nodes, std::span<const Vec3> given, double h, std
     }
 }
 
+WholeMotion motion_of_whole(const Nodes& nodes) {
+    double mass = 0;
+    Vec3 center, momentum, turning;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        mass += nodes.mass[i];
+        center += nodes.mass[i] * nodes.position[i];
+        momentum += nodes.mass[i] * nodes.mean_velocity[i];
+    }
+    center = center / mass;
+    Mat3 inertia = Mat3::zero();
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const Vec3 arm = nodes.position[i] - center;
+        turning += cross(arm, nodes.mass[i] * nodes.mean_velocity[i]);
+        inertia += nodes.mass[i] * (length_squared(arm) * Mat3::identity() - outer(arm, arm));
+    }
+    return {momentum / mass, solve(inertia, turning)};
+}
+
+void set_velocities(Nodes& nodes, std::span<const Vec3> moves, double h) {
+    double mass = 0;
+    Vec3 change;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        mass += nodes.mass[i];
+        change += nodes.mass[i] * (moves[i] / h - nodes.mean_velocity[i]);
+    }
+    const Vec3 half = change / (2 * mass);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        nodes.mean_velocity[i] = moves[i] / h;
+        nodes.velocity[i] = nodes.inverse_mass[i] > 0 ? nodes.mean_velocity[i] + half : Vec3{};
+    }
+}
+
 }  // namespace embody::physics

@@ -11,7 +11,7 @@ namespace embody::physics {
 struct Nodes {
     std::vector<Vec3> position;        ///< world, m
     std::vector<Vec3> mean_velocity;   ///< over the last substep, m/s: what carries the motion
-    std::vector<Vec3> velocity;        ///< at its end, m/s: mean + half of its last change, exact for a free fall
+    std::vector<Vec3> velocity;        ///< at its end, m/s: `set_velocities`
     std::vector<double> mass;          ///< kg
     std::vector<double> inverse_mass;  ///< 1/kg; 0: pinned
 

@@ -282,6 +282,7 @@ void RopeLine::go_on_from(const RopeLine& other) {
     const std::vector<Clamp> own = clamps_.clamps();
     clamps_ = other.clamps_;
     clamps_.set(own);
+    springs_.go_on_from(other.springs_);
 }
 
 void RopeLine::begin(const Substep& substep, std::span<const NodeContact> contacts,
@@ -337,12 +338,8 @@ void RopeLine::advance(const Substep& substep, std::span<const NodeContact> cont
         for (std::size_t i = 0; i < count; ++i) places_[i] = nodes_.position[i] + moves_[i];
         clamps_.finish(places_, body_moves_, substep.h, bodies);
     }
-    for (std::size_t i = 0; i < count; ++i) {
-        const Vec3 mean = moves_[i] / substep.h;
-        nodes_.velocity[i] = mean + 0.5 * (mean - nodes_.mean_velocity[i]);
-        nodes_.mean_velocity[i] = mean;
-        nodes_.position[i] += moves_[i];
-    }
+    set_velocities(nodes_, moves_, substep.h);
+    for (std::size_t i = 0; i < count; ++i) nodes_.position[i] += moves_[i];
     break_segments();
 }
 

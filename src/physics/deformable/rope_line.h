@@ -52,7 +52,7 @@ public:
     [[nodiscard]] std::span<const Break> new_breaks() const { return new_breaks_; }
     /// Between clamps that hold, in the last substep.
     [[nodiscard]] std::span<const RopeTwist> twists() const { return clamps_.twists(); }
-    /// The same segments as of another rope of as many are broken, and it is twisted as that one.
+    /// The same segments as of another rope of as many are broken, and it is twisted and touched as that one.
     void go_on_from(const RopeLine& other);
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_.springs(); }
     [[nodiscard]] double elastic_energy() const;

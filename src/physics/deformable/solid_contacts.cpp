@@ -45,7 +45,7 @@ Vec3 within_cone(Vec3 force, Vec3 normal, double friction) {
 }  // namespace
 
 void SolidContacts::begin(std::span<const SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies,
-                          double h) {
+                          double h, double time) {
     for (const SolidContact& contact : contacts) {
         if (contact.force == Vec3{}) continue;
         const auto push = [&](const CarriedPoint& point, double sign) {
@@ -54,7 +54,9 @@ void SolidContacts::begin(std::span<const SolidContact> contacts, Solids solids,
         };
         push(contact.point, 1);
         push(contact.other, -1);
-        if (contact.has_body()) bodies[contact.body].push(-h * contact.force, contact.anchor, h);
+        if (!contact.has_body()) continue;
+        TouchedBody& body = bodies[contact.body];
+        body.push(-h * contact.force, body.rotation_before(h, time) * contact.anchor, h);
     }
 }
 
@@ -222,13 +224,22 @@ void SolidContacts::place_against_body(Active& active, Vec3 at, Vec3 was, double
     const TouchedBody& body = *active.body;
     const Mat3 rotation = body.rotation_at(time);
     active.normal = rotation * contact.normal;
-    const Vec3 center = body.center_at(time), anchor = rotation * contact.anchor, apart = at - center - anchor;
-    active.gap = dot(apart, active.normal) - contact.radius;
-    // The body's surface under the point, and how far it has gone in the substep.
-    active.arm = contact.holds ? anchor : at - (contact.radius + active.gap) * active.normal - center;
-    active.slid = contact.holds ? apart : at - was - body.way(h, time, active.arm);
     active.shift = body.shift;
     active.turn = body.turn;
+    if (contact.holds) {
+        // By the arm that the substep began with, which no push changes. What it was off then comes back no faster than
+        // overlaps do.
+        active.arm = body.rotation_before(h, time) * contact.anchor;
+        const Vec3 before = was - body.center_before(h, time) - active.arm;
+        const double off = length(before), most = recovery_speed * h;
+        active.slid = at - was - body.way(h, time, active.arm) + (off > most ? (most / off) * before : before);
+        return;
+    }
+    const Vec3 center = body.center_at(time), anchor = rotation * contact.anchor;
+    active.gap = dot(at - center - anchor, active.normal) - contact.radius;
+    // The body's surface under the point, and how far it has gone in the substep.
+    active.arm = at - (contact.radius + active.gap) * active.normal - center;
+    active.slid = at - was - body.way(h, time, active.arm);
 }
 
 void SolidContacts::add_terms(Active& active, const CarriedPoint& point, double sign) {

@@ -20,7 +20,8 @@ public:
     using Solids = std::span<SolidDeformable* const>;
 
     /// Lets the forces that are remembered act on solids and bodies; before the solids' solve().
-    static void begin(std::span<const SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h);
+    static void begin(std::span<const SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h,
+                      double time);
     /// Finds the forces for a substep of h seconds that ends `time` (s) after the step began, settles the solids.
     void solve(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h, double time,
                TaskPool& workers);

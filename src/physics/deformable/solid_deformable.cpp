@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/tetrahedra/tetrahedral_mesh.h"
+#include "physics/deformable/free_motion.h"
 
 namespace embody::physics {
 
@@ -100,10 +101,18 @@ void SolidDeformable::make_factor(double h) {
 void SolidDeformable::begin_substep(double h, Vec3 gravity) {
     h_ = h;
     gravity_ = gravity;
+    // The definition tells the velocity at the start, not the mean before it: half a substep of gravity and of the turn
+    // of the whole earlier.
+    if (is_new_) {
+        const WholeMotion whole = motion_of_whole(nodes_);
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            if (!(nodes_.inverse_mass[i] > 0)) continue;
+            const Vec3 turning = is_free_ ? cross(whole.spin, nodes_.mean_velocity[i] - whole.velocity) : Vec3{};
+            nodes_.mean_velocity[i] -= (h / 2) * (gravity + turning);
+        }
+    }
     if (factor_h_ != h) make_factor(h);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        // The definition tells the velocity at the start, not the mean before it.
-        if (is_new_ && nodes_.inverse_mass[i] > 0) nodes_.mean_velocity[i] -= (h / 2) * gravity;
         start_[i] = nodes_.position[i];
         nodes_.position[i] += h * nodes_.mean_velocity[i];
         pushes_[i] = {};
@@ -211,11 +220,8 @@ double SolidDeformable::stiffness_ratio() {
 void SolidDeformable::finish() {
     elements_.flow(nodes_.position);
     if (is_free_ && std::ranges::all_of(pushes_, [](Vec3 push) { return push == Vec3{}; })) keep_momenta();
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        const Vec3 mean = (nodes_.position[i] - start_[i]) / h_, last = nodes_.mean_velocity[i];
-        nodes_.velocity[i] = mean + 0.5 * (mean - last);
-        nodes_.mean_velocity[i] = mean;
-    }
+    for (std::size_t i = 0; i < nodes_.size(); ++i) move_[i] = nodes_.position[i] - start_[i];
+    set_velocities(nodes_, move_, h_);
     keep_energy();
 }
 
@@ -256,7 +262,7 @@ void SolidDeformable::keep_energy() {
         return surplus_ + kinetic_energy() + *elastic_energy_ - at_start - work;
     };
     const auto is_too_much = [&](double energy) {
-        return !(energy <= most_surplus * (at_start + *elastic_energy_ + kinetic_energy()));
+        return !(energy <= most_surplus * at_start);
     };
     double left = surplus();
     if (is_too_much(left)) {
@@ -336,6 +342,7 @@ void SolidDeformable::set_motion(std::span<const Vec3> positions, std::span<cons
     }
     elements_.reset_rotations(rotation);
     is_new_ = true;
+    factor_h_ = surplus_ = 0;
 }
 
 void SolidDeformable::rest() {

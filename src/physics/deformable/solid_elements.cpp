@@ -130,12 +130,13 @@ Mat3 SolidElements::stress(const Mat3& deformation, Quat rotation, const Mat3& p
     return turned_stress(r, strain, mu_, lambda_);
 }
 
-// Rᵀ F at the start of a substep, before it turned to `rotation`. Of small turns the square does not count.
-Mat3 SolidElements::start_stretch(const Mat3& deformation, Quat before, Quat rotation) {
+// Rᵀ F at the start of a substep, before it turned to `rotation`. Of small turns the square does not count, as long as
+// the damping does not make much of it.
+Mat3 SolidElements::start_stretch(const Mat3& deformation, Quat before, Quat rotation, double damping_rate) {
     constexpr double small = 1e-3;  // of the quaternion: half the angle, rad
     const Vec3 turn{rotation.x - before.x, rotation.y - before.y, rotation.z - before.z};
     Quat there = rotation;
-    if (length_squared(turn) > small * small) {
+    if (length_squared(turn) * (1 + damping_rate) > small * small) {
         there = before;
         follow_rotation(deformation, there);
     }
@@ -159,7 +160,7 @@ void SolidElements::linearise(std::span<const Vec3> position, std::span<const Ve
         follow_rotation(deformation_[e], rotation_[e]);
         if (damping_ > 0) {
             start_deformation_[e] = gradient(e, start);
-            start_stretch_[e] = start_stretch(start_deformation_[e], before, rotation_[e]);
+            start_stretch_[e] = start_stretch(start_deformation_[e], before, rotation_[e], damping_rate);
         }
         rotation_f_[e] = to_single(rotation_[e]);
     }
@@ -170,7 +171,8 @@ void SolidElements::linearise(std::span<const Vec3> position, std::span<const Ve
         follow_rotation(deformation, node_rotation_[i]);
         node_rotation_f_[i] = to_single(node_rotation_[i]);
         const Mat3 at_start =
-            damping_ > 0 ? start_stretch(mean_around(i, start_deformation_), before, node_rotation_[i]) : Mat3::zero();
+            damping_ > 0 ? start_stretch(mean_around(i, start_deformation_), before, node_rotation_[i], damping_rate)
+                         : Mat3::zero();
         node_stress_[i] = stress(deformation, node_rotation_[i], node_plastic_[i], at_start, damping_rate);
     }
     for (std::size_t e = 0; e < size(); ++e) {

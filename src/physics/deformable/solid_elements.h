@@ -70,7 +70,7 @@ private:
                               double damping_rate) const;
     void flow(const Mat3& deformation, Quat rotation, Mat3& plastic) const;
     [[nodiscard]] Mat3 mean_around(std::size_t node, std::span<const Mat3> of_elements) const;
-    static Mat3 start_stretch(const Mat3& deformation, Quat before, Quat rotation);
+    static Mat3 start_stretch(const Mat3& deformation, Quat before, Quat rotation, double damping_rate);
     void find_edges();
     void find_surroundings(std::size_t nodes);
 

@@ -90,6 +90,8 @@ public:
     /// Which springs act, and how friction does, for these moves. True where that has changed by more than a solve is
     /// worth. `is_foretold`: as of choose_contact().
     bool choose(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, bool is_foretold);
+    /// Goes on with what the contacts of another deformable of as many nodes felt last.
+    void go_on_from(const TouchSprings& other) { memory_ = other.memory_; }
     /// Pushes the bodies, and remembers. Changes moves of nodes that came in where no spring acted.
     void finish(std::span<Vec3> node_moves, std::span<const BodyMove> body_moves, const Substep& substep,
                 std::span<TouchedBody> bodies);

@@ -5,8 +5,8 @@
 
 namespace embody::physics {
 
-Mat3 TouchedBody::rotation_at(double time) const {
-    return to_matrix(cayley(time * path_turn + bend(time) * path_spin_up + turn));
+Mat3 TouchedBody::rotation_on_path(double time, Vec3 off) const {
+    return to_matrix(cayley(time * path_turn + bend(time) * path_spin_up + off));
 }
 
 Vec3 TouchedBody::way(double h, double time, Vec3 arm) const {

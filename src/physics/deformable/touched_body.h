@@ -40,7 +40,14 @@ struct TouchedBody {
         return start_center + time * path_velocity + bend(time) * path_acceleration + shift;
     }
     /// What turns directions of the start to those then.
-    [[nodiscard]] Mat3 rotation_at(double time) const;
+    [[nodiscard]] Mat3 rotation_at(double time) const { return rotation_on_path(time, turn); }
+    /// The same where the substep of h seconds that ends at `time` began, whatever has been pushed in it.
+    [[nodiscard]] Vec3 center_before(double h, double time) const {
+        return start_center + (time - h) * path_velocity + bend(time - h) * path_acceleration + shift - h * velocity;
+    }
+    [[nodiscard]] Mat3 rotation_before(double h, double time) const {
+        return rotation_on_path(time - h, turn - h * spin);
+    }
     /// How far the point at `arm` from its centre goes in the substep of h seconds that ends at `time`, m.
     [[nodiscard]] Vec3 way(double h, double time, Vec3 arm) const;
     /// Moves it into a substep of h seconds: takes off what the path has in it already, goes on with the rest.
@@ -51,6 +58,7 @@ struct TouchedBody {
     void push_turn(Vec3 angular_impulse, double h);
 
 private:
+    [[nodiscard]] Mat3 rotation_on_path(double time, Vec3 off) const;
     // A path of constant acceleration is off the straight one by this times the acceleration, s².
     [[nodiscard]] double bend(double time) const { return time * (time - step_time) / 2; }
 };

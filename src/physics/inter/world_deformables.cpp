@@ -179,12 +179,14 @@ Result<void> World::set_deformable(DeformableHandle deformable, const Deformable
     if (definition.nodes.size() != record->definition.nodes.size())
         return Error{"nodes", "are not as many as before", "make another deformable in its place"};
     const Nodes& nodes = record->nodes();
-    changed->set_motion(nodes.position, nodes.velocity, nearest_rigid_motion(*record).rotation);
+    changed->set_motion(nodes.position, changed->solid ? nodes.velocity : nodes.mean_velocity,
+                        nearest_rigid_motion(*record).rotation);
     if (changed->has_tetrahedra_of(*record)) changed->solid->take_plastic_strain(*record->solid);
     changed->last_positions = nodes.position;
     changed->contacts = std::move(record->contacts);
     changed->touched_bodies = std::move(record->touched_bodies);
     if (changed->rope && record->rope) changed->rope->go_on_from(*record->rope);
+    if (changed->cloth && record->cloth) changed->cloth->go_on_from(*record->cloth);
     *record = std::move(*changed);
     return {};
 }

@@ -176,7 +176,7 @@ void run_substeps(WorldState& world, MovingDeformables& moving) {
         });
         push_solids(world, moving);
         for (TouchedBody& body : moving.bodies) body.enter_substep(h);
-        SolidContacts::begin(moving.contacts, moving.solids, moving.bodies, h);
+        SolidContacts::begin(moving.contacts, moving.solids, moving.bodies, h, k * h);
         share_solids(world, moving, [&](std::size_t i, TaskPool& workers) { moving.solids[i]->solve(workers); });
         world.solid_contacts.solve(moving.contacts, moving.solids, moving.bodies, h, k * h, *world.workers);
         share_solids(world, moving, [&](std::size_t i, TaskPool&) { moving.solids[i]->finish(); });
@@ -285,9 +285,8 @@ bool may_sleep(const WorldState& world, const DeformableRecord& record, std::vec
     });
 }
 
-// Deformables sleep when they are quiet and so is all that they touch; bodies that they touch stay awake while they are
-// not quiet.
-void put_to_sleep(WorldState& world, MovingDeformables& moving) {
+// Bodies that they touch stay awake while they are not quiet.
+void note_quiet(WorldState& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.records) {
         const bool is_blown = record->cloth && world.wind().is_gusty();
         const bool is_quiet = !is_blown && fastest_node(*record) < quiet_speed;
@@ -297,11 +296,19 @@ void put_to_sleep(WorldState& world, MovingDeformables& moving) {
             world.sleep[slot].quiet_time = std::min(world.sleep[slot].quiet_time, record->quiet_time);
         }
     }
+}
+
+// Deformables sleep when they are quiet and so is all that they touch: at once with the bodies, for forces found while
+// these stand as if fixed would be no longer those that they were held by.
+void let_deformables_sleep(WorldState& world) {
     if (!world.settings.sleeping) return;
     std::vector<DeformableRecord*> ready;
-    for (DeformableRecord* record : moving.records) {
+    for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
+        if (!world.deformables.used(slot)) continue;
+        DeformableRecord& record = world.deformables.at(slot);
+        if (!record.definition.enabled || record.is_asleep) continue;
         std::vector<std::uint32_t> seen;
-        if (may_sleep(world, *record, seen)) ready.push_back(record);
+        if (may_sleep(world, record, seen)) ready.push_back(&record);
     }
     for (DeformableRecord* record : ready) {
         record->is_asleep = true;
@@ -313,6 +320,7 @@ void put_to_sleep(WorldState& world, MovingDeformables& moving) {
 
 void advance_deformables(WorldState& world) {
     MovingDeformables moving;
+    let_deformables_sleep(world);
     wake_touched_thin(world);
     for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
         if (!world.deformables.used(slot)) continue;
@@ -340,7 +348,7 @@ void advance_deformables(WorldState& world) {
     put_back_bodies(world, moving);
     keep_contacts(world, moving);
     freeze_broken(world, moving);
-    put_to_sleep(world, moving);
+    note_quiet(world, moving);
 }
 
 }  // namespace embody::physics
