@@ -261,9 +261,7 @@ void SolidDeformable::keep_energy() {
         elastic_energy_ = elastic_energy(nodes_.position);
         return surplus_ + kinetic_energy() + *elastic_energy_ - at_start - work;
     };
-    const auto is_too_much = [&](double energy) {
-        return !(energy <= most_surplus * at_start);
-    };
+    const auto is_too_much = [&](double energy) { return !(energy <= most_surplus * at_start); };
     double left = surplus();
     if (is_too_much(left)) {
         const RigidMove whole = is_free_ ? move_of_whole() : RigidMove{};
