@@ -61,7 +61,7 @@ struct DeformableScene {
         if constexpr (std::is_same_v<Deformable, RopeLine>)
             deformable.advance(substep, contacts, segment_contacts, attachments, bodies);
         else
-            deformable.advance(substep, contacts, attachments, bodies, workers);
+            deformable.advance(substep, contacts, {}, attachments, bodies, workers);
         for (TouchedBody& body : bodies) move_on(body);
     }
     // What the rigid solver would do: gravity, and the path that the pushes gave.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "physics/deformable/nearest_points.h"
 #include "physics/inter/definitions/deformable_primitives.h"
 #include "validation/reference.h"
 
@@ -51,6 +52,63 @@ TEST(ClothInWorld, ATableclothFallsOverATableStaysAndSleeps) {
     EXPECT_LT(deepest, 1e-3);
     EXPECT_NEAR(lowest(after), 0.7 - 0.25, 0.1);
     EXPECT_TRUE(world->is_asleep(cloth));
+}
+
+// How far the point is above the sheet, m, where it is on its lower side: that from which `inside` is seen.
+double height_above(std::span<const Vec3> nodes, const Cloth& cloth, Vec3 point, Vec3 inside) {
+    double nearest = 1e9, height = 0;
+    for (const auto& [a, b, c] : cloth.triangles) {
+        const auto weight = nearest_weights(point, nodes[a], nodes[b], nodes[c]);
+        const Vec3 away = point - (weight[0] * nodes[a] + weight[1] * nodes[b] + weight[2] * nodes[c]);
+        if (length(away) >= nearest) continue;
+        nearest = length(away);
+        const Vec3 normal = normalized(cross(nodes[b] - nodes[a], nodes[c] - nodes[a]));
+        height = dot(normal, away) * (dot(normal, point - inside) < 0 ? -1 : 1);
+    }
+    return height;
+}
+
+TEST(ClothInWorld, NoRimOrCornerLooksThroughATablecloth) {
+    const auto world = make_world({});
+    const Vec3 half{0.4, 0.35, 0.4};
+    add_body(*world, BoxShape{half}, {0, half.y, 0});
+    const DeformableDefinition sheet = tablecloth(0.8);
+    const DeformableHandle cloth = world->create_deformable(sheet).value();
+    run(*world, 2);
+    double most = energy(*world);
+    for (int i = 0; i < 6; ++i) {
+        run(*world, 1);
+        EXPECT_LT(energy(*world), most + 0.005 * most) << i;
+        most = std::min(most, energy(*world));
+    }
+    EXPECT_TRUE(world->is_asleep(cloth));
+    const std::span<const Vec3> nodes = world->node_positions(cloth);
+    for (int i = -40; i <= 40; ++i) {
+        const double along = 0.4 * i / 40;
+        for (const Vec3 rim :
+             {Vec3{along, 0.7, 0.4}, Vec3{along, 0.7, -0.4}, Vec3{0.4, 0.7, along}, Vec3{-0.4, 0.7, along}})
+            EXPECT_LT(height_above(nodes, std::get<Cloth>(sheet.matter), rim, {0, 0.35, 0}), 0)
+                << rim.x << " " << rim.z;
+    }
+}
+
+TEST(ClothInWorld, RestsOnACornerAndOnABall) {
+    const Quat on_a_corner = from_two_vectors(Vec3{1, 1, 1} / std::sqrt(3.0), Vec3{0, 1, 0});
+    for (const bool is_box : {true, false}) {
+        const auto world = make_world({});
+        const ShapeDefinition shape = is_box ? ShapeDefinition(BoxShape{{0.25, 0.25, 0.25}}) : SphereShape{0.4};
+        const BodyHandle body = add_body(*world, shape, {0, 0.5, 0}, 0, on_a_corner);
+        const DeformableDefinition sheet = tablecloth(0.95);
+        const DeformableHandle cloth = world->create_deformable(sheet).value();
+        const double start = energy(*world);
+        run(*world, 12);
+        EXPECT_LT(energy(*world), start) << is_box;
+        EXPECT_TRUE(world->is_asleep(cloth)) << is_box;
+        const double top = 0.5 + (is_box ? 0.25 * std::sqrt(3.0) : 0.4);
+        const std::span<const Vec3> nodes = world->node_positions(cloth);
+        EXPECT_LT(height_above(nodes, std::get<Cloth>(sheet.matter), {0, top, 0}, world->pose(body).position), 0)
+            << is_box;
+    }
 }
 
 TEST(ClothInWorld, ABoxOnTheTableclothStandsStill) {

@@ -42,6 +42,16 @@ Bounds bounds_in_frame(const PlacedConvex& convex) {
     return {c - e, c + e};
 }
 
+// Of world axes with that origin to the frame of the pose; somewhat wider, for rounding.
+Bounds in_frame_of(const Transform& pose, Vec3 origin, const Bounds& box) {
+    const Mat3 r = to_matrix(pose.rotation);
+    const Vec3 h = box.half_extents(), c = box.center() - (pose.position - origin);
+    const auto extent = [&](Vec3 axis) { return dot(abs(axis), h) * (1 + 1e-9) + 1e-9; };
+    const Vec3 center{dot(r.x, c), dot(r.y, c), dot(r.z, c)};
+    const Vec3 half = Vec3{extent(r.x), extent(r.y), extent(r.z)} + (1e-12 * length(c)) * Vec3{1, 1, 1};
+    return {center - half, center + half};
+}
+
 void append(Manifold& manifold, Vec3 origin, std::vector<Manifold>& manifolds) {
     for (int i = 0; i < manifold.count; ++i) manifold.points[static_cast<std::size_t>(i)].position += origin;
     manifolds.push_back(manifold);
@@ -98,22 +108,30 @@ void collide_two(const PlacedConvex& first, const PlacedConvex& second, double m
 
 void collide_compounds(const CollisionShape::Data& a, const Transform& pose_a, const CollisionShape::Data& b,
                        const Transform& pose_b, double margin, PairMemory& memory, std::vector<Manifold>& manifolds) {
-    thread_local std::vector<PlacedConvex> placed_b;
-    thread_local std::vector<Bounds> bounds_b;
-    placed_b.clear();
-    bounds_b.clear();
-    for (const ConvexPiece& piece : b.pieces) {
-        placed_b.push_back(place(piece, pose_b, pose_a.position));
-        bounds_b.push_back(bounds_in_frame(placed_b.back()));
-    }
+    struct Placed {
+        PlacedConvex convex;
+        Bounds bounds;
+        bool is_known = false;
+    };
+    thread_local std::vector<Placed> placed_b;
+    placed_b.assign(b.pieces.size(), {});
     for (std::uint32_t i = 0; i < a.pieces.size(); ++i) {
         const PlacedConvex placed_a = place(a.pieces[i], pose_a, pose_a.position);
         const Bounds bounds_a = enlarged(bounds_in_frame(placed_a), margin);
+        const Bounds seen_from_b = in_frame_of(pose_b, pose_a.position, bounds_a);
         for (std::uint32_t j = 0; j < placed_b.size(); ++j) {
-            if (!overlaps(bounds_a, bounds_b[j])) continue;
+            // Most are told apart by boxes that need no placing.
+            if (!overlaps(seen_from_b, b.piece_bounds[j])) continue;
+            Placed& other = placed_b[j];
+            if (!other.is_known) {
+                other.convex = place(b.pieces[j], pose_b, pose_a.position);
+                other.bounds = bounds_in_frame(other.convex);
+                other.is_known = true;
+            }
+            if (!overlaps(bounds_a, other.bounds)) continue;
             PairMemory forgotten;
             const std::size_t before = manifolds.size();
-            collide_two(placed_a, placed_b[j], margin, pose_a.position, i + j == 0 ? memory : forgotten, manifolds);
+            collide_two(placed_a, other.convex, margin, pose_a.position, i + j == 0 ? memory : forgotten, manifolds);
             for (std::size_t k = before; k < manifolds.size(); ++k) {
                 manifolds[k].piece_a = i;
                 manifolds[k].piece_b = j;
@@ -131,6 +149,19 @@ void collide_pieces(const CollisionShape::Data& a, const Transform& pose_a, cons
     }
     collide_two(place(a.pieces[0], pose_a, pose_a.position), place(b.pieces[0], pose_b, pose_a.position), margin,
                 pose_a.position, memory, manifolds);
+}
+
+// a is a convex or a compound.
+void collide_data(const CollisionShape::Data& a, const Transform& pose_a, const CollisionShape::Data& b,
+                  const Transform& pose_b, double margin, PairMemory& memory, std::vector<Manifold>& manifolds) {
+    if (b.is_plane) {
+        collide_with_plane(a, pose_a, b, pose_b, margin, manifolds);
+    } else if (b.surface) {
+        for (std::uint32_t i = 0; i < a.pieces.size(); ++i)
+            collide_surface(a.pieces[i], i, pose_a, {*b.surface, pose_b}, margin, manifolds);
+    } else {
+        collide_pieces(a, pose_a, b, pose_b, margin, memory, manifolds);
+    }
 }
 
 }  // namespace
@@ -152,15 +183,24 @@ void collide(const CollisionShape& a, const Transform& pose_a, const CollisionSh
         for (std::size_t i = before; i < manifolds.size(); ++i) flip(manifolds[i]);
         return;
     }
-    if (data_b.is_plane) {
-        collide_with_plane(data_a, pose_a, data_b, pose_b, margin, manifolds);
-    } else if (data_b.surface) {
-        for (std::uint32_t i = 0; i < data_a.pieces.size(); ++i) {
-            collide_surface(data_a.pieces[i], i, pose_a, {*data_b.surface, pose_b}, margin, manifolds);
-        }
-    } else {
-        collide_pieces(data_a, pose_a, data_b, pose_b, margin, memory, manifolds);
-    }
+    collide_data(data_a, pose_a, data_b, pose_b, margin, memory, manifolds);
+}
+
+void collide_capsule(Vec3 from, Vec3 to, double radius, const CollisionShape& b, const Transform& pose_b, double margin,
+                     std::vector<Manifold>& manifolds) {
+    thread_local CollisionShape::Data capsule;
+    const double half = length(to - from) / 2, reach = half + radius;
+    capsule.pieces.resize(1);
+    Convex& convex = capsule.pieces[0].convex;
+    convex.kind = ConvexKind::capsule;
+    convex.radius = convex.inner = radius;
+    convex.half_height = half;
+    convex.bounds = {{-radius, -reach, -radius}, {radius, reach, radius}};
+    convex.reach = reach;
+    const Vec3 way = normalized(to - from, {0, 1, 0});
+    PairMemory nothing;
+    collide_data(capsule, {(from + to) / 2, from_two_vectors({0, 1, 0}, way)}, b.data(), pose_b, margin, nothing,
+                 manifolds);
 }
 
 }  // namespace embody::physics

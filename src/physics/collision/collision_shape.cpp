@@ -142,6 +142,7 @@ private:
         convex->inner = -distance_from_surface(*convex, inside).distance - convex->polytope.unevenness;
         const geometry::MassProperties mass = geometry::transformed(local, mass_of(*convex));
         data.mass = data.pieces.empty() ? mass : geometry::combined(data.mass, mass);
+        data.piece_bounds.push_back(convex_bounds(*convex, local));
         data.pieces.push_back({*std::move(convex), local, local == Transform{}});
         return {};
     }

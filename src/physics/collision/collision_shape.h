@@ -46,6 +46,10 @@ void collide(const CollisionShape& a, const Transform& pose_a, const CollisionSh
 void collide(const CollisionShape& a, const Transform& pose_a, const CollisionShape& b, const Transform& pose_b,
              double margin, PairMemory& memory, std::vector<Manifold>& manifolds);
 
+/// The same of a capsule, which is no more than the points nearer than `radius` (m) to a segment.
+void collide_capsule(Vec3 from, Vec3 to, double radius, const CollisionShape& b, const Transform& pose_b, double margin,
+                     std::vector<Manifold>& manifolds);
+
 struct ShapeRayHit {
     double distance = 0;  ///< m along the unit direction
     Vec3 normal;          ///< world, unit, against the ray

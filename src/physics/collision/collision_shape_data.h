@@ -23,6 +23,7 @@ struct CollisionShape::Data {
     Bounds bounds;
     // Exactly one of the three is in use.
     std::vector<ConvexPiece> pieces;           ///< one, or the children of a compound
+    std::vector<Bounds> piece_bounds;          ///< of these, in the shape's frame
     std::unique_ptr<TriangleSurface> surface;  ///< mesh and heightfield
     bool is_plane = false;
     Vec3 plane_normal;  ///< unit

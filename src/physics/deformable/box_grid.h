@@ -21,6 +21,15 @@ public:
     template <class Visit>
     void visit(const Bounds& box, Visit visit) const {
         const RoundedBox own = rounded(box);
+        // One that is far larger than the cells meets nearly all of them.
+        const Cell low = cell_of(box.lower), high = cell_of(box.upper);
+        const auto cells = [](int from, int to) { return static_cast<double>(to) - from + 1; };
+        if (cells(low.x, high.x) * cells(low.y, high.y) * cells(low.z, high.z) > static_cast<double>(start_.size())) {
+            for (std::uint32_t other = 0; other < rounded_.size(); ++other) {
+                if (are_near(own, rounded_[other])) visit(other);
+            }
+            return;
+        }
         for_each_bucket(box, [&](std::size_t b) {
             for (std::uint32_t k = start_[b]; k < start_[b + 1]; ++k) {
                 const std::uint32_t other = boxes_[k];

@@ -293,7 +293,8 @@ void ClothSheet::part_layers(TaskPool& workers) {
     constexpr double give_on_body = 0.05;
     std::vector<double> give = nodes_.inverse_mass;
     for (const TouchSpring& spring : springs_.springs()) {
-        if (spring.acts) give[spring.node[0]] *= give_on_body;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count) && spring.acts; ++k)
+            give[spring.node[k]] = give_on_body * nodes_.inverse_mass[spring.node[k]];
     }
     layers_->part(nodes_, apart(), springs_.friction, give, moves_, workers);
 }
@@ -317,8 +318,8 @@ int ClothSheet::parts_of(double h, TaskPool& workers) {
 }
 
 void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> contacts,
-                         std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies,
-                         TaskPool& workers) {
+                         std::span<const SheetContact> between, std::span<const std::uint32_t> attachment_bodies,
+                         std::span<TouchedBody> bodies, TaskPool& workers) {
     const PartPushes pushes(bodies);
     if (is_frozen_) return;
     const int parts = parts_of(substep.h, workers);
@@ -328,7 +329,7 @@ void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> co
         own.h = substep.h / parts;
         own.time = substep.time + part * own.h;
         if (part > 0) pushes.go_on(bodies, own.h);
-        begin(own, contacts, attachment_bodies, bodies, workers);
+        begin(own, contacts, between, attachment_bodies, bodies, workers);
         if (!solve_moves(own, bodies, workers)) return freeze();
         end(own, moves_, body_moves_, {}, bodies, workers);
         rounds += rounds_;
@@ -339,12 +340,13 @@ void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> co
 }
 
 void ClothSheet::begin(const Substep& substep, std::span<const NodeContact> contacts,
-                       std::span<const std::uint32_t> attachment_bodies, std::span<const TouchedBody> bodies,
-                       TaskPool& workers) {
+                       std::span<const SheetContact> between, std::span<const std::uint32_t> attachment_bodies,
+                       std::span<const TouchedBody> bodies, TaskPool& workers) {
     find_strains(substep, workers);
     fill_rows(substep, workers);
     springs_.attachment_bodies.assign(attachment_bodies.begin(), attachment_bodies.end());
     springs_.begin(nodes_, contacts, bodies, substep, node_stiffness_);
+    for (const SheetContact& contact : between) springs_.add(nodes_, contact, bodies, substep);
 }
 
 void ClothSheet::freeze() {

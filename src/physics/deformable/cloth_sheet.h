@@ -22,14 +22,14 @@ public:
 
     /// One substep, in parts where layers of it move fast. `attachment_bodies`: where the attachments hold in `bodies`.
     /// Pushes the bodies.
-    void advance(const Substep& substep, std::span<const NodeContact> contacts,
+    void advance(const Substep& substep, std::span<const NodeContact> contacts, std::span<const SheetContact> between,
                  std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies, TaskPool& workers);
 
     // The same in parts, where sheets and ropes that touch each other are solved together (docs/physics/cloth.md):
     /// How many parts the substep takes.
     [[nodiscard]] int parts_of(double h, TaskPool& workers);
     /// Finds system() and touch() for the part.
-    void begin(const Substep& substep, std::span<const NodeContact> contacts,
+    void begin(const Substep& substep, std::span<const NodeContact> contacts, std::span<const SheetContact> between,
                std::span<const std::uint32_t> attachment_bodies, std::span<const TouchedBody> bodies,
                TaskPool& workers);
     /// What the solve needs of it, valid until the next begin().

@@ -8,7 +8,9 @@ namespace embody::physics {
 
 namespace {
 
-constexpr double stiffness_factor = 20;  // over what the node's neighbours resist with
+constexpr double stiffness_factor = 20;  // over what the node's neighbours resist with, or over a point's inertia
+constexpr double load_factor = 4;        // over the inertia of what weighs on a point
+constexpr double recovery = 0.2;         // m/s: a point between nodes that lies in a body is parted no faster
 
 // How the surface of a body goes on its path within the substep.
 Vec3 path_of(const TouchedBody& body, Vec3 arm, double h) {
@@ -47,8 +49,9 @@ void choose_contact(TouchSpring& spring, Vec3 s, bool is_foretold, SpringChange&
     const bool is_new = !spring.acts;
     if (is_new != (push <= 0)) sum.change += std::fabs(push);
     // What pushed in the last substep is let go by a solve alone: the stiff spring calls every breath a leave.
-    sum.near += std::fabs(push);
     spring.acts = push > 0 || (is_foretold && push_before > 0);
+    // Of what does not touch, as much as it would take to bring it there alone.
+    sum.near += spring.acts ? std::fabs(push) : std::min(std::fabs(push), spring.inertia * std::fabs(depth));
     if (!spring.acts) {
         spring.matrix = Mat3::zero();
         spring.load = {};
@@ -86,11 +89,10 @@ Vec3 TouchSpring::lead(std::span<const Vec3> node_moves, std::span<const BodyMov
 }
 
 void TouchSprings::recall(const TouchedBody& body, TouchSpring& spring) const {
-    const auto is_before = [](const Memory& m, std::uint32_t node) { return m.node < node; };
-    auto at = std::lower_bound(memory_.begin(), memory_.end(), spring.node[0], is_before);
+    auto at = std::ranges::lower_bound(memory_, spring.feature, {}, &Memory::feature);
     double nearest = 0.8;  // cosine: another face of the body is another contact
-    for (; at != memory_.end() && at->node == spring.node[0]; ++at) {
-        if (at->slot != body.body || at->count != spring.count || at->is_attachment != spring.is_attachment) continue;
+    for (; at != memory_.end() && at->feature == spring.feature; ++at) {
+        if (at->slot != body.body || at->is_attachment != spring.is_attachment) continue;
         if (dot(at->normal, spring.normal) < nearest) continue;
         nearest = dot(at->normal, spring.normal);
         spring.pull = spring.is_attachment ? at->pull : length(at->pull) * spring.normal;
@@ -111,12 +113,15 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
     const Place& place = places_[plane.body];
     Vec3 point, velocity;
     bool is_free = false;
+    double give = 0;  // 1/kg
     for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k) {
         const std::uint32_t node = spring.node[k];
         point += spring.weight[k] * nodes.position[node];
         velocity += spring.weight[k] * nodes.mean_velocity[node];
-        spring.stiffness = std::max(spring.stiffness, stiffness_factor * node_stiffness[node]);
+        if (!node_stiffness.empty())
+            spring.stiffness = std::max(spring.stiffness, stiffness_factor * node_stiffness[node]);
         spring.inertia += spring.weight[k] * nodes.mass[node] / (substep.h * substep.h);
+        give += spring.weight[k] * spring.weight[k] * nodes.inverse_mass[node];
         is_free |= nodes.inverse_mass[node] > 0;
     }
     spring.body = plane.body;
@@ -131,13 +136,35 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
     spring.friction = std::sqrt(friction * body.friction);
     spring.carried = path_of(body, spring.arm, substep.h) + substep.h * plane.velocity;
     recall(body, spring);
+    if (node_stiffness.empty()) soften(substep, give, body.inverse_mass > 0, spring);
     springs_.push_back(spring);
+}
+
+// As between sheets (pair_springs.cpp): by inertia and by that of what weighs on it. That of a body would ask for
+// stiffer springs than these: with memory they would swing up, so they have none.
+void TouchSprings::soften(const Substep& substep, double give, bool is_with_body, TouchSpring& spring) {
+    if (is_with_body) spring.pull = spring.hold = {};
+    const double g = length(substep.gravity), squared = substep.h * substep.h;
+    const double carried = g > 0 ? length(spring.pull) / g : 0;
+    spring.stiffness = std::max(stiffness_factor * spring.inertia, load_factor * carried / squared);
+    spring.inertia = 1 / (give * squared);
+    spring.gap = std::max(spring.gap, -recovery * substep.h);
+}
+
+void TouchSprings::add(const Nodes& nodes, const SheetContact& contact, std::span<const TouchedBody> bodies,
+                       const Substep& substep) {
+    TouchSpring spring{.count = contact.count, .feature = contact.feature};
+    std::ranges::copy(contact.node, spring.node.begin());
+    std::ranges::copy(contact.weight, spring.weight.begin());
+    complete(nodes, contact.plane, bodies, substep, {}, spring);
 }
 
 void TouchSprings::add(const Nodes& nodes, const SegmentContact& contact, std::span<const TouchedBody> bodies,
                        const Substep& substep, std::span<const double> node_stiffness) {
-    TouchSpring spring{
-        .node = {contact.node, contact.node + 1}, .weight = {1 - contact.along, contact.along}, .count = 2};
+    TouchSpring spring{.node = {contact.node, contact.node + 1},
+                       .weight = {1 - contact.along, contact.along},
+                       .count = 2,
+                       .feature = {contact.node, contact.node + 1}};
     complete(nodes, contact.plane, bodies, substep, node_stiffness, spring);
 }
 
@@ -149,7 +176,7 @@ void TouchSprings::begin(const Nodes& nodes, std::span<const NodeContact> contac
     springs_.clear();
     for (const NodeContact& contact : contacts) {
         if (is_attached(contact.node, contact.body)) continue;
-        TouchSpring spring{.node = {contact.node}, .weight = {1}};
+        TouchSpring spring{.node = {contact.node}, .weight = {1}, .feature = {contact.node, no_node}};
         complete(nodes, contact, bodies, substep, node_stiffness, spring);
     }
     for (std::size_t i = 0; i < attachments.size(); ++i) {
@@ -157,7 +184,11 @@ void TouchSprings::begin(const Nodes& nodes, std::span<const NodeContact> contac
         const std::uint32_t b = attachment_bodies[i];
         if (b == no_body) continue;
         const TouchedBody& body = bodies[b];
-        TouchSpring spring{.node = {attachment.node}, .weight = {1}, .body = b, .is_attachment = true};
+        TouchSpring spring{.node = {attachment.node},
+                           .weight = {1},
+                           .feature = {attachment.node, no_node},
+                           .body = b,
+                           .is_attachment = true};
         spring.normal = {1, 0, 0};
         // The anchor is in the frame that the body's pose at the step's start gives.
         const Vec3 anchor = transform_point(body.start, attachment.anchor) - body.start_center;
@@ -207,8 +238,7 @@ void TouchSprings::finish(std::span<Vec3> node_moves, std::span<const BodyMove> 
         const Vec3 s = spring.lead(node_moves, body_moves), force = spring.felt;
         if (spring.body == no_body) continue;
         bodies[spring.body].push(-substep.h * force, spring.arm, substep.h);
-        Memory memory{
-            spring.node[0], bodies[spring.body].body, spring.count, spring.is_attachment, spring.normal, force, {}};
+        Memory memory{spring.feature, bodies[spring.body].body, spring.is_attachment, spring.normal, force, {}};
         if (!spring.is_attachment) {
             const double push = std::max(0.0, dot(force, spring.normal));
             memory.pull = push * spring.normal;
@@ -218,8 +248,7 @@ void TouchSprings::finish(std::span<Vec3> node_moves, std::span<const BodyMove> 
         }
         memory_.push_back(memory);
     }
-    const auto is_before = [](const Memory& a, const Memory& b) { return a.node < b.node; };
-    std::stable_sort(memory_.begin(), memory_.end(), is_before);
+    std::ranges::stable_sort(memory_, {}, &Memory::feature);
 }
 
 }  // namespace embody::physics

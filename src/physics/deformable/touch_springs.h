@@ -18,6 +18,7 @@ struct BodyMove {
 };
 
 inline constexpr std::uint32_t no_body = 0xFFFFFFFFu;
+inline constexpr std::uint32_t no_node = 0xFFFFFFFFu;
 
 /// How hard bodies are to move within a substep of h seconds: none that the pushes do not move.
 struct BodyInertia {
@@ -34,6 +35,19 @@ struct SegmentContact {
     NodeContact plane;       ///< `node` does not count
 };
 
+/// What of a deformable touches, the same from substep to substep: a node and no_node, the two ends of an edge, or
+/// no_node and a number of what pokes into a triangle.
+using TouchFeature = std::array<std::uint32_t, 2>;
+
+/// A point of a sheet between two or three of its nodes, over a plane of a body.
+struct SheetContact {
+    std::array<std::uint32_t, 3> node{};
+    std::array<double, 3> weight{};
+    int count = 2;
+    TouchFeature feature{};
+    NodeContact plane;  ///< `node` does not count
+};
+
 /// What holds a point of a deformable, Σ weight x, off a plane or to an anchor of a body: the force
 ///   load - matrix s
 /// on the point, where s is how far it moves in the substep on top of what the touched body's pushes move it.
@@ -41,6 +55,7 @@ struct TouchSpring {
     std::array<std::uint32_t, 4> node{};
     std::array<double, 4> weight{};
     int count = 1;                 ///< of nodes
+    TouchFeature feature{};        ///< with the body and about that direction, what is remembered
     std::uint32_t body = no_body;  ///< index in the list of bodies
     bool is_attachment = false;    ///< pulls too, in every direction
     Vec3 normal;                   ///< unit, towards the point, at the end of the substep
@@ -87,6 +102,10 @@ public:
     /// After begin(): one of a point of a line.
     void add(const Nodes& nodes, const SegmentContact& contact, std::span<const TouchedBody> bodies,
              const Substep& substep, std::span<const double> node_stiffness);
+    /// After begin(): one of a point of a sheet. Softer than that of a node, as the solver knows each node's own part
+    /// of it only.
+    void add(const Nodes& nodes, const SheetContact& contact, std::span<const TouchedBody> bodies,
+             const Substep& substep);
     /// Which springs act, and how friction does, for these moves. True where that has changed by more than a solve is
     /// worth. `is_foretold`: as of choose_contact().
     bool choose(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, bool is_foretold);
@@ -106,8 +125,8 @@ public:
 
 private:
     struct Memory {
-        std::uint32_t node = 0, slot = 0;
-        int count = 1;
+        TouchFeature feature{};
+        std::uint32_t slot = 0;
         bool is_attachment = false;
         Vec3 normal, pull, hold;
     };
@@ -115,15 +134,16 @@ private:
         Vec3 center;
         Mat3 rotation;
     };
-    // Of a contact at a point, once its nodes and weights are known.
+    // Of a contact at a point, once its nodes and weights are known. Without stiffness of nodes: by inertia and load.
     void complete(const Nodes& nodes, const NodeContact& plane, std::span<const TouchedBody> bodies,
                   const Substep& substep, std::span<const double> node_stiffness, TouchSpring& spring);
+    static void soften(const Substep& substep, double give, bool is_with_body, TouchSpring& spring);
     [[nodiscard]] bool is_attached(std::uint32_t node, std::uint32_t body) const;
     void recall(const TouchedBody& body, TouchSpring& spring) const;
     static bool stop(TouchSpring& spring, std::span<Vec3> node_moves, std::span<const BodyMove> body_moves);
 
     std::vector<TouchSpring> springs_;
-    std::vector<Memory> memory_;  // by node
+    std::vector<Memory> memory_;  // by feature
     std::vector<Place> places_;   // of the bodies, at the substep's end
 };
 

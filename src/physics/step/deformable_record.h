@@ -34,6 +34,7 @@ struct DeformableRecord {
     std::vector<SurfacePush> surface_pushes;                ///< a sheet's or rope's, of its last substep
     std::uint32_t slot = 0;                                 ///< its own, while it moves
     double quiet_time = 0;                                  ///< s
+    std::vector<Vec3> quiet_places;                         ///< of a sheet's or rope's nodes when that began
     bool is_asleep = false;
     std::vector<Vec3> last_positions;  ///< last finite ones, to freeze it at
 

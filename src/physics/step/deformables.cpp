@@ -15,6 +15,7 @@ namespace embody::physics {
 namespace {
 
 constexpr double quiet_speed = 0.02;     // m/s: all nodes slower than this may sleep
+constexpr double quiet_way = 1e-3;       // m: or a sheet or rope that only trembles, none of whose nodes goes so far
 constexpr double noticed_change = 0.05;  // of a sleeping body's weight: a push that differs by more wakes it
 constexpr double noticed_speed = 0.05;   // m/s: a body as fast as this wakes what it is near
 
@@ -285,12 +286,22 @@ bool may_sleep(const WorldState& world, const DeformableRecord& record, std::vec
     });
 }
 
+// Where contacts of layers and bodies hold a node in turns it trembles for good.
+bool is_quiet(DeformableRecord& record) {
+    if (fastest_node(record) < quiet_speed) return true;
+    if (record.solid) return false;
+    const std::vector<Vec3>& places = record.nodes().position;
+    const auto has_stayed = [](Vec3 a, Vec3 b) { return length(a - b) < quiet_way; };
+    if (std::ranges::equal(places, record.quiet_places, has_stayed)) return true;
+    record.quiet_places = places;
+    return false;
+}
+
 // Bodies that they touch stay awake while they are not quiet.
 void note_quiet(WorldState& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.records) {
         const bool is_blown = record->cloth && world.wind().is_gusty();
-        const bool is_quiet = !is_blown && fastest_node(*record) < quiet_speed;
-        record->quiet_time = is_quiet ? record->quiet_time + world.settings.time_step : 0;
+        record->quiet_time = !is_blown && is_quiet(*record) ? record->quiet_time + world.settings.time_step : 0;
         for (const std::uint32_t slot : record->touched_bodies) {
             if (!world.is_used(slot) || !world.is_dynamic(slot)) continue;
             world.sleep[slot].quiet_time = std::min(world.sleep[slot].quiet_time, record->quiet_time);
@@ -337,7 +348,7 @@ void advance_deformables(WorldState& world) {
             moving.solid_records.push_back(&record);
             moving.solids.push_back(record.solid.get());
         } else {
-            moving.thin.push_back({&record, {}, {}, {}});
+            moving.thin.push_back({&record, {}, {}, {}, {}});
         }
     }
     gather_bodies(world, moving);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/step/sheet_contact_search.h"
+
 namespace embody::physics {
 
 namespace {
@@ -68,7 +70,10 @@ void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<b
     find_node_contacts(record.nodes(), all, *record.node_ball, record.definition.contact_radius, colliding, time_step,
                        gravity, thin.contacts);
     for (NodeContact& contact : thin.contacts) contact.body = place[contact.body];
-    if (record.rope) find_segment_contacts(bodies, may_collide, time_step, gravity, thin);
+    if (record.rope)
+        find_segment_contacts(bodies, may_collide, time_step, gravity, thin);
+    else
+        find_sheet_contacts(bodies, may_collide, time_step, gravity, thin);
 }
 
 void advance_thin(ThinDeformable& thin, const Substep& substep, std::span<TouchedBody> bodies, TaskPool& workers) {
@@ -76,7 +81,7 @@ void advance_thin(ThinDeformable& thin, const Substep& substep, std::span<Touche
     const std::vector<Attachment>& attachments = record.definition.attachments;
     if (record.cloth) {
         record.cloth->set_attachments(attachments);
-        record.cloth->advance(substep, thin.contacts, thin.attachment_bodies, bodies, workers);
+        record.cloth->advance(substep, thin.contacts, thin.sheet_contacts, thin.attachment_bodies, bodies, workers);
     } else {
         record.rope->set_attachments(attachments);
         record.rope->set_clamps(record.definition.clamps);

@@ -14,6 +14,7 @@ struct ThinDeformable {
     DeformableRecord* record = nullptr;
     std::vector<NodeContact> contacts;
     std::vector<SegmentContact> segment_contacts;  ///< of ropes
+    std::vector<SheetContact> sheet_contacts;      ///< of sheets, between their nodes
     std::vector<std::uint32_t> attachment_bodies;  ///< index of each attachment's body, no_body where it is gone
 };
 

@@ -145,7 +145,8 @@ void GroupPart::begin(std::span<const TouchedBody> bodies) {
         DeformableRecord& record = member.record();
         if (record.cloth) {
             record.cloth->set_attachments(record.definition.attachments);
-            record.cloth->begin(member.substep, thin.contacts, thin.attachment_bodies, bodies, *world_.workers);
+            record.cloth->begin(member.substep, thin.contacts, thin.sheet_contacts, thin.attachment_bodies, bodies,
+                                *world_.workers);
             member.touch = record.cloth->touch();
         } else {
             record.rope->set_attachments(record.definition.attachments);

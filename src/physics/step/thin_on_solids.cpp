@@ -15,6 +15,7 @@ const PlacedSurface& ThinOnSolids::surface(std::uint32_t slot) {
 
 void ThinOnSolids::add(ThinDeformable& thin, std::vector<TouchedBody>& bodies, double h) {
     with_bodies_ = thin.contacts;
+    between_ = thin.sheet_contacts;
     held_.clear();
     for (std::uint32_t slot = 0; slot < world_.deformables.slot_count(); ++slot) {
         if (!world_.deformables.used(slot)) continue;
@@ -60,12 +61,16 @@ void ThinOnSolids::add_solid(ThinDeformable& thin, std::uint32_t slot, std::vect
 // A rigid body on a sheet on a solid presses on the solid itself, harder than the sheet in between could pass on: where
 // the sheet lies on the solid it does not feel it.
 void ThinOnSolids::uncover(ThinDeformable& thin, std::uint32_t solid, double distance) const {
-    const auto is_covered = [&](const NodeContact& contact) {
-        const auto held = std::ranges::lower_bound(held_, std::pair{solid, contact.node}, {}, key);
-        return contact.body < solid && held != held_.end() && key(*held) == std::pair{solid, contact.node} &&
-               held->place.distance < distance && dot(held->place.normal, contact.normal) < -0.5;
+    const auto is_covered = [&](std::uint32_t node, const NodeContact& plane) {
+        const auto held = std::ranges::lower_bound(held_, std::pair{solid, node}, {}, key);
+        return plane.body < solid && held != held_.end() && key(*held) == std::pair{solid, node} &&
+               held->place.distance < distance && dot(held->place.normal, plane.normal) < -0.5;
     };
-    std::erase_if(thin.contacts, is_covered);
+    std::erase_if(thin.contacts, [&](const NodeContact& contact) { return is_covered(contact.node, contact); });
+    std::erase_if(thin.sheet_contacts, [&](const SheetContact& contact) {
+        const auto nodes = std::span(contact.node).first(static_cast<std::size_t>(contact.count));
+        return std::ranges::any_of(nodes, [&](std::uint32_t node) { return is_covered(node, contact.plane); });
+    });
 }
 
 // The solid answers a push a substep late. That swings up where what lies on it is heavy beside what it gives: a push
@@ -95,6 +100,7 @@ std::pair<std::uint32_t, std::uint32_t> ThinOnSolids::touch_of(const SurfacePush
 void ThinOnSolids::take(ThinDeformable& thin, std::span<const TouchedBody> bodies, std::size_t first) {
     DeformableRecord& sheet = *thin.record;
     thin.contacts = std::move(with_bodies_);
+    thin.sheet_contacts = std::move(between_);
     std::vector<SurfacePush> pushes = std::exchange(sheet.surface_pushes, {});
     for (const TouchSpring& spring : springs_of(sheet)) {
         if (!spring.acts || spring.body == no_body || spring.body < first) continue;

@@ -45,6 +45,7 @@ private:
     Surfaces& surfaces_;
     std::vector<Held> held_;                // of the sheet at hand, in the order of its contacts
     std::vector<NodeContact> with_bodies_;  // its contacts without solids
+    std::vector<SheetContact> between_;     // likewise
     std::vector<Vec3> push_, move_;
 };
 

@@ -14,6 +14,25 @@ std::vector<ShapeDefinition> solids() {
             CylinderShape{0.4, 0.5}, ConeShape{0.5, 0.5},       HullShape{corner_points({0.4, 0.3, 0.5})}};
 }
 
+TEST(Capsules, of_two_points_meet_what_the_shape_meets) {
+    const auto capsule = make_shape(CapsuleShape{0.05, 0.3});
+    for (const ShapeDefinition& definition : solids()) {
+        const auto shape = make_shape(definition);
+        Random random(5);
+        for (int trial = 0; trial < 200; ++trial) {
+            const Transform pose{{5, -3, 2}, random_rotation(random)};
+            const Vec3 middle = pose.position + random_direction(random) * 0.7, way = random_direction(random);
+            std::vector<Manifold> own, of_shape;
+            collide_capsule(middle - 0.3 * way, middle + 0.3 * way, 0.05, *shape, pose, 0.1, own);
+            collide(*capsule, {middle, from_two_vectors({0, 1, 0}, way)}, *shape, pose, 0.1, of_shape);
+            ASSERT_EQ(own.size(), of_shape.size()) << shape_name(definition) << trial;
+            if (own.empty()) continue;
+            EXPECT_LT(length(own[0].normal - of_shape[0].normal), 1e-6) << shape_name(definition) << trial;
+            EXPECT_NEAR(own[0].points[0].separation, of_shape[0].points[0].separation, 1e-9) << trial;
+        }
+    }
+}
+
 TEST(Rays, miss_the_solid_they_start_in) {
     for (const ShapeDefinition& definition : solids()) {
         const auto shape = make_shape(definition);
