@@ -11,8 +11,9 @@ namespace embody::physics {
 
 namespace {
 
-// Faces nearer to a wall than the first, in cells, are inside of it; beyond the other they are not the first layer.
-constexpr float nearest = 0.05f, farthest = 1;
+// Faces nearer to a wall than the first, in cells, are inside of it; beyond the other they are not the first layer: one
+// layer wherever the wall lies between the cells.
+constexpr float nearest = 0.05f, farthest = 1 + nearest;
 
 /// A face that a wall slows.
 struct SlowedFace {
@@ -38,7 +39,7 @@ void rub_along_walls(FluidGrid& grid, FluidSolids& solids, double density, doubl
     const auto look_at = [&](int axis, int cell, const Cell& c, std::vector<SlowedFace>& slowed) {
         const int below = cell - grid.stride(axis);
         const float distance = 0.5f * (grid.solid[cell] + grid.solid[below]);
-        if (!(distance > nearest && distance < farthest) || !(grid.open[axis][cell] > 0.25f)) return;
+        if (!(distance > nearest && distance <= farthest) || !(grid.open[axis][cell] > 0.25f)) return;
         if (!(grid.mass[axis][cell] > 0) || (grid.row[cell] < 0 && grid.row[below] < 0)) return;
         Vec3 center = grid.center(c);
         center[axis] -= h / 2;
@@ -51,7 +52,8 @@ void rub_along_walls(FluidGrid& grid, FluidSolids& solids, double density, doubl
         const Vec3 slip = velocity_around(grid, axis, cell) - solids.velocity_at(owner, center);
         const Vec3 along = slip - normal * dot(slip, normal);
         const double speed = length(along);
-        const double stress = turbulent_stress(speed, distance * h, viscosity / density);
+        // The speed is that of half a cell away also where the face is nearer: cells hold no layers within them.
+        const double stress = turbulent_stress(speed, std::max(distance, 0.5f) * h, viscosity / density);
         if (!(stress > 0)) return;
         const double rate = dt * stress / (speed * h * static_cast<double>(grid.open[axis][cell]));
         slowed.push_back({axis, cell, owner, center, -along[axis] * rate / (1 + rate)});
