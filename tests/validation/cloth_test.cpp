@@ -98,7 +98,9 @@ TEST(ClothInWorld, RestsOnACornerAndOnABall) {
         const auto world = make_world({});
         const ShapeDefinition shape = is_box ? ShapeDefinition(BoxShape{{0.25, 0.25, 0.25}}) : SphereShape{0.4};
         const BodyHandle body = add_body(*world, shape, {0, 0.5, 0}, 0, on_a_corner);
-        const DeformableDefinition sheet = tablecloth(0.95);
+        // Too small for folds that press on each other, which keep a sheet awake.
+        auto sheet = cloth_rectangle(0.5, 0.5, 0.025, {.area_density = 0.25, .rayleigh_damping = 0.01});
+        sheet.pose.position = {0, 0.95, 0};
         const DeformableHandle cloth = world->create_deformable(sheet).value();
         const double start = energy(*world);
         run(*world, 12);

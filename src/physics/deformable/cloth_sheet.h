@@ -33,7 +33,7 @@ public:
                std::span<const std::uint32_t> attachment_bodies, std::span<const TouchedBody> bodies,
                TaskPool& workers);
     /// What the solve needs of it, valid until the next begin().
-    [[nodiscard]] SheetSystem system() const { return {&matrix_, rhs_, small_load_, fixed_}; }
+    [[nodiscard]] SheetSystem system() { return {&matrix_, rhs_, small_load_, fixed_}; }
     [[nodiscard]] TouchSprings& touch() { return springs_; }
     /// How each node resists on its own, N/m, since begin().
     [[nodiscard]] std::span<const double> node_stiffness() const { return node_stiffness_; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -30,7 +31,7 @@ struct ClothMatrix {
 
 /// A sheet's part of the equations, an entry a node.
 struct SheetSystem {
-    const ClothMatrix* matrix = nullptr;
+    ClothMatrix* matrix = nullptr;        ///< springs are added to it while it is solved
     std::span<const Vec3> rhs;            ///< N
     std::span<const Vec3> small_load;     ///< N
     std::span<const std::uint8_t> fixed;  ///< nodes that do not move
@@ -74,6 +75,11 @@ private:
     void lay_out(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines);
     bool prepare(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
                  std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
+    [[nodiscard]] std::size_t sheet_of(std::uint32_t node) const {
+        return static_cast<std::size_t>(std::ranges::upper_bound(sheet_first_, node) - sheet_first_.begin()) - 1;
+    }
+    void put_back_matrices();
+    bool add_to_matrix(std::span<const SheetSystem> sheets, const TouchSpring& spring);
     void prepare_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
     bool prepare_lines(std::span<const LineSystem> lines, std::span<const TouchSpring> springs);
     double guess(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
@@ -108,7 +114,8 @@ private:
     std::vector<const BandCholesky*> factors_;
     std::vector<Chunk> chunks_;
     std::vector<std::size_t> sheet_first_;
-    std::vector<std::uint32_t> coupled_;  // springs that the preconditioner's blocks do not hold
+    std::vector<std::uint32_t> coupled_;  // springs that neither the preconditioner's blocks nor the matrices hold
+    std::vector<std::pair<Block*, Block>> added_to_;  // blocks of matrices as they were before springs were added
     std::vector<double> parts_, other_parts_;
     std::size_t nodes_ = 0;  // of sheets
     int workers_ = 1, rounds_ = 0;
