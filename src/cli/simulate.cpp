@@ -74,6 +74,10 @@ void print(const Summary& summary, const scene::Simulation& simulation) {
         print_line("note: a body's state left the finite numbers; it was switched off where it last was");
     if (reached(StepLimit::not_finite_deformable_frozen))
         print_line("note: a soft thing's motion left the finite numbers; it was frozen where it was");
+    if (reached(StepLimit::not_finite_fluid_frozen))
+        print_line("note: a liquid's motion left the finite numbers; it was frozen where it was");
+    if (reached(StepLimit::fluid_particles_lost))
+        print_line("note: liquid ran so far away that it was taken out; a floor or walls keep it");
     if (reached(StepLimit::impact_rounds_exhausted))
         print_line("note: an impact needed more rounds than allowed; a smaller settings.time_step helps");
     if (reached(StepLimit::deep_penetration))

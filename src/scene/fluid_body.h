@@ -21,6 +21,9 @@ public:
     void read(std::vector<Vec3>& positions) const override;
     [[nodiscard]] double radius() const override;  ///< of a ball of a particle's volume
     [[nodiscard]] bool is_liquid() const override { return true; }
+    [[nodiscard]] physics::FluidHandle fluid() const override {
+        return share_ ? share_->fluid : physics::FluidHandle{};
+    }
     [[nodiscard]] physics::SleepState state() const override;
     [[nodiscard]] Vec3 center_of_mass() const override;
     [[nodiscard]] double mass() const override;

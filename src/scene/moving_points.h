@@ -37,6 +37,8 @@ public:
     [[nodiscard]] virtual double radius() const = 0;
     /// They are drawn as one liquid, each a ball of its volume.
     [[nodiscard]] virtual bool is_liquid() const { return false; }
+    /// The fluid of the world that they are particles of; null: none.
+    [[nodiscard]] virtual physics::FluidHandle fluid() const { return {}; }
     /// What carries a drawn form, at rest; null where nothing does.
     [[nodiscard]] virtual const physics::DeformableDefinition* deformable() const { return nullptr; }
     /// Of a rope: segment k is between the points k and k + 1.

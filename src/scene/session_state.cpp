@@ -24,7 +24,7 @@ struct LimitText {
     physics::StepLimit limit;
     const char* text;
 };
-constexpr std::array<LimitText, 7> limit_texts = {{
+constexpr std::array<LimitText, 9> limit_texts = {{
     {physics::StepLimit::linear_speed_clamped,
      "Something was faster than the scene's greatest speed and was slowed down."},
     {physics::StepLimit::angular_speed_clamped,
@@ -34,6 +34,10 @@ constexpr std::array<LimitText, 7> limit_texts = {{
      "Something's motion left the finite numbers; it was frozen where it was."},
     {physics::StepLimit::not_finite_deformable_frozen,
      "A soft thing's motion left the finite numbers; it was frozen where it was."},
+    {physics::StepLimit::not_finite_fluid_frozen,
+     "A liquid's motion left the finite numbers; it was frozen where it was."},
+    {physics::StepLimit::fluid_particles_lost,
+     "Liquid ran so far away that it was taken out; a floor or walls keep it."},
     {physics::StepLimit::impact_rounds_exhausted,
      "An impact was too complicated for one step; a smaller time step helps."},
     {physics::StepLimit::deep_penetration, "Things overlap deeply; place them apart or use a smaller time step."},

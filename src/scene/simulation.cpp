@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "attributes/surfaces.h"
+#include "scene/liquid_notes.h"
 #include "scene/simulation_state.h"
 
 namespace embody::scene {
@@ -22,6 +24,28 @@ std::vector<physics::ContactEvent> contacts_between_entities(const physics::Worl
     for (const physics::ContactEvent& event : world.contact_events())
         if (event.user_data_a != event.user_data_b) contacts.push_back(event);
     return contacts;
+}
+
+std::string name_of(EntityIndex index, const LiveEntity& entity) {
+    const std::string& name = entity.definition.name;
+    return name.empty() ? "Entity " + std::to_string(index) : name;
+}
+
+// Those of different fluids that are in each other.
+void add_notes_of_liquids(const std::map<EntityIndex, LiveEntity>& live, std::vector<std::string>& notes) {
+    std::vector<std::pair<EntityIndex, const LiveEntity*>> liquids;
+    for (const auto& [index, entity] : live) {
+        if (entity.points && !entity.points->fluid().is_null()) liquids.emplace_back(index, &entity);
+    }
+    for (std::size_t a = 0; a < liquids.size(); ++a) {
+        for (std::size_t b = a + 1; b < liquids.size(); ++b) {
+            const MovingPoints &one = *liquids[a].second->points, &other = *liquids[b].second->points;
+            if (one.fluid() == other.fluid() || !share_space(one, other)) continue;
+            notes.push_back(name_of(liquids[b].first, *liquids[b].second) + " is in " +
+                            name_of(liquids[a].first, *liquids[a].second) +
+                            ": liquids of other matter or other cells do not see each other.");
+        }
+    }
 }
 
 Error not_in_world(EntityIndex entity) {
@@ -137,8 +161,7 @@ std::vector<std::string> Simulation::notes() const {
     std::vector<std::pair<std::string, int>> told;
     for (const auto& [index, entity] : state_->live) {
         if (entity.form.note.empty()) continue;
-        const std::string& name = entity.definition.name;
-        const std::string note = (name.empty() ? "Entity " + std::to_string(index) : name) + " " + entity.form.note;
+        const std::string note = name_of(index, entity) + " " + entity.form.note;
         const auto same = std::ranges::find(told, note, &std::pair<std::string, int>::first);
         if (same == told.end())
             told.emplace_back(note, 1);
@@ -148,6 +171,7 @@ std::vector<std::string> Simulation::notes() const {
     std::vector<std::string> notes;
     for (const auto& [note, count] : told)
         notes.push_back(note + (count > 1 ? " (" + std::to_string(count) + " of this name)." : "."));
+    add_notes_of_liquids(state_->live, notes);
     return notes;
 }
 

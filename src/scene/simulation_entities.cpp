@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "physics/inter/definitions/grain_material.h"
+#include "scene/liquid_notes.h"
 #include "scene/simulation_state.h"
 
 namespace embody::scene {
@@ -73,6 +74,8 @@ Result<void> Simulation::State::put_points(LiveEntity& entity) {
     entity.points = std::move(points).value();
     if (const auto* grains = std::get_if<GrainDefinition>(&definition.value()))
         finest_grain = std::min(finest_grain, grains->diameter);
+    const auto* liquid = std::get_if<LiquidDefinition>(&definition.value());
+    if (liquid != nullptr && entity.form.note.empty()) entity.form.note = note_of(*liquid, *entity.points);
     return apply_settings();
 }
 

@@ -346,6 +346,30 @@ TEST(Fluids, HeldByAJointAreRigidWithANote) {
     EXPECT_NE(simulation->points(index), nullptr);
 }
 
+TEST(Fluids, ThinnerThanTheirParticlesAreToldOf) {
+    Document document;
+    add_box(document, "Puddle", {0.5, 1e-6, 0.5}, {0, 0.01, 0}, water(2000));
+    add_box(document, "Pool", {0.1, 0.1, 0.1}, {3, 0.2, 0}, water(2000));
+    const auto simulation = make(document);
+    ASSERT_EQ(simulation->notes().size(), 1u);
+    EXPECT_NE(simulation->notes()[0].find("Puddle is 0.002 mm thick"), std::string::npos) << simulation->notes()[0];
+}
+
+TEST(Fluids, OfOtherMatterInEachOtherAreToldOf) {
+    const auto notes_of = [](double density, double apart) {
+        Document document;
+        add_box(document, "Water", {0.1, 0.1, 0.1}, {0, 0.2, 0}, water(2000));
+        Words oil = water(2000);
+        if (density > 0) oil["rest_density"] = density;
+        add_box(document, "Oil", {0.1, 0.1, 0.1}, {apart, 0.2, 0}, oil);
+        return make(document)->notes();
+    };
+    ASSERT_EQ(notes_of(900, 0.1).size(), 1u);
+    EXPECT_EQ(notes_of(900, 0.1)[0].rfind("Oil is in Water", 0), 0u);
+    EXPECT_TRUE(notes_of(900, 0.25).empty());
+    EXPECT_TRUE(notes_of(0, 0.1).empty()) << "the same matter mixes";
+}
+
 TEST(Fluids, AMugThatTiltsEmpties) {
     // A mug of twelve staves and a bottom, 8 cm wide and 10 cm high, turned by its velocity.
     Document document = samples::floor_and_box();

@@ -167,6 +167,8 @@ bool ParticleCollider::bar(SolidProbe& probe, Vec3 from, Vec3& to, Vec3& normal)
     if (distance >= gap) return is_barred;
     normal = is_behind ? -near.normal : near.normal;
     to += normal * (gap - distance);
+    // At a seam of two pieces that led from one into the other.
+    if (!probe.is_surface() && probe.nearest(to).distance < 0 && probe.nearest(from).distance >= 0) to = from;
     return true;
 }
 

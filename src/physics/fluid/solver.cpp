@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "physics/fluid/collide_particles.h"
+#include "physics/fluid/drops.h"
 #include "physics/fluid/faces.h"
 #include "physics/fluid/small_body.h"
 #include "physics/fluid/transfer.h"
@@ -19,19 +20,6 @@ constexpr double longest_way = 1.5;
 constexpr int most_parts = 16;
 // One in so many particles may be faster than that.
 constexpr std::size_t drops_by_particle = 200;
-
-// Whether neither the cell of a place nor those beside it are liquid.
-bool is_drop(const FluidGrid& grid, const float* place) {
-    Cell c{};
-    for (int axis = 0; axis < 3; ++axis) c[axis] = static_cast<int>(grid.in_cells(place[axis], axis));
-    const int cell = grid.index(c);
-    bool is_liquid = grid.row[cell] >= 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const int stride = grid.stride(axis);
-        is_liquid = is_liquid || grid.row[cell - stride] >= 0 || grid.row[cell + stride] >= 0;
-    }
-    return !is_liquid;
-}
 
 // A gradient, 1/s, made no steeper than that: what is steeper no step of this length resolves.
 void set_gradient(const float* gradient, float steepest, float* affine) {
@@ -316,12 +304,14 @@ void FluidSolver::move_particles(double dt, TaskPool& workers) {
         ParticleCollider collider(grid_, solids_, dt);
         for (std::size_t i = share.first; i < share.last; ++i) {
             FluidParticle& particle = particles_[i];
-            const FieldSample sample = sample_field(grid_, grid_.velocity, places_[i].data());
+            FieldSample sample = sample_field(grid_, grid_.velocity, places_[i].data());
             float shift[3], end[3];
             sample_value(grid_, grid_.shift, places_[i].data(), shift);
             if (is_tense_) surface_.draw_in(grid_, places_[i].data(), shift);
             // A drop reads back what it wrote: a gradient that it took along would stay for ever.
-            const float steepest = is_drop(grid_, places_[i].data()) ? 0 : 1 / time;
+            const bool is_single = is_drop(grid_, places_[i].data());
+            const float steepest = is_single ? 0 : 1 / time;
+            if (is_single) slow_at_wall(grid_, solids_, properties_, dt, places_[i].data(), sample.value);
             for (int a = 0; a < 3; ++a) {
                 particle.velocity[a] = sample.value[a];
                 set_gradient(sample.gradient[a], steepest, particle.affine[a]);

@@ -22,10 +22,10 @@ struct FluidDefinition {
     double density = 998;                  ///< kg/m³, 1 … 25,000
     double viscosity = 0.001;              ///< dynamic, Pa s, 0 … 10,000
     double yield_stress = 0;               ///< Bingham's: shear stress below which it does not flow, Pa, 0 … 10,000
-    double surface_tension = 0;            ///< N/m, 0 … 10; felt where cells are finer than 2 √(σ/(ρ g))
-    double cell_size = 0.02;    ///< edge of the cells it is solved on, m, 0.001 … 1; a full cell has eight particles
-    double gravity_factor = 1;  ///< -10 … 10
-    bool allow_sleep = true;    ///< rests while nothing moves in it
+    double surface_tension = 0;  ///< N/m, 0 … 10; on cells finer than 2 √(σ/(ρ g)), and of drops at walls
+    double cell_size = 0.02;     ///< edge of the cells it is solved on, m, 0.001 … 1; a full cell has eight particles
+    double gravity_factor = 1;   ///< -10 … 10
+    bool allow_sleep = true;     ///< rests while nothing moves in it
     std::uint64_t user_data = 0;  ///< the library never reads it
 };
 /// A fluid has at most as many particles.
