@@ -22,6 +22,13 @@ struct SurfaceHit {
 
 class Liquids;
 
+/// What holds the nodes of what is deformable, besides pins.
+struct Holds {
+    std::vector<physics::Attachment> attachments;
+    std::vector<physics::Clamp> clamps;
+    std::vector<physics::Tie> ties;  ///< of cloth and ropes
+};
+
 /// What stands for an entity that is not one body: many points, whatever physics moves them. The world that they are in
 /// outlives them; the destructor takes them out of it.
 class MovingPoints {
@@ -41,6 +48,8 @@ public:
     [[nodiscard]] virtual physics::FluidHandle fluid() const { return {}; }
     /// What carries a drawn form, at rest; null where nothing does.
     [[nodiscard]] virtual const physics::DeformableDefinition* deformable() const { return nullptr; }
+    /// Of what is deformable(), for ties to it.
+    [[nodiscard]] virtual physics::DeformableHandle handle() const { return {}; }
     /// Of a rope: segment k is between the points k and k + 1.
     [[nodiscard]] virtual std::vector<std::uint32_t> broken_segments() const { return {}; }
     /// Of the entity's frame, where they are a thing that still has one.
@@ -70,13 +79,11 @@ public:
     /// Where a slack rope begins, between the nodes that pins hold at these places: as arcs that no body stands in.
     /// Only once, when everything around it is there.
     virtual Result<void> hang(std::vector<HeldNode>) { return {}; }
-    /// Holds some to bodies, and a rope's directions there or where it is pinned, besides those that a hand holds; only
-    /// of what is deformable().
-    virtual Result<void> attach(std::vector<physics::Attachment>, std::vector<physics::Clamp>) { return {}; }
-    /// To bodies that are still there; not those of a hand.
-    [[nodiscard]] virtual std::vector<physics::Attachment> attachments() const { return {}; }
-    /// Of nodes that are pinned or held so.
-    [[nodiscard]] virtual std::vector<physics::Clamp> clamps() const { return {}; }
+    /// Holds some to bodies and to others that are deformable(), and a rope's directions at bodies or where it is
+    /// pinned, besides those that a hand holds; only of what is deformable().
+    virtual Result<void> attach(Holds) { return {}; }
+    /// To what is still there; not those of a hand.
+    [[nodiscard]] virtual Holds holds() const { return {}; }
     /// Carries all of them along as one rigid thing; they are at rest then.
     virtual Result<void> move(const Transform& motion) = 0;
     /// As of one rigid thing that turns about its centre of mass.

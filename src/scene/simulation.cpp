@@ -73,10 +73,7 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document,
     }
 
     // What joints and pins need as one body is made as one at once.
-    for (const SceneJoint& joint : document.joints)
-        state.to_be_held.insert({joint.entity_b, joint.entity_a.value_or(0)});
-    for (const Entity& entity : document.entities)
-        for (const Pin& pin : entity.pins) state.to_be_held.insert(pin.to.value_or(0));
+    state.find_bodies(document);
 
     // In the document's order, so that the same document is the same world; liquids last, since they fill what the
     // others leave free.

@@ -36,7 +36,8 @@ Result<LiveEntity> Simulation::State::describe(const Entity& entity) {
     if (!set.ok()) return set.error();
     described.attributes = std::move(set).value();
     described.frame = entity.pose;
-    described.form = bodies.form(entity, described.attributes, is_held_as_body(entity.index));
+    described.form =
+        bodies.form(entity, described.attributes, is_held_as_body(entity.index, described.attributes.word("kind", "")));
     if (described.form.has_points && entity.torque != Vec3{})
         described.form.note = "is not turned by its torque, because it is not one rigid body";
     if (!described.form.has_points) described.shape_key = EntityBodies::shape_key(entity, described.attributes);
@@ -144,8 +145,10 @@ Result<void> Simulation::State::update_points(LiveEntity& before, LiveEntity& af
     const bool same_pins = before.definition.pins == after.definition.pins;
     auto* deformable = std::get_if<physics::DeformableDefinition>(&definition.value());
     if (deformable && same_pins) {
-        deformable->attachments = before.points->attachments();
-        deformable->clamps = before.points->clamps();
+        Holds held = before.points->holds();
+        deformable->attachments = std::move(held.attachments);
+        deformable->clamps = std::move(held.clamps);
+        deformable->ties = std::move(held.ties);
     }
     if (Result<void> set = before.points->set_definition(definition.value()); !set.ok()) return set;
     after.points = std::move(before.points);
@@ -155,7 +158,7 @@ Result<void> Simulation::State::update_points(LiveEntity& before, LiveEntity& af
 
 // Another kind, or other points: made anew where it is.
 Result<void> Simulation::State::replace(LiveEntity& before, LiveEntity& after, bool keep_motion) {
-    if (after.form.has_points && is_held_as_body(before.definition.index))
+    if (after.form.has_points && is_held_as_body(before.definition.index, after.attributes.word("kind", "")))
         return Error{"attributes.kind", "grains cannot be held by a joint or a pin", "remove that first"};
     const Entity document = after.definition;
     if (keep_motion) {
@@ -195,8 +198,10 @@ Result<void> Simulation::State::update(const Entity& entity, bool keep_motion) {
                                  : same_points ? update_points(*before, after)
                                                : replace(*before, after, keep_motion);
     if (!updated.ok()) return of_entity(entity, updated.error());
+    const bool is_new = !both_bodies && !same_points;
+    const std::vector<Pin> pins_before = before->definition.pins;
     *before = std::move(after);
-    return {};
+    return fasten_to(*before, pins_before, is_new);
 }
 
 Result<void> Simulation::State::remove(EntityIndex index) {

@@ -29,26 +29,74 @@ std::vector<HeldNode> held_nodes(const Entity& entity, const physics::Deformable
     return held;
 }
 
+bool pins_to(const std::vector<Pin>& pins, EntityIndex index) {
+    return std::ranges::any_of(pins, [index](const Pin& pin) { return pin.to == index; });
+}
+
+bool is_thin(const std::string& kind) { return kind == "cloth" || kind == "rope"; }
+
+// Whether a pin between things of these kinds is a tie, which makes neither rigid.
+bool may_tie(const std::string& one, const std::string& other) {
+    return (is_thin(one) && (is_thin(other) || other == "soft")) || (one == "soft" && is_thin(other));
+}
+
+bool is_thin(const LiveEntity& entity) {
+    const physics::DeformableDefinition* deformable = entity.points ? entity.points->deformable() : nullptr;
+    return deformable && !std::holds_alternative<physics::SoftSolid>(deformable->matter);
+}
+
 }  // namespace
 
-bool Simulation::State::is_held_as_body(EntityIndex index) const {
+void Simulation::State::find_bodies(const Document& document) {
+    for (const SceneJoint& joint : document.joints) to_be_held.insert({joint.entity_b, joint.entity_a.value_or(0)});
+    const auto kind_of = [&](const Entity& entity) {
+        const Result<attributes::AttributeSet> set = bodies.attributes(entity);
+        return set.ok() ? set.value().word("kind", "") : std::string();
+    };
+    for (const Entity& entity : document.entities) {
+        for (const Pin& pin : entity.pins) {
+            const Entity* other = pin.to ? document.find(*pin.to) : nullptr;
+            if (other && !may_tie(kind_of(entity), kind_of(*other))) to_be_held.insert(*pin.to);
+        }
+    }
+}
+
+bool Simulation::State::is_held_as_body(EntityIndex index, const std::string& kind) const {
     if (to_be_held.contains(index)) return true;
     const auto joins = [index](const auto& item) {
         const SceneJoint& joint = item.second.definition;
         return joint.entity_b == index || joint.entity_a == index;
     };
-    const auto is_pinned_to_it = [index](const auto& item) {
-        const std::vector<Pin>& pins = item.second.definition.pins;
-        return std::ranges::any_of(pins, [index](const Pin& pin) { return pin.to == index; });
+    const auto is_pinned_to_it = [&](const auto& item) {
+        return pins_to(item.second.definition.pins, index) && !may_tie(item.second.attributes.word("kind", ""), kind);
     };
     return std::ranges::any_of(joints, joins) || std::ranges::any_of(live, is_pinned_to_it);
+}
+
+// Pins of soft things to this sheet or rope: the nodes of it that they catch are tied to the soft thing.
+void Simulation::State::tie_pins(const LiveEntity& entity, std::vector<bool>& is_held,
+                                 std::vector<physics::Tie>& ties) const {
+    std::vector<Vec3> positions;
+    entity.points->read(positions);
+    for (const auto& [index, other] : live) {
+        if (!other.points || !other.points->deformable() || is_thin(other)) continue;
+        for (Pin pin : other.definition.pins) {
+            if (pin.to != entity.definition.index) continue;
+            pin.position = transform_point(pose_of(other), pin.position);
+            for (const std::uint32_t node : pinned_nodes(pin, positions)) {
+                const auto tie = world->nearest_tie(node, other.points->handle(), positions[node]);
+                if (is_held[node] || !tie) continue;
+                is_held[node] = true;
+                ties.push_back(*tie);
+            }
+        }
+    }
 }
 
 Result<void> Simulation::State::fasten(const LiveEntity& entity) {
     const physics::DeformableDefinition* deformable = entity.points ? entity.points->deformable() : nullptr;
     if (!deformable) return {};
-    std::vector<physics::Attachment> attachments;
-    std::vector<physics::Clamp> clamps;
+    Holds holds;
     const bool is_rope = std::holds_alternative<physics::Rope>(deformable->matter);
     std::vector<bool> is_held(deformable->nodes.size(), false), is_clamped = is_held;
     for (const std::uint32_t node : deformable->pinned) is_held[node] = true;
@@ -64,7 +112,7 @@ Result<void> Simulation::State::fasten(const LiveEntity& entity) {
             const auto has = [&](std::uint32_t other) { return std::ranges::binary_search(nodes, other); };
             if (!is_rope || !pin.clamped || is_clamped[node] || (node > 0 && has(node - 1) && has(node + 1))) return;
             is_clamped[node] = true;
-            clamps.push_back({node, rotate_inverse(holder, direction_at(positions, node))});
+            holds.clamps.push_back({node, rotate_inverse(holder, direction_at(positions, node))});
         };
         if (!pin.to) {
             for (const std::uint32_t node : nodes) clamp(node, {});
@@ -73,23 +121,48 @@ Result<void> Simulation::State::fasten(const LiveEntity& entity) {
         const LiveEntity* other = find(*pin.to);
         const std::string where = "pins[" + std::to_string(i) + "].to";
         if (!other) return of_entity(entity.definition, {where, "entity " + std::to_string(*pin.to) + " is not there"});
+        if (other->points && is_thin(entity) && other->points->deformable()) {
+            for (const std::uint32_t node : nodes) {
+                const auto tie = world->nearest_tie(node, other->points->handle(), positions[node]);
+                if (is_held[node] || !tie) continue;
+                is_held[node] = true;
+                holds.ties.push_back(*tie);
+            }
+            continue;
+        }
+        if (other->points && is_thin(*other)) continue;  // which is tied to it
         if (other->points)
-            return of_entity(entity.definition, {where, "is no single body", "pin it to a rigid or static thing"});
+            return of_entity(entity.definition, {where, "is no single body, cloth or rope", "pin it to one of these"});
         const Transform pose = world->pose(other->body);
         for (const std::uint32_t node : nodes) {
             if (is_held[node]) continue;
             is_held[node] = true;
-            attachments.push_back({node, other->body, inverse_transform_point(pose, positions[node])});
+            holds.attachments.push_back({node, other->body, inverse_transform_point(pose, positions[node])});
             clamp(node, pose.rotation);
         }
     }
-    return entity.points->attach(std::move(attachments), std::move(clamps));
+    if (is_thin(entity)) tie_pins(entity, is_held, holds.ties);
+    return entity.points->attach(std::move(holds));
+}
+
+Result<void> Simulation::State::fasten_to(const LiveEntity& entity, const std::vector<Pin>& before, bool is_new) {
+    const bool has_other_pins = is_new || before != entity.definition.pins;
+    for (const auto& [index, other] : live) {
+        if (&other == &entity || !other.points) continue;
+        // Ties of a soft thing are those of what it is pinned to.
+        const bool is_tied_to_it = has_other_pins && !is_thin(entity) && is_thin(other) &&
+                                   (pins_to(before, index) || pins_to(entity.definition.pins, index));
+        if (!is_tied_to_it && !(is_new && pins_to(other.definition.pins, entity.definition.index))) continue;
+        if (Result<void> held = fasten(other); !held.ok()) return held;
+    }
+    return {};
 }
 
 Result<void> Simulation::State::fasten_all(std::optional<EntityIndex> came) {
+    const LiveEntity* newcomer = came ? find(*came) : nullptr;
     for (const auto& [index, entity] : live) {
-        const bool is_meant = !came || index == *came ||
-                              std::ranges::any_of(entity.definition.pins, [&](const Pin& p) { return p.to == came; });
+        const bool is_meant = !came || index == *came || pins_to(entity.definition.pins, *came) ||
+                              (newcomer && is_thin(entity) && pins_to(newcomer->definition.pins, index));
         if (!is_meant) continue;
         if (Result<void> held = fasten(entity); !held.ok()) return held;
     }
@@ -113,7 +186,7 @@ Result<void> Simulation::State::make_bodies_of(const SceneJoint& joint) {
 Result<void> Simulation::State::soften_ends(const SceneJoint& joint) {
     for (const EntityIndex index : {joint.entity_b, joint.entity_a.value_or(0)}) {
         const LiveEntity* end = find(index);
-        if (!end || end->form.note.empty() || is_held_as_body(index)) continue;
+        if (!end || end->form.note.empty() || is_held_as_body(index, end->attributes.word("kind", ""))) continue;
         if (Result<void> made = update(Entity(end->definition), true); !made.ok()) return made;
     }
     return {};

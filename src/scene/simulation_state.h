@@ -81,10 +81,14 @@ struct Simulation::State {
 
     // What holds them together ---------------------------------------------------------------------------------------
 
-    /// Whether a joint holds it or something is pinned to it.
-    [[nodiscard]] bool is_held_as_body(EntityIndex index) const;
+    /// Whether a joint holds it, or something is pinned to it that cannot be tied to a thing of its kind.
+    [[nodiscard]] bool is_held_as_body(EntityIndex index, const std::string& kind) const;
+    /// Before they are there: what joints and pins of the document need as one body.
+    void find_bodies(const Document& document);
     /// Holds what its pins say to where that is now on other entities.
     Result<void> fasten(const LiveEntity& entity);
+    /// Of one that has changed, whose pins were `before`: what is tied to it. `is_new`: it was made anew.
+    Result<void> fasten_to(const LiveEntity& entity, const std::vector<Pin>& before, bool is_new);
     /// An entity that came, and those whose pins waited for it; without one: all.
     Result<void> fasten_all(std::optional<EntityIndex> came);
     Result<void> add_joint(const SceneJoint& joint);
@@ -110,6 +114,7 @@ private:
     Result<void> update_points(LiveEntity& before, LiveEntity& after);
     Result<void> replace(LiveEntity& before, LiveEntity& after, bool keep_motion);
 
+    void tie_pins(const LiveEntity& entity, std::vector<bool>& is_held, std::vector<physics::Tie>& ties) const;
     Result<physics::BodyHandle> end_of(EntityIndex index, const std::string& where);
     Result<void> make_bodies_of(const SceneJoint& joint);
     Result<void> soften_ends(const SceneJoint& joint);

@@ -16,6 +16,7 @@ using physics::Attachment;
 using physics::BodyHandle;
 using physics::Clamp;
 using physics::DeformableDefinition;
+using physics::Tie;
 
 namespace {
 
@@ -54,8 +55,7 @@ Result<std::unique_ptr<SoftNodes>> SoftNodes::create(physics::World& world, cons
     std::unique_ptr<SoftNodes> nodes(new SoftNodes(world, *handle));
     nodes->faces_ = outer_faces(definition);
     nodes->surface_ = nodes_of(nodes->faces_, definition.nodes.size());
-    nodes->attachments_ = definition.attachments;
-    nodes->clamps_ = definition.clamps;
+    nodes->holds_ = {definition.attachments, definition.clamps, definition.ties};
     return nodes;
 }
 
@@ -92,46 +92,44 @@ Result<void> SoftNodes::set_definition(const PointsDefinition& definition) {
     const auto& taken = std::get<DeformableDefinition>(definition);
     let_go();
     if (auto set = world_.set_deformable(handle_, taken); !set) return set;
-    attachments_ = taken.attachments;
-    clamps_ = taken.clamps;
+    holds_ = {taken.attachments, taken.clamps, taken.ties};
     return {};
 }
 
-Result<void> SoftNodes::attach(std::vector<Attachment> attachments, std::vector<Clamp> clamps) {
-    attachments_ = std::move(attachments);
-    clamps_ = std::move(clamps);
-    return apply_attachments();
+Result<void> SoftNodes::attach(Holds holds) {
+    holds_ = std::move(holds);
+    return apply_holds();
 }
 
-std::vector<Attachment> SoftNodes::attachments() const {
-    std::vector<Attachment> there = attachments_;
-    std::erase_if(there, [this](const Attachment& attachment) { return !world_.contains(attachment.body); });
+Holds SoftNodes::holds() const {
+    Holds there = holds_;
+    std::erase_if(there.attachments,
+                  [this](const Attachment& attachment) { return !world_.contains(attachment.body); });
+    std::erase_if(there.ties, [this](const Tie& tie) { return world_.deformable(tie.other) == nullptr; });
+    const std::vector<std::uint32_t>& pinned = deformable()->pinned;
+    std::erase_if(there.clamps, [&](const Clamp& clamp) {
+        return std::ranges::find(pinned, clamp.node) == pinned.end() &&
+               std::ranges::find(there.attachments, clamp.node, &Attachment::node) == there.attachments.end();
+    });
     return there;
 }
 
-std::vector<Clamp> SoftNodes::clamps() const {
-    const std::vector<Attachment> there = attachments();
-    const std::vector<std::uint32_t>& pinned = deformable()->pinned;
-    std::vector<Clamp> held = clamps_;
-    std::erase_if(held, [&](const Clamp& clamp) {
-        return std::ranges::find(pinned, clamp.node) == pinned.end() &&
-               std::ranges::find(there, clamp.node, &Attachment::node) == there.end();
-    });
-    return held;
-}
-
-// What is held by the hand is not held by anything else meanwhile.
-Result<void> SoftNodes::apply_attachments() {
-    const auto is_in_hand = [this](std::uint32_t node) {
-        return std::ranges::find(held_, node, &Attachment::node) != held_.end();
+// What is held by the hand is not held by anything else meanwhile; a clamped node stays clamped, in the hand.
+Result<void> SoftNodes::apply_holds() {
+    const auto is_in_hand = [this](const auto& hold) {
+        return std::ranges::find(held_, hold.node, &Attachment::node) != held_.end();
     };
-    std::vector<Attachment> all = held_;
-    for (const Attachment& attachment : attachments()) {
-        if (!is_in_hand(attachment.node)) all.push_back(attachment);
+    Holds all = holds();
+    for (Clamp& clamp : all.clamps) {
+        const auto at = std::ranges::find(all.attachments, clamp.node, &Attachment::node);
+        if (!is_in_hand(clamp) || at == all.attachments.end()) continue;
+        const Vec3 direction = rotate(world_.pose(at->body).rotation, clamp.direction);
+        clamp.direction = rotate_inverse(world_.pose(hand_).rotation, direction);
     }
-    std::vector<Clamp> held = clamps();
-    std::erase_if(held, [&](const Clamp& clamp) { return is_in_hand(clamp.node); });
-    return world_.set_attachments(handle_, all, held);
+    std::erase_if(all.attachments, is_in_hand);
+    std::erase_if(all.ties, is_in_hand);
+    all.attachments.insert(all.attachments.begin(), held_.begin(), held_.end());
+    return world_.set_attachments(handle_, all.attachments, all.clamps, all.ties);
 }
 
 const DeformableDefinition* SoftNodes::deformable() const { return world_.deformable(handle_); }
@@ -245,7 +243,7 @@ BodyHandle SoftNodes::hold(Vec3 position) {
             if (length(positions[node] - position) > reach || std::ranges::find(pinned, node) != pinned.end()) continue;
             held_.push_back({node, hand_, positions[node] - position});
         }
-        if (apply_attachments()) return hand_;
+        if (apply_holds()) return hand_;
     }
     let_go();
     return {};
@@ -255,7 +253,7 @@ void SoftNodes::let_go() {
     held_.clear();
     if (!hand_.is_null()) {
         // Both are in the world, which does not refuse.
-        (void)apply_attachments().ok();
+        (void)apply_holds().ok();
         (void)world_.destroy_body(hand_).ok();
         hand_ = {};
     }
@@ -268,11 +266,11 @@ Result<void> SoftNodes::move(const Transform& motion) {
     read(positions);
     for (Vec3& position : positions) position = transform_point(motion, position);
     const auto& pinned = deformable()->pinned;
-    for (Clamp& clamp : clamps_) {
+    for (Clamp& clamp : holds_.clamps) {
         if (std::ranges::find(pinned, clamp.node) != pinned.end())
             clamp.direction = rotate(motion.rotation, clamp.direction);
     }
-    if (auto turned = apply_attachments(); !turned) return turned;
+    if (auto turned = apply_holds(); !turned) return turned;
     return world_.set_nodes(handle_, positions, std::vector<Vec3>(positions.size()));
 }
 
@@ -297,8 +295,10 @@ Result<void> SoftNodes::apply_force(Vec3 force) { return apply_impulse(world_.se
 Result<void> SoftNodes::set_enabled(bool enabled) {
     DeformableDefinition changed = *deformable();
     changed.enabled = enabled;
-    changed.attachments = attachments();
-    changed.clamps = clamps();
+    Holds held = holds();
+    changed.attachments = std::move(held.attachments);
+    changed.clamps = std::move(held.clamps);
+    changed.ties = std::move(held.ties);
     return set_definition(changed);
 }
 

@@ -19,6 +19,7 @@ public:
     void read(std::vector<Vec3>& positions) const override;
     [[nodiscard]] double radius() const override { return 0; }
     [[nodiscard]] const physics::DeformableDefinition* deformable() const override;
+    [[nodiscard]] physics::DeformableHandle handle() const override { return handle_; }
     [[nodiscard]] std::vector<std::uint32_t> broken_segments() const override {
         return world_.broken_segments(handle_);
     }
@@ -36,9 +37,8 @@ public:
     void let_go() override;
     Result<void> set_definition(const PointsDefinition& definition) override;
     Result<void> hang(std::vector<HeldNode> held) override;
-    Result<void> attach(std::vector<physics::Attachment> attachments, std::vector<physics::Clamp> clamps) override;
-    [[nodiscard]] std::vector<physics::Attachment> attachments() const override;
-    [[nodiscard]] std::vector<physics::Clamp> clamps() const override;
+    Result<void> attach(Holds holds) override;
+    [[nodiscard]] Holds holds() const override;
     Result<void> move(const Transform& motion) override;
     Result<void> set_velocity(Vec3 linear, Vec3 angular) override;
     Result<void> apply_impulse(Vec3 impulse) override;
@@ -47,7 +47,7 @@ public:
 
 private:
     SoftNodes(physics::World& world, physics::DeformableHandle handle) : world_(world), handle_(handle) {}
-    Result<void> apply_attachments();
+    Result<void> apply_holds();
     [[nodiscard]] bool is_blocked(Vec3 place) const;
     [[nodiscard]] std::optional<SurfaceHit> meet_line(Vec3 origin, Vec3 direction, double most) const;
     [[nodiscard]] std::optional<SurfaceHit> meet_faces(Vec3 origin, Vec3 direction, double most) const;
@@ -57,8 +57,8 @@ private:
     std::vector<std::array<std::uint32_t, 3>> faces_;  ///< a solid's outer ones, counter-clockwise from outside, or
                                                        ///< those of cloth; none of a rope
     std::vector<std::uint32_t> surface_;               ///< their nodes, ascending
-    std::vector<physics::Attachment> attachments_, held_;
-    std::vector<physics::Clamp> clamps_;
+    Holds holds_;
+    std::vector<physics::Attachment> held_;  ///< by a hand
     bool has_hung_ = false;
     physics::BodyHandle hand_;
     physics::ShapeHandle hand_shape_;

@@ -72,11 +72,22 @@ void add_at_arm(std::array<double, 36>& to, const Mat3& m, Vec3 arm) {
     }
 }
 
-bool moves_body(const TouchSpring& spring, std::span<const BodyInertia> bodies) {
-    return spring.body != no_body && bodies[spring.body].moves;
-}
-
 }  // namespace
+
+double energy_of(const SheetSystem& sheet, std::span<const Vec3> moves) {
+    const ClothMatrix& matrix = *sheet.matrix;
+    double sum = 0;
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+        if (sheet.fixed[i] != 0) continue;
+        Float4 row = operator_times(matrix.diagonal[i], to_float4(moves[i]));
+        for (std::uint32_t k = matrix.start[i]; k < matrix.start[i + 1]; ++k)
+            row += operator_times(matrix.block[k], to_float4(moves[matrix.column[k]]));
+        for (std::uint32_t k = matrix.far_start[i]; k < matrix.far_start[i + 1]; ++k)
+            row += matrix.far_value[k] * to_float4(moves[matrix.far_column[k]]);
+        sum += dot(0.5 * to_vec3(row) - sheet.rhs[i], moves[i]);
+    }
+    return sum;
+}
 
 // Whether the preconditioner holds all of it: one node, or nodes of one line, and no body that moves.
 bool ClothSolver::is_contained(const TouchSpring& spring, std::span<const BodyInertia> bodies) const {
@@ -107,8 +118,8 @@ void ClothSolver::lay_out(std::span<const SheetSystem> sheets, std::span<const L
         line_first_.push_back(line_of_.size());
     }
     for (auto* vector : {&direction_, &product_, &residual_, &better_, &answer_}) vector->assign(nodes_, Float4{});
-    for (auto* vector :
-         {&line_direction_, &line_own_product_, &line_product_, &line_residual_, &line_better_, &line_answer_})
+    for (auto* vector : {&line_direction_, &line_own_product_, &line_product_, &line_residual_, &line_better_,
+                         &line_answer_, &line_own_better_})
         vector->assign(line_of_.size(), {});
 }
 
@@ -139,8 +150,10 @@ bool ClothSolver::prepare(std::span<const SheetSystem> sheets, std::span<const L
             inverse_[at] = sheets[s].fixed[i] != 0 ? Block{} : to_block(inverse_or_zero(to_matrix(own_[at])));
         }
     }
+    if (!prepare_lines(lines, springs)) return false;
+    prepare_line_holds(springs, bodies);
     prepare_bodies(springs, bodies);
-    return prepare_lines(lines, springs);
+    return true;
 }
 
 // What a spring between neighbours of one sheet adds beside the diagonal. False, and nothing done, where it is of
@@ -197,38 +210,8 @@ void ClothSolver::prepare_bodies(std::span<const TouchSpring> springs, std::span
         const Mat3 felt = is_single ? k - k * to_matrix(inverse_[spring.node[0]]) * k : k;
         add_at_arm(factor, felt, spring.arm);
     }
+    for (const LineHold& hold : line_holds_) give_way(hold);
     for (BodyFactor& body : body_factors_) factorize(body.factor);
-}
-
-bool ClothSolver::prepare_lines(std::span<const LineSystem> lines, std::span<const TouchSpring> springs) {
-    factors_.clear();
-    for (const LineSystem& line : lines) factors_.push_back(line.matrix);
-    if (lines.empty()) return true;
-    for (const TouchSpring& spring : springs) {
-        if (!spring.acts) continue;
-        for (std::size_t a = 0; a < static_cast<std::size_t>(spring.count); ++a) {
-            if (spring.node[a] < nodes_) continue;
-            const std::size_t line = line_of_[spring.node[a] - nodes_], first = nodes_ + line_first_[line];
-            for (std::size_t b = 0; b < static_cast<std::size_t>(spring.count); ++b) {
-                // Each pair of nodes once, the later one as the row.
-                if (spring.node[b] > spring.node[a] || !is_same_block(spring.node[a], spring.node[b])) continue;
-                lines[line].matrix->add(spring.node[a] - first, spring.node[b] - first,
-                                        (spring.weight[a] * spring.weight[b]) * spring.matrix);
-            }
-        }
-    }
-    for (const LineSystem& line : lines) {
-        for (std::size_t i = 0; i < line.rhs.size(); ++i) {
-            if ((*line.fixed)[i]) line.matrix->fix(i);
-        }
-        if (!line.matrix->factorize()) return false;
-    }
-    return true;
-}
-
-void ClothSolver::solve_lines(std::span<Vec3> rhs) const {
-    for (std::size_t l = 0; l < factors_.size(); ++l)
-        factors_[l]->solve(rhs.subspan(line_first_[l], line_first_[l + 1] - line_first_[l]));
 }
 
 void ClothSolver::multiply_rows(std::span<const SheetSystem> sheets, std::size_t chunk) {
@@ -315,6 +298,7 @@ void ClothSolver::precondition_bodies(std::span<const TouchSpring> springs, std:
         body_better_[spring.body].shift += felt;
         body_better_[spring.body].turn += cross(spring.arm, felt);
     }
+    add_line_pulls();
     for (std::size_t b = 0; b < bodies.size(); ++b)
         body_better_[b] =
             bodies[b].moves ? embody::physics::solve(body_factors_[b].factor, body_better_[b]) : BodyMove{};
@@ -324,11 +308,7 @@ void ClothSolver::precondition_bodies(std::span<const TouchSpring> springs, std:
         const Vec3 taken = spring.matrix * at_arm(body_better_[spring.body], spring.arm);
         better_[spring.node[0]] += operator_times(inverse_[spring.node[0]], to_float4(taken));
     }
-}
-
-void ClothSolver::precondition_lines() {
-    line_better_ = line_residual_;
-    solve_lines(line_better_);
+    follow_bodies();
 }
 
 double ClothSolver::sum_of(const std::vector<double>& parts) const {
@@ -337,7 +317,8 @@ double ClothSolver::sum_of(const std::vector<double>& parts) const {
     return sum;
 }
 
-// The next direction of bodies and lines. Of what a line's factor L Lᵀ = A makes of it: A z = r.
+// The next direction of bodies and lines. What a line's factor L Lᵀ = A makes of it is known: A z = r less what bodies
+// take along.
 void ClothSolver::go_on(std::span<const BodyInertia> bodies, double turn) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         body_direction_[b] = {body_better_[b].shift + turn * body_direction_[b].shift,
@@ -345,7 +326,7 @@ void ClothSolver::go_on(std::span<const BodyInertia> bodies, double turn) {
     }
     for (std::size_t i = 0; i < line_direction_.size(); ++i) {
         line_direction_[i] = line_better_[i] + turn * line_direction_[i];
-        line_own_product_[i] = line_residual_[i] + turn * line_own_product_[i];
+        line_own_product_[i] = line_own_better_[i] + turn * line_own_product_[i];
     }
 }
 
@@ -373,8 +354,8 @@ void ClothSolver::iterate(std::span<const SheetSystem> sheets, std::span<const T
         if (has_others) {
             barrier.wait();
             if (worker == 0) {
-                precondition_bodies(springs, bodies);
                 precondition_lines();
+                precondition_bodies(springs, bodies);
             }
             barrier.wait();
         }

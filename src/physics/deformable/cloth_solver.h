@@ -37,6 +37,9 @@ struct SheetSystem {
     std::span<const std::uint8_t> fixed;  ///< nodes that do not move
 };
 
+/// What the equations minimise for these moves, J, one a node.
+double energy_of(const SheetSystem& sheet, std::span<const Vec3> moves);
+
 /// A rope's part of them. The solver adds the springs to `matrix` and factorises it.
 struct LineSystem {
     BandCholesky* matrix = nullptr;
@@ -67,6 +70,12 @@ private:
     struct BodyFactor {
         std::array<double, 36> factor{};  // of its mass and what springs add, what nodes give way taken off
     };
+    // What is between a line and a body: a column each unknown of the body, and what the line's factor makes of it.
+    struct LineHold {
+        std::uint32_t body = 0;
+        std::size_t line = 0;
+        std::array<std::vector<Vec3>, 6> column, given;
+    };
     // A run of nodes of one sheet.
     struct Chunk {
         std::uint32_t sheet = 0;
@@ -82,6 +91,8 @@ private:
     bool add_to_matrix(std::span<const SheetSystem> sheets, const TouchSpring& spring);
     void prepare_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
     bool prepare_lines(std::span<const LineSystem> lines, std::span<const TouchSpring> springs);
+    void prepare_line_holds(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
+    void give_way(const LineHold& hold);
     double guess(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
                  std::span<const TouchSpring> springs, std::span<const Vec3> moves);
     void find_residual(std::span<const SheetSystem> sheets, std::span<const TouchSpring> springs,
@@ -90,6 +101,8 @@ private:
     void add_springs(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
     void precondition_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
     void precondition_lines();
+    void add_line_pulls();
+    void follow_bodies();
     void solve_lines(std::span<Vec3> rhs) const;
     void go_on(std::span<const BodyInertia> bodies, double turn);
     void go_along(double way, std::size_t bodies);
@@ -108,6 +121,8 @@ private:
     std::vector<BodyFactor> body_factors_;
     // Of nodes of lines; product: of the line's own factor, and with what couples it.
     std::vector<Vec3> line_direction_, line_own_product_, line_product_, line_residual_, line_better_, line_answer_;
+    std::vector<Vec3> line_own_better_;  // the line's own factor times line_better_
+    std::vector<LineHold> line_holds_;
     std::vector<std::uint32_t> line_of_;
     std::vector<std::size_t> line_first_;  // of line_of_, one more than lines
     std::vector<bool> line_fixed_;

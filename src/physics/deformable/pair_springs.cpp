@@ -11,6 +11,7 @@ struct PairSprings::Found {
     ThinPoints points;
     Vec3 normal;                          // from the second to the first
     double distance = 0;                  // along it, m: below zero where the first has come to the other side
+    double speed = 0;                     // of the first against the second, m/s
     const ThinContact* memory = nullptr;  // of forces
 
     [[nodiscard]] auto key() const { return std::tuple(candidate.kind, candidate.is_swapped, candidate.first); }
@@ -32,7 +33,8 @@ struct PairSprings::Search {
     }
     [[nodiscard]] bool place(const ThinCandidate& candidate, Found& found) const;
     void recall(Found& found) const;
-    [[nodiscard]] bool is_near(const Found& found) const;
+    [[nodiscard]] double speed_of(const Found& found) const;
+    [[nodiscard]] bool began_inside(const Found& found) const;
     void add_nodes(std::span<const ThinCandidate> of_node, std::vector<Found>& kept) const;
     [[nodiscard]] bool is_held(const Found& edges, std::span<const Vec3> held_a, std::span<const Vec3> held_b) const;
 };
@@ -44,7 +46,9 @@ bool PairSprings::Search::place(const ThinCandidate& candidate, Found& found) co
     if (found.distance < 1e-9) return false;
     found.normal = found.points.away / found.distance;
     recall(found);
-    return is_near(found);
+    found.speed = speed_of(found);
+    // Whether it may touch within the substep: by its own speed and what gravity adds.
+    return found.distance - radius < (found.speed + gravity * h) * h + radius;
 }
 
 // A sheet has no inside: which side something is on is remembered.
@@ -71,14 +75,19 @@ void PairSprings::Search::recall(Found& found) const {
     if (most > same_way) found.memory = nearest;
 }
 
-// Whether it may touch within the substep: by its own speed and what gravity adds.
-bool PairSprings::Search::is_near(const Found& found) const {
+double PairSprings::Search::speed_of(const Found& found) const {
     Vec3 velocity;
     for (int k = 0; k < found.points.count; ++k) {
         const auto at = static_cast<std::size_t>(k);
         velocity += found.points.weight[at] * member_of(found, k).surface.nodes->mean_velocity[found.points.node[at]];
     }
-    return found.distance - radius < (length(velocity) + gravity * h) * h + radius;
+    return length(velocity);
+}
+
+// Nothing that touched on the way is deeper in than the two can have come in the substep.
+bool PairSprings::Search::began_inside(const Found& found) const {
+    if (found.memory != nullptr && !found.memory->is_recovery) return false;
+    return found.distance - radius < -(recovery_speed + found.speed) * h;
 }
 
 // A node touches the nearest of the triangles, and of others those that lie in another direction.
@@ -108,9 +117,6 @@ bool PairSprings::Search::is_held(const Found& edges, std::span<const Vec3> held
 }
 
 void PairSprings::add(const Search& search, const Found& found) {
-    constexpr double stiffness_factor = 20;  // over the inertia of the heavier
-    constexpr double load_factor = 4;        // over the inertia of what weighs on it
-    constexpr double recovery = 0.2;         // m/s: what lies in each other is parted no faster
     const double h = search.h;
     TouchSpring spring{.node = found.points.node, .weight = found.points.weight, .count = found.points.count};
     std::array<double, 2> mass{};
@@ -126,13 +132,13 @@ void PairSprings::add(const Search& search, const Found& found) {
         spring.node[at] = member.first + node;
     }
     if (give == 0) return;
+    spring.is_recovery = search.began_inside(found);
     const double push = found.memory != nullptr ? found.memory->push : 0;
-    const double carried = search.gravity > 0 ? push / search.gravity : 0;
-    spring.stiffness = std::max(stiffness_factor * std::max(mass[0], mass[1]), load_factor * carried) / (h * h);
+    spring.stiffness = contact_stiffness(std::max(mass[0], mass[1]), push, h, search.gravity);
     spring.inertia = 1 / (give * h * h);
     spring.normal = found.normal;
-    spring.gap = std::max(found.distance - search.radius, -recovery * h);
-    spring.friction = std::sqrt(search.a.surface.friction * search.b.surface.friction);
+    spring.gap = std::max(found.distance - search.radius, -recovery_speed * h);
+    spring.friction = spring.is_recovery ? 0 : std::sqrt(search.a.surface.friction * search.b.surface.friction);
     if (found.memory != nullptr) {
         spring.pull = found.memory->push * found.normal;
         spring.hold = across(found.memory->hold, found.normal);
@@ -140,6 +146,7 @@ void PairSprings::add(const Search& search, const Found& found) {
     springs_.push_back(spring);
     features_.push_back({found.candidate.kind,
                          found.candidate.is_swapped,
+                         spring.is_recovery,
                          found.candidate.first,
                          found.candidate.second,
                          found.normal,
@@ -204,12 +211,13 @@ void PairSprings::finish(std::span<const Vec3> moves, std::span<Vec3> given, Thi
             if (!spring.acts) continue;
             const Vec3 s = spring.lead(moves, {});
             const Vec3 force = spring.force(s);
+            for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
+                given[spring.node[k]] += spring.weight[k] * force;
+            if (spring.is_recovery) continue;
             own.push = std::max(0.0, dot(force, spring.normal));
             own.hold = spring.hold + across(s, spring.normal);
             const double most = spring.friction * own.push / spring.stiffness, size = length(own.hold);
             if (size > most) own.hold *= most / size;
-            for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
-                given[spring.node[k]] += spring.weight[k] * force;
         }
         std::ranges::stable_sort(memory, {}, &ThinContact::key);
     }

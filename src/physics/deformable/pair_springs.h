@@ -14,6 +14,7 @@ namespace embody::physics {
 struct ThinContact {
     ThinFeature kind = ThinFeature::node_on_triangle;
     bool is_swapped = false;
+    bool is_recovery = false;  ///< as of TouchSpring
     std::uint32_t first = 0, second = 0;
     Vec3 normal;      ///< from the second to the first
     double push = 0;  ///< N

@@ -20,6 +20,7 @@ namespace embody::physics {
 namespace {
 
 constexpr double turn_around = 2 * 3.14159265358979323846;
+constexpr std::uint32_t other_holder = 0xFFFFFFFEu;  // the slot of no body: the angle alone is known
 constexpr double most_folded = 0.02;  // 1 + a·b where curvature ends to grow: folded back by 168 degrees
 
 double one_plus_cosine(Vec3 a, Vec3 b, double least) { return std::max(1 + dot(a, b), least); }
@@ -42,12 +43,17 @@ void RopeClamps::set(const std::vector<Clamp>& clamps) {
     std::vector<Clamp> sorted = clamps;
     std::ranges::sort(sorted, {}, &Clamp::node);
     if (sorted == clamps_) return;
-    const auto stays = [&](std::uint32_t node) {
-        const auto same = [&](const Clamp& c) { return c.node == node; };
-        const auto before = std::ranges::find_if(clamps_, same), after = std::ranges::find_if(sorted, same);
-        return before != clamps_.end() && after != sorted.end() && *before == *after;
+    const auto is_clamped = [&](std::uint32_t node) {
+        return std::ranges::find(sorted, node, &Clamp::node) != sorted.end();
     };
-    std::erase_if(memory_, [&](const Memory& m) { return !stays(m.from) || !stays(m.to); });
+    const auto stays = [&](std::uint32_t node) {
+        const auto before = std::ranges::find(clamps_, node, &Clamp::node);
+        return before != clamps_.end() && *before == *std::ranges::find(sorted, node, &Clamp::node);
+    };
+    std::erase_if(memory_, [&](const Memory& m) { return !is_clamped(m.from) || !is_clamped(m.to); });
+    for (Memory& memory : memory_) {
+        if (!stays(memory.from) || !stays(memory.to)) memory.from_slot = other_holder;
+    }
     clamps_ = std::move(sorted);
     held_.clear();
     bends_.clear();
@@ -122,16 +128,16 @@ void RopeClamps::find_spans(const Start& start, std::span<const Frame> at_start)
         if (!is_whole) continue;
         Span span{i - 1, i, start.rope.twist_rigidity / along};
         span.damping = span.stiffness * start.rope.rayleigh_damping / start.substep.h;
-        const auto same = std::ranges::find_if(memory_, [&](const Memory& m) {
-            return m.from == from.clamp.node && m.to == to.clamp.node && m.from_slot == from.slot &&
-                   m.to_slot == to.slot;
-        });
-        if (same != memory_.end()) {
+        const auto same = std::ranges::find_if(
+            memory_, [&](const Memory& m) { return m.from == from.clamp.node && m.to == to.clamp.node; });
+        if (same != memory_.end()) span.angle = same->angle;
+        if (same != memory_.end() && same->from_slot == from.slot && same->to_slot == to.slot) {
             span.straight = same->straight;
-            span.angle = same->angle;
         } else {
+            // Held by others now, or by other axes: it goes on as far twisted as it is.
             span.straight =
-                read_angle(from.clamp.node, to.clamp.node, at_start[i - 1], at_start[i], start.nodes.position);
+                read_angle(from.clamp.node, to.clamp.node, at_start[i - 1], at_start[i], start.nodes.position) -
+                span.angle;
         }
         span.moment = span.stiffness * span.angle;
         spans_.push_back(span);

@@ -139,8 +139,7 @@ void RopeLine::begin_substep(double h) {
     pulls_ = tensions_;
 }
 
-double RopeLine::merit(const Substep& substep, std::span<const BodyInertia> inertias, std::span<const Vec3> moves,
-                       std::span<const BodyMove> body_moves) const {
+double RopeLine::energy(const Substep& substep, std::span<const Vec3> moves) const {
     const double h = substep.h;
     std::vector<Vec3> at(moves.size());
     double sum = 0;
@@ -149,7 +148,6 @@ double RopeLine::merit(const Substep& substep, std::span<const BodyInertia> iner
         if (fixed_[i]) continue;
         const Vec3 away = moves[i] - h * nodes_.mean_velocity[i] - h * h * substep.gravity;
         sum += nodes_.mass[i] / (2 * h * h) * length_squared(away);
-        if (!given_.empty()) sum -= dot(given_[i], moves[i]);
     }
     for (std::size_t s = 0; s < segments_.size(); ++s) {
         if (segments_[s].is_broken) continue;
@@ -162,18 +160,26 @@ double RopeLine::merit(const Substep& substep, std::span<const BodyInertia> iner
         for (std::size_t k = 0; k < 3; ++k) rate += known.by_node[k] * moves[i - 1 + k];
         sum += known.stiffness / 2 * length_squared(bend_at(i, at).turn) + 0.5 * dot(rate, known.damping * rate);
     }
-    for (std::size_t b = 0; b < inertias.size(); ++b) {
-        if (!inertias[b].moves) continue;
-        sum += inertias[b].mass / 2 * length_squared(body_moves[b].shift) +
-               0.5 * dot(body_moves[b].turn, inertias[b].inertia * body_moves[b].turn);
-    }
-    for (const TouchSpring& spring : springs_.springs()) {
-        if (!spring.acts) continue;
-        const Vec3 s = spring.lead(moves, body_moves);
-        sum += 0.5 * dot(s, spring.matrix * s) - dot(spring.load, s);
-    }
-    if (clamps_.holds_any()) sum += clamps_.energy(at, body_moves);
     return sum;
+}
+
+double RopeLine::merit(const Substep& substep, std::span<const BodyInertia> inertias, std::span<const Vec3> moves,
+                       std::span<const BodyMove> body_moves) const {
+    double sum = energy(substep, moves);
+    for (std::size_t b = 0; b < inertias.size(); ++b) sum += energy_of(inertias[b], body_moves[b]);
+    for (const TouchSpring& spring : springs_.springs()) sum += energy_of(spring, moves, body_moves);
+    for (const TouchSpring& spring : held_) sum += energy_of(spring, moves, body_moves);
+    if (!clamps_.holds_any()) return sum;
+    std::vector<Vec3> at(moves.size());
+    for (std::size_t i = 0; i < moves.size(); ++i) at[i] = nodes_.position[i] + moves[i];
+    return sum + clamps_.energy(at, body_moves);
+}
+
+void RopeLine::foretell(const Substep& substep, std::span<const Vec3> from, std::span<const Vec3> to) {
+    for (std::size_t s = 0; s < segments_.size(); ++s) {
+        const Vec3 edge = places_[s + 1] - places_[s], moved = to[s + 1] - from[s + 1] - to[s] + from[s];
+        pulls_[s] = damped_tension_at(s, length(edge) + dot(normalized(edge, {1, 0, 0}), moved), substep.h).force;
+    }
 }
 
 // Goes from the moves towards those that the round found, as far as it pays.
@@ -190,12 +196,7 @@ bool RopeLine::take_step(const Substep& substep, std::span<const BodyInertia> in
         const double after = merit(substep, inertias, moves_, body_moves_);
         if (!std::isfinite(after)) continue;
         if (after <= before + 1e-9 * std::fabs(before)) {
-            for (std::size_t s = 0; s < segments_.size(); ++s) {
-                const Vec3 edge = places_[s + 1] - places_[s];
-                const Vec3 moved = moves_[s + 1] - from[s + 1] - moves_[s] + from[s];
-                pulls_[s] =
-                    damped_tension_at(s, length(edge) + dot(normalized(edge, {1, 0, 0}), moved), substep.h).force;
-            }
+            foretell(substep, from, moves_);
             return true;
         }
     }
@@ -211,7 +212,6 @@ void RopeLine::assemble(const Substep& substep, bool with_curvature) {
         places_[i] = nodes_.position[i] + moves_[i];
         system_.band.add_diagonal(i, nodes_.mass[i] / (h * h));
         system_.rhs[i] = nodes_.mass[i] * (nodes_.mean_velocity[i] / h + substep.gravity);
-        if (!given_.empty()) system_.rhs[i] += given_[i];
     }
     for (std::size_t s = 0; s < segments_.size(); ++s) add_stretch(s, h);
     for (std::size_t i = 1; i + 1 < count; ++i) add_bend(i);
@@ -222,8 +222,14 @@ void RopeLine::assemble(const Substep& substep, bool with_curvature) {
 // press it sideways: that is left to the forces.
 bool RopeLine::solve_round(const Substep& substep, std::span<const BodyInertia> inertias) {
     next_body_moves_ = body_moves_;
+    std::vector<TouchSpring> all;
+    if (!held_.empty()) {
+        all.assign(springs_.springs().begin(), springs_.springs().end());
+        all.insert(all.end(), held_.begin(), held_.end());
+    }
     const auto solve = [&] {
-        return system_.solve(springs_.springs(), inertias, fixed_, next_moves_, next_body_moves_, moments_);
+        return system_.solve(all.empty() ? springs_.springs() : all, inertias, fixed_, next_moves_, next_body_moves_,
+                             moments_);
     };
     if (!solve()) {
         if (!clamps_.has_twist()) return false;
@@ -318,25 +324,37 @@ void RopeLine::freeze() {
 void RopeLine::advance(const Substep& substep, std::span<const NodeContact> contacts,
                        std::span<const SegmentContact> segment_contacts,
                        std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies,
-                       std::span<const Vec3> given) {
+                       std::span<const TouchSpring> held) {
     if (is_frozen_) return;
-    const std::size_t count = nodes_.size();
-    given_.assign(given.begin(), given.end());
+    held_.assign(held.begin(), held.end());
     begin(substep, contacts, segment_contacts, attachment_bodies, bodies);
     if (!solve_moves(substep, bodies)) return freeze();
+    std::vector<double> shares;
+    if (!clamps_.holds_any())
+        shares = shares_of(springs_.springs(), moves_, body_moves_, inertias_of(bodies, substep.h), substep.h);
+    end(substep, moves_, body_moves_, {}, bodies, shares);
+}
+
+void RopeLine::end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
+                   std::span<const Vec3> given, std::span<TouchedBody> bodies, std::span<const double> shares) {
+    if (is_frozen_) return;
+    const std::size_t count = nodes_.size();
+    if (moves.data() != moves_.data()) moves_.assign(moves.begin(), moves.end());
     const auto acts = [](const TouchSpring& spring) { return spring.acts; };
     const bool is_whole = std::ranges::none_of(segments_, &RopeSegment::is_broken);
-    if (is_whole && std::ranges::find(fixed_, true) == fixed_.end() && std::ranges::none_of(springs_.springs(), acts)) {
+    const bool is_free = std::ranges::find(fixed_, true) == fixed_.end() && held_.empty() &&
+                         std::ranges::none_of(springs_.springs(), acts);
+    if (is_whole && is_free) {
         std::vector<Vec3> all(count);
         for (std::size_t i = 0; i < count; ++i) all[i] = substep.h * nodes_.mass[i] * substep.gravity;
         for (std::size_t i = 0; i < given.size(); ++i) all[i] += substep.h * given[i];
         keep_momenta(nodes_, all, substep.h, moves_);
     }
-    given_.clear();
-    springs_.finish(moves_, body_moves_, substep, bodies);
+    held_.clear();
+    springs_.finish(moves_, body_moves, substep, bodies, shares);
     if (clamps_.holds_any()) {
         for (std::size_t i = 0; i < count; ++i) places_[i] = nodes_.position[i] + moves_[i];
-        clamps_.finish(places_, body_moves_, substep.h, bodies);
+        clamps_.finish(places_, body_moves, substep.h, bodies);
     }
     set_velocities(nodes_, moves_, substep.h);
     for (std::size_t i = 0; i < count; ++i) nodes_.position[i] += moves_[i];

@@ -17,20 +17,31 @@ public:
     /// `definition` is valid and its matter is a rope.
     explicit RopeLine(const DeformableDefinition& definition);
 
-    /// One substep. `attachment_bodies`: where the attachments hold in `bodies`; `given`: forces on the nodes besides,
-    /// N; none or one a node. Pushes the bodies.
+    /// One substep. `attachment_bodies`: where the attachments hold in `bodies`; `held`: what else holds its nodes, by
+    /// springs that act and are to no body. Pushes the bodies.
     void advance(const Substep& substep, std::span<const NodeContact> contacts,
                  std::span<const SegmentContact> segment_contacts, std::span<const std::uint32_t> attachment_bodies,
-                 std::span<TouchedBody> bodies, std::span<const Vec3> given = {});
+                 std::span<TouchedBody> bodies, std::span<const TouchSpring> held = {});
 
-    // For a solve together with other sheets and ropes that it touches, before advance() (docs/physics/cloth.md):
+    // For a solve together with other sheets and ropes that it touches (docs/physics/cloth.md):
     /// Finds touch() and node_stiffness() for the substep.
     void begin(const Substep& substep, std::span<const NodeContact> contacts,
                std::span<const SegmentContact> segment_contacts, std::span<const std::uint32_t> attachment_bodies,
                std::span<const TouchedBody> bodies);
     /// The equations about these moves, without springs; valid until the next call. Their answer are moves again.
     LineSystem linearize(const Substep& substep, std::span<const Vec3> moves);
-    [[nodiscard]] const TouchSprings& touch() const { return springs_; }
+    /// What the solve minimises of the rope alone, without springs and clamps, J.
+    [[nodiscard]] double energy(const Substep& substep, std::span<const Vec3> moves) const;
+    /// What its segments pull with where the solve about the moves `from` goes to `to`: for the next linearize().
+    void foretell(const Substep& substep, std::span<const Vec3> from, std::span<const Vec3> to);
+    /// Goes by these moves, which touch() was solved with. `given`: forces on the nodes besides, N; none or one a node.
+    /// Pushes the bodies; `shares` as of TouchSprings::finish().
+    void end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
+             std::span<const Vec3> given, std::span<TouchedBody> bodies, std::span<const double> shares);
+    [[nodiscard]] TouchSprings& touch() { return springs_; }
+    [[nodiscard]] bool has_clamps() const { return clamps_.holds_any(); }
+    /// Of the first at rest, m.
+    [[nodiscard]] double segment_length() const { return segments_[0].length; }
     /// How each node resists on its own, N/m, since begin().
     [[nodiscard]] std::span<const double> node_stiffness() const { return node_stiffness_; }
     /// Stops it for good where it is.
@@ -102,10 +113,11 @@ private:
     // Of the substep.
     RopeSystem system_;
     std::vector<Vec3> places_, moves_, next_moves_;
-    std::vector<Vec3> given_, small_load_;  // N
-    std::vector<Bend> bends_;               // by node, when the substep began
-    std::vector<double> start_lengths_;     // of segments, then, m
-    std::vector<double> pulls_;             // of segments, as the last round foretold them, N
+    std::vector<TouchSpring> held_;
+    std::vector<Vec3> small_load_;       // N
+    std::vector<Bend> bends_;            // by node, when the substep began
+    std::vector<double> start_lengths_;  // of segments, then, m
+    std::vector<double> pulls_;          // of segments, as the last round foretold them, N
     std::vector<double> node_stiffness_;
     std::vector<BodyMove> body_moves_, next_body_moves_;
     std::vector<double> moments_;  // of twists, as the last round foretold them, N m

@@ -31,13 +31,6 @@ void solve_dense(const std::vector<double>& factor, std::size_t n, std::vector<d
     }
 }
 
-// The move of a point at `arm` when the body's unknown c (three of its place, three of its turn) goes by one.
-Vec3 unit_move(std::size_t c, Vec3 arm) {
-    Vec3 axis;
-    axis[static_cast<int>(c % 3)] = 1;
-    return c < 3 ? axis : cross(axis, arm);
-}
-
 double product(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += dot(a[i], b[i]);

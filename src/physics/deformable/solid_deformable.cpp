@@ -225,6 +225,16 @@ void SolidDeformable::finish() {
     keep_energy();
 }
 
+void SolidDeformable::go_on_with(std::span<const Vec3> force, TaskPool& workers) {
+    find_response(force, move_, workers);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        nodes_.position[i] += move_[i];
+        nodes_.velocity[i] += 1.5 / h_ * move_[i];
+        nodes_.mean_velocity[i] += move_[i] / h_;
+    }
+    elastic_energy_.reset();
+}
+
 double SolidDeformable::kinetic_energy() const {
     double sum = 0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {

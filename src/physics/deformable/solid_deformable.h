@@ -41,6 +41,8 @@ public:
     void find_response(std::span<const Vec3> force, std::span<Vec3> move, TaskPool& workers);
     /// Velocities of what the substep has come to.
     void finish();
+    /// After finish(): moves the nodes by what these forces (N) besides do in the substep.
+    void go_on_with(std::span<const Vec3> force, TaskPool& workers);
 
     /// Where a node was when the substep began, m.
     [[nodiscard]] Vec3 start(std::uint32_t node) const { return start_[node]; }

@@ -10,11 +10,15 @@ namespace {
 
 constexpr double stiffness_factor = 20;  // over what the node's neighbours resist with, or over a point's inertia
 constexpr double load_factor = 4;        // over the inertia of what weighs on a point
-constexpr double recovery = 0.2;         // m/s: a point between nodes that lies in a body is parted no faster
 
-// How the surface of a body goes on its path within the substep.
-Vec3 path_of(const TouchedBody& body, Vec3 arm, double h) {
-    return h * (body.path_velocity + body.velocity + cross(body.path_spin + body.spin, arm));
+// A new contact that is deeper than its point can have come in the substep began inside, or something was put there. It
+// is brought out at a bounded speed, by no more than the point's own inertia asks for: where the point is held inside
+// by something else, a force that is remembered would grow for ever.
+void begin_recovery(TouchSpring& spring, double h) {
+    spring.is_recovery = true;
+    spring.friction = 0;
+    spring.stiffness = stiffness_factor * spring.inertia;
+    spring.gap = -recovery_speed * h - dot(spring.carried, spring.normal);
 }
 
 // Friction: k (hold + slip) up to its limit. Beyond it the secant through that limit at the slip to be expected, which
@@ -65,6 +69,11 @@ void choose_contact(TouchSpring& spring, Vec3 s, bool is_foretold, SpringChange&
     spring.load += (push_before - spring.stiffness * spring.gap) * spring.normal;
 }
 
+double contact_stiffness(double mass, double force, double h, double gravity) {
+    const double carried = gravity > 0 ? force / gravity : 0;
+    return std::max(stiffness_factor * mass, load_factor * carried) / (h * h);
+}
+
 std::vector<BodyInertia> inertias_of(std::span<const TouchedBody> bodies, double h) {
     std::vector<BodyInertia> inertias;
     for (const TouchedBody& body : bodies) {
@@ -88,16 +97,54 @@ Vec3 TouchSpring::lead(std::span<const Vec3> node_moves, std::span<const BodyMov
     return s;
 }
 
-void TouchSprings::recall(const TouchedBody& body, TouchSpring& spring) const {
+double energy_of(const TouchSpring& spring, std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves) {
+    if (!spring.acts) return 0;
+    const Vec3 s = spring.lead(node_moves, body_moves);
+    return 0.5 * dot(s, spring.matrix * s) - dot(spring.load, s);
+}
+
+double energy_of(const BodyInertia& inertia, const BodyMove& move) {
+    if (!inertia.moves) return 0;
+    return inertia.mass / 2 * length_squared(move.shift) + 0.5 * dot(move.turn, inertia.inertia * move.turn);
+}
+
+std::vector<double> shares_of(std::span<const TouchSpring> springs, std::span<const Vec3> node_moves,
+                              std::span<const BodyMove> body_moves, std::span<const BodyInertia> inertias, double h) {
+    constexpr double most = 4;         // times the energy that the body's move takes
+    constexpr double slow_push = 0.5;  // m/s: what speeds it up by less does no harm
+    std::vector<BodyMove> pushes(inertias.size());
+    for (const TouchSpring& spring : springs) {
+        if (!spring.acts || !moves_body(spring, inertias)) continue;
+        const Vec3 force = spring.force(spring.lead(node_moves, body_moves));
+        pushes[spring.body].shift -= force;
+        pushes[spring.body].turn -= cross(spring.arm, force);
+    }
+    std::vector<double> shares(inertias.size(), 1);
+    for (std::size_t b = 0; b < inertias.size(); ++b) {
+        if (!inertias[b].moves) continue;
+        const auto& [force, torque] = pushes[b];
+        const double pushed = length_squared(force) / (2 * inertias[b].mass) +
+                              0.5 * dot(torque, inverse_or_zero(inertias[b].inertia) * torque);
+        const double moved = energy_of(inertias[b], body_moves[b]);
+        const double small = 0.5 * inertias[b].mass * slow_push * slow_push * h * h;
+        if (pushed > most * moved + small) shares[b] = std::sqrt(moved / pushed);
+    }
+    return shares;
+}
+
+bool TouchSprings::recall(const TouchedBody& body, TouchSpring& spring) const {
     auto at = std::ranges::lower_bound(memory_, spring.feature, {}, &Memory::feature);
+    bool is_known = false;
     double nearest = 0.8;  // cosine: another face of the body is another contact
     for (; at != memory_.end() && at->feature == spring.feature; ++at) {
         if (at->slot != body.body || at->is_attachment != spring.is_attachment) continue;
         if (dot(at->normal, spring.normal) < nearest) continue;
+        is_known = true;
         nearest = dot(at->normal, spring.normal);
         spring.pull = spring.is_attachment ? at->pull : length(at->pull) * spring.normal;
         spring.hold = across(at->hold, spring.normal);
     }
+    return is_known;
 }
 
 bool TouchSprings::is_attached(std::uint32_t node, std::uint32_t body) const {
@@ -134,9 +181,15 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
     if (!is_free || spring.gap > reach) return;
     spring.arm += across(offset, spring.normal);
     spring.friction = std::sqrt(friction * body.friction);
-    spring.carried = path_of(body, spring.arm, substep.h) + substep.h * plane.velocity;
-    recall(body, spring);
+    spring.carried = place.way_of(spring.arm) + substep.h * plane.velocity;
+    const double gap_at_start = spring.gap + dot(spring.carried, spring.normal);
+    const double came_in = length(velocity) * substep.h + std::fabs(dot(spring.carried, spring.normal));
+    const bool is_known = recall(body, spring);
     if (node_stiffness.empty()) soften(substep, give, body.inverse_mass > 0, spring);
+    if (!is_known && gap_at_start < -recovery_speed * substep.h - came_in) {
+        if (std::ranges::find(attachment_bodies, plane.body) != attachment_bodies.end()) return;
+        begin_recovery(spring, substep.h);
+    }
     springs_.push_back(spring);
 }
 
@@ -148,7 +201,7 @@ void TouchSprings::soften(const Substep& substep, double give, bool is_with_body
     const double carried = g > 0 ? length(spring.pull) / g : 0;
     spring.stiffness = std::max(stiffness_factor * spring.inertia, load_factor * carried / squared);
     spring.inertia = 1 / (give * squared);
-    spring.gap = std::max(spring.gap, -recovery * substep.h);
+    spring.gap = std::max(spring.gap, -recovery_speed * substep.h);
 }
 
 void TouchSprings::add(const Nodes& nodes, const SheetContact& contact, std::span<const TouchedBody> bodies,
@@ -168,11 +221,19 @@ void TouchSprings::add(const Nodes& nodes, const SegmentContact& contact, std::s
     complete(nodes, contact.plane, bodies, substep, node_stiffness, spring);
 }
 
+// Along its circle: what a straight way is off that, a stiff rope that sticks to a turning drum feels as a pull.
+TouchSprings::Place TouchSprings::place_of(const TouchedBody& body, const Substep& substep) {
+    const double end = substep.time + substep.h;
+    Place place{body.center_at(end), body.rotation_at(end)};
+    place.way = place.center - body.center_before(substep.h, end);
+    place.back = body.rotation_before(substep.h, end) * transpose(place.rotation);
+    return place;
+}
+
 void TouchSprings::begin(const Nodes& nodes, std::span<const NodeContact> contacts, std::span<const TouchedBody> bodies,
                          const Substep& substep, std::span<const double> node_stiffness) {
-    const double end = substep.time + substep.h;
     places_.clear();
-    for (const TouchedBody& body : bodies) places_.push_back({body.center_at(end), body.rotation_at(end)});
+    for (const TouchedBody& body : bodies) places_.push_back(place_of(body, substep));
     springs_.clear();
     for (const NodeContact& contact : contacts) {
         if (is_attached(contact.node, contact.body)) continue;
@@ -228,16 +289,18 @@ bool TouchSprings::stop(TouchSpring& spring, std::span<Vec3> node_moves, std::sp
 }
 
 void TouchSprings::finish(std::span<Vec3> node_moves, std::span<const BodyMove> body_moves, const Substep& substep,
-                          std::span<TouchedBody> bodies) {
+                          std::span<TouchedBody> bodies, std::span<const double> shares) {
     memory_.clear();
     for (TouchSpring& spring : springs_) {
         if (spring.acts)
             spring.felt = spring.force(spring.lead(node_moves, body_moves));
         else if (!stop(spring, node_moves, body_moves))
             continue;
-        const Vec3 s = spring.lead(node_moves, body_moves), force = spring.felt;
         if (spring.body == no_body) continue;
+        if (!shares.empty()) spring.felt *= shares[spring.body];
+        const Vec3 s = spring.lead(node_moves, body_moves), force = spring.felt;
         bodies[spring.body].push(-substep.h * force, spring.arm, substep.h);
+        if (spring.is_recovery) continue;
         Memory memory{spring.feature, bodies[spring.body].body, spring.is_attachment, spring.normal, force, {}};
         if (!spring.is_attachment) {
             const double push = std::max(0.0, dot(force, spring.normal));

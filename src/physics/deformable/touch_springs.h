@@ -17,8 +17,17 @@ struct BodyMove {
     Vec3 shift, turn;
 };
 
+/// The move of a point at `arm` when the body's unknown c (three of its place, three of its turn) goes by one.
+inline Vec3 unit_move(std::size_t c, Vec3 arm) {
+    Vec3 axis;
+    axis[static_cast<int>(c % 3)] = 1;
+    return c < 3 ? axis : cross(axis, arm);
+}
+
 inline constexpr std::uint32_t no_body = 0xFFFFFFFFu;
 inline constexpr std::uint32_t no_node = 0xFFFFFFFFu;
+
+inline constexpr double recovery_speed = 0.2;  ///< m/s: what begins inside of something is parted from it no faster
 
 /// How hard bodies are to move within a substep of h seconds: none that the pushes do not move.
 struct BodyInertia {
@@ -58,6 +67,7 @@ struct TouchSpring {
     TouchFeature feature{};        ///< with the body and about that direction, what is remembered
     std::uint32_t body = no_body;  ///< index in the list of bodies
     bool is_attachment = false;    ///< pulls too, in every direction
+    bool is_recovery = false;      ///< of a point that began inside: forgets its force
     Vec3 normal;                   ///< unit, towards the point, at the end of the substep
     Vec3 arm;                      ///< from the body's centre of mass to what is touched, then
     double friction = 0;           ///< Coulomb coefficient
@@ -78,6 +88,20 @@ struct TouchSpring {
     [[nodiscard]] Vec3 lead(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves) const;
 };
 
+inline bool moves_body(const TouchSpring& spring, std::span<const BodyInertia> bodies) {
+    return spring.body != no_body && bodies[spring.body].moves;
+}
+
+/// What a solve minimises has of these: of a spring that acts, of a body's moves; J.
+double energy_of(const TouchSpring& spring, std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves);
+double energy_of(const BodyInertia& inertia, const BodyMove& move);
+
+/// Of each body, how much of what the springs push it for these moves it may get: 1 where it goes by that as the solve
+/// has it in the substep of h seconds, less where a solve that has not come to its end left stiff springs with far
+/// more.
+std::vector<double> shares_of(std::span<const TouchSpring> springs, std::span<const Vec3> node_moves,
+                              std::span<const BodyMove> body_moves, std::span<const BodyInertia> inertias, double h);
+
 /// How much of contacts' forces has changed, N, beside those of contacts that act, and those that all that are near
 /// would have: the finer and the coarser measure.
 struct SpringChange {
@@ -86,6 +110,9 @@ struct SpringChange {
 /// Whether a contact acts, and how its friction does, for that lead (m). `is_foretold`: of moves by inertia alone, no
 /// measure of forces: those of the last substep are.
 void choose_contact(TouchSpring& spring, Vec3 s, bool is_foretold, SpringChange& sum);
+/// Of a contact or tie between sheets and ropes, N/m: over the inertia of the heavier point (`mass`, kg), or of what
+/// weighs on it, which `force` (N) tells, in a substep of h seconds. `gravity`: m/s².
+double contact_stiffness(double mass, double force, double h, double gravity);
 /// The part of v along a plane.
 inline Vec3 across(Vec3 v, Vec3 normal) { return v - dot(v, normal) * normal; }
 
@@ -111,9 +138,10 @@ public:
     bool choose(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, bool is_foretold);
     /// Goes on with what the contacts of another deformable of as many nodes felt last.
     void go_on_from(const TouchSprings& other) { memory_ = other.memory_; }
-    /// Pushes the bodies, and remembers. Changes moves of nodes that came in where no spring acted.
+    /// Pushes the bodies, and remembers. Changes moves of nodes that came in where no spring acted. `shares`: as of
+    /// shares_of(), or none.
     void finish(std::span<Vec3> node_moves, std::span<const BodyMove> body_moves, const Substep& substep,
-                std::span<TouchedBody> bodies);
+                std::span<TouchedBody> bodies, std::span<const double> shares = {});
 
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_; }
 
@@ -133,13 +161,19 @@ private:
     struct Place {
         Vec3 center;
         Mat3 rotation;
+        Vec3 way;                      // of the centre in the substep, m
+        Mat3 back = Mat3::identity();  // what turns directions of its end to those of its start
+        /// How far the point that is there then goes in the substep, m.
+        [[nodiscard]] Vec3 way_of(Vec3 arm) const { return way + arm - back * arm; }
     };
+    static Place place_of(const TouchedBody& body, const Substep& substep);
     // Of a contact at a point, once its nodes and weights are known. Without stiffness of nodes: by inertia and load.
     void complete(const Nodes& nodes, const NodeContact& plane, std::span<const TouchedBody> bodies,
                   const Substep& substep, std::span<const double> node_stiffness, TouchSpring& spring);
     static void soften(const Substep& substep, double give, bool is_with_body, TouchSpring& spring);
     [[nodiscard]] bool is_attached(std::uint32_t node, std::uint32_t body) const;
-    void recall(const TouchedBody& body, TouchSpring& spring) const;
+    // False where the contact is new.
+    bool recall(const TouchedBody& body, TouchSpring& spring) const;
     static bool stop(TouchSpring& spring, std::span<Vec3> node_moves, std::span<const BodyMove> body_moves);
 
     std::vector<TouchSpring> springs_;

@@ -122,9 +122,12 @@ public:
     /// Other matter, pins, friction and the like, of the same nodes and elements; these stay where they are and go on
     /// as they move, whatever the definition says of pose and velocity. Wakes it.
     Result<void> set_deformable(DeformableHandle deformable, const DeformableDefinition& definition);
-    /// The attachments and a rope's clamps alone: costs nothing. Between clamps that stay, a rope stays twisted.
+    /// The attachments, ties and a rope's clamps alone: costs nothing. Between clamps that stay, a rope stays twisted.
     Result<void> set_attachments(DeformableHandle deformable, const std::vector<Attachment>& attachments,
-                                 const std::vector<Clamp>& clamps = {});
+                                 const std::vector<Clamp>& clamps = {}, const std::vector<Tie>& ties = {});
+    /// For `node` of a sheet or rope: a tie to the point of the other's surface or line that is nearest to the place
+    /// (m); nothing if stale or broken all over.
+    [[nodiscard]] std::optional<Tie> nearest_tie(std::uint32_t node, DeformableHandle other, Vec3 place) const;
     /// Of each segment of a rope, from node k to k + 1, N; below zero: pressed; 0 where it is broken. Empty for what is
     /// no rope. Valid until the next step or change.
     [[nodiscard]] std::span<const double> rope_tensions(DeformableHandle rope) const;

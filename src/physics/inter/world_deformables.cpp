@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 
+#include "physics/deformable/nearest_points.h"
 #include "physics/deformable/rotation_part.h"
 #include "physics/inter/world.h"
 #include "physics/step/thin_groups.h"
@@ -20,9 +22,25 @@ Result<void> check_attachments(const World& world, const std::vector<Attachment>
     return {};
 }
 
-Result<DeformableRecord> make_record(const World& world, const DeformableDefinition& definition) {
+// `own`: null for one that is not there yet.
+Result<void> check_ties(const World& world, DeformableHandle own, const std::vector<Tie>& ties) {
+    for (std::size_t i = 0; i < ties.size(); ++i) {
+        const std::string where = "ties[" + std::to_string(i) + "]";
+        const DeformableDefinition* other = world.deformable(ties[i].other);
+        if (other == nullptr) return Error{where, "is to a deformable that is not one of this world"};
+        if (ties[i].other == own) return Error{where, "is to itself", "tie it to another sheet, rope or solid"};
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (ties[i].weight[k] > 0 && ties[i].other_nodes[k] >= other->nodes.size())
+                return Error{where + ".other_nodes", "has one that is no node of the other"};
+        }
+    }
+    return {};
+}
+
+Result<DeformableRecord> make_record(const World& world, DeformableHandle own, const DeformableDefinition& definition) {
     if (auto result = validate(definition); !result) return result.error();
     if (auto result = check_attachments(world, definition.attachments); !result) return result.error();
+    if (auto result = check_ties(world, own, definition.ties); !result) return result.error();
     return make_deformable_record(definition);
 }
 
@@ -71,7 +89,7 @@ const Error no_such_deformable{"deformable", "is not one of this world"};
 }  // namespace
 
 Result<DeformableHandle> World::create_deformable(const DeformableDefinition& definition) {
-    auto record = make_record(*this, definition);
+    auto record = make_record(*this, {}, definition);
     if (!record) return record.error();
     return state_->deformables.insert(std::move(*record));
 }
@@ -174,7 +192,7 @@ Result<void> World::set_nodes(DeformableHandle deformable, std::span<const Vec3>
 Result<void> World::set_deformable(DeformableHandle deformable, const DeformableDefinition& definition) {
     DeformableRecord* record = state_->deformables.find(deformable);
     if (record == nullptr) return no_such_deformable;
-    auto changed = make_record(*this, definition);
+    auto changed = make_record(*this, deformable, definition);
     if (!changed) return changed.error();
     if (definition.nodes.size() != record->definition.nodes.size())
         return Error{"nodes", "are not as many as before", "make another deformable in its place"};
@@ -192,17 +210,46 @@ Result<void> World::set_deformable(DeformableHandle deformable, const Deformable
 }
 
 Result<void> World::set_attachments(DeformableHandle deformable, const std::vector<Attachment>& attachments,
-                                    const std::vector<Clamp>& clamps) {
+                                    const std::vector<Clamp>& clamps, const std::vector<Tie>& ties) {
     DeformableRecord* record = state_->deformables.find(deformable);
     if (record == nullptr) return no_such_deformable;
     if (auto result = check_attachments(*this, attachments); !result) return result;
+    if (auto result = check_ties(*this, deformable, ties); !result) return result;
     DeformableDefinition changed = record->definition;
     changed.attachments = attachments;
     changed.clamps = clamps;
+    changed.ties = ties;
     if (auto result = validate(changed); !result) return result;
     record->definition = std::move(changed);
+    record->tie_pulls.clear();
     wake_up(*record);
     return {};
+}
+
+std::optional<Tie> World::nearest_tie(std::uint32_t node, DeformableHandle other, Vec3 place) const {
+    const DeformableRecord* record = state_->deformables.find(other);
+    if (record == nullptr) return std::nullopt;
+    const std::vector<Vec3>& at = record->nodes().position;
+    std::optional<Tie> nearest;
+    double least = std::numeric_limits<double>::infinity();
+    const auto consider = [&](std::array<std::uint32_t, 3> nodes, std::array<double, 3> weight) {
+        Vec3 away = place;
+        for (std::size_t k = 0; k < 3; ++k) away -= weight[k] * at[nodes[k]];
+        if (length(away) >= least) return;
+        least = length(away);
+        nearest = Tie{node, other, nodes, weight};
+    };
+    for (std::uint32_t s = 0; record->rope && s + 1 < at.size(); ++s) {
+        if (record->rope->is_broken(s)) continue;
+        const double along = nearest_along(place, at[s], at[s + 1]);
+        consider({s, s + 1, s}, {1 - along, along, 0});
+    }
+    const auto consider_all = [&](const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+        for (const auto& t : triangles) consider(t, nearest_weights(place, at[t[0]], at[t[1]], at[t[2]]));
+    };
+    if (record->cloth) consider_all(std::get<Cloth>(record->definition.matter).triangles);
+    if (record->solid) consider_all(record->solid->surface());
+    return nearest;
 }
 
 std::span<const double> World::rope_tensions(DeformableHandle rope) const {

@@ -7,6 +7,7 @@
 
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/step/solid_contact_search.h"
+#include "physics/step/solid_ties.h"
 #include "physics/step/step.h"
 #include "physics/step/thin_groups.h"
 
@@ -135,7 +136,8 @@ void find_contacts_of(const WorldState& world, const MovingDeformables& moving, 
     for (const TouchedBody& body : moving.bodies) {
         colliding.push_back(body.shape && may_collide(thin.record->definition, world.record(body.body).definition));
     }
-    for (const Attachment& attachment : thin.record->definition.attachments) {
+    thin.attachments = thin.record->definition.attachments;
+    for (const Attachment& attachment : thin.attachments) {
         const bool is_there = world.bodies.find(attachment.body) != nullptr;
         thin.attachment_bodies.push_back(is_there ? moving.index_of(attachment.body.index) : no_body);
     }
@@ -143,7 +145,8 @@ void find_contacts_of(const WorldState& world, const MovingDeformables& moving, 
 }
 
 // What sheets and ropes pushed the solids in their last substep.
-void push_solids(const WorldState& world, MovingDeformables& moving) {
+void push_solids(WorldState& world, MovingDeformables& moving) {
+    for (DeformableRecord* record : moving.solid_records) SolidTies::push(world, record->slot, *record->solid);
     for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
         if (!world.deformables.used(slot) || !world.deformables.at(slot).definition.enabled) continue;
         for (const SurfacePush& push : world.deformables.at(slot).surface_pushes) {
@@ -249,6 +252,14 @@ void keep_contacts(WorldState& world, MovingDeformables& moving) {
             world.deformables.at(push.slot).touched_deformables.push_back(record->slot);
         }
     }
+    for (DeformableRecord* record : moving.records) {
+        for (const Tie& tie : record->definition.ties) {
+            DeformableRecord* other = world.deformables.find(tie.other);
+            if (other == nullptr || !other->definition.enabled) continue;
+            record->touched_deformables.push_back(tie.other.index);
+            other->touched_deformables.push_back(record->slot);
+        }
+    }
     for (const auto& [slots, contacts] : world.thin_contacts) {
         if (world.deformables.at(slots.first).is_asleep) continue;  // it keeps what it touched
         if (std::ranges::none_of(contacts, [](const ThinContact& contact) { return contact.push > 0; })) continue;
@@ -348,7 +359,7 @@ void advance_deformables(WorldState& world) {
             moving.solid_records.push_back(&record);
             moving.solids.push_back(record.solid.get());
         } else {
-            moving.thin.push_back({&record, {}, {}, {}, {}});
+            moving.thin.push_back({.record = &record});
         }
     }
     gather_bodies(world, moving);

@@ -78,12 +78,11 @@ void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<b
 
 void advance_thin(ThinDeformable& thin, const Substep& substep, std::span<TouchedBody> bodies, TaskPool& workers) {
     DeformableRecord& record = *thin.record;
-    const std::vector<Attachment>& attachments = record.definition.attachments;
     if (record.cloth) {
-        record.cloth->set_attachments(attachments);
+        record.cloth->set_attachments(thin.attachments);
         record.cloth->advance(substep, thin.contacts, thin.sheet_contacts, thin.attachment_bodies, bodies, workers);
     } else {
-        record.rope->set_attachments(attachments);
+        record.rope->set_attachments(thin.attachments);
         record.rope->set_clamps(record.definition.clamps);
         record.rope->advance(substep, thin.contacts, thin.segment_contacts, thin.attachment_bodies, bodies);
     }

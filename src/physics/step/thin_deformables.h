@@ -15,7 +15,8 @@ struct ThinDeformable {
     std::vector<NodeContact> contacts;
     std::vector<SegmentContact> segment_contacts;  ///< of ropes
     std::vector<SheetContact> sheet_contacts;      ///< of sheets, between their nodes
-    std::vector<std::uint32_t> attachment_bodies;  ///< index of each attachment's body, no_body where it is gone
+    std::vector<Attachment> attachments;           ///< its own, then its ties to solids while these hold it
+    std::vector<std::uint32_t> attachment_bodies;  ///< index of each one's body, no_body where it is gone
 };
 
 /// What it may touch in a step of `time_step` seconds. `may_collide`: for each of `bodies`, those of the step.

@@ -6,36 +6,47 @@
 #include <numeric>
 
 #include "physics/step/solid_contact_search.h"
+#include "physics/step/solid_ties.h"
+#include "physics/step/thin_group_part.h"
 #include "physics/step/thin_on_solids.h"
 
 namespace embody::physics {
 
 namespace {
 
-// `segments`: keeps those of a rope.
-ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<std::uint32_t, 2>>& segments) {
-    ThinSurface surface;
-    surface.nodes = &record.nodes();
-    surface.radius = record.definition.contact_radius;
-    surface.friction = record.definition.friction;
-    if (record.cloth) {
-        const Cloth& cloth = std::get<Cloth>(record.definition.matter);
-        surface.triangles = cloth.triangles;
-        surface.edges = record.cloth->edges();
-        surface.edge_length = record.cloth->edge_length();
-        surface.radius = std::max(surface.radius, cloth.thickness / 2);
-        return surface;
+// The nodes of `own` that a tie between the two holds.
+std::vector<bool> tied_nodes(const WorldState& world, const DeformableRecord& own, const DeformableRecord& other) {
+    std::vector<bool> is_tied(own.nodes().size(), false);
+    for (const Tie& tie : own.definition.ties) {
+        if (world.deformables.find(tie.other) == &other) is_tied[tie.node] = true;
     }
-    double sum = 0;
-    segments.clear();
-    const std::vector<Vec3>& nodes = surface.nodes->position;
-    for (std::uint32_t s = 0; s + 1 < nodes.size(); ++s) {
-        sum += length(nodes[s + 1] - nodes[s]);
-        if (!record.rope->is_broken(s)) segments.push_back({s, s + 1});
+    for (const Tie& tie : other.definition.ties) {
+        if (world.deformables.find(tie.other) != &own) continue;
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (tie.weight[k] > 0) is_tied[tie.other_nodes[k]] = true;
+        }
     }
-    surface.edges = segments;
-    surface.edge_length = std::max(sum / static_cast<double>(nodes.size() - 1), 1e-6);
-    return surface;
+    return is_tied;
+}
+
+// What holds the two together does not push them apart as well.
+void leave_out_tied(const WorldState& world, const DeformableRecord& a, const ThinSurface& on_a,
+                    const DeformableRecord& b, const ThinSurface& on_b, std::vector<ThinCandidate>& candidates) {
+    if (a.definition.ties.empty() && b.definition.ties.empty()) return;
+    const std::vector<bool> tied_a = tied_nodes(world, a, b), tied_b = tied_nodes(world, b, a);
+    std::erase_if(candidates, [&](const ThinCandidate& candidate) {
+        const bool is_swapped = candidate.is_swapped;
+        const ThinSurface &one = is_swapped ? on_b : on_a, &two = is_swapped ? on_a : on_b;
+        const std::vector<bool>&tied_one = is_swapped ? tied_b : tied_a, &tied_two = is_swapped ? tied_a : tied_b;
+        const auto is_tied_one = [&](std::uint32_t node) { return tied_one[node]; };
+        const auto is_tied_two = [&](std::uint32_t node) { return tied_two[node]; };
+        const bool first = candidate.kind == ThinFeature::edge_on_edge
+                               ? std::ranges::any_of(one.edges[candidate.first], is_tied_one)
+                               : tied_one[candidate.first];
+        return first || (candidate.kind == ThinFeature::node_on_triangle
+                             ? std::ranges::any_of(two.triangles[candidate.second], is_tied_two)
+                             : std::ranges::any_of(two.edges[candidate.second], is_tied_two));
+    });
 }
 
 // What may touch of two whose bounds, as far as each may go, overlap.
@@ -43,8 +54,10 @@ std::vector<ThinCandidate> candidates_of(const WorldState& world, const Deformab
                                          const DeformableRecord& b) {
     std::vector<ThinCandidate> candidates;
     std::vector<std::array<std::uint32_t, 2>> segments_a, segments_b;
-    find_thin_candidates(surface_of(a, segments_a), surface_of(b, segments_b), world.settings.time_step,
-                         length(world.settings.gravity), *world.workers, candidates);
+    const ThinSurface on_a = surface_of(a, segments_a), on_b = surface_of(b, segments_b);
+    find_thin_candidates(on_a, on_b, world.settings.time_step, length(world.settings.gravity), *world.workers,
+                         candidates);
+    leave_out_tied(world, a, on_a, b, on_b, candidates);
     return candidates;
 }
 
@@ -64,185 +77,6 @@ std::uint32_t root_of(std::vector<std::uint32_t>& group, std::uint32_t i) {
     return i;
 }
 
-Substep substep_of(const WorldState& world, const DeformableRecord& record, double h, double time) {
-    Substep substep{.h = h, .time = time};
-    substep.gravity = record.acceleration(world.settings.gravity);
-    substep.wind = world.wind();
-    substep.air_density = world.settings.air_density;
-    return substep;
-}
-
-void note_breaks(WorldState& world, const DeformableRecord& record) {
-    const std::vector<Vec3>& nodes = record.nodes().position;
-    for (const auto& [segment, tension] : record.rope->new_breaks()) {
-        const DeformableHandle rope = world.deformables.handle_at(record.slot);
-        world.rope_break_events.push_back(
-            {rope, record.definition.user_data, segment, tension, (nodes[segment] + nodes[segment + 1]) / 2});
-    }
-}
-
-/// One part of a group's substep.
-class GroupPart {
-public:
-    GroupPart(WorldState& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h, double time);
-    void advance(std::span<TouchedBody> bodies);
-
-private:
-    struct Member {
-        ThinDeformable* thin = nullptr;
-        Substep substep;
-        std::size_t first = 0, count = 0;  // of its nodes among all
-        TouchSprings touch;                // as the last solve had them
-        std::vector<std::array<std::uint32_t, 2>> segments;
-        [[nodiscard]] DeformableRecord& record() const { return *thin->record; }
-    };
-    template <class Values>
-    [[nodiscard]] static auto part(Values& values, const Member& member) {
-        return std::span(values).subspan(member.first, member.count);
-    }
-    void begin(std::span<const TouchedBody> bodies);
-    bool solve(std::span<const TouchedBody> bodies);
-    void gather_springs();
-    bool choose_again();
-    void end(std::span<TouchedBody> bodies);
-
-    WorldState& world_;
-    const ThinGroup& group_;
-    double h_ = 0;
-    std::vector<Member> members_;       // sheets first
-    std::vector<std::uint32_t> place_;  // of the group's members among these
-    std::size_t sheets_ = 0;
-    PairSprings pairs_;
-    std::vector<TouchSpring> springs_;  // of all
-    std::vector<Vec3> moves_, given_;   // by node of all
-    std::vector<BodyMove> body_moves_;
-};
-
-GroupPart::GroupPart(WorldState& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h, double time)
-    : world_(world), group_(group), h_(h), place_(group.members.size()) {
-    for (const bool is_sheet : {true, false}) {
-        for (std::size_t i = 0; i < group.members.size(); ++i) {
-            ThinDeformable& one = thin[group.members[i]];
-            if ((one.record->cloth != nullptr) != is_sheet) continue;
-            place_[i] = static_cast<std::uint32_t>(members_.size());
-            Member& member = members_.emplace_back();
-            member.thin = &one;
-            member.substep = substep_of(world, *one.record, h, time);
-            member.first = moves_.size();
-            member.count = one.record->nodes().size();
-            for (const Vec3 velocity : one.record->nodes().mean_velocity) moves_.push_back(h * velocity);
-        }
-        if (is_sheet) sheets_ = members_.size();
-    }
-}
-
-void GroupPart::begin(std::span<const TouchedBody> bodies) {
-    body_moves_.assign(bodies.size(), {});
-    std::vector<ThinMember> seen(members_.size());
-    for (std::size_t m = 0; m < members_.size(); ++m) {
-        Member& member = members_[m];
-        const ThinDeformable& thin = *member.thin;
-        DeformableRecord& record = member.record();
-        if (record.cloth) {
-            record.cloth->set_attachments(record.definition.attachments);
-            record.cloth->begin(member.substep, thin.contacts, thin.sheet_contacts, thin.attachment_bodies, bodies,
-                                *world_.workers);
-            member.touch = record.cloth->touch();
-        } else {
-            record.rope->set_attachments(record.definition.attachments);
-            record.rope->set_clamps(record.definition.clamps);
-            record.rope->begin(member.substep, thin.contacts, thin.segment_contacts, thin.attachment_bodies, bodies);
-            member.touch = record.rope->touch();
-        }
-        member.touch.choose(part(moves_, member), body_moves_, true);
-        seen[m] = {surface_of(record, member.segments), record.slot, static_cast<std::uint32_t>(member.first),
-                   record.cloth ? record.cloth->node_stiffness() : record.rope->node_stiffness()};
-    }
-    std::vector<ThinPair> pairs = group_.pairs;
-    for (ThinPair& pair : pairs) {
-        pair.a = place_[pair.a];
-        pair.b = place_[pair.b];
-    }
-    pairs_.begin(seen, pairs, world_.thin_contacts, h_, length(world_.settings.gravity));
-    pairs_.choose(moves_, true);
-}
-
-void GroupPart::gather_springs() {
-    springs_.clear();
-    for (const Member& member : members_) {
-        for (TouchSpring spring : member.touch.springs()) {
-            for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
-                spring.node[k] += static_cast<std::uint32_t>(member.first);
-            springs_.push_back(spring);
-        }
-    }
-    springs_.insert(springs_.end(), pairs_.springs().begin(), pairs_.springs().end());
-}
-
-// True where what acts has changed. The last solve's springs stay as they were in it, so that what one feels is what
-// the other felt.
-bool GroupPart::choose_again() {
-    bool has_changed = false;
-    std::vector<TouchSprings> touch;
-    for (const Member& member : members_) {
-        touch.push_back(member.touch);
-        has_changed |= touch.back().choose(part(moves_, member), body_moves_, false);
-    }
-    PairSprings pairs = pairs_;
-    has_changed |= pairs.choose(moves_, false);
-    if (!has_changed) return false;
-    for (std::size_t m = 0; m < members_.size(); ++m) members_[m].touch = std::move(touch[m]);
-    pairs_ = std::move(pairs);
-    return true;
-}
-
-// Ropes about their last moves, as in Newton's method.
-bool GroupPart::solve(std::span<const TouchedBody> bodies) {
-    constexpr int most_solves = 4;
-    const std::vector<BodyInertia> inertias = inertias_of(bodies, h_);
-    std::vector<SheetSystem> sheets;
-    for (std::size_t m = 0; m < sheets_; ++m) sheets.push_back(members_[m].record().cloth->system());
-    for (int solves = 1;; ++solves) {
-        std::vector<LineSystem> lines;
-        for (std::size_t m = sheets_; m < members_.size(); ++m)
-            lines.push_back(members_[m].record().rope->linearize(members_[m].substep, part(moves_, members_[m])));
-        gather_springs();
-        const int rounds =
-            world_.pair_solver.solve(sheets, lines, springs_, inertias, moves_, body_moves_, *world_.workers);
-        if (rounds == ClothSolver::not_finite) return false;
-        const bool is_over = solves == most_solves || (!choose_again() && (lines.empty() || solves > 1));
-        if (is_over) break;
-    }
-    return std::ranges::all_of(moves_, [](Vec3 move) { return is_finite(move); }) &&
-           std::ranges::all_of(body_moves_,
-                               [](const BodyMove& move) { return is_finite(move.shift) && is_finite(move.turn); });
-}
-
-// Ropes once more on their own, with the forces that were found: their equations are not linear.
-void GroupPart::end(std::span<TouchedBody> bodies) {
-    given_.assign(moves_.size(), {});
-    pairs_.finish(moves_, given_, world_.thin_contacts);
-    for (Member& member : members_) {
-        DeformableRecord& record = member.record();
-        const std::span<const Vec3> given = part(given_, member);
-        if (record.cloth) {
-            record.cloth->touch() = std::move(member.touch);
-            record.cloth->end(member.substep, part(moves_, member), body_moves_, given, bodies, *world_.workers);
-        } else {
-            record.rope->advance(member.substep, member.thin->contacts, member.thin->segment_contacts,
-                                 member.thin->attachment_bodies, bodies, given);
-            note_breaks(world_, record);
-        }
-    }
-}
-
-void GroupPart::advance(std::span<TouchedBody> bodies) {
-    begin(bodies);
-    if (solve(bodies)) return end(bodies);
-    // What is broken freezes on its own.
-    for (Member& member : members_) advance_thin(*member.thin, member.substep, bodies, *world_.workers);
-}
-
 void advance_alone(WorldState& world, ThinDeformable& thin, double h, double time, std::vector<TouchedBody>& bodies) {
     advance_thin(thin, substep_of(world, *thin.record, h, time), bodies, *world.workers);
     if (thin.record->rope) note_breaks(world, *thin.record);
@@ -252,8 +86,12 @@ void advance_group(WorldState& world, const ThinGroup& group, std::span<ThinDefo
                    std::vector<TouchedBody>& bodies, ThinOnSolids::Surfaces& surfaces) {
     const std::size_t first = bodies.size();
     std::vector<ThinOnSolids> solids(group.members.size(), ThinOnSolids(world, surfaces));
-    for (std::size_t i = 0; i < group.members.size(); ++i) solids[i].add(thin[group.members[i]], bodies, h);
-    if (group.pairs.empty()) {
+    std::vector<SolidTies> ties(group.members.size(), SolidTies(world));
+    for (std::size_t i = 0; i < group.members.size(); ++i) {
+        solids[i].add(thin[group.members[i]], bodies, h);
+        ties[i].add(thin[group.members[i]], bodies, h);
+    }
+    if (group.members.size() == 1) {
         advance_alone(world, thin[group.members[0]], h, time, bodies);
     } else {
         int parts = 1;
@@ -264,11 +102,48 @@ void advance_group(WorldState& world, const ThinGroup& group, std::span<ThinDefo
         const PartPushes pushes(bodies);
         for (int k = 0; k < parts; ++k) {
             if (k > 0) pushes.go_on(bodies, h / parts);
-            GroupPart(world, group, thin, h / parts, time + k * h / parts).advance(bodies);
+            ThinGroupPart(world, group, thin, h / parts, time + k * h / parts).advance(bodies);
         }
     }
-    for (std::size_t i = 0; i < group.members.size(); ++i) solids[i].take(thin[group.members[i]], bodies, first);
+    for (std::size_t i = 0; i < group.members.size(); ++i) {
+        solids[i].take(thin[group.members[i]], bodies, first);
+        ties[i].take(thin[group.members[i]]);
+    }
     bodies.resize(first);
+}
+
+// By index in `thin`; those to what is gone, or does not move, hold nothing.
+std::vector<ThinTie> find_ties(const WorldState& world, std::span<const ThinDeformable> thin) {
+    std::vector<ThinTie> ties;
+    for (std::uint32_t i = 0; i < thin.size(); ++i) {
+        DeformableRecord& record = *thin[i].record;
+        record.tie_pulls.resize(record.definition.ties.size());
+        for (std::size_t t = 0; t < record.definition.ties.size(); ++t) {
+            const DeformableRecord* other = world.deformables.find(record.definition.ties[t].other);
+            const auto found = std::ranges::find(thin, other, &ThinDeformable::record);
+            if (found != thin.end()) ties.push_back({i, static_cast<std::uint32_t>(found - thin.begin()), t});
+        }
+    }
+    return ties;
+}
+
+// What is tied to what is awake is awake.
+void wake_tied(WorldState& world) {
+    for (bool has_woken = true; has_woken;) {
+        has_woken = false;
+        for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
+            if (!world.deformables.used(slot)) continue;
+            DeformableRecord& own = world.deformables.at(slot);
+            if (!own.definition.enabled) continue;
+            for (const Tie& tie : own.definition.ties) {
+                DeformableRecord* other = world.deformables.find(tie.other);
+                if (other == nullptr || !other->definition.enabled || other->is_asleep == own.is_asleep) continue;
+                own.is_asleep = other->is_asleep = false;
+                own.quiet_time = other->quiet_time = 0;
+                has_woken = true;
+            }
+        }
+    }
 }
 
 // Contacts of a pair that has parted, or of what is gone, are forgotten; sleepers keep theirs.
@@ -293,6 +168,7 @@ void forget_parted(WorldState& world, std::span<const ThinGroup> groups, std::sp
 void wake_touched_thin(WorldState& world) {
     const double h = world.settings.time_step, gravity = length(world.settings.gravity);
     const std::uint32_t count = world.deformables.slot_count();
+    wake_tied(world);
     for (std::uint32_t slot = 0; slot < count; ++slot) {
         if (!world.deformables.used(slot)) continue;
         DeformableRecord& sleeper = world.deformables.at(slot);
@@ -332,6 +208,11 @@ std::vector<ThinGroup> find_thin_groups(WorldState& world, std::span<const ThinD
             group[std::max(i, k)] = std::min(i, k);
         }
     }
+    std::vector<ThinTie> ties = find_ties(world, thin);
+    for (const ThinTie& tie : ties) {
+        const std::uint32_t i = root_of(group, tie.member), k = root_of(group, tie.other);
+        group[std::max(i, k)] = std::min(i, k);
+    }
     std::vector<ThinGroup> groups;
     std::vector<std::uint32_t> number(thin.size()), place(thin.size());  // of the group; in it
     for (std::uint32_t i = 0; i < thin.size(); ++i) {
@@ -344,12 +225,14 @@ std::vector<ThinGroup> find_thin_groups(WorldState& world, std::span<const ThinD
         number[i] = number[root];
         place[i] = static_cast<std::uint32_t>(own.members.size());
         own.members.push_back(i);
-        own.has_rope |= thin[i].record->rope != nullptr;
+        own.in_substeps |= thin[i].record->rope != nullptr || has_solid_ties(world, *thin[i].record);
     }
     for (ThinPair& pair : pairs) {
         ThinGroup& own = groups[number[pair.a]];
         own.pairs.push_back({place[pair.a], place[pair.b], std::move(pair.candidates)});
     }
+    for (const ThinTie& tie : ties)
+        groups[number[tie.member]].ties.push_back({place[tie.member], place[tie.other], tie.index});
     forget_parted(world, groups, thin);
     return groups;
 }
@@ -360,7 +243,7 @@ void advance_thin_groups(WorldState& world, std::span<const ThinGroup> groups, s
     const double step = world.settings.time_step, h = step / substeps;
     ThinOnSolids::Surfaces surfaces;
     for (const ThinGroup& group : groups) {
-        if (group.has_rope)
+        if (group.in_substeps)
             advance_group(world, group, thin, h, (k - 1) * h, bodies, surfaces);
         else if (k == substeps)
             advance_group(world, group, thin, step, 0, bodies, surfaces);

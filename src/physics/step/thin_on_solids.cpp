@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "physics/step/solid_contact_search.h"
+#include "physics/step/solid_ties.h"
 
 namespace embody::physics {
 
@@ -42,7 +43,7 @@ void ThinOnSolids::add_solid(ThinDeformable& thin, std::uint32_t slot, std::vect
     const double fall = length(world_.settings.gravity) * h;
     for (std::uint32_t node = 0; node < nodes.size(); ++node) {
         const Vec3 at = nodes.position[node];
-        if (!contains(near, at)) continue;
+        if (!contains(near, at) || is_tied(sheet, node, world_.deformables.handle_at(slot))) continue;
         const double reach = 2 * radius + (length(nodes.mean_velocity[node]) + fall) * h;
         const auto place = surface(slot).find(at, std::max(reach, surface(slot).deepest()));
         if (!place) continue;
@@ -105,6 +106,7 @@ void ThinOnSolids::take(ThinDeformable& thin, std::span<const TouchedBody> bodie
     for (const TouchSpring& spring : springs_of(sheet)) {
         if (!spring.acts || spring.body == no_body || spring.body < first) continue;
         const auto held = std::ranges::lower_bound(held_, std::pair{spring.body, spring.node[0]}, {}, key);
+        if (held == held_.end() || key(*held) != std::pair{spring.body, spring.node[0]}) continue;
         SurfacePush push{
             bodies[spring.body].body - first_solid_slot, spring.node[0], held->place.triangle, held->place.weight, {}};
         const auto last = std::ranges::lower_bound(pushes, touch_of(push), {}, touch_of);

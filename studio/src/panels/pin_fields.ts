@@ -83,7 +83,7 @@ export class PinFields {
     studio.view.invalidate();
     if (!this.index) return;
     setText(this.said, this.picking ? "Click on it where it shall be held; Escape ends that." : pins.length === 0 ? "Nothing holds it." : `${pins.length} ${pins.length === 1 ? "place is" : "places are"} held, shown as dots.`);
-    const holders = [...studio.document.entities.values()].filter(({ index }) => index !== this.index && !studio.entities.softs.has(index) && !studio.entities.clouds.of(index));
+    const holders = [...studio.document.entities.values()].filter(({ index }) => index !== this.index && !studio.entities.clouds.of(index));
     this.holder.replaceChildren(
       element("option", { value: WORLD }, "the world"),
       ...holders.slice(0, MOST_HOLDERS).map((each) => element("option", { value: String(each.index) }, nameOf(each))),

@@ -89,6 +89,28 @@ Result<void> check_element(const DeformableDefinition& definition, const std::st
     return {};
 }
 
+Result<void> check_ties(const DeformableDefinition& definition) {
+    if (definition.ties.empty()) return {};
+    if (std::holds_alternative<SoftSolid>(definition.matter))
+        return Error{"ties", "are of sheets and ropes alone", "tie the sheet or rope to the solid"};
+    std::vector<bool> is_held(definition.nodes.size(), false);
+    for (const std::uint32_t node : definition.pinned) is_held[node] = true;
+    for (const Attachment& attachment : definition.attachments) is_held[attachment.node] = true;
+    for (std::size_t i = 0; i < definition.ties.size(); ++i) {
+        const Tie& tie = definition.ties[i];
+        if (tie.node >= definition.nodes.size()) return Error{item("ties", i), "holds no node"};
+        if (is_held[tie.node]) return Error{item("ties", i), "holds a node that is pinned, attached or tied already"};
+        is_held[tie.node] = true;
+        double sum = 0;
+        for (const double weight : tie.weight) {
+            if (!(weight >= 0 && weight <= 1)) return Error{item("ties", i) + ".weight", "is not 0 to 1"};
+            sum += weight;
+        }
+        if (!(std::fabs(sum - 1) < 1e-6)) return Error{item("ties", i) + ".weight", "is not 1 together"};
+    }
+    return {};
+}
+
 template <std::size_t corners>
 Result<void> check_elements(const DeformableDefinition& definition, const char* field,
                             const std::vector<std::array<std::uint32_t, corners>>& elements) {
@@ -147,6 +169,7 @@ Result<void> check_matter(const DeformableDefinition& definition, const Rope& ro
 Result<void> validate(const DeformableDefinition& definition) {
     if (auto result = check_nodes(definition); !result) return result;
     if (auto result = check_clamps(definition); !result) return result;
+    if (auto result = check_ties(definition); !result) return result;
     const auto check = [&](const auto& matter) { return check_matter(definition, matter); };
     if (auto result = std::visit(check, definition.matter); !result) return result;
     return first_error(check_vector("pose.position", definition.pose.position, largest_coordinate, "m"),

@@ -55,6 +55,15 @@ struct Attachment {
     Vec3 anchor;  ///< in the body's frame, m
 };
 
+/// A node of a sheet or rope held to a point of another deformable, which lies between up to three of its nodes. Where
+/// the two are apart they are drawn together.
+struct Tie {
+    std::uint32_t node = 0;
+    DeformableHandle other;
+    std::array<std::uint32_t, 3> other_nodes{};
+    std::array<double, 3> weight{1, 0, 0};  ///< of these, each 0 … 1, together 1; nodes of weight 0 do not count
+};
+
 /// A rope's direction, held by what holds its node: the world a pinned one, its body an attached one. It bends from
 /// there on as a clamped rod, and is twisted by what its clamps turn against each other.
 struct Clamp {
@@ -77,6 +86,7 @@ struct DeformableDefinition {
     std::vector<std::uint32_t> pinned;    ///< nodes that stay where they are placed
     std::vector<Attachment> attachments;  ///< at most one a node, and none for a pinned one
     std::vector<Clamp> clamps;            ///< of a rope: at most one a node, which is pinned or attached
+    std::vector<Tie> ties;                ///< of a sheet or rope: at most one a node, which nothing else holds
     Transform pose;                       ///< of its frame at the start
     Vec3 linear_velocity;                 ///< of all nodes at the start, m/s
     Vec3 angular_velocity;                ///< about the centre of mass, world axes, rad/s
