@@ -123,7 +123,8 @@ TEST(ClothInWorld, ABoxOnTheTableclothStandsStill) {
         run(*world, 3);
         const Vec3 start = world->pose(box).position;
         run(*world, 4);
-        EXPECT_LT(length(world->pose(box).position - start), 5e-3) << mass;
+        // The heavy one, 800 times the sheet, rocks by some millimetres (docs/physics/cloth.md).
+        EXPECT_LT(length(world->pose(box).position - start), mass < 1 ? 1e-4 : 1e-2) << mass;
         EXPECT_NEAR(world->pose(box).position.y, 0.8, 0.01) << mass;
         for (const Vec3 node : world->node_positions(cloth)) EXPECT_TRUE(is_finite(node));
     }

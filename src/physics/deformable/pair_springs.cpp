@@ -11,7 +11,6 @@ struct PairSprings::Found {
     ThinPoints points;
     Vec3 normal;                          // from the second to the first
     double distance = 0;                  // along it, m: below zero where the first has come to the other side
-    double speed = 0;                     // of the first against the second, m/s
     const ThinContact* memory = nullptr;  // of forces
 
     [[nodiscard]] auto key() const { return std::tuple(candidate.kind, candidate.is_swapped, candidate.first); }
@@ -32,9 +31,9 @@ struct PairSprings::Search {
         return k < found.points.count_first ? first(found.candidate) : second(found.candidate);
     }
     [[nodiscard]] bool place(const ThinCandidate& candidate, Found& found) const;
+    [[nodiscard]] Vec3 side_of(const ThinCandidate& candidate) const;
     void recall(Found& found) const;
-    [[nodiscard]] double speed_of(const Found& found) const;
-    [[nodiscard]] bool began_inside(const Found& found) const;
+    [[nodiscard]] bool is_near(const Found& found) const;
     void add_nodes(std::span<const ThinCandidate> of_node, std::vector<Found>& kept) const;
     [[nodiscard]] bool is_held(const Found& edges, std::span<const Vec3> held_a, std::span<const Vec3> held_b) const;
 };
@@ -43,12 +42,22 @@ bool PairSprings::Search::place(const ThinCandidate& candidate, Found& found) co
     found = {.candidate = candidate, .points = {}, .normal = {}};
     if (!find_points(a.surface, b.surface, candidate, found.points)) return false;
     found.distance = length(found.points.away);
-    if (found.distance < 1e-9) return false;
-    found.normal = found.points.away / found.distance;
+    if (found.distance > 1e-9)
+        found.normal = found.points.away / found.distance;
+    else if (candidate.kind == ThinFeature::node_on_triangle)
+        found.normal = side_of(candidate);
+    else
+        return false;
     recall(found);
-    found.speed = speed_of(found);
-    // Whether it may touch within the substep: by its own speed and what gravity adds.
-    return found.distance - radius < (found.speed + gravity * h) * h + radius;
+    return is_near(found);
+}
+
+// Of two in the same place, as when a sheet is copied, the first of the pair is the upper one.
+Vec3 PairSprings::Search::side_of(const ThinCandidate& candidate) const {
+    const ThinSurface& surface = second(candidate).surface;
+    const auto [p, q, r] = surface.triangles[candidate.second];
+    const std::vector<Vec3>& x = surface.nodes->position;
+    return normalized((candidate.is_swapped ? -1.0 : 1.0) * cross(x[q] - x[p], x[r] - x[p]), {0, 1, 0});
 }
 
 // A sheet has no inside: which side something is on is remembered.
@@ -75,19 +84,14 @@ void PairSprings::Search::recall(Found& found) const {
     if (most > same_way) found.memory = nearest;
 }
 
-double PairSprings::Search::speed_of(const Found& found) const {
+// Whether it may touch within the substep: by its own speed and what gravity adds.
+bool PairSprings::Search::is_near(const Found& found) const {
     Vec3 velocity;
     for (int k = 0; k < found.points.count; ++k) {
         const auto at = static_cast<std::size_t>(k);
         velocity += found.points.weight[at] * member_of(found, k).surface.nodes->mean_velocity[found.points.node[at]];
     }
-    return length(velocity);
-}
-
-// Nothing that touched on the way is deeper in than the two can have come in the substep.
-bool PairSprings::Search::began_inside(const Found& found) const {
-    if (found.memory != nullptr && !found.memory->is_recovery) return false;
-    return found.distance - radius < -(recovery_speed + found.speed) * h;
+    return found.distance - radius < (length(velocity) + gravity * h) * h + radius;
 }
 
 // A node touches the nearest of the triangles, and of others those that lie in another direction.
@@ -113,14 +117,18 @@ bool PairSprings::Search::is_held(const Found& edges, std::span<const Vec3> held
     constexpr double same_way = 0.7;  // cosine
     const auto holds = [&](Vec3 normal) { return dot(normal, edges.normal) > same_way; };
     const auto& node = edges.points.node;
-    return (holds(held_a[node[0]]) && holds(held_a[node[1]])) || (holds(-held_b[node[2]]) && holds(-held_b[node[3]]));
+    return holds(held_a[node[0]]) || holds(held_a[node[1]]) || holds(-held_b[node[2]]) || holds(-held_b[node[3]]);
 }
 
 void PairSprings::add(const Search& search, const Found& found) {
+    constexpr double stiffness_factor = 20;  // over the inertia of the heavier, and of what weighs on it
+    constexpr double least_weight = 0.1;     // of a node that bears what lies there
+    constexpr double recovery = 0.2;         // share of a depth that is parted in a substep
+    constexpr double fastest = 0.2;          // m/s: no faster than this
     const double h = search.h;
     TouchSpring spring{.node = found.points.node, .weight = found.points.weight, .count = found.points.count};
     std::array<double, 2> mass{};
-    double give = 0;
+    double give = 0, load = found.memory != nullptr ? found.memory->carried : 0;
     for (int k = 0; k < found.points.count; ++k) {
         const auto at = static_cast<std::size_t>(k);
         const ThinMember& member = search.member_of(found, k);
@@ -129,29 +137,30 @@ void PairSprings::add(const Search& search, const Found& found) {
         const std::size_t side = k < found.points.count_first ? 0 : 1;
         mass[side] += std::fabs(weight) * member.surface.nodes->mass[node];
         give += weight * weight * member.surface.nodes->inverse_mass[node];
+        if (std::fabs(weight) > least_weight) load = std::max(load, member.load[node]);
         spring.node[at] = member.first + node;
     }
     if (give == 0) return;
-    spring.is_recovery = search.began_inside(found);
-    const double push = found.memory != nullptr ? found.memory->push : 0;
-    spring.stiffness = contact_stiffness(std::max(mass[0], mass[1]), push, h, search.gravity);
+    spring.stiffness = stiffness_factor * std::max({mass[0], mass[1], load}) / (h * h);
     spring.inertia = 1 / (give * h * h);
     spring.normal = found.normal;
-    spring.gap = std::max(found.distance - search.radius, -recovery_speed * h);
-    spring.friction = spring.is_recovery ? 0 : std::sqrt(search.a.surface.friction * search.b.surface.friction);
+    const double gap = found.distance - search.radius;
+    spring.gap = gap > 0 ? gap : std::max(recovery * gap, -fastest * h);
+    spring.friction = std::sqrt(search.a.surface.friction * search.b.surface.friction);
     if (found.memory != nullptr) {
         spring.pull = found.memory->push * found.normal;
-        spring.hold = across(found.memory->hold, found.normal);
+        spring.hold = (found.memory->stiffness / spring.stiffness) * across(found.memory->hold, found.normal);
     }
     springs_.push_back(spring);
     features_.push_back({found.candidate.kind,
                          found.candidate.is_swapped,
-                         spring.is_recovery,
                          found.candidate.first,
                          found.candidate.second,
                          found.normal,
                          0,
-                         {}});
+                         {},
+                         spring.stiffness,
+                         found.memory != nullptr ? found.memory->carried : 0});
 }
 
 void PairSprings::begin(std::span<const ThinMember> members, std::span<const ThinPair> pairs,
@@ -159,6 +168,7 @@ void PairSprings::begin(std::span<const ThinMember> members, std::span<const Thi
     springs_.clear();
     features_.clear();
     last_of_.clear();
+    gravity_ = gravity;
     std::vector<Found> kept;
     for (const ThinPair& pair : pairs) {
         const ThinMember &a = members[pair.a], &b = members[pair.b];
@@ -211,13 +221,14 @@ void PairSprings::finish(std::span<const Vec3> moves, std::span<Vec3> given, Thi
             if (!spring.acts) continue;
             const Vec3 s = spring.lead(moves, {});
             const Vec3 force = spring.force(s);
+            const double push = std::max(0.0, dot(force, spring.normal));
+            own.push = std::max(0.0, push + spring.stiffness * std::min(spring.gap, 0.0));
+            own.carried = std::max(own.push / std::max(gravity_, 1.0), 0.9 * own.carried);
+            own.hold = spring.hold + across(s, spring.normal);
+            const double most = spring.friction * push / spring.stiffness, size = length(own.hold);
+            if (size > most) own.hold *= most / size;
             for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
                 given[spring.node[k]] += spring.weight[k] * force;
-            if (spring.is_recovery) continue;
-            own.push = std::max(0.0, dot(force, spring.normal));
-            own.hold = spring.hold + across(s, spring.normal);
-            const double most = spring.friction * own.push / spring.stiffness, size = length(own.hold);
-            if (size > most) own.hold *= most / size;
         }
         std::ranges::stable_sort(memory, {}, &ThinContact::key);
     }

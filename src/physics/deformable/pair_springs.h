@@ -14,11 +14,12 @@ namespace embody::physics {
 struct ThinContact {
     ThinFeature kind = ThinFeature::node_on_triangle;
     bool is_swapped = false;
-    bool is_recovery = false;  ///< as of TouchSpring
     std::uint32_t first = 0, second = 0;
-    Vec3 normal;      ///< from the second to the first
-    double push = 0;  ///< N
-    Vec3 hold;        ///< m
+    Vec3 normal;           ///< from the second to the first
+    double push = 0;       ///< N, without what parts two that lie in each other
+    Vec3 hold;             ///< m
+    double stiffness = 0;  ///< N/m
+    double carried = 0;    ///< what it has borne lately, as a mass, kg
 
     [[nodiscard]] auto key() const { return std::tuple(kind, is_swapped, first); }
 };
@@ -29,8 +30,8 @@ using ThinContacts = std::map<std::pair<std::uint32_t, std::uint32_t>, std::vect
 struct ThinMember {
     ThinSurface surface;
     std::uint32_t slot = 0;
-    std::uint32_t first = 0;                 ///< number of its first node among those of all
-    std::span<const double> node_stiffness;  ///< N/m
+    std::uint32_t first = 0;   ///< number of its first node among those of all
+    std::vector<double> load;  ///< kg a node: of bodies that lie on it
 };
 /// Two of them, by index, the lower slot first, with what may touch.
 struct ThinPair {
@@ -59,6 +60,7 @@ private:
     struct Search;
     void add(const Search& search, const Found& found);
 
+    double gravity_ = 0;
     std::vector<TouchSpring> springs_;
     std::vector<ThinContact> features_;                   // of the springs: what they are of, nothing of forces
     std::vector<std::pair<Slots, std::size_t>> last_of_;  // of each pair, one beyond its last spring

@@ -270,7 +270,6 @@ bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> 
 
 // At most one breaks a substep: what is left of the others' load goes with it.
 void RopeLine::break_segments() {
-    new_breaks_.clear();
     std::uint32_t tightest = 0;
     for (std::uint32_t s = 0; s < segments_.size(); ++s) {
         const double now = length(nodes_.position[s + 1] - nodes_.position[s]);
@@ -309,7 +308,12 @@ void RopeLine::begin(const Substep& substep, std::span<const NodeContact> contac
 
 LineSystem RopeLine::linearize(const Substep& substep, std::span<const Vec3> moves) {
     moves_.assign(moves.begin(), moves.end());
-    assemble(substep, false);                                     // without what may not be positive
+    assemble(substep, false);  // without what may not be positive
+    // Twists by the moments that the rope had on its own last.
+    for (std::size_t k = 0; k < system_.twists.size() && moments_.size() == system_.twists.size(); ++k) {
+        for (std::size_t i = 0; i < system_.rhs.size(); ++i)
+            system_.rhs[i] -= moments_[k] * system_.twists[k].by_node[i];
+    }
     const double least = std::max(length(substep.gravity), 1.0);  // m/s²: an acceleration that matters anywhere
     small_load_.resize(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) small_load_[i] = {0, nodes_.mass[i] * least, 0};
@@ -325,6 +329,7 @@ void RopeLine::advance(const Substep& substep, std::span<const NodeContact> cont
                        std::span<const SegmentContact> segment_contacts,
                        std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies,
                        std::span<const TouchSpring> held) {
+    new_breaks_.clear();
     if (is_frozen_) return;
     held_.assign(held.begin(), held.end());
     begin(substep, contacts, segment_contacts, attachment_bodies, bodies);
@@ -337,6 +342,7 @@ void RopeLine::advance(const Substep& substep, std::span<const NodeContact> cont
 
 void RopeLine::end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
                    std::span<const Vec3> given, std::span<TouchedBody> bodies, std::span<const double> shares) {
+    new_breaks_.clear();
     if (is_frozen_) return;
     const std::size_t count = nodes_.size();
     if (moves.data() != moves_.data()) moves_.assign(moves.begin(), moves.end());

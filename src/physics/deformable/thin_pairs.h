@@ -15,10 +15,11 @@ namespace embody::physics {
 struct ThinSurface {
     const Nodes* nodes = nullptr;
     std::span<const std::array<std::uint32_t, 3>> triangles;  ///< none of a rope
-    std::span<const std::array<std::uint32_t, 2>> edges;      ///< of a rope: its segments that are whole
-    double radius = 0;                                        ///< what it keeps off from its middle, m
-    double edge_length = 0;                                   ///< mean, m
-    double friction = 0;                                      ///< Coulomb coefficient
+    std::span<const std::array<std::uint32_t, 2>>
+        edges;               ///< of a rope: its segments, broken ones from a node to itself
+    double radius = 0;       ///< what it keeps off from its middle, m
+    double edge_length = 0;  ///< mean, m
+    double friction = 0;     ///< Coulomb coefficient
 };
 
 enum class ThinFeature : std::uint8_t { node_on_triangle, node_on_edge, edge_on_edge };

@@ -23,6 +23,12 @@ void TouchedBody::enter_substep(double h) {
     turn += h * spin;
 }
 
+void TouchedBody::enter_whole_step(int substeps) {
+    const double n = substeps, rest = (1 - (n + 1) / (2 * n)) * step_time * step_time;
+    shift -= (inverse_mass * rest) * expected_late_force;
+    turn -= inverse_inertia * (rest * expected_late_torque);
+}
+
 void TouchedBody::push(Vec3 given, Vec3 arm, double h) {
     if (!is_dynamic) return;
     const Vec3 faster = inverse_mass * given;

@@ -30,10 +30,12 @@ struct TouchedBody {
     double inverse_mass = 0;
     Mat3 inverse_inertia = Mat3::zero();   ///< world axes
     Vec3 expected_force, expected_torque;  ///< pushes of the last step, which the path has in it already, N and N m
+    Vec3 expected_late_force, expected_late_torque;  ///< of these, those of the whole step at its end
 
-    Vec3 shift, turn;               ///< off the path so far, m and rad
-    Vec3 velocity, spin;            ///< off the path's, m/s and rad/s
-    Vec3 impulse, angular_impulse;  ///< pushes of this step so far, N s and N m s about the centre of mass
+    Vec3 shift, turn;                         ///< off the path so far, m and rad
+    Vec3 velocity, spin;                      ///< off the path's, m/s and rad/s
+    Vec3 impulse, angular_impulse;            ///< pushes of this step so far, N s and N m s about the centre of mass
+    Vec3 late_impulse, late_angular_impulse;  ///< of these, those for the whole step
 
     /// Where the body is `time` (s) after the step began, pushes counted.
     [[nodiscard]] Vec3 center_at(double time) const {
@@ -52,6 +54,9 @@ struct TouchedBody {
     [[nodiscard]] Vec3 way(double h, double time, Vec3 arm) const;
     /// Moves it into a substep of h seconds: takes off what the path has in it already, goes on with the rest.
     void enter_substep(double h);
+    /// After the last of `substeps`, before those that push it once for the whole step: what comes back at once moves
+    /// it further than what was taken off in parts, so the rest of the way is taken off here.
+    void enter_whole_step(int substeps);
     /// Impulse (N s) at `arm` (m) from its centre of mass, in a substep of h seconds: moves it too.
     void push(Vec3 impulse, Vec3 arm, double h);
     /// Angular impulse (N m s) in a substep of h seconds.

@@ -31,11 +31,17 @@ struct DeformableRecord {
     std::vector<SolidContact> contacts;                     ///< a solid's of the last step
     std::vector<std::uint32_t> touched_bodies;              ///< slots: those that it pushed in the last step
     std::vector<std::uint32_t> touched_deformables;         ///< slots
-    std::vector<SurfacePush> surface_pushes;                ///< a sheet's or rope's, of its last substep
-    std::vector<Vec3> tie_pulls;                            ///< by tie: of the last substep, on its node, N
-    std::uint32_t slot = 0;                                 ///< its own, while it moves
-    double quiet_time = 0;                                  ///< s
-    std::vector<Vec3> quiet_places;                         ///< of a sheet's or rope's nodes when that began
+    /// A body that it pushed, as it then was.
+    struct Support {
+        BodyHandle body;
+        std::uint32_t version = 0;
+    };
+    std::vector<Support> supports;
+    std::vector<SurfacePush> surface_pushes;  ///< a sheet's or rope's, of its last substep
+    std::vector<Vec3> tie_pulls;              ///< by tie: of the last substep, on its node, N
+    std::uint32_t slot = 0;                   ///< its own, while it moves
+    double quiet_time = 0;                    ///< s
+    std::vector<Vec3> quiet_places;           ///< of a sheet's or rope's nodes when that began
     bool is_asleep = false;
     std::vector<Vec3> last_positions;  ///< last finite ones, to freeze it at
 

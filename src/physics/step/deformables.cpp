@@ -57,6 +57,8 @@ TouchedBody touched(const WorldState& world, std::uint32_t slot) {
     body.inverse_inertia = state.inverse_inertia;
     body.expected_force = record.deformable_force;
     body.expected_torque = record.deformable_torque;
+    body.expected_late_force = record.late_force;
+    body.expected_late_torque = record.late_torque;
     return body;
 }
 
@@ -66,20 +68,25 @@ double fastest_node(const DeformableRecord& record) {
     return fastest;
 }
 
+// Whether somebody moves it by hand, however slowly.
+bool is_led(const WorldState& world, std::uint32_t slot) {
+    const BodyState& state = world.motion[slot];
+    return world.record(slot).definition.kind == BodyKind::kinematic_body && !world.is_asleep(slot) &&
+           (state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{});
+}
+
 // Whether something has happened around a sleeping deformable.
 bool is_disturbed(const WorldState& world, const DeformableRecord& record) {
-    for (const std::uint32_t slot : record.touched_bodies) {
-        if (!world.is_used(slot)) return true;
-        if (world.is_dynamic(slot) && !world.is_asleep(slot)) return true;
+    for (const DeformableRecord::Support& support : record.supports) {
+        const std::uint32_t slot = support.body.index;
+        if (world.bodies.find(support.body) == nullptr || world.record(slot).version != support.version) return true;
+        if (world.is_dynamic(slot) ? !world.is_asleep(slot) : is_led(world, slot)) return true;
     }
     for (const std::uint32_t slot : record.touched_deformables) {
         if (!world.deformables.used(slot) || !world.deformables.at(slot).is_asleep) return true;
     }
     for (const Attachment& attachment : record.definition.attachments) {
-        if (world.bodies.find(attachment.body) == nullptr || world.is_asleep(attachment.body.index)) continue;
-        const BodyState& state = world.motion[attachment.body.index];
-        const bool is_led = world.record(attachment.body.index).definition.kind == BodyKind::kinematic_body;
-        if (is_led && (state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{})) return true;
+        if (world.bodies.find(attachment.body) != nullptr && is_led(world, attachment.body.index)) return true;
     }
     bool is_disturbed = false;
     for_each_body_near(world, record, [&](std::uint32_t slot) {
@@ -97,6 +104,20 @@ bool is_disturbed(const WorldState& world, const DeformableRecord& record) {
                                         fastest_node(other) > noticed_speed);
     }
     return is_disturbed;
+}
+
+// Whether any was: it may disturb others.
+bool wake_disturbed(WorldState& world) {
+    bool has_woken = false;
+    for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
+        if (!world.deformables.used(slot)) continue;
+        DeformableRecord& record = world.deformables.at(slot);
+        if (!record.definition.enabled || !record.is_asleep || !is_disturbed(world, record)) continue;
+        record.is_asleep = false;
+        record.quiet_time = 0;
+        has_woken = true;
+    }
+    return has_woken;
 }
 
 /// All deformables that move in this step, with the bodies that they may touch.
@@ -208,6 +229,8 @@ void put_back_bodies(WorldState& world, const MovingDeformables& moving) {
         }
         record.deformable_force = force;
         record.deformable_torque = torque;
+        record.late_force = body.late_impulse / dt;
+        record.late_torque = body.late_angular_impulse / dt;
         if (force != Vec3{} || torque != Vec3{}) world.pushed_bodies.push_back(body.body);
         if (force == Vec3{} && body.expected_force == Vec3{} && torque == Vec3{} && body.expected_torque == Vec3{})
             continue;
@@ -269,6 +292,9 @@ void keep_contacts(WorldState& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.records) {
         sort_out(record->touched_bodies);
         sort_out(record->touched_deformables);
+        record->supports.clear();
+        for (const std::uint32_t slot : record->touched_bodies)
+            record->supports.push_back({world.bodies.handle_at(slot), world.record(slot).version});
     }
 }
 
@@ -343,16 +369,12 @@ void let_deformables_sleep(WorldState& world) {
 void advance_deformables(WorldState& world) {
     MovingDeformables moving;
     let_deformables_sleep(world);
-    wake_touched_thin(world);
+    while (wake_disturbed(world) || wake_touched_thin(world)) {
+    }
     for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
         if (!world.deformables.used(slot)) continue;
         DeformableRecord& record = world.deformables.at(slot);
-        if (!record.definition.enabled) continue;
-        if (record.is_asleep && is_disturbed(world, record)) {
-            record.is_asleep = false;
-            record.quiet_time = 0;
-        }
-        if (record.is_asleep) continue;
+        if (!record.definition.enabled || record.is_asleep) continue;
         record.slot = slot;
         moving.records.push_back(&record);
         if (record.solid) {
@@ -368,6 +390,7 @@ void advance_deformables(WorldState& world) {
     moving.groups = find_thin_groups(world, moving.thin);
     run_substeps(world, moving);
     put_back_bodies(world, moving);
+    if (!moving.records.empty()) limit_speeds(world);
     keep_contacts(world, moving);
     freeze_broken(world, moving);
     note_quiet(world, moving);

@@ -25,7 +25,8 @@ ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<st
     const std::vector<Vec3>& nodes = surface.nodes->position;
     for (std::uint32_t s = 0; s + 1 < nodes.size(); ++s) {
         sum += length(nodes[s + 1] - nodes[s]);
-        if (!record.rope->is_broken(s)) segments.push_back({s, s + 1});
+        // By its number; of a broken one no more than a node.
+        segments.push_back({s, record.rope->is_broken(s) ? s : s + 1});
     }
     surface.edges = segments;
     surface.edge_length = std::max(sum / static_cast<double>(nodes.size() - 1), 1e-6);
@@ -85,18 +86,41 @@ void ThinGroupPart::begin_members(std::span<const TouchedBody> bodies, std::span
             member.touch = record.rope->touch();
         }
         seen[m] = {surface_of(record, member.segments), record.slot, static_cast<std::uint32_t>(member.first),
-                   record.cloth ? record.cloth->node_stiffness() : record.rope->node_stiffness()};
+                   std::vector<double>(member.count, 0)};
+    }
+}
+
+// What bodies weigh on each node, as if evenly spread over all nodes that they may touch.
+void ThinGroupPart::load_nodes(std::span<const TouchedBody> bodies, std::span<ThinMember> seen) const {
+    std::vector<double> touched(bodies.size(), 0);
+    const auto bears = [&](const TouchSpring& spring) {
+        return !spring.is_attachment && spring.body < bodies.size() && bodies[spring.body].inverse_mass > 0;
+    };
+    for (const Member& member : members_) {
+        for (const TouchSpring& spring : member.touch.springs()) {
+            if (bears(spring)) touched[spring.body] += spring.count;
+        }
+    }
+    for (std::size_t m = 0; m < members_.size(); ++m) {
+        for (const TouchSpring& spring : members_[m].touch.springs()) {
+            if (!bears(spring)) continue;
+            const double load = 1 / (bodies[spring.body].inverse_mass * touched[spring.body]);
+            for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
+                seen[m].load[spring.node[k]] = std::max(seen[m].load[spring.node[k]], load);
+        }
     }
 }
 
 void ThinGroupPart::begin_pairs(std::span<const ThinMember> seen) {
     const double gravity = length(world_.settings.gravity);
+    double pull = gravity;  // the strongest
+    for (const Member& member : members_) pull = std::max(pull, length(member.substep.gravity));
     std::vector<ThinPair> pairs = group_.pairs;
     for (ThinPair& pair : pairs) {
         pair.a = place_[pair.a];
         pair.b = place_[pair.b];
     }
-    pairs_.begin(seen, pairs, world_.thin_contacts, h_, gravity);
+    pairs_.begin(seen, pairs, world_.thin_contacts, h_, pull);
     std::vector<PlacedTie> ties;
     for (const ThinTie& tie : group_.ties) {
         const Member &own = members_[place_[tie.member]], &other = members_[place_[tie.other]];
@@ -112,6 +136,7 @@ void ThinGroupPart::begin(std::span<const TouchedBody> bodies) {
     body_moves_.assign(bodies.size(), {});
     std::vector<ThinMember> seen(members_.size());
     begin_members(bodies, seen);
+    load_nodes(bodies, seen);
     begin_pairs(seen);
     for (Member& member : members_) member.touch.choose(part(moves_, member), body_moves_, true);
     pairs_.choose(moves_, true);
@@ -265,7 +290,10 @@ void ThinGroupPart::advance(std::span<TouchedBody> bodies) {
     begin(bodies);
     if (solve(bodies)) return end(bodies);
     // What is broken freezes on its own.
-    for (Member& member : members_) advance_thin(*member.thin, member.substep, bodies, *world_.workers);
+    for (Member& member : members_) {
+        advance_thin(*member.thin, member.substep, bodies, *world_.workers);
+        if (member.record().rope) note_breaks(world_, member.record());
+    }
 }
 
 }  // namespace embody::physics

@@ -31,6 +31,7 @@ private:
     [[nodiscard]] bool has_ropes() const { return members_.size() > sheets_; }
     void begin(std::span<const TouchedBody> bodies);
     void begin_members(std::span<const TouchedBody> bodies, std::span<ThinMember> seen);
+    void load_nodes(std::span<const TouchedBody> bodies, std::span<ThinMember> seen) const;
     void begin_pairs(std::span<const ThinMember> seen);
     bool solve(std::span<const TouchedBody> bodies);
     void gather_springs();

@@ -49,14 +49,19 @@ void leave_out_tied(const WorldState& world, const DeformableRecord& a, const Th
     });
 }
 
+// What gravity and its constant force give it, m/s².
+double pull_on(const WorldState& world, const DeformableRecord& record) {
+    return length(record.acceleration(world.settings.gravity));
+}
+
 // What may touch of two whose bounds, as far as each may go, overlap.
 std::vector<ThinCandidate> candidates_of(const WorldState& world, const DeformableRecord& a,
                                          const DeformableRecord& b) {
     std::vector<ThinCandidate> candidates;
     std::vector<std::array<std::uint32_t, 2>> segments_a, segments_b;
     const ThinSurface on_a = surface_of(a, segments_a), on_b = surface_of(b, segments_b);
-    find_thin_candidates(on_a, on_b, world.settings.time_step, length(world.settings.gravity), *world.workers,
-                         candidates);
+    find_thin_candidates(on_a, on_b, world.settings.time_step, std::max(pull_on(world, a), pull_on(world, b)),
+                         *world.workers, candidates);
     leave_out_tied(world, a, on_a, b, on_b, candidates);
     return candidates;
 }
@@ -128,8 +133,9 @@ std::vector<ThinTie> find_ties(const WorldState& world, std::span<const ThinDefo
 }
 
 // What is tied to what is awake is awake.
-void wake_tied(WorldState& world) {
-    for (bool has_woken = true; has_woken;) {
+bool wake_tied(WorldState& world) {
+    bool has_woken_any = false;
+    for (bool has_woken = true; has_woken; has_woken_any |= has_woken) {
         has_woken = false;
         for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
             if (!world.deformables.used(slot)) continue;
@@ -144,6 +150,7 @@ void wake_tied(WorldState& world) {
             }
         }
     }
+    return has_woken_any;
 }
 
 // Contacts of a pair that has parted, or of what is gone, are forgotten; sleepers keep theirs.
@@ -165,10 +172,10 @@ void forget_parted(WorldState& world, std::span<const ThinGroup> groups, std::sp
 
 }  // namespace
 
-void wake_touched_thin(WorldState& world) {
-    const double h = world.settings.time_step, gravity = length(world.settings.gravity);
+bool wake_touched_thin(WorldState& world) {
+    const double h = world.settings.time_step;
     const std::uint32_t count = world.deformables.slot_count();
-    wake_tied(world);
+    bool has_woken = wake_tied(world);
     for (std::uint32_t slot = 0; slot < count; ++slot) {
         if (!world.deformables.used(slot)) continue;
         DeformableRecord& sleeper = world.deformables.at(slot);
@@ -182,11 +189,14 @@ void wake_touched_thin(WorldState& world) {
             if (!overlaps(bounds, reach) || !may_touch_others(reach)) continue;
             std::vector<std::array<std::uint32_t, 2>> segments_a, segments_b;
             const ThinSurface a = surface_of(awake, segments_a), b = surface_of(sleeper, segments_b);
-            if (!will_touch(a, b, candidates_of(world, awake, sleeper), h, gravity)) continue;
+            const double pull = std::max(pull_on(world, awake), pull_on(world, sleeper));
+            if (!will_touch(a, b, candidates_of(world, awake, sleeper), h, pull)) continue;
             sleeper.is_asleep = false;
             sleeper.quiet_time = 0;
+            has_woken = true;
         }
     }
+    return has_woken;
 }
 
 std::vector<ThinGroup> find_thin_groups(WorldState& world, std::span<const ThinDeformable> thin) {
@@ -243,10 +253,20 @@ void advance_thin_groups(WorldState& world, std::span<const ThinGroup> groups, s
     const double step = world.settings.time_step, h = step / substeps;
     ThinOnSolids::Surfaces surfaces;
     for (const ThinGroup& group : groups) {
-        if (group.in_substeps)
-            advance_group(world, group, thin, h, (k - 1) * h, bodies, surfaces);
-        else if (k == substeps)
-            advance_group(world, group, thin, step, 0, bodies, surfaces);
+        if (group.in_substeps) advance_group(world, group, thin, h, (k - 1) * h, bodies, surfaces);
+    }
+    if (k < substeps) return;
+    for (TouchedBody& body : bodies) {
+        body.enter_whole_step(substeps);
+        body.late_impulse = body.impulse;
+        body.late_angular_impulse = body.angular_impulse;
+    }
+    for (const ThinGroup& group : groups) {
+        if (!group.in_substeps) advance_group(world, group, thin, step, 0, bodies, surfaces);
+    }
+    for (TouchedBody& body : bodies) {
+        body.late_impulse = body.impulse - body.late_impulse;
+        body.late_angular_impulse = body.angular_impulse - body.late_angular_impulse;
     }
 }
 

@@ -21,8 +21,9 @@ struct ThinGroup {
     bool in_substeps = false;  ///< goes in each substep: has a rope, or is tied to a solid
 };
 
-/// Wakes sleeping sheets and ropes that one that is awake is going to touch, and what is tied to what is awake.
-void wake_touched_thin(WorldState& world);
+/// Wakes sleeping sheets and ropes that one that is awake is going to touch, and what is tied to what is awake. Whether
+/// any was.
+bool wake_touched_thin(WorldState& world);
 /// Each of `thin` in one group; forgets contacts of pairs that have parted. Ascending by first member.
 std::vector<ThinGroup> find_thin_groups(WorldState& world, std::span<const ThinDeformable> thin);
 /// Substep k (1 …) of the deformables' substeps for all groups: groups with ropes or tied to solids in each, sheets

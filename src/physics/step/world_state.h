@@ -48,6 +48,7 @@ struct BodyRecord {
     Vec3 next_force, next_torque;  ///< for the next step only, cleared by report; N, N m about the centre of mass
     Vec3 start_linear_velocity, start_angular_velocity;  ///< when the step began, where there are deformables
     Vec3 deformable_force, deformable_torque;            ///< pushes of deformables in the last step, N, N m
+    Vec3 late_force, late_torque;                        ///< of these, those of sheets that take the step as a whole
     Vec3 drag;                                           ///< of the air in this step, or when it fell asleep, N
     Vec3 fluid_force, fluid_torque;                      ///< of fluids in this step, N, N m
     Vec3 last_center;                                    ///< last finite pose, to freeze the body at
