@@ -31,7 +31,6 @@ FluidSolver::Followed FluidSolver::follow(std::span<FluidSolid> solids, TaskPool
         solids_.end_catching_up();
     }
     if (way > least_way) keep_out(workers);
-    followed.has_moved = way > least_way;
     solids_.end();
     return followed;
 }
@@ -42,6 +41,7 @@ void FluidSolver::keep_out(TaskPool& workers) {
     share_among(workers, particles_.size(), particles_.size() > few_particles, [&](int, Share part) {
         ParticleCollider collider(grid_, solids_, 0);
         for (std::size_t i = part.first; i < part.last; ++i) {
+            if (!collider.is_near_thin(particles_[i].position)) continue;
             FluidParticle moved = particles_[i];
             collider.move(moved, particles_[i].position);
             std::copy_n(moved.position, 3, particles_[i].position);

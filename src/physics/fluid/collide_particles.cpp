@@ -37,6 +37,11 @@ ParticleCollider::ParticleCollider(const FluidGrid& grid, const FluidSolids& sol
         Mover mover{moving.probe, &moving, {}, {}};
         mover.before = mover.posed(moving.kept_center, moving.kept_rotation);
         mover.end = mover.posed(moving.center + moving.linear_velocity * (dt / 2), moving.end_rotation(dt));
+        for (const Pose& pose : {mover.before, mover.end}) {
+            const Quat turn = moving.rotation * conjugate(pose.rotation);
+            mover.shift = std::max(mover.shift, length(pose.center - moving.center));
+            mover.turn = std::max(mover.turn, 2 * length(Vec3{turn.x, turn.y, turn.z}));
+        }
         moving_.push_back(std::move(mover));
     }
 }
@@ -62,14 +67,34 @@ bool ParticleCollider::is_near_thin(const float* position) const {
     return (grid_.thin[grid_.index(cell_at(grid_, position))] & near_thin) != 0;
 }
 
+// Particles come by cells: the probes look at what is around several of them at once.
+void ParticleCollider::look_around(const Bounds& way) {
+    if (contains(seen_, way)) return;
+    const double h = grid_.cell_size(), gap = least_distance * h;
+    seen_ = enlarged(way, h);
+    near_fixed_.clear();
+    near_moving_.clear();
+    for (std::size_t i = 0; i < fixed_.size(); ++i) {
+        if (fixed_[i].look_at(enlarged(seen_, gap), gap)) near_fixed_.push_back(i);
+    }
+    for (std::size_t i = 0; i < moving_.size(); ++i) {
+        Mover& mover = moving_[i];
+        if (!mover.is_met()) continue;
+        // Wherever in the part a place is seen from, it is no farther from where it is than this.
+        const double arm = length(seen_.center() - mover.solid->center) + length(seen_.half_extents());
+        const double aside = mover.shift + mover.turn * (arm + mover.shift);
+        if (mover.probe.look_at(enlarged(seen_, gap + aside), gap)) near_moving_.push_back(i);
+    }
+}
+
 bool ParticleCollider::sees(Vec3 from, Vec3 to) {
     Bounds box;
     box.add(from);
     box.add(to);
-    const auto is_barred = [&](SolidProbe& probe) { return probe.look_at(box, 0) && probe.crossing(from, to); };
-    if (std::any_of(fixed_.begin(), fixed_.end(), is_barred)) return false;
-    return std::none_of(moving_.begin(), moving_.end(),
-                        [&](Mover& mover) { return mover.is_met() && is_barred(mover.probe); });
+    look_around(box);
+    return std::ranges::none_of(near_fixed_, [&](std::size_t i) { return fixed_[i].crossing(from, to).has_value(); }) &&
+           std::ranges::none_of(near_moving_,
+                                [&](std::size_t i) { return moving_[i].probe.crossing(from, to).has_value(); });
 }
 
 std::array<float, 3> ParticleCollider::place_of(const FluidParticle& particle) {
@@ -142,13 +167,9 @@ void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span
 }
 
 // Shortens the way from `from` to `to` where the probe bars it, and slides on along what bars it.
-bool ParticleCollider::bar(SolidProbe& probe, Vec3 from, Vec3& to, Vec3& normal) const {
+bool ParticleCollider::bar(const SolidProbe& probe, Vec3 from, Vec3& to, Vec3& normal) const {
     constexpr int most_slides = 3;
     const double gap = least_distance * grid_.cell_size();
-    Bounds box;
-    box.add(from);
-    box.add(to);
-    if (!probe.look_at(enlarged(box, gap), gap)) return false;
     bool is_barred = false;
     Vec3 start = from;
     for (int slide = 0; slide < most_slides; ++slide) {
@@ -175,16 +196,20 @@ bool ParticleCollider::bar(SolidProbe& probe, Vec3 from, Vec3& to, Vec3& normal)
 // By the true shapes; a moving one is seen from the middle of its way.
 void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to, const Span& when) {
     constexpr int rounds = 2;
+    Bounds way;
+    way.add(from);
+    way.add(to);
+    look_around(way);
     Vec3 normal;
     for (int round = 0; round < rounds; ++round) {
         bool any = false;
-        for (SolidProbe& probe : fixed_) {
-            if (!bar(probe, from, to, normal)) continue;
+        for (const std::size_t i : near_fixed_) {
+            if (!bar(fixed_[i], from, to, normal)) continue;
             any = true;
             stop_at(particle, {normal, {}});
         }
-        for (Mover& mover : moving_) {
-            if (!mover.is_met()) continue;
+        for (const std::size_t i : near_moving_) {
+            const Mover& mover = moving_[i];
             const MovingSolid& moving = *mover.solid;
             const Pose before = mover.at(when.first), after = mover.at(when.last);
             Vec3 seen_to = after.seen(to);

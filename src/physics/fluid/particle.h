@@ -29,7 +29,6 @@ struct ParticleReach {
     float fastest_squared = 0;                                                                         ///< m²/s²
     float zero = 0;  ///< none, if any place or velocity was none
 
-    void add(const FluidParticle& particle);
     void add(const ParticleReach& other);
     [[nodiscard]] bool is_finite() const { return zero == 0; }
     /// Largest coordinate, m; of no particles, or such that are not finite: infinity.

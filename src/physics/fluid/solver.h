@@ -48,7 +48,6 @@ public:
 
     /// After a step: the solids are where they came to by what they met, and the particles are kept out of them there.
     struct Followed {
-        bool has_moved = false;  ///< any particle
         bool is_solved = true;
         std::size_t lost = 0;  ///< particles out of reach
     };

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "physics/fluid/four.h"
+
 namespace embody::physics {
 
 namespace {
@@ -41,36 +43,65 @@ void clear_tiles(FluidGrid& grid, TaskPool& workers) {
     });
 }
 
+/// Trilinear weights of eight corners: those with the lower z and with the upper one, each in the order of x, then y.
+struct Weights {
+    Four lower, upper;
+
+    Weights(const Corners& c, float whole) {
+        const float x1 = c.f[0], x0 = 1 - x1, y1 = c.f[1], y0 = 1 - y1, z1 = c.f[2] * whole, z0 = whole - z1;
+        const Four layer = Four{x0, x1, x0, x1} * Four{y0, y0, y1, y1};
+        lower = layer * z0;
+        upper = layer * z1;
+    }
+};
+
+// Adds to the eight corners from `base` on.
+void add_to(float* base, int dy, int dz, Four lower, Four upper) {
+    store_pairs(load_pairs(base, base + dy) + lower, base, base + dy);
+    store_pairs(load_pairs(base + dz, base + dz + dy) + upper, base + dz, base + dz + dy);
+}
+
 void spread(FluidGrid& grid, const FluidParticle& particle, const std::array<float, 3>& place, float volume) {
     const int dy = grid.stride(1), dz = grid.stride(2);
     const auto h = static_cast<float>(grid.cell_size());
     float at[3];
     for (int axis = 0; axis < 3; ++axis) at[axis] = grid.in_cells(place[axis], axis);
-    const int offsets[8] = {0, 1, dy, dy + 1, dz, dz + 1, dz + dy, dz + dy + 1};
     for (int axis = 0; axis < 3; ++axis) {
         const Corners c = corners_at(grid, at, axis);
         const float* gradient = particle.affine[axis];
         const float gx = gradient[0] * h, gy = gradient[1] * h, gz = gradient[2] * h;
         const float low = particle.velocity[axis] - (gx * c.f[0] + gy * c.f[1] + gz * c.f[2]);
-        const float x1 = c.f[0], x0 = 1 - x1, y1 = c.f[1], y0 = 1 - y1, z1 = c.f[2], z0 = 1 - z1;
-        const float weights[8] = {x0 * y0 * z0, x1 * y0 * z0, x0 * y1 * z0, x1 * y1 * z0,
-                                  x0 * y0 * z1, x1 * y0 * z1, x0 * y1 * z1, x1 * y1 * z1};
-        const float values[8] = {low,      low + gx,      low + gy,      low + gy + gx,
-                                 low + gz, low + gz + gx, low + gz + gy, low + gz + gy + gx};
-        float* momentum = &grid.velocity[axis][c.base];
-        float* mass = &grid.mass[axis][c.base];
-        for (int k = 0; k < 8; ++k) {
-            momentum[offsets[k]] += weights[k] * values[k];
-            mass[offsets[k]] += weights[k];
-        }
+        const Weights weights(c, 1);
+        const Four across{0, gx, gy, gy + gx}, values = across + low;
+        add_to(&grid.velocity[axis][c.base], dy, dz, weights.lower * values, weights.upper * (values + gz));
+        add_to(&grid.mass[axis][c.base], dy, dz, weights.lower, weights.upper);
     }
     const Corners c = corners_at(grid, at, 3);
-    const float x1 = c.f[0], x0 = 1 - x1, y1 = c.f[1], y0 = 1 - y1, z1 = c.f[2] * volume, z0 = volume - z1;
-    const float weights[8] = {x0 * y0 * z0, x1 * y0 * z0, x0 * y1 * z0, x1 * y1 * z0,
-                              x0 * y0 * z1, x1 * y0 * z1, x0 * y1 * z1, x1 * y1 * z1};
-    float* density = &grid.density[c.base];
-    for (int k = 0; k < 8; ++k) density[offsets[k]] += weights[k];
+    const Weights weights(c, volume);
+    add_to(&grid.density[c.base], dy, dz, weights.lower, weights.upper);
 }
+
+/// A field between eight corners: its value and gradient by cell.
+struct Between {
+    float value, x, y, z;
+
+    // Along x on the four edges, then along y, then along z.
+    Between(const float* u, int dy, int dz, const float* f) {
+        const Four low = load_pairs(u, u + dy), high = load_pairs(u + dz, u + dz + dy);
+        // Corners by their y and z: 00, 10, 01, 11.
+        const Four left = __builtin_shufflevector(low, high, 0, 2, 4, 6),
+                   right = __builtin_shufflevector(low, high, 1, 3, 5, 7);
+        const Four slope = right - left, edge = left + slope * f[0];
+        // Values and slopes along x at the lower z and at the upper one.
+        const Four near = __builtin_shufflevector(edge, slope, 0, 2, 4, 6),
+                   far = __builtin_shufflevector(edge, slope, 1, 3, 5, 7);
+        const Four rise = far - near, middle = near + rise * f[1];
+        value = middle[0] + (middle[1] - middle[0]) * f[2];
+        x = middle[2] + (middle[3] - middle[2]) * f[2];
+        y = rise[0] + (rise[1] - rise[0]) * f[2];
+        z = middle[1] - middle[0];
+    }
+};
 
 }  // namespace
 
@@ -111,19 +142,11 @@ FieldSample sample_field(const FluidGrid& grid, const std::array<std::vector<flo
     FieldSample sample;
     for (int axis = 0; axis < 3; ++axis) {
         const Corners c = corners_at(grid, at, axis);
-        const float* u = &field[axis][c.base];
-        const float fx = c.f[0], fy = c.f[1], fz = c.f[2];
-        // Along x on the four edges, then along y, then along z.
-        const float d00 = u[1] - u[0], d10 = u[dy + 1] - u[dy], d01 = u[dz + 1] - u[dz],
-                    d11 = u[dz + dy + 1] - u[dz + dy];
-        const float v00 = u[0] + d00 * fx, v10 = u[dy] + d10 * fx, v01 = u[dz] + d01 * fx, v11 = u[dz + dy] + d11 * fx;
-        const float e0 = v10 - v00, e1 = v11 - v01;
-        const float w0 = v00 + e0 * fy, w1 = v01 + e1 * fy;
-        const float gx0 = d00 + (d10 - d00) * fy, gx1 = d01 + (d11 - d01) * fy;
-        sample.value[axis] = w0 + (w1 - w0) * fz;
-        sample.gradient[axis][0] = (gx0 + (gx1 - gx0) * fz) * per_cell;
-        sample.gradient[axis][1] = (e0 + (e1 - e0) * fz) * per_cell;
-        sample.gradient[axis][2] = (w1 - w0) * per_cell;
+        const Between between(&field[axis][c.base], dy, dz, c.f);
+        sample.value[axis] = between.value;
+        sample.gradient[axis][0] = between.x * per_cell;
+        sample.gradient[axis][1] = between.y * per_cell;
+        sample.gradient[axis][2] = between.z * per_cell;
     }
     return sample;
 }
@@ -151,21 +174,14 @@ FaceWeights face_weights(const FluidGrid& grid, const float* position, int axis)
 }
 
 float sample_center(const FluidGrid& grid, const std::vector<float>& field, const float* position, float* gradient) {
-    const int dy = grid.stride(1), dz = grid.stride(2);
     float at[3];
     for (int axis = 0; axis < 3; ++axis) at[axis] = grid.in_cells(position[axis], axis);
     const Corners c = corners_at(grid, at, 3);
-    const float* u = &field[c.base];
-    const float fx = c.f[0], fy = c.f[1], fz = c.f[2];
-    const float d00 = u[1] - u[0], d10 = u[dy + 1] - u[dy], d01 = u[dz + 1] - u[dz], d11 = u[dz + dy + 1] - u[dz + dy];
-    const float v00 = u[0] + d00 * fx, v10 = u[dy] + d10 * fx, v01 = u[dz] + d01 * fx, v11 = u[dz + dy] + d11 * fx;
-    const float e0 = v10 - v00, e1 = v11 - v01;
-    const float w0 = v00 + e0 * fy, w1 = v01 + e1 * fy;
-    const float gx0 = d00 + (d10 - d00) * fy, gx1 = d01 + (d11 - d01) * fy;
-    gradient[0] = gx0 + (gx1 - gx0) * fz;
-    gradient[1] = e0 + (e1 - e0) * fz;
-    gradient[2] = w1 - w0;
-    return w0 + (w1 - w0) * fz;
+    const Between between(&field[c.base], grid.stride(1), grid.stride(2), c.f);
+    gradient[0] = between.x;
+    gradient[1] = between.y;
+    gradient[2] = between.z;
+    return between.value;
 }
 
 }  // namespace embody::physics

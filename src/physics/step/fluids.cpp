@@ -225,7 +225,7 @@ void advance_fluid(WorldState& world, FluidRecord& fluid) {
         world.settings.time_step, world.settings.gravity * fluid.definition.gravity_factor, solids, *world.workers);
     note_outcome(world, fluid, outcome);
     push_bodies(world, fluid, solids);
-    read_particles(fluid, *world.workers);
+    if (fluid.is_frozen) read_particles(fluid, *world.workers);
     fall_asleep_if_quiet(world, fluid);
 }
 
@@ -240,7 +240,7 @@ void follow_bodies(WorldState& world, FluidRecord& fluid) {
     fluid.lost += followed.lost;
     if (followed.lost > 0) report_limit(world, StepLimit::fluid_particles_lost);
     if (!followed.is_solved) report_limit(world, StepLimit::fluid_unsolved);
-    if (followed.has_moved) read_particles(fluid, *world.workers);
+    read_particles(fluid, *world.workers);
 }
 
 }  // namespace
@@ -274,7 +274,9 @@ void settle_fluids(WorldState& world) {
     for (std::uint32_t slot = 0; slot < world.fluids.slot_count(); ++slot) {
         if (!world.fluids.used(slot)) continue;
         FluidRecord& fluid = world.fluids.at(slot);
-        if (!fluid.is_frozen && !fluid.is_asleep) follow_bodies(world, fluid);
+        if (fluid.is_frozen || fluid.is_asleep) continue;
+        const TaskPool::StayAwake stay_awake(*world.workers);
+        follow_bodies(world, fluid);
     }
 }
 

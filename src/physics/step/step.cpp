@@ -34,7 +34,6 @@ void advance(WorldState& world, bool is_long) {
     run(world, StepStage::continuous, stop_tunnelling);       // bodies that would pass through others
     run(world, StepStage::deformables, advance_deformables);  // nodes and elements, and what they push
     run(world, StepStage::sleep, put_to_sleep);               // quiet islands leave the awake set
-    run(world, StepStage::fluids, settle_fluids);             // liquids follow bodies to where these came to
 }
 
 }  // namespace
@@ -48,7 +47,8 @@ void step(WorldState& world) {
     run(world, StepStage::wake, wake_bodies);       // apply commands, wake touched islands
     run(world, StepStage::fluids, advance_fluids);  // particles, and forces of their pressure on bodies
     if (!world.awake.empty() || !world.contacts.empty() || world.deformables.count() > 0) advance(world, is_long);
-    write_report(world);  // events, counts
+    run(world, StepStage::fluids, settle_fluids);  // liquids follow bodies to where these came to
+    write_report(world);                           // events, counts
     world.report.milliseconds = milliseconds_since(start);
 }
 
