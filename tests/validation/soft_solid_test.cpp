@@ -431,6 +431,56 @@ TEST(SoftSolid, HeldToALightBodyItGainsNoEnergy) {
     }
 }
 
+// A ton hangs by nine nodes of a cube of 8 kg, which cannot bear it and stretches far: it neither floats nor rises.
+TEST(SoftSolid, WhatItCannotBearStretchesItWithoutEnergyFromNowhere) {
+    const auto world = make_world({});
+    DeformableDefinition cube = soft_cube(0.02);
+    cube.pose.position = {-0.1, 1.9, -0.1};
+    const Vec3 at{0, 1.8, 0};
+    const BodyHandle weight = add_box(*world, {0.05, 0.05, 0.05}, at, 1000);
+    for (std::uint32_t i = 0; i < cube.nodes.size(); ++i) {
+        const Vec3 place = cube.pose.position + cube.nodes[i];
+        if (length(place - Vec3{0, 2.1, 0}) < 0.08) cube.pinned.push_back(i);
+        if (length(place - Vec3{0, 1.9, 0}) < 0.08) cube.attachments.push_back({i, weight, place - at});
+    }
+    ASSERT_TRUE(world->create_deformable(cube).ok());
+    const double most = 1.01 * energy(*world);
+    for (int k = 0; k < 300; ++k) {
+        world->step();
+        EXPECT_LT(energy(*world), most) << k;
+        EXPECT_LT(world->pose(weight).position.y, 1.8 + 1e-6) << k;
+    }
+    EXPECT_LT(world->pose(weight).position.y, 1.6);
+}
+
+TEST(SoftSolid, AFastSpinKeepsItsEnergy) {
+    for (const double spin : {20.0, 50.0}) {
+        const auto world = make_world({.gravity = {}});
+        DeformableDefinition cube = soft_cube(0);
+        cube.angular_velocity = {0, spin, 0};
+        ASSERT_TRUE(world->create_deformable(cube).ok());
+        const double start = energy(*world);
+        for (int k = 0; k < 240; ++k) {
+            world->step();
+            EXPECT_LT(energy(*world), 1.05 * start) << spin << " rad/s, step " << k;
+        }
+        EXPECT_GT(energy(*world), 0.9 * start) << spin;
+    }
+}
+
+// Of which no substep can follow a quarter: what it cannot follow is lost, not won.
+TEST(SoftSolid, ASpinBeyondWhatStepsCanFollowMakesNoEnergy) {
+    const auto world = make_world({.gravity = {}});
+    DeformableDefinition cube = soft_cube(0.02);
+    cube.angular_velocity = {1000, 0, 0};
+    ASSERT_TRUE(world->create_deformable(cube).ok());
+    const double start = energy(*world);
+    for (int k = 0; k < 120; ++k) {
+        world->step();
+        EXPECT_LT(energy(*world), 1.01 * start) << k;
+    }
+}
+
 TEST(SoftSolid, DampingDoesNotDriveAFastSpin) {
     for (const double damping : {0.02, 1.0}) {
         const auto world = make_world({.gravity = {}});
@@ -440,7 +490,7 @@ TEST(SoftSolid, DampingDoesNotDriveAFastSpin) {
         const Conserved start = world->conserved();
         run(*world, 4);
         const Conserved end = world->conserved();
-        EXPECT_LT(end.kinetic_energy + end.potential_energy, 1.15 * start.kinetic_energy) << damping;
+        EXPECT_LT(end.kinetic_energy + end.potential_energy, 1.05 * start.kinetic_energy) << damping;
         EXPECT_LT(length(end.angular_momentum - start.angular_momentum), 0.1 * length(start.angular_momentum))
             << damping;
     }

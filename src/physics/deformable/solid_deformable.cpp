@@ -14,9 +14,11 @@ namespace {
 // Of the true stiffness along a move over the metric's.
 constexpr double stiffest_ratio = 1.3;
 // Of its energy: as much may come from nowhere, by rounding and by rotations that lag.
-constexpr double most_surplus = 0.05;
+constexpr double most_surplus = 0.01;
 // Nodes that go less than this of a triangle's side in a substep make none.
 constexpr double slow_share = 0.02;
+// rad: velocities are turned back no farther, where a substep turns the whole by more than it can follow.
+constexpr double most_turn_back = 0.3;
 
 }  // namespace
 
@@ -105,10 +107,11 @@ void SolidDeformable::begin_substep(double h, Vec3 gravity) {
     // of the whole earlier.
     if (is_new_) {
         const WholeMotion whole = motion_of_whole(nodes_);
+        const double back = std::min(h / 2, most_turn_back / std::max(length(whole.spin), 1e-9));  // s
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
             if (!(nodes_.inverse_mass[i] > 0)) continue;
             const Vec3 turning = is_free_ ? cross(whole.spin, nodes_.mean_velocity[i] - whole.velocity) : Vec3{};
-            nodes_.mean_velocity[i] -= (h / 2) * (gravity + turning);
+            nodes_.mean_velocity[i] -= (h / 2) * gravity + back * turning;
         }
     }
     if (factor_h_ != h) make_factor(h);
@@ -118,8 +121,9 @@ void SolidDeformable::begin_substep(double h, Vec3 gravity) {
         pushes_[i] = {};
         unsettled_[i] = {};
     }
-    kinetic_energy_at_start_ = kinetic_energy();
+    kinetic_energy_at_start_ = kinetic_energy();  // the nodes have gone on by their velocities
     if (is_new_) elastic_energy_.reset();
+    energy_at_start_.reset();
     is_new_ = false;
 }
 
@@ -129,11 +133,12 @@ void SolidDeformable::push(std::uint32_t node, Vec3 force) {
 }
 
 void SolidDeformable::solve(TaskPool& workers) {
+    is_measured_ = false;
+    std::ranges::fill(unsettled_, Vec3{});
     // r = M (x_old + h u + h² g - x)/h² + f(x, (x - x_old)/h) + pushes
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const Vec3 rate = (nodes_.position[i] - start_[i]) / h_;
         force_[i] = nodes_.mass[i] * (gravity_ + (nodes_.mean_velocity[i] - rate) / h_) + pushes_[i];
-        unsettled_[i] = {};
     }
     elements_.linearise(nodes_.position, start_, h_, force_);
     press();
@@ -153,6 +158,7 @@ void SolidDeformable::solve(TaskPool& workers) {
 }
 
 void SolidDeformable::settle(TaskPool& workers) {
+    is_measured_ = false;
     find_response(unsettled_, move_, workers);
     for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += move_[i];
     std::ranges::fill(unsettled_, Vec3{});
@@ -218,11 +224,21 @@ double SolidDeformable::stiffness_ratio() {
 }
 
 void SolidDeformable::finish() {
-    elements_.flow(nodes_.position);
-    if (is_free_ && std::ranges::all_of(pushes_, [](Vec3 push) { return push == Vec3{}; })) keep_momenta();
+    if (elements_.flow(nodes_.position)) is_measured_ = false;
+    const bool is_shortened = keep_energy();
     for (std::size_t i = 0; i < nodes_.size(); ++i) move_[i] = nodes_.position[i] - start_[i];
     set_velocities(nodes_, move_, h_);
-    keep_energy();
+    if (is_shortened) nodes_.velocity = nodes_.mean_velocity;
+}
+
+bool SolidDeformable::gains_energy() {
+    if (is_let_alone()) keep_momenta();
+    found_surplus_ = find_surplus();
+    return is_too_much(found_surplus_);
+}
+
+bool SolidDeformable::is_let_alone() const {
+    return is_free_ && std::ranges::all_of(pushes_, [](Vec3 push) { return push == Vec3{}; });
 }
 
 void SolidDeformable::go_on_with(std::span<const Vec3> force, TaskPool& workers) {
@@ -235,10 +251,12 @@ void SolidDeformable::go_on_with(std::span<const Vec3> force, TaskPool& workers)
     elastic_energy_.reset();
 }
 
+// Of the moves in the substep.
 double SolidDeformable::kinetic_energy() const {
     double sum = 0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        if (nodes_.inverse_mass[i] > 0) sum += nodes_.mass[i] / 2 * length_squared(nodes_.mean_velocity[i]);
+        if (nodes_.inverse_mass[i] > 0)
+            sum += nodes_.mass[i] / 2 * length_squared((nodes_.position[i] - start_[i]) / h_);
     }
     return sum;
 }
@@ -253,27 +271,37 @@ double SolidDeformable::elastic_energy(std::span<const Vec3> positions) const {
     return sum;
 }
 
-// One round of Newton's method leads too far where nodes go a large part of the solid in a substep. What is more energy
-// than there was and than the pushes have done is taken off: the move of the substep beyond that of the whole is made
-// shorter, down to none, which leaves the elastic energy that was there.
-void SolidDeformable::keep_energy() {
+// Energy beyond what there was and what the pushes have done, J, with what was left of earlier substeps; none where all
+// nodes are slow.
+std::optional<double> SolidDeformable::find_surplus() {
+    is_measured_ = true;
     double farthest = 0;
     for (std::size_t i = 0; i < nodes_.size(); ++i)
         farthest = std::max(farthest, length_squared(nodes_.position[i] - start_[i]));
-    if (farthest < slow_share * slow_share * mean_side_ * mean_side_) return elastic_energy_.reset();
-    const double at_start = kinetic_energy_at_start_ + (elastic_energy_ ? *elastic_energy_ : elastic_energy(start_));
-    const auto surplus = [&] {
-        double work = 0;
-        for (std::size_t i = 0; i < nodes_.size(); ++i) {
-            if (nodes_.inverse_mass[i] > 0)
-                work += dot(pushes_[i] + nodes_.mass[i] * gravity_, nodes_.position[i] - start_[i]);
-        }
-        elastic_energy_ = elastic_energy(nodes_.position);
-        return surplus_ + kinetic_energy() + *elastic_energy_ - at_start - work;
-    };
-    const auto is_too_much = [&](double energy) { return !(energy <= most_surplus * at_start); };
-    double left = surplus();
-    if (is_too_much(left)) {
+    if (farthest < slow_share * slow_share * mean_side_ * mean_side_) return std::nullopt;
+    if (!energy_at_start_)
+        energy_at_start_ = kinetic_energy_at_start_ + (elastic_energy_ ? *elastic_energy_ : elastic_energy(start_));
+    double work = 0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        if (nodes_.inverse_mass[i] > 0)
+            work += dot(pushes_[i] + nodes_.mass[i] * gravity_, nodes_.position[i] - start_[i]);
+    }
+    elastic_energy_ = elastic_energy(nodes_.position);
+    return surplus_ + kinetic_energy() + *elastic_energy_ - *energy_at_start_ - work;
+}
+
+// What was too much before may only become less.
+bool SolidDeformable::is_too_much(std::optional<double> surplus) const {
+    return surplus && !(*surplus <= std::max(most_surplus * *energy_at_start_, surplus_));
+}
+
+// What further rounds leave is taken off: the move of the substep beyond that of the whole is made shorter, down to
+// none, which leaves the elastic energy that was there. Returns whether it was.
+bool SolidDeformable::keep_energy() {
+    if (!is_measured_ && is_let_alone()) keep_momenta();
+    std::optional<double> left = is_measured_ ? found_surplus_ : find_surplus();
+    const bool is_shortened = is_too_much(left);
+    if (is_shortened) {
         const RigidMove whole = is_free_ ? move_of_whole() : RigidMove{};
         constexpr int most_halvings = 4;
         for (int k = 1; k <= most_halvings && is_too_much(left); ++k) {
@@ -282,12 +310,13 @@ void SolidDeformable::keep_energy() {
                 if (!(nodes_.inverse_mass[i] > 0)) continue;
                 const Vec3 along = whole.at(start_[i]);
                 nodes_.position[i] = along + share * (nodes_.position[i] - along);
-                nodes_.velocity[i] = nodes_.mean_velocity[i] = (nodes_.position[i] - start_[i]) / h_;
             }
-            left = surplus();
+            left = find_surplus();
         }
     }
-    surplus_ = std::max(0.0, left);
+    if (!left) elastic_energy_.reset();
+    surplus_ = std::max(0.0, left.value_or(0));
+    return is_shortened;
 }
 
 // That of the nodes in this substep, by mass.

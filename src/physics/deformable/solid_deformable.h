@@ -39,6 +39,9 @@ public:
     void settle(TaskPool& workers);
     /// How the nodes would have moved by these forces (N) in this substep, had nothing else held them, m.
     void find_response(std::span<const Vec3> force, std::span<Vec3> move, TaskPool& workers);
+    /// Whether the moves so far make energy, as one round does where nodes go a large part of the solid in a substep:
+    /// solve() again makes it less.
+    [[nodiscard]] bool gains_energy();
     /// Velocities of what the substep has come to.
     void finish();
     /// After finish(): moves the nodes by what these forces (N) besides do in the substep.
@@ -92,7 +95,10 @@ private:
     };
     [[nodiscard]] RigidMove move_of_whole() const;
     void keep_momenta();
-    void keep_energy();
+    bool keep_energy();
+    [[nodiscard]] std::optional<double> find_surplus();
+    [[nodiscard]] bool is_too_much(std::optional<double> surplus) const;
+    [[nodiscard]] bool is_let_alone() const;
     [[nodiscard]] double kinetic_energy() const;
     [[nodiscard]] double elastic_energy(std::span<const Vec3> positions) const;
 
@@ -103,10 +109,13 @@ private:
     std::vector<std::array<std::uint32_t, 3>> surface_;
     std::vector<std::uint32_t> surface_nodes_;
     double mean_side_ = 0;
-    bool is_free_ = true;                               // no node is pinned
-    bool is_new_ = true;                                // has made no substep yet
-    std::optional<double> elastic_energy_;              // at the end of the last substep, J; none: not measured
-    double kinetic_energy_at_start_ = 0, surplus_ = 0;  // of this substep; come from nowhere so far, J
+    bool is_free_ = true;  // no node is pinned
+    bool is_new_ = true;   // has made no substep yet
+    // J: at the end of the last substep, of this one's start; none: not measured; come from nowhere so far
+    std::optional<double> elastic_energy_, energy_at_start_;
+    double kinetic_energy_at_start_ = 0, surplus_ = 0;
+    std::optional<double> found_surplus_;  // by gains_energy(), with no move since: is_measured_
+    bool is_measured_ = false;
 
     // Of the substep.
     double h_ = 0;

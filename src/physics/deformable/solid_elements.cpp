@@ -258,6 +258,7 @@ void SolidElements::add_stiffness(float factor, std::span<const Vec3f> move, std
 
 double SolidElements::energy(std::span<const Vec3> position) const {
     const auto density = [&](const Mat3& deformation, Quat rotation, const Mat3& plastic) {
+        follow_rotation(deformation, rotation);
         const Mat3 off = transpose(to_matrix(rotation)) * deformation - Mat3::identity() - plastic;
         return mu_ * squares(off) + lambda_ / 2 * trace(off) * trace(off);
     };
@@ -280,14 +281,15 @@ Mat3 SolidElements::mean_around(std::size_t node, std::span<const Mat3> of_eleme
     return mean;
 }
 
-void SolidElements::flow(std::span<const Vec3> position) {
-    if (!std::isfinite(yield_stress_)) return;
+bool SolidElements::flow(std::span<const Vec3> position) {
+    if (!std::isfinite(yield_stress_)) return false;
     for (std::size_t e = 0; e < size(); ++e) {
         deformation_[e] = gradient(e, position);
         flow(deformation_[e], rotation_[e], plastic_[e]);
     }
     for (std::size_t i = 0; i < node_rotation_.size(); ++i)
         flow(mean_around(i, deformation_), node_rotation_[i], node_plastic_[i]);
+    return true;
 }
 
 // Radial return (J. C. Simo, T. J. R. Hughes, "Computational Inelasticity", 1998, 3.3): stress s = 2 μ dev(ε - εᵖ) is

@@ -43,11 +43,11 @@ public:
     void add_stiffness(float factor, std::span<const Vec3f> move, std::span<Vec3f> force);
     /// The rotation around each node, of the last linearise().
     [[nodiscard]] const std::vector<Quat>& node_rotations() const { return node_rotation_; }
-    /// Elastic energy at these positions, with the rotations of the last linearise(), J.
+    /// Elastic energy at these positions, J.
     [[nodiscard]] double energy(std::span<const Vec3> position) const;
     /// Lets what is stressed beyond its yield stress at these positions flow, with the rotations of the last
-    /// linearise().
-    void flow(std::span<const Vec3> position);
+    /// linearise(). Returns whether there is a yield stress.
+    bool flow(std::span<const Vec3> position);
     /// Goes on with the plastic strain of another of as many nodes and tetrahedra.
     void take_plastic_strain(const SolidElements& other);
     /// Rotations for nodes that are somewhere else altogether.

@@ -18,6 +18,7 @@ namespace {
 constexpr double quiet_speed = 0.02;     // m/s: all nodes slower than this may sleep
 constexpr double quiet_way = 1e-3;       // m: or a sheet or rope that only trembles, none of whose nodes goes so far
 constexpr double noticed_change = 0.05;  // of a sleeping body's weight: a push that differs by more wakes it
+constexpr int most_corrections = 3;      // rounds besides the first
 constexpr double noticed_speed = 0.05;   // m/s: a body as fast as this wakes what it is near
 
 template <class Visit>
@@ -192,6 +193,17 @@ void share_solids(const WorldState& world, const MovingDeformables& moving, cons
     });
 }
 
+// A further round for solids whose moves make energy; returns whether there is any.
+bool correct_solids(const WorldState& world, const MovingDeformables& moving) {
+    std::atomic<bool> is_any = false;
+    share_solids(world, moving, [&](std::size_t i, TaskPool& workers) {
+        if (!moving.solids[i]->gains_energy()) return;
+        moving.solids[i]->solve(workers);
+        is_any = true;
+    });
+    return is_any;
+}
+
 void run_substeps(WorldState& world, MovingDeformables& moving) {
     const int substeps = world.settings.deformable_substeps;
     const double h = world.settings.time_step / substeps;
@@ -203,7 +215,10 @@ void run_substeps(WorldState& world, MovingDeformables& moving) {
         for (TouchedBody& body : moving.bodies) body.enter_substep(h);
         SolidContacts::begin(moving.contacts, moving.solids, moving.bodies, h, k * h);
         share_solids(world, moving, [&](std::size_t i, TaskPool& workers) { moving.solids[i]->solve(workers); });
-        world.solid_contacts.solve(moving.contacts, moving.solids, moving.bodies, h, k * h, *world.workers);
+        int corrections = 0;
+        do {
+            world.solid_contacts.solve(moving.contacts, moving.solids, moving.bodies, h, k * h, *world.workers);
+        } while (corrections++ < most_corrections && correct_solids(world, moving));
         share_solids(world, moving, [&](std::size_t i, TaskPool&) { moving.solids[i]->finish(); });
         advance_thin_groups(world, moving.groups, moving.thin, moving.bodies, k);
     }
