@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { Signal } from "./signal";
 import type { Theme } from "./view/environment";
+import { drawsInSoftware } from "./view/software";
 import type { Quality } from "./view/tint";
 
 /** What this browser's user likes; kept in the browser. */
@@ -48,7 +49,9 @@ export class Preferences {
   private readonly values: PreferenceValues;
 
   constructor() {
-    this.values = { ...DEFAULTS, ...readKept() };
+    const kept = readKept();
+    this.values = { ...DEFAULTS, ...kept };
+    if (!kept.quality && drawsInSoftware()) this.values.quality = "low";
     // `?quality=low` for one visit: software renderers and tests.
     const asked = new URLSearchParams(location.search).get("quality");
     if (asked === "low" || asked === "high") this.values.quality = asked;

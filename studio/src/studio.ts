@@ -11,10 +11,14 @@ import { Preferences } from "./preferences";
 import { Signal } from "./signal";
 import { EntityView } from "./view/entity_view";
 import { ModelStore } from "./view/model_store";
+import { drawsInSoftware } from "./view/software";
 import { View } from "./view/view";
 
 /** Of a large selection only the first are asked for. */
 const MOST_COLLISION_SHAPES = 64;
+/** Simulated seconds in a second that are real time, and the longest time between pictures for its sake, ms. */
+const KEEPS_PACE = 0.95;
+const LONGEST_PACE_MS = 100;
 
 export interface Notice {
   level: "info" | "warning" | "error";
@@ -63,9 +67,10 @@ export class Studio {
   private collisionAsked = 0;
   /** The document is here; false until the first answer to hello. */
   ready = false;
+  private readonly onOneProcessor = ["localhost", "127.0.0.1", "[::1]"].includes(location.hostname) && drawsInSoftware();
 
   constructor(canvas: HTMLCanvasElement) {
-    this.view = new View(canvas, this.motion, this.entities);
+    this.view = new View(canvas, this.motion, this.entities, this.preferences.get("quality"));
     this.followDocument();
     this.followConnection();
     this.followPreferences();
@@ -157,10 +162,10 @@ export class Studio {
       this.entities.takePoints(frame, performance.now(), this.playing);
       this.simulation.time = frame.time;
       this.simulation.step = frame.step;
-      this.view.invalidate();
+      this.view.drawSoon();
       // The next frame is wanted when this one has been drawn; where nothing is drawn (a hidden page), at once.
       if (document.hidden) this.connection.wantFrame();
-      else requestAnimationFrame(() => this.connection.wantFrame());
+      else setTimeout(() => requestAnimationFrame(() => this.connection.wantFrame()), this.view.pace);
     });
   }
 
@@ -238,6 +243,7 @@ export class Studio {
         this.statistics = event;
         // While everything sleeps no frames come, but time goes on.
         if (this.playing) [this.simulation.time, this.simulation.step] = [event.time, event.step];
+        this.sharePower(event);
         this.statisticsChanged.emit();
         break;
       case "message":
@@ -255,6 +261,13 @@ export class Studio {
       case "action":
         break;
     }
+  }
+
+  /** Where one computer simulates and draws, both with its processor, pictures give way until the simulation keeps pace. */
+  private sharePower({ real_time_factor: rate }: Statistics): void {
+    if (!this.onOneProcessor) return;
+    const change = this.playing && rate < KEEPS_PACE ? 20 : -10;
+    this.view.pace = Math.min(Math.max(this.view.pace + change, 0), LONGEST_PACE_MS);
   }
 
   private takeDocument(event: DocumentEvent): void {

@@ -236,7 +236,7 @@ export class EntityView {
     ++this.pending;
     try {
       const plain = model ? await this.models.drawable(model) : shapeDrawable(entity);
-      const skin = await this.softs.dress(index, plain, scale ?? 1);
+      const skin = await this.softs.dress(index, plain, scale ?? 1, this.quality);
       // It may have become another thing while the mesh was on its way.
       if (skin && this.document.entity(index) === entity && this.softs.skinOf(index) === skin) {
         this.join(entity, key, () => skin.drawable);

@@ -3,6 +3,8 @@ import { BufferAttribute, BufferGeometry, type InterleavedBufferAttribute, Matri
 
 const MOST_PASSES = 8;
 const MOST_VERTICES = 60_000;
+/** More than vertices there ever are: two numbers make one key. */
+const KEY_STEP = 2 ** 26;
 
 interface Numbers {
   size: number;
@@ -51,11 +53,15 @@ function placeAll({ values }: Numbers, place: (vector: Vector3) => Vector3): voi
 /** Each triangle by its edges that are too long; null where none is. */
 function halve(triangles: number[], attributes: Map<string, Numbers>, longest: number): number[] | null {
   const { values } = attributes.get("position")!;
-  const isLong = (a: number, b: number) =>
-    Math.hypot(values[3 * a]! - values[3 * b]!, values[3 * a + 1]! - values[3 * b + 1]!, values[3 * a + 2]! - values[3 * b + 2]!) > longest;
-  const middles = new Map<string, number>();
+  const isLong = (a: number, b: number) => {
+    const x = values[3 * a]! - values[3 * b]!;
+    const y = values[3 * a + 1]! - values[3 * b + 1]!;
+    const z = values[3 * a + 2]! - values[3 * b + 2]!;
+    return x * x + y * y + z * z > longest * longest;
+  };
+  const middles = new Map<number, number>();
   const middle = (a: number, b: number) => {
-    const key = a < b ? `${a} ${b}` : `${b} ${a}`;
+    const key = Math.min(a, b) * KEY_STEP + Math.max(a, b);
     let found = middles.get(key);
     if (found === undefined) {
       found = values.length / 3;

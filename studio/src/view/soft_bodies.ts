@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-import { Quaternion, Vector3 } from "three";
+import { Matrix4, Quaternion, type Vector3 } from "three";
 import type { Connection } from "../connection/connection";
 import type { Frame, PointSet } from "../connection/frame";
 import type { Drawable } from "./drawable";
+import type { Quality } from "./tint";
 import { SoftForm, SoftSkin } from "./soft_form";
 
 /** Longest time in which nodes go on to where a frame has them, ms; as of poses. */
@@ -12,6 +13,8 @@ interface Nodes {
   from: Float32Array;
   to: Float32Array;
   now: Float32Array;
+  /** In the entity's frame. */
+  local: Float32Array;
   start: number;
   duration: number;
   skin: SoftSkin | null;
@@ -23,7 +26,7 @@ export class SoftBodies {
   private readonly all = new Map<number, Nodes>();
   private readonly moving = new Set<number>();
   private lastFrame = 0;
-  private readonly vector = new Vector3();
+  private readonly turn = new Matrix4();
   private readonly back = new Quaternion();
 
   constructor(private readonly connection: Connection) {}
@@ -58,7 +61,7 @@ export class SoftBodies {
       if (nodes?.to.length !== set.positions.length) {
         this.drop(set.index);
         const places = placesOf(set, new Float32Array(set.positions.length));
-        nodes = { from: places.slice(), to: places, now: places.slice(), start: now, duration: 0, skin: null, isBroken: false };
+        nodes = { from: places.slice(), to: places, now: places.slice(), local: places.slice(), start: now, duration: 0, skin: null, isBroken: false };
         this.all.set(set.index, nodes);
         changed.push(set.index);
       } else {
@@ -87,12 +90,12 @@ export class SoftBodies {
    * A drawable that bends with the entity's nodes, made of what it looks like at rest; its geometries are for the caller to
    * dispose of. Null where the entity is not soft (any more).
    */
-  async dress(index: number, plain: Drawable, scale: number): Promise<SoftSkin | null> {
+  async dress(index: number, plain: Drawable, scale: number, quality: Quality): Promise<SoftSkin | null> {
     const { mesh } = await this.connection.request("entity.simulation_mesh", { index });
     const nodes = this.all.get(index);
     if (!mesh || nodes?.to.length !== mesh.nodes.length) return null;
     nodes.isBroken = (mesh.broken?.length ?? 0) > 0;
-    nodes.skin = new SoftSkin(new SoftForm(mesh, scale), plain);
+    nodes.skin = new SoftSkin(new SoftForm(mesh, scale), plain, quality);
     this.moving.add(index);
     return nodes.skin;
   }
@@ -112,11 +115,16 @@ export class SoftBodies {
     const nodes = this.all.get(index);
     if (!nodes?.skin) return;
     this.blend(nodes, now);
-    const { now: places } = nodes;
-    const local = new Float32Array(places.length);
-    this.back.copy(rotation).invert();
-    for (let at = 0; at < places.length; at += 3)
-      this.vector.fromArray(places, at).sub(position).applyQuaternion(this.back).divideScalar(scale).toArray(local, at);
+    const { now: places, local } = nodes;
+    const turn = this.turn.makeRotationFromQuaternion(this.back.copy(rotation).invert()).elements;
+    for (let at = 0; at < places.length; at += 3) {
+      const x = (places[at]! - position.x) / scale;
+      const y = (places[at + 1]! - position.y) / scale;
+      const z = (places[at + 2]! - position.z) / scale;
+      local[at] = turn[0]! * x + turn[4]! * y + turn[8]! * z;
+      local[at + 1] = turn[1]! * x + turn[5]! * y + turn[9]! * z;
+      local[at + 2] = turn[2]! * x + turn[6]! * y + turn[10]! * z;
+    }
     nodes.skin.follow(local);
   }
 

@@ -3,10 +3,14 @@ import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Matrix4, Matri
 import type { SimulationMesh } from "../connection/messages";
 import type { Drawable, DrawablePart } from "./drawable";
 import { refine } from "./refine";
+import type { Quality } from "./tint";
 
 const NONE = new Matrix4();
-/** Of an element's edge: how long drawn edges of cloth and ropes may be, so that they look round between the nodes. */
-const THIN_SHARE = 0.7;
+/** How long drawn edges may be, in edges of the elements: short ones look round between the nodes of cloth and ropes. */
+const LONGEST: Record<Quality, { solid: number; cloth: number; rope: number }> = {
+  high: { solid: 1, cloth: 0.7, rope: 0.7 },
+  low: { solid: 1, cloth: 1.4, rope: 0.7 },
+};
 
 /** Which nodes an element has: four of a solid, three of cloth, two of a rope. */
 function elementsOf(mesh: SimulationMesh): { corners: number; elements: number[] } {
@@ -34,7 +38,10 @@ export class SoftForm {
   /** Of each element nine numbers by rows: what takes a place beside its first node to shares of its directions at rest. */
   private readonly inverse: Float32Array;
   private readonly amount: Float32Array;
-  private readonly share: Float32Array;
+  /** Of each node: one by the amounts of its elements. */
+  private readonly shareOf: Float32Array;
+  /** So that nothing is made anew while things move. */
+  private readonly scratch = { frame: new RopeFrame(), e: new Vector3(), f: new Vector3(), g: new Vector3(), of: new Float64Array(9) };
 
   /** `scale`: of the entity; the mesh has it in its nodes. */
   constructor(mesh: SimulationMesh, scale: number) {
@@ -45,11 +52,10 @@ export class SoftForm {
     const count = this.count;
     this.inverse = new Float32Array(9 * count);
     this.amount = new Float32Array(count);
-    this.share = new Float32Array(this.nodes.length / 3);
+    this.shareOf = new Float32Array(this.nodes.length / 3);
     this.deformation = new Float32Array(3 * this.nodes.length);
     const matrix = new Matrix3();
-    const [e, f, g] = [new Vector3(), new Vector3(), new Vector3()];
-    const frame = new RopeFrame();
+    const { frame, e, f, g } = this.scratch;
     let lengths = 0;
     for (let t = 0; t < count; ++t) {
       this.directions(t, this.nodes, frame, e, f, g);
@@ -57,8 +63,9 @@ export class SoftForm {
       matrix.set(e.x, f.x, g.x, e.y, f.y, g.y, e.z, f.z, g.z);
       this.amount[t] = Math.abs(matrix.determinant());
       this.inverse.set(matrix.invert().transpose().elements, 9 * t);
-      for (let k = 0; k < corners; ++k) this.share[this.elements[corners * t + k]!]! += this.amount[t]!;
+      for (let k = 0; k < corners; ++k) this.shareOf[this.elements[corners * t + k]!]! += this.amount[t]!;
     }
+    for (let node = 0; node < this.shareOf.length; ++node) this.shareOf[node] = this.shareOf[node]! > 0 ? 1 / this.shareOf[node]! : 1;
     this.edge = count > 0 ? lengths / count : 1;
   }
 
@@ -71,7 +78,7 @@ export class SoftForm {
     const at = 3 * this.elements[this.corners * t]!;
     const m = this.inverse;
     const i = 9 * t;
-    const [dx, dy, dz] = [x - this.nodes[at]!, y - this.nodes[at + 1]!, z - this.nodes[at + 2]!];
+    const dx = x - this.nodes[at]!, dy = y - this.nodes[at + 1]!, dz = z - this.nodes[at + 2]!;
     weights[0] = 1;
     for (let k = 0; k + 1 < this.corners; ++k) {
       weights[k + 1] = m[i + 3 * k]! * dx + m[i + 3 * k + 1]! * dy + m[i + 3 * k + 2]! * dz;
@@ -81,40 +88,46 @@ export class SoftForm {
 
   /** Finds the deformation with the nodes at these places (x, y, z each). */
   deform(places: Float32Array): void {
-    const { deformation, elements, inverse, corners } = this;
+    const { deformation, elements, inverse, corners, amount, shareOf, scratch } = this;
+    const { frame, e, f, g, of } = scratch;
     deformation.fill(0);
-    const [e, f, g] = [new Vector3(), new Vector3(), new Vector3()];
-    const columns = [0, 1, 2];
-    const frame = new RopeFrame();
-    for (let t = 0, i = 0; t < this.count; ++t, i += 9) {
+    frame.begin();
+    for (let t = 0, i = 0; t < amount.length; ++t, i += 9) {
       this.directions(t, places, frame, e, f, g);
-      const amount = this.amount[t]!;
-      const moved = [e.x, f.x, g.x, e.y, f.y, g.y, e.z, f.z, g.z];
-      for (let at = 0; at < 9; at += 3)
-        for (const column of columns) {
-          const value =
-            amount * (moved[at]! * inverse[i + column]! + moved[at + 1]! * inverse[i + 3 + column]! + moved[at + 2]! * inverse[i + 6 + column]!);
-          for (let k = 0; k < corners; ++k) deformation[9 * elements[corners * t + k]! + at + column]! += value;
-        }
+      for (let row = 0; row < 3; ++row) {
+        const p = amount[t]! * (row === 0 ? e.x : row === 1 ? e.y : e.z);
+        const q = amount[t]! * (row === 0 ? f.x : row === 1 ? f.y : f.z);
+        const r = amount[t]! * (row === 0 ? g.x : row === 1 ? g.y : g.z);
+        for (let column = i; column < i + 3; ++column)
+          of[3 * row + column - i] = p * inverse[column]! + q * inverse[column + 3]! + r * inverse[column + 6]!;
+      }
+      for (let k = corners * t; k < corners * t + corners; ++k)
+        for (let at = 9 * elements[k]!, which = 0; which < 9; ++which) deformation[at + which]! += of[which]!;
     }
-    for (let node = 0; node < this.share.length; ++node)
-      for (let k = 9 * node; k < 9 * node + 9; ++k) deformation[k]! /= this.share[node]! || 1;
+    for (let node = 0; node < shareOf.length; ++node)
+      for (let k = 9 * node; k < 9 * node + 9; ++k) deformation[k]! *= shareOf[node]!;
   }
 
   /** An element's three directions with the nodes at these places; of a rope they follow from those of the element before. */
   private directions(t: number, places: Float32Array, frame: RopeFrame, e: Vector3, f: Vector3, g: Vector3): void {
-    const { elements, corners } = this;
-    const at = (k: number) => 3 * elements[corners * t + k]!;
-    const between = (k: number, to: Vector3) =>
-      to.set(places[at(k)]! - places[at(0)]!, places[at(k) + 1]! - places[at(0) + 1]!, places[at(k) + 2]! - places[at(0) + 2]!);
-    between(1, e);
+    const { corners } = this;
+    this.between(corners * t, 1, places, e);
     if (corners === 2) {
       frame.follow(e, f, g);
       return;
     }
-    between(2, f);
+    this.between(corners * t, 2, places, f);
     if (corners === 3) g.crossVectors(e, f).normalize();
-    else between(3, g);
+    else this.between(corners * t, 3, places, g);
+  }
+
+  /** From the first node of the element whose nodes begin at `first` to its node `k`. */
+  private between(first: number, k: number, places: Float32Array, way: Vector3): void {
+    const from = 3 * this.elements[first]!;
+    const to = 3 * this.elements[first + k]!;
+    way.x = places[to]! - places[from]!;
+    way.y = places[to + 1]! - places[from + 1]!;
+    way.z = places[to + 2]! - places[from + 2]!;
   }
 }
 
@@ -124,6 +137,11 @@ class RopeFrame {
   private readonly across = new Vector3();
   private readonly now = new Vector3();
   private readonly turn = new Quaternion();
+
+  /** The next edge is the first of a line. */
+  begin(): void {
+    this.tangent.set(0, 0, 0);
+  }
 
   follow(edge: Vector3, f: Vector3, g: Vector3): void {
     this.now.copy(edge).normalize();
@@ -172,13 +190,13 @@ class ElementFinder {
     let found = -1;
     let least = Infinity;
     const farthest = Math.max(...this.size);
-    for (let ring = 0; ring <= farthest && !(least <= (ring - 1) * this.form.edge); ++ring) {
+    for (let ring = 0; ring <= farthest && !(ring > 0 && least <= ((ring - 1) * this.form.edge) ** 2); ++ring) {
       const low = middle.map((c) => Math.max(0, c - ring));
       const high = middle.map((c, axis) => Math.min(this.size[axis]! - 1, c + ring));
       this.visit(low, high, (cell, i, j, k) => {
         if (Math.max(Math.abs(i - middle[0]!), Math.abs(j - middle[1]!), Math.abs(k - middle[2]!)) !== ring) return;
         for (const t of this.cells.get(cell) ?? []) {
-          const distance = this.distanceTo(t, x, y, z);
+          const distance = this.squareTo(t, x, y, z);
           if (distance >= least) continue;
           least = distance;
           found = t;
@@ -190,14 +208,18 @@ class ElementFinder {
     return found;
   }
 
-  /** To the place with the weights cut off at zero: 0 inside a solid. Leaves these in `own`. */
-  private distanceTo(t: number, x: number, y: number, z: number): number {
+  /** Square of the distance to the place with the weights cut off at zero: 0 inside a solid. Leaves these in `own`. */
+  private squareTo(t: number, x: number, y: number, z: number): number {
     const { nodes, elements, corners } = this.form;
     this.form.weightsAt(t, x, y, z, this.own);
-    if (corners === 4 && this.own.every((weight) => weight >= 0)) return 0;
     let sum = 0;
-    for (let k = 0; k < corners; ++k) sum += this.own[k] = Math.max(0, this.own[k]!);
-    let [dx, dy, dz] = [x, y, z];
+    let isInside = corners === 4;
+    for (let k = 0; k < corners; ++k) {
+      isInside &&= this.own[k]! >= 0;
+      sum += this.own[k] = Math.max(0, this.own[k]!);
+    }
+    if (isInside) return 0;
+    let dx = x, dy = y, dz = z;
     for (let k = 0; k < corners; ++k) {
       const at = 3 * elements[corners * t + k]!;
       const weight = (this.own[k]! /= sum);
@@ -205,7 +227,7 @@ class ElementFinder {
       dy -= weight * nodes[at + 1]!;
       dz -= weight * nodes[at + 2]!;
     }
-    return Math.hypot(dx, dy, dz);
+    return dx * dx + dy * dy + dz * dz;
   }
 
   private cellOf(x: number, y: number, z: number): number[] {
@@ -246,8 +268,12 @@ class CarriedPart {
   private readonly nodes: Uint32Array;
   private readonly weights: Float32Array;
   private readonly offsets: Float32Array;
-  /** Where the elements' nodes with their weights are at rest: a vertex is an offset away. */
-  private readonly anchors: Float32Array;
+  /**
+   * Of cloth and ropes, of each corner: half the way from its node at rest to the place of the element that carries the vertex. A node x
+   * with deformation F has that place at x + F way; the mean of these is exact where the thing is bent as a parabola, so that what is bent
+   * evenly looks round. Empty for solids.
+   */
+  private readonly ways: Float32Array;
   private readonly normals: Float32Array;
   private readonly position: BufferAttribute;
   private readonly normal: BufferAttribute;
@@ -260,25 +286,38 @@ class CarriedPart {
     this.position = geometry.getAttribute("position") as BufferAttribute;
     this.normal = geometry.getAttribute("normal") as BufferAttribute;
     const count = this.position.count;
-    this.nodes = new Uint32Array(4 * count);
-    this.weights = new Float32Array(4 * count);
+    const { corners } = form;
+    this.nodes = new Uint32Array(corners * count);
+    this.weights = new Float32Array(corners * count);
     this.offsets = Float32Array.from(this.position.array);
-    this.anchors = new Float32Array(3 * count);
+    this.ways = new Float32Array(corners < 4 ? 3 * corners * count : 0);
     this.normals = Float32Array.from(this.normal.array);
     const weights = new Float32Array(4);
     const pieces = new Uint32Array(count);
     const pieceOf = piecesOf(form);
+    const anchor = new Vector3();
     for (let v = 0; v < count; ++v) {
       const t = finder.find(this.offsets[3 * v]!, this.offsets[3 * v + 1]!, this.offsets[3 * v + 2]!, weights);
       pieces[v] = pieceOf[t]!;
-      this.weights.set(weights, 4 * v);
-      for (let k = 0; k < form.corners; ++k) {
-        const node = form.elements[form.corners * t + k]!;
-        this.nodes[4 * v + k] = node;
-        for (let axis = 0; axis < 3; ++axis) this.anchors[3 * v + axis]! += weights[k]! * form.nodes[3 * node + axis]!;
+      anchor.set(0, 0, 0);
+      for (let k = 0; k < corners; ++k) {
+        const node = form.elements[corners * t + k]!;
+        this.nodes[corners * v + k] = node;
+        this.weights[corners * v + k] = weights[k]!;
+        anchor.x += weights[k]! * form.nodes[3 * node]!;
+        anchor.y += weights[k]! * form.nodes[3 * node + 1]!;
+        anchor.z += weights[k]! * form.nodes[3 * node + 2]!;
+      }
+      this.offsets[3 * v]! -= anchor.x;
+      this.offsets[3 * v + 1]! -= anchor.y;
+      this.offsets[3 * v + 2]! -= anchor.z;
+      for (let k = corners * v; corners < 4 && k < corners * v + corners; ++k) {
+        const n = 3 * this.nodes[k]!;
+        this.ways[3 * k] = (anchor.x - form.nodes[n]!) / 2;
+        this.ways[3 * k + 1] = (anchor.y - form.nodes[n + 1]!) / 2;
+        this.ways[3 * k + 2] = (anchor.z - form.nodes[n + 2]!) / 2;
       }
     }
-    for (let at = 0; at < 3 * count; ++at) this.offsets[at]! -= this.anchors[at]!;
     cutBetween(geometry, pieces);
     this.position.setUsage(DynamicDrawUsage);
     this.normal.setUsage(DynamicDrawUsage);
@@ -297,74 +336,62 @@ class CarriedPart {
     return sum;
   }
 
-  /**
-   * Where a vertex of cloth or a rope is: the mean of its element's nodes x, each with half of the way that the deformation F there makes
-   * of that from the node X to the vertex at rest. Exact where the thing is bent as a parabola, so what is bent evenly looks round.
-   */
-  private round(v: number, places: Float32Array, form: SoftForm): [number, number, number] {
-    const F = form.deformation;
-    let [x, y, z] = [0, 0, 0];
-    for (let k = 4 * v; k < 4 * v + form.corners; ++k) {
-      const n = 3 * this.nodes[k]!;
-      const m = 3 * n;
-      const weight = this.weights[k]!;
-      const dx = (this.anchors[3 * v]! - form.nodes[n]!) / 2;
-      const dy = (this.anchors[3 * v + 1]! - form.nodes[n + 1]!) / 2;
-      const dz = (this.anchors[3 * v + 2]! - form.nodes[n + 2]!) / 2;
-      x += weight * (places[n]! + F[m]! * dx + F[m + 1]! * dy + F[m + 2]! * dz);
-      y += weight * (places[n + 1]! + F[m + 3]! * dx + F[m + 4]! * dy + F[m + 5]! * dz);
-      z += weight * (places[n + 2]! + F[m + 6]! * dx + F[m + 7]! * dy + F[m + 8]! * dz);
-    }
-    return [x, y, z];
-  }
-
   /** Follows nodes at these places, with the deformation that `form` has found there. */
   follow(places: Float32Array, form: SoftForm): void {
-    const { nodes, weights, offsets, normals } = this;
-    const F = form.deformation;
+    const { nodes, weights, offsets, normals, ways } = this;
+    const { corners, deformation: F } = form;
+    const isThin = corners < 4;
     const to = this.position.array as Float32Array;
     const up = this.normal.array as Float32Array;
-    const isThin = form.corners < 4;
+    let lowX = Infinity, lowY = Infinity, lowZ = Infinity;
+    let highX = -Infinity, highY = -Infinity, highZ = -Infinity;
     for (let v = 0, i = 0; i < to.length; ++v, i += 3) {
       let x = 0, y = 0, z = 0;
       let a = 0, b = 0, c = 0, d = 0, e = 0, f = 0, g = 0, h = 0, j = 0;
-      for (let k = 4 * v; k < 4 * v + 4; ++k) {
+      for (let k = corners * v; k < corners * v + corners; ++k) {
         const weight = weights[k]!;
         const n = 3 * nodes[k]!;
         const m = 3 * n;
         x += weight * places[n]!;
         y += weight * places[n + 1]!;
         z += weight * places[n + 2]!;
-        a += weight * F[m]!;
-        b += weight * F[m + 1]!;
-        c += weight * F[m + 2]!;
-        d += weight * F[m + 3]!;
-        e += weight * F[m + 4]!;
-        f += weight * F[m + 5]!;
-        g += weight * F[m + 6]!;
-        h += weight * F[m + 7]!;
-        j += weight * F[m + 8]!;
+        const A = weight * F[m]!, B = weight * F[m + 1]!, C = weight * F[m + 2]!;
+        const D = weight * F[m + 3]!, E = weight * F[m + 4]!, G = weight * F[m + 5]!;
+        const H = weight * F[m + 6]!, J = weight * F[m + 7]!, K = weight * F[m + 8]!;
+        a += A, b += B, c += C, d += D, e += E, f += G, g += H, h += J, j += K;
+        if (!isThin) continue;
+        const p = ways[3 * k]!, q = ways[3 * k + 1]!, r = ways[3 * k + 2]!;
+        x += A * p + B * q + C * r;
+        y += D * p + E * q + G * r;
+        z += H * p + J * q + K * r;
       }
-      if (isThin) [x, y, z] = this.round(v, places, form);
-      const [p, q, r] = [offsets[i]!, offsets[i + 1]!, offsets[i + 2]!];
-      to[i] = x + a * p + b * q + c * r;
-      to[i + 1] = y + d * p + e * q + f * r;
-      to[i + 2] = z + g * p + h * q + j * r;
+      const p = offsets[i]!, q = offsets[i + 1]!, r = offsets[i + 2]!;
+      x += a * p + b * q + c * r;
+      y += d * p + e * q + f * r;
+      z += g * p + h * q + j * r;
+      to[i] = x, to[i + 1] = y, to[i + 2] = z;
+      if (x < lowX) lowX = x;
+      if (y < lowY) lowY = y;
+      if (z < lowZ) lowZ = z;
+      if (x > highX) highX = x;
+      if (y > highY) highY = y;
+      if (z > highZ) highZ = z;
 
       // Normals go with the cofactors of the deformation.
-      const [s, t, u] = [normals[i]!, normals[i + 1]!, normals[i + 2]!];
+      const s = normals[i]!, t = normals[i + 1]!, u = normals[i + 2]!;
       const nx = (e * j - f * h) * s + (f * g - d * j) * t + (d * h - e * g) * u;
       const ny = (c * h - b * j) * s + (a * j - c * g) * t + (b * g - a * h) * u;
       const nz = (b * f - c * e) * s + (c * d - a * f) * t + (a * e - b * d) * u;
-      const length = Math.hypot(nx, ny, nz) || 1;
-      up[i] = nx / length;
-      up[i + 1] = ny / length;
-      up[i + 2] = nz / length;
+      // Math.hypot is many times as slow, and nothing here comes near the limits of numbers.
+      const length = Math.sqrt(nx * nx + ny * ny + nz * nz);
+      const by = length > 0 ? 1 / length : 0;
+      up[i] = nx * by, up[i + 1] = ny * by, up[i + 2] = nz * by;
     }
     this.position.needsUpdate = true;
     this.normal.needsUpdate = true;
     // The same boxes and spheres, since others hold them.
-    this.geometry.boundingBox!.setFromBufferAttribute(this.position);
+    this.geometry.boundingBox!.min.set(lowX, lowY, lowZ);
+    this.geometry.boundingBox!.max.set(highX, highY, highZ);
     this.geometry.boundingBox!.getBoundingSphere(this.geometry.boundingSphere!);
   }
 }
@@ -377,12 +404,15 @@ export class SoftSkin {
   constructor(
     readonly form: SoftForm,
     plain: Drawable,
+    quality: Quality,
   ) {
+    const { solid, cloth, rope } = LONGEST[quality];
+    const longest = form.edge * (form.corners === 4 ? solid : form.corners === 3 ? cloth : rope);
     const finder = new ElementFinder(form);
     // Nothing is left to draw of a rope that is broken everywhere.
     const shown = form.count > 0 ? plain.parts : [];
     const parts: DrawablePart[] = shown.map(({ geometry, material, matrix }) => ({
-      geometry: refine(geometry, matrix, form.corners < 4 ? THIN_SHARE * form.edge : form.edge),
+      geometry: refine(geometry, matrix, longest),
       material,
       matrix: NONE,
     }));

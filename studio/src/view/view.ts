@@ -22,7 +22,7 @@ export interface Hit {
 const GROUND = new Plane(new Vector3(0, 1, 0), 0);
 const LONGEST_STEP_S = 0.1;
 /** So many pictures on end, each as late as this after the one before, are slow drawing. */
-const SLOW_PICTURES = 30;
+const SLOW_PICTURES = 12;
 const SLOW_MS = 120;
 
 /** The picture in the middle. It is drawn only when something changed. */
@@ -40,9 +40,14 @@ export class View {
   readonly slow = new Signal<void>();
   /** Pictures drawn so far. */
   frames = 0;
+  /** Least time from a picture to the next of what moves by itself, ms; what the user does is drawn at once. */
+  pace = 0;
+  private waiting = 0;
   private asked = false;
   private halted = false;
   private lastFrame = 0;
+  /** The picture before asked for the next: the time between them is work, not rest. */
+  private goesOn = false;
   /** Slow pictures on end; -1 once that has been said. */
   private slowPictures = 0;
   private readonly size = new Vector2();
@@ -53,8 +58,10 @@ export class View {
     readonly canvas: HTMLCanvasElement,
     private readonly motion: Motion,
     readonly entities: EntityView,
+    quality: Quality,
   ) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, stencil: true, powerPreference: "high-performance" });
+    // Smooth edges are the larger half of what a picture costs without a graphics card; a context has them for ever or never.
+    this.renderer = new WebGLRenderer({ canvas, antialias: quality === "high", stencil: true, powerPreference: "high-performance" });
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.shadowMap.autoUpdate = false;
@@ -73,6 +80,17 @@ export class View {
     if (this.asked || this.halted || this.renderer.xr.isPresenting) return;
     this.asked = true;
     requestAnimationFrame((now) => this.draw(now));
+  }
+
+  /** Asks for a picture as soon as the pace allows. */
+  drawSoon(): void {
+    const wait = this.lastFrame + this.pace - performance.now();
+    if (wait <= 0) this.invalidate();
+    else
+      this.waiting ||= window.setTimeout(() => {
+        this.waiting = 0;
+        this.invalidate();
+      }, wait);
   }
 
   /** Draws nothing any more until resume(): screenshots of a page that draws all the time may never end. */
@@ -174,13 +192,15 @@ export class View {
     this.entities.shadowsAreOld = false;
     this.renderer.render(this.scene, this.rig.camera);
     ++this.frames;
-    if (flying || moving) this.invalidate();
+    this.goesOn = flying || moving;
+    if (flying) this.invalidate();
+    else if (moving) this.drawSoon();
   }
 
   private watchPace(interval: number): void {
     if (this.slowPictures < 0) return;
-    // A longer pause is rest, not work.
-    const late = interval > SLOW_MS && interval < 8 * SLOW_MS;
+    // A longer pause is rest, not work, unless the picture before already asked for this one.
+    const late = interval - this.pace > SLOW_MS && (this.goesOn || interval < 8 * SLOW_MS);
     this.slowPictures = late ? this.slowPictures + 1 : 0;
     if (this.slowPictures < SLOW_PICTURES) return;
     this.slowPictures = -1;
