@@ -242,9 +242,11 @@ void add_fluid(Rows& rows) {
     fluid.number({"yield_stress_fluid", "F", "Yield stress of the liquid",
                   "Stress below which it does not flow; simulated up to 10,000."},
                  "Pa", 0, 0, 1e9);
-    fluid.whole({"particle_budget", "F", "Most particles",
-                 "So many particles carry the liquid at most, save where a smaller number could not fill its form."},
-                20000, 100, 400000);
+    fluid.whole(
+        {"particle_budget", "F", "Most particles",
+         "So many particles carry the liquid at most, save where fewer could not fill its form, or where it joins one "
+         "of finer particles."},
+        20000, 100, 400000);
     fluid.number(
         {"fluid_cell_size", "F", "Cell size",
          "Edge of the cells that the liquid is solved on, eight particles in each: finer is slower, and things "

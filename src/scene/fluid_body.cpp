@@ -23,12 +23,21 @@ Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liqu
     made->matter_ = definition.matter;
     made->force_ = definition.force;
     const Bounds bounds = transformed(definition.pose, region.value().bounds());
-    // Particles of a fluid that is there already have that one's volume, however many it takes.
-    const double cell = liquids.cell_size(definition.matter, bounds);
-    const bool is_own = cell == definition.matter.cell_size;
-    const std::size_t most = definition.particle_budget * (is_own ? 1 : Liquids::most_particles_ratio);
-    const Result<FluidFilling> filling = fill_with_fluid(definition.shape, cell, most);
+    Result<FluidFilling> filling =
+        fill_with_fluid(definition.shape, made->matter_.cell_size, definition.particle_budget);
     if (!filling.ok()) return filling.error();
+    // Particles of a fluid that is there already have that one's volume, however many it takes.
+    made->matter_.cell_size = filling.value().cell_size;
+    const double cell = liquids.cell_size(made->matter_, bounds);
+    bool is_own = cell == made->matter_.cell_size;
+    if (!is_own) {
+        const std::size_t most = definition.particle_budget * Liquids::most_particles_ratio;
+        Result<FluidFilling> joined = fill_with_fluid(definition.shape, cell, most);
+        // What is thinner than its particles would have more volume with those of the other: it stays by itself.
+        constexpr double most_off = 1.08;  // of the cells, so a fourth of the volume
+        is_own = !joined.ok() || std::fabs(std::log(joined.value().cell_size / cell)) > std::log(most_off);
+        if (!is_own) filling = std::move(joined);
+    }
     // Its own fluid's cells are such that the particles have its volume.
     constexpr double largest_cell = 1;  // m, of the physics
     if (filling.value().cell_size > largest_cell)

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "scene/scene_file.h"
 
-#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "scene/json/nesting.h"
 #include "scene/json/print.h"
+#include "scene/json/text.h"
 #include "scene/whole_file.h"
 
 namespace embody::scene {
@@ -16,27 +15,6 @@ using nlohmann::json;
 namespace {
 
 constexpr std::uintmax_t largest_file = std::uintmax_t{512} << 20;
-
-std::string line_and_column(const std::string& text, std::size_t byte) {
-    const std::size_t end = std::min(byte, text.size());
-    const auto begin = text.begin();
-    const auto stop = begin + static_cast<std::ptrdiff_t>(end);
-    const auto line = std::count(begin, stop, '\n') + 1;
-    const std::size_t newline = end == 0 ? std::string::npos : text.rfind('\n', end - 1);
-    const std::size_t column = newline == std::string::npos ? end : end - newline - 1;
-    return "line " + std::to_string(line) + ", column " + std::to_string(std::max<std::size_t>(column, 1));
-}
-
-Result<json> parse(const std::string& text, const std::string& name) {
-    if (nests_too_deep(text)) return Error{name, "lists and objects nest more than 64 deep: this is no scene"};
-    try {
-        return json::parse(text);
-    } catch (const json::parse_error& broken) {
-        return Error{name + ", " + line_and_column(text, broken.byte), "is not JSON", broken.what()};
-    } catch (const json::exception& broken) {
-        return Error{name, std::string("is not JSON: ") + broken.what()};
-    }
-}
 
 Result<std::string> read_text(const std::filesystem::path& file) {
     std::error_code problem;
@@ -56,7 +34,7 @@ Result<std::string> read_text(const std::filesystem::path& file) {
 Result<Document> load_document(const std::filesystem::path& file) {
     Result<std::string> text = read_text(file);
     if (!text.ok()) return text.error();
-    Result<json> parsed = parse(text.value(), file.string());
+    Result<json> parsed = parse_json(text.value(), file.string());
     if (!parsed.ok()) return parsed.error();
     Result<Document> document = document_from_json(parsed.value());
     if (document.ok()) return document;

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "catalog/catalog.h"
-#include "scene/json/nesting.h"
+#include "scene/json/text.h"
 #include "scene/scene_file.h"
 #include "server/state_frame.h"
 
@@ -67,6 +67,7 @@ struct SceneThread::State {
     ClientId served = 0;               ///< whose command is in hand
     Clock::time_point progress_due{};  ///< when it tells next how far it is
     double statistics_time = 0;        ///< simulated time at statistics_since
+    bool statistics_rated = false;     ///< it plays since then
 
     Result<void> open_safely();
     Result<void> open();
@@ -281,7 +282,10 @@ void SceneThread::State::tell_statistics(Clock::time_point now) {
     json statistics = session->statistics();
     const double wall = std::chrono::duration<double>(now - statistics_since).count();
     const double simulated = session->simulated_time() - statistics_time;
-    statistics["real_time_factor"] = wall > 0 && simulated >= 0 ? simulated / wall : 0.0;
+    // Of single steps it would say how fast a person presses a key.
+    const bool has_rate = statistics_rated && wall > 0 && simulated >= 0;
+    statistics["real_time_factor"] = has_rate ? simulated / wall : 0.0;
+    statistics_rated = session->playing();
     statistics_since = now;
     statistics_time = session->simulated_time();
     statistics_due = now + statistics_period;
@@ -296,24 +300,24 @@ void SceneThread::State::handle(const Message& message) {
     }
     if (message.left) return session->forget_client(message.client);
     const bool was_playing = session->playing();
+    const std::uint64_t step_before = session->simulated_steps();
     served = message.client;
     progress_due = Clock::now() + progress_period;
     const json reply = answer(message.text);
     // Events first, so that a client that gets its reply has already heard what the command did.
     tell_events();
     listener.reply(message.client, dump(reply));
-    if (session->playing() != was_playing) tell_statistics(Clock::now());
+    if (session->playing() != was_playing || session->simulated_steps() != step_before) tell_statistics(Clock::now());
 }
 
 json SceneThread::State::answer(const std::string& text) {
-    if (scene::nests_too_deep(text))
-        return failed(nullptr, {"message", "nests lists and objects more than 64 deep", ""});
     // What the libraries throw (memory, files) fails this command and nothing else.
     try {
-        const json request = json::parse(text, nullptr, false);
-        if (request.is_discarded() || !request.is_object())
+        const Result<json> request = scene::parse_json(text, "message");
+        if (!request) return failed(nullptr, request.error());
+        if (!request->is_object())
             return failed(nullptr, {"message", "is not a JSON object", R"(send {"id": 1, "command": "hello"})"});
-        return execute(request);
+        return execute(*request);
     } catch (const std::exception& thrown) {
         return failed(nullptr, {"message", std::string("could not be carried out: ") + thrown.what(), ""});
     }

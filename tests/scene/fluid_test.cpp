@@ -82,6 +82,17 @@ TEST(Fluids, OfAnotherSizeBesideEachOtherHaveTheirOwnVolume) {
     EXPECT_NEAR(simulation->points(large)->mass(), 998 * 0.216, 0.05 * 998 * 0.216);
 }
 
+// As many particles as a layer of the other's would be have ten times its volume.
+TEST(Fluids, ThinnerThanTheParticlesBesideThemKeepVolumeAndBudget) {
+    Document document;
+    add_box(document, "Cube", {0.0525, 0.0525, 0.0525}, {0.7, 0.1, 0}, water(1000));
+    const EntityIndex sheet = add_box(document, "Sheet", {0.5, 0.001, 0.5}, {0, 0.2, 0}, water(2000)).index;
+    const auto simulation = make(document);
+    ASSERT_TRUE(simulation);
+    EXPECT_NEAR(simulation->points(sheet)->mass(), 998 * 0.002, 0.05 * 998 * 0.002);
+    EXPECT_LE(points_of(*simulation, sheet).size(), 2000u);
+}
+
 TEST(Fluids, PutFarApartLoseNothingAndMixAgainWhenTheyMeet) {
     Document document;
     const EntityIndex left = add_box(document, "Left", {0.2, 0.1, 0.2}, {-0.3, 0.1, 0}, water(2000)).index;

@@ -143,6 +143,24 @@ TEST(SceneFileRefuses, BrokenFilesWithLineAndColumn) {
     EXPECT_NE(read.error().where.find("broken.json, line 3, column 10"), std::string::npos) << read.error().message();
 }
 
+TEST(SceneFileRefuses, NumbersThatNoComputerHoldsAndBrokenTextWithTheirField) {
+    const Folder folder;
+    const fs::path file = folder.path / "broken.json";
+    const auto message = [&](const std::string& number) {
+        write(file,
+              "{\"embody_scene\": 1, \"entities\": [{\"index\": 1}, {\"index\": 2,\n  \"pose\": {\"position\": [0, " +
+                  number + ", 0]}}]}");
+        const Result<Document> read = load_document(file);
+        return read.ok() ? "accepted" : read.error().message();
+    };
+    EXPECT_NE(message("1e999").find("broken.json, line 2, column "), std::string::npos) << message("1e999");
+    EXPECT_NE(message("1e999").find(": entities[1].pose.position[1]: 1e999 is larger"), std::string::npos);
+    EXPECT_NE(message("1,,2").find(": entities[1].pose.position[2]: is not JSON: "), std::string::npos)
+        << message("1,,2");
+    for (const char* number : {"1e999", "1,,2"})
+        EXPECT_EQ(message(number).find("json.exception"), std::string::npos) << message(number);
+}
+
 TEST(SceneFileRefuses, HostileFiles) {
     const Folder folder;
     const fs::path file = folder.path / "hostile.json";

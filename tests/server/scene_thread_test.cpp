@@ -29,5 +29,37 @@ TEST_F(SceneThreadTest, AMillionBracketsAreRefusedAndTheServerGoesOn) {
         << "brackets in a text nest nothing";
 }
 
+TEST_F(SceneThreadTest, StepsAndResetsTellWhatMoves) {
+    run("entity.add",
+        {{"entity", {{"shape", {{"type", "sphere"}, {"radius", 0.1}}}, {"pose", {{"position", {0, 3, 0}}}}}}});
+    forget_events();
+    run("simulation.step", {{"count", 3}});
+    std::vector<json> told = events("statistics");
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_EQ(told[0].at("step"), 3);
+    EXPECT_EQ(told[0].at("active"), 1);
+    EXPECT_EQ(told[0].at("real_time_factor"), 0) << "of single steps there is no rate";
+    forget_events();
+    run("simulation.reset");
+    told = events("statistics");
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_EQ(told[0].at("step"), 0);
+}
+
+TEST_F(SceneThreadTest, ATextOfASceneIsOpenedOrItsFileLineAndFieldAreTold) {
+    run("scene.load", {{"text", R"({"embody_scene": 1, "title": "Told"})"}, {"file", "told.json"}});
+    EXPECT_EQ(run("hello").at("scene").at("title"), "Told");
+    const auto refusal = [&](const char* gravity) {
+        const std::string text = std::string(R"({"embody_scene": 1, "settings": {"gravity": [0, )") + gravity + "]}}";
+        return error_of("scene.load", {{"text", text}, {"file", "told.json"}});
+    };
+    EXPECT_EQ(refusal("1e999, 0"),
+              "told.json, line 1, column 53: settings.gravity[1]: 1e999 is larger than a number can be");
+    EXPECT_EQ(refusal("\"a\", 0"), "told.json: settings.gravity[1]: must be a number, got text");
+    EXPECT_EQ(error_of("scene.load", {{"text", "{}"}, {"name", "told"}}),
+              "name: say either a name, the scene itself, or the text of its file");
+    EXPECT_EQ(run("hello").at("scene").at("title"), "Told");
+}
+
 }  // namespace
 }  // namespace embody::server

@@ -28,7 +28,7 @@ Result<void> World::set_settings(const WorldSettings& settings) {
     state_->settings = settings;
 
     // Another gravity, wind or no sleeping moves everything.
-    for (std::uint32_t body = 0; body < state_->bodies.slot_count(); ++body) state_->to_wake.push_back(body);
+    for (std::uint32_t body = 0; body < state_->bodies.slot_count(); ++body) wake_later(*state_, body);
     for (const DeformableHandle deformable : deformables()) {
         if (auto woken = wake(deformable); !woken) return woken;
     }

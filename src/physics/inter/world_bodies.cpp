@@ -175,7 +175,7 @@ Result<void> World::set_force(BodyHandle body, Vec3 force, Vec3 torque) {
     if (!result) return result;
     state_->record(body.index).definition.force = force;
     state_->record(body.index).definition.torque = torque;
-    state_->to_wake.push_back(body.index);
+    wake_later(*state_, body.index);
     return {};
 }
 
@@ -211,7 +211,7 @@ Result<void> World::apply_force(BodyHandle body, Vec3 force, std::optional<Vec3>
     BodyRecord& record = state_->record(body.index);
     record.next_force += force;
     if (at_world_point) record.next_torque += cross(*at_world_point - state_->motion[body.index].center, force);
-    state_->to_wake.push_back(body.index);
+    wake_later(*state_, body.index);
     return {};
 }
 
@@ -225,7 +225,7 @@ Result<void> World::set_enabled(BodyHandle body, bool enabled) {
 
 Result<void> World::wake(BodyHandle body) {
     if (!contains(body)) return stale_body();
-    state_->to_wake.push_back(body.index);
+    wake_later(*state_, body.index);
     return {};
 }
 

@@ -8,6 +8,7 @@
 #include "physics/deformable/rotation_part.h"
 #include "physics/inter/world.h"
 #include "physics/step/thin_groups.h"
+#include "physics/step/wake.h"
 #include "physics/step/world_state.h"
 
 namespace embody::physics {
@@ -98,7 +99,7 @@ Result<void> World::destroy_deformable(DeformableHandle deformable) {
     const DeformableRecord* record = state_->deformables.find(deformable);
     if (record == nullptr) return no_such_deformable;
     for (const std::uint32_t body : record->touched_bodies) {
-        if (state_->is_used(body)) state_->to_wake.push_back(body);
+        if (state_->is_used(body)) wake_later(*state_, body);
     }
     state_->deformables.remove(deformable);
     forget_thin_contacts(*state_, deformable.index);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "physics/step/wake.h"
 #include "physics/step/world_state.h"
 
 namespace embody::physics {
@@ -25,7 +26,7 @@ Result<void> World::destroy_fluid(FluidHandle fluid) {
     const FluidRecord* record = state_->fluids.find(fluid);
     if (record == nullptr) return Error{"fluid", "is not one of this world"};
     for (const auto& [slot, seen] : record->seen) {
-        if (state_->is_used(slot)) state_->to_wake.push_back(slot);
+        if (state_->is_used(slot)) wake_later(*state_, slot);
     }
     state_->fluids.remove(fluid);
     return {};
@@ -133,7 +134,7 @@ Result<void> World::wake(FluidHandle fluid) {
     record->is_asleep = false;
     record->quiet_time = 0;
     for (const auto& [slot, seen] : record->seen) {
-        if (state_->is_used(slot)) state_->to_wake.push_back(slot);
+        if (state_->is_used(slot)) wake_later(*state_, slot);
     }
     return {};
 }

@@ -101,13 +101,26 @@ void wake_group_of(WorldState& world, std::uint32_t body) {
     world.sleepers.erase(found);
 }
 
-void wake_around(WorldState& world, std::uint32_t body) {
+// While no step comes the same bodies may be named again and again, by hands that move them.
+void wake_later(WorldState& world, std::uint32_t body) {
     world.to_wake.push_back(body);
+    const std::size_t most = 2 * std::size_t{world.bodies.slot_count()} + 64;
+    if (world.to_wake.size() < most) return;
+    std::vector<bool> is_named(world.bodies.slot_count());
+    std::erase_if(world.to_wake, [&](std::uint32_t slot) {
+        if (slot >= is_named.size() || is_named[slot]) return true;
+        is_named[slot] = true;
+        return false;
+    });
+}
+
+void wake_around(WorldState& world, std::uint32_t body) {
+    wake_later(world, body);
     if (world.record(body).shape) {
         const Bounds bounds = enlarged(world.record(body).shape->bounds(world.pose(body)), 0.01);
         world.broad_phase.query(bounds, [&](std::uint32_t other) {
             world.sleep[other].quiet_time = 0;
-            if (world.is_asleep(other)) world.to_wake.push_back(other);
+            if (world.is_asleep(other)) wake_later(world, other);
         });
     }
     for (std::uint32_t i = 0; i < world.joints.slot_count(); ++i) {
@@ -115,8 +128,8 @@ void wake_around(WorldState& world, std::uint32_t body) {
         const JointDefinition& joint = world.joints.at(i).definition;
         const bool is_partner = joint.body_b.index == body || (!joint.body_a.is_null() && joint.body_a.index == body);
         if (!is_partner) continue;
-        world.to_wake.push_back(joint.body_b.index);
-        if (!joint.body_a.is_null()) world.to_wake.push_back(joint.body_a.index);
+        wake_later(world, joint.body_b.index);
+        if (!joint.body_a.is_null()) wake_later(world, joint.body_a.index);
     }
 }
 

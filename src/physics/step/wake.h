@@ -11,6 +11,9 @@ void wake_group_of(WorldState& world, std::uint32_t body);
 /// Lists the bodies that move and takes their forces from what they were told.
 void gather_awake(WorldState& world);
 
+/// Asks for the group of a body (by its slot) to be awake in the next step.
+void wake_later(WorldState& world, std::uint32_t body);
+
 /// Asks for everything that touches the body, its jointed partners and itself to be awake in the next step.
 void wake_around(WorldState& world, std::uint32_t body);
 

@@ -5,6 +5,7 @@
 #include "foundation/version.h"
 #include "scene/commands/commands.h"
 #include "scene/json/parts.h"
+#include "scene/json/text.h"
 #include "scene/scene_file.h"
 #include "scene/scene_folders.h"
 
@@ -50,24 +51,33 @@ Result<json> make_new(SessionState& state, const json& params) {
     return done(state.open(new_document(title), ""));
 }
 
+// What is wrong with it is told as in `where`, then its own field.
+Result<json> open_document(SessionState& state, const json& scene, const std::string& where, const char* between) {
+    Result<Document> document = document_from_json(scene);
+    if (document.ok()) return done(state.open(std::move(document).value(), ""));
+    Error refused = document.error();
+    refused.where = where + (refused.where.empty() ? "" : between + refused.where);
+    return refused;
+}
+
 Result<json> load(SessionState& state, const json& params) {
     std::optional<Error> error;
     FieldReader reader(params, "", error);
-    std::string name;
+    std::string name, text, file_name = "text";
     const bool by_name = reader.text("name", name);
     const json* scene = reader.take("scene");
+    const bool by_text = reader.text("text", text);
+    reader.text("file", file_name);
     if (!reader.finish()) return *error;
-    if (by_name == (scene != nullptr)) return Error{"name", "say either a name or the scene itself"};
+    if (int{by_name} + int{scene != nullptr} + int{by_text} != 1)
+        return Error{"name", "say either a name, the scene itself, or the text of its file"};
 
     // The document itself is on no disk.
-    if (scene) {
-        Result<Document> document = document_from_json(*scene);
-        if (!document.ok()) {
-            Error refused = document.error();
-            refused.where = refused.where.empty() ? "scene" : "scene." + refused.where;
-            return refused;
-        }
-        return done(state.open(std::move(document).value(), ""));
+    if (scene) return open_document(state, *scene, "scene", ".");
+    if (by_text) {
+        const Result<json> read = parse_json(text, file_name);
+        if (!read.ok()) return read.error();
+        return open_document(state, read.value(), file_name, ": ");
     }
     const Result<std::filesystem::path> file = find_scene(state.options, name);
     if (!file.ok()) return file.error();

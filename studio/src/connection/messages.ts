@@ -182,7 +182,7 @@ export interface Commands {
   "catalog.stop": [Record<string, never>, unknown];
   "client.set_name": [{ name: string }, { session: string }];
   "scene.new": [{ name?: string }, unknown];
-  "scene.load": [{ name: string } | { scene: unknown }, unknown];
+  "scene.load": [{ name: string } | { scene: unknown } | { text: string; file: string }, unknown];
   "scene.save": [{ name?: string }, { name: string; path: string }];
   "scene.list": [Record<string, never>, { scenes: SceneListing[] }];
   "scene.settings": [Partial<SceneSettings> & { title?: string }, unknown];

@@ -50,6 +50,12 @@ export async function newScene(studio: Studio): Promise<void> {
   if (await mayLeave(studio)) await studio.command("scene.new", {});
 }
 
+/** Opens a scene from a file of the user's computer; what is wrong with it the server says, with file, line and field. */
+export async function openSceneFile(studio: Studio, file: File): Promise<void> {
+  if (!(await mayLeave(studio))) return;
+  await studio.command("scene.load", { text: await file.text(), file: file.name });
+}
+
 /** Lists what the user saved and the scenes that come with Embody. */
 export async function openScenes(studio: Studio): Promise<void> {
   const waiting = element("p", { class: "note" }, "Loading…");
@@ -58,18 +64,15 @@ export async function openScenes(studio: Studio): Promise<void> {
   const fromFile = element("button", { onclick: () => file.click() }, "Open a scene file…");
   const dialog = openDialog("Open a scene", "scenes-dialog", body, element("div", { class: "dialog-buttons" }, file, fromFile));
 
-  const load = async (params: { name: string } | { scene: unknown }): Promise<void> => {
+  const load = async (name: string): Promise<void> => {
     dialog.close();
-    if (await mayLeave(studio)) await studio.command("scene.load", params);
+    if (await mayLeave(studio)) await studio.command("scene.load", { name });
   };
-  file.addEventListener("change", async () => {
+  file.addEventListener("change", () => {
     const chosen = file.files?.[0];
     if (!chosen) return;
-    try {
-      await load({ scene: JSON.parse(await chosen.text()) });
-    } catch (error) {
-      studio.notice.emit({ level: "error", text: `${chosen.name}: ${(error as Error).message}`, remedy: "A scene file is JSON; see docs/scene-format.md." });
-    }
+    dialog.close();
+    void openSceneFile(studio, chosen);
   });
 
   const answer = await studio.command("scene.list", {});
@@ -82,7 +85,7 @@ export async function openScenes(studio: Studio): Promise<void> {
         {},
         element(
           "button",
-          { class: "scene-item", "data-testid": `scene-${scene.name}`, onclick: () => void load({ name: scene.name }) },
+          { class: "scene-item", "data-testid": `scene-${scene.name}`, onclick: () => void load(scene.name) },
           element("span", {}, scene.title || scene.name),
           // When an example came with the program tells nobody anything.
           kind === "demo" ? null : element("span", { class: "note" }, [nameBeside(scene), dateText(scene.modified)].filter(Boolean).join(" · ")),

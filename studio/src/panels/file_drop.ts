@@ -2,6 +2,7 @@
 import type { ServerError } from "../connection/messages";
 import type { Studio } from "../studio";
 import { addUnder } from "../tools/ghost";
+import { openSceneFile } from "./dialogs";
 import { entityOf } from "./model_browser";
 
 const LARGEST_BYTES = 256 * 1024 * 1024;
@@ -14,7 +15,7 @@ interface ImportAnswer {
   keys: string[];
 }
 
-/** Files from the desktop: dropped on the page they are imported, dropped on the scene they are also added. */
+/** Files from the desktop: scenes are opened; models are imported, and added where they were dropped on the scene. */
 export class FileDrop {
   constructor(
     private readonly studio: Studio,
@@ -39,6 +40,10 @@ export class FileDrop {
 
   private async take(files: File[], clientX: number, clientY: number): Promise<void> {
     for (const file of files) {
+      if (file.name.toLowerCase().endsWith(".json")) {
+        await openSceneFile(this.studio, file);
+        continue;
+      }
       const keys = await this.import(file);
       this.imported();
       const overScene = document.elementFromPoint(clientX, clientY)?.closest("#scene");

@@ -72,6 +72,8 @@ export class StatusBar {
     // Before the first step there is nothing to measure.
     const begun = simulation.state !== "stopped";
     for (const [name, cell] of this.cells) if (name !== "state" && name !== "fps") show(cell, begun === (name !== "hint"));
+    // How fast single steps follow each other says how fast a person presses a key.
+    show(this.cells.get("rate")!, simulation.state === "playing");
     this.put("active", statistics ? `${statistics.active} of ${statistics.things} active` : "– active");
     const points = statistics?.points ?? 0;
     this.put("points", `${points.toLocaleString("en")} points`);

@@ -103,7 +103,7 @@ export class Batch {
       // The instanced attributes lie in the geometry, so each batch has its own one around the shared buffers.
       const geometry = sharing(part.geometry);
       geometry.setAttribute("tint", new InstancedBufferAttribute(new Float32Array(capacity * 4), 4).setUsage(DynamicDrawUsage));
-      const material = tintable(part.material, this.quality);
+      const material = tintable(part.material, this.quality, !this.drawable.hasTwoSides);
       if (this.drawable.hasTwoSides) material.side = DoubleSide;
       const mesh = new InstancedMesh(geometry, material, capacity);
       mesh.instanceColor = new InstancedBufferAttribute(new Float32Array(capacity * 3).fill(1), 3);

@@ -31,11 +31,14 @@ diffuseColor.rgb = mix(diffuseColor.rgb, vTint.rgb * (0.45 + 0.9 * ownLight), vT
 /** A rim where the surface turns away from the eye: the state can be told, the thing keeps its colours. */
 const RIM = `
 float turned = 1.0 - abs(dot(normal, normalize(vViewPosition)));
-outgoingLight = mix(outgoingLight, vTint.rgb, step(0.001, vTint.a) * 0.5 * pow(turned, 3.0));
+outgoingLight = mix(outgoingLight, vTint.rgb, step(0.001, vTint.a) * 0.5 * pow(turned, 5.0));
 #include <opaque_fragment>`;
 
-/** A copy of the material that takes its hue from the instanced attribute `tint`; low quality means matt, without reflections. */
-export function tintable(original: Material, quality: Quality): Material {
+/**
+ * A copy of the material that takes its hue from the instanced attribute `tint`; low quality means matt, without reflections. Folds
+ * turn away from the eye all over, so cloth has no rim.
+ */
+export function tintable(original: Material, quality: Quality, hasRim: boolean): Material {
   const material = quality === "low" ? lambert(original as MeshStandardMaterial) : original.clone();
   material.onBeforeCompile = (shader) => {
     shader.vertexShader = shader.vertexShader
@@ -44,9 +47,9 @@ export function tintable(original: Material, quality: Quality): Material {
     shader.fragmentShader = shader.fragmentShader
       .replace("#include <common>", "#include <common>\nvarying vec4 vTint;")
       .replace("#include <alphatest_fragment>", MIX)
-      .replace("#include <opaque_fragment>", RIM);
+      .replace("#include <opaque_fragment>", hasRim ? RIM : "#include <opaque_fragment>");
   };
-  material.customProgramCacheKey = () => "tint";
+  material.customProgramCacheKey = () => (hasRim ? "tint and rim" : "tint");
   return material;
 }
 

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "physics/inter/world.h"
+#include "physics/step/wake.h"
+#include "physics/step/world_state.h"
 
 namespace embody::physics {
 namespace {
@@ -84,6 +88,18 @@ TEST_F(SleepingWorld, wakes_where_something_falls_on_it) {
     }
     EXPECT_TRUE(woke);
     EXPECT_EQ(world_->last_report().bodies_asleep, 4u);
+}
+
+// A hand that moves things while no step comes names the same ones again and again.
+TEST(ToWake, RemembersEachBodyToWakeABoundedNumberOfTimes) {
+    WorldState world;
+    std::vector<std::uint32_t> named;
+    for (int i = 0; i < 100; ++i) named.push_back(world.bodies.insert({}).index);
+    for (int round = 0; round < 1000; ++round)
+        for (const std::uint32_t body : named) wake_later(world, body);
+    EXPECT_LE(world.to_wake.size(), 2 * named.size() + 64);
+    EXPECT_EQ(std::set<std::uint32_t>(world.to_wake.begin(), world.to_wake.end()).size(), named.size());
+    EXPECT_EQ(world.to_wake.front(), named.front());
 }
 
 }  // namespace
