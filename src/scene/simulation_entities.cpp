@@ -15,6 +15,8 @@ using physics::ShapeHandle;
 Error of_entity(const Entity& entity, Error error) {
     std::string who = "entity " + std::to_string(entity.index);
     if (!entity.name.empty()) who += " (" + entity.name + ")";
+    // What comes from deeper down may have said so already.
+    if (error.where.starts_with(who)) return error;
     error.where = error.where.empty() ? who : who + ": " + error.where;
     return error;
 }

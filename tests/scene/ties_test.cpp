@@ -94,5 +94,32 @@ TEST(Ties, TwoSoftThingsCannotBeTied) {
     EXPECT_NE(simulation->notes()[0].find("is simulated as rigid, because"), std::string::npos);
 }
 
+class TiedSession : public samples::LiveSession {};
+
+TEST_F(TiedSession, CopiesMadeTogetherAreTiedToEachOther) {
+    open(hung_on_a_line("cloth"));
+    const nlohmann::json copies =
+        run("entity.duplicate", {{"indices", {line, hung}}, {"offset", {0, 0, 2}}})["indices"];
+    ASSERT_EQ(copies.size(), 2u);
+    EXPECT_EQ(session_->document().find(copies[1])->pins[0].to, copies[0].get<EntityIndex>());
+    // A copy of one end only holds on to the same thing as the original.
+    const nlohmann::json one = run("entity.duplicate", {{"indices", {hung}}, {"offset", {0, 0, 0.3}}})["indices"];
+    EXPECT_EQ(session_->document().find(one[0])->pins[0].to, line);
+}
+
+TEST_F(TiedSession, WhatCannotBePinnedToNamesTheEntityOnce) {
+    Document document = hung_on_a_line("rope");
+    document.entities.back().pins.clear();
+    Entity& sand = samples::add(document, "Sand", BoxShape{{0.1, 0.1, 0.1}}, {2, 0.5, 0});
+    sand.attributes = {{"kind", std::string("granular")}, {"grain_budget", 50.0}};
+    const EntityIndex heap = sand.index;
+    open(document);
+    const auto refused = session_->execute(
+        "entity.update", {{"index", hung}, {"entity", {{"pins", {{{"position", {0, 0.25, 0}}, {"to", heap}}}}}}});
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().where, "entity 3 (Hung): pins[0].to");
+    EXPECT_TRUE(session_->document().find(hung)->pins.empty());
+}
+
 }  // namespace
 }  // namespace embody::scene

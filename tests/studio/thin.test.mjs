@@ -132,6 +132,36 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
     assert.deepEqual(page.faults, []);
   });
 
+  it("says what moves after single steps, and of a broken scene file its name, field and what to do", async () => {
+    await page.evaluate(() => document.querySelector("[data-testid=canvas]").focus());
+    await page.keyboard.press(".");
+    await page.waitForFunction(() => document.querySelector("[data-testid=stat-active]").textContent === "2 of 2 active");
+    assert.equal(await page.getByTestId("stat-rate").isVisible(), false, "single steps have no rate");
+    await send("simulation.reset", {});
+    await page.waitForFunction(() => window.embody.simulation().state === "stopped");
+
+    const before = await page.evaluate(() => window.embody.entities().length);
+    const text = JSON.stringify({ embody_scene: 1, entities: [{ shape: { type: "sphere", radius: 4711 } }] });
+    for (const [number, said] of [
+      ["1e999", /^broken\.json, line 1, column \d+: entities\[0\]\.shape\.radius: 1e999 is larger than a number can be/],
+      ["1,,2", /^broken\.json, line 1, column \d+: entities\[0\]\.shape\.radius: is not JSON/],
+      ["-1", /^broken\.json: entities\[0\]\.shape/],
+    ]) {
+      // A scene that is dropped is opened, not imported as a model.
+      const drop = await page.evaluateHandle((text) => {
+        const data = new DataTransfer();
+        data.items.add(new File([text], "broken.json", { type: "application/json" }));
+        return data;
+      }, text.replace("4711", number));
+      await page.dispatchEvent("#scene", "drop", { dataTransfer: drop, clientX: 500, clientY: 400 });
+      // The scene was changed, so that it is asked for first.
+      await page.getByTestId("discard").click();
+      await page.getByText(said).waitFor({ timeout: 20000 });
+    }
+    assert.equal(await page.evaluate(() => window.embody.entities().length), before);
+    assert.deepEqual(page.faults, []);
+  });
+
   it("is pinned by hand: at its edge, at a place that is clicked on, to another thing; and undo takes each back", async () => {
     const at = await page.evaluate(() => window.embody.seenAt(2));
     await page.mouse.click(at.x, at.y);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <unordered_set>
@@ -179,9 +180,14 @@ Result<json> duplicate(SessionState& state, const json& params) {
     Edit edit = state.start_edit("Duplicate " + state.called(indices));
     if (state.document.next_index > last_document_index - indices.size()) return Error{"indices", "no index is left"};
     json copies = json::array();
+    std::map<EntityIndex, EntityIndex> copy_of;
+    for (const EntityIndex index : indices) copy_of.emplace(index, edit.next_after++);
     for (const EntityIndex index : indices) {
         Entity copy = *state.document.find(index);
-        copy.index = edit.next_after++;
+        copy.index = copy_of.at(index);
+        // What is copied together holds on to each other as the originals do.
+        for (Pin& pin : copy.pins)
+            if (pin.to && copy_of.contains(*pin.to)) pin.to = copy_of.at(*pin.to);
         copy.name = copy.name.empty() ? "" : free_name(state.document, copy.name);
         copy.pose.position += *offset;
         copies.push_back(copy.index);
