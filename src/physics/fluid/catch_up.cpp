@@ -58,11 +58,11 @@ void FluidSolver::displace(double share, Followed& followed, TaskPool& workers) 
     const double h = grid_.cell_size();
     followed.lost += grid_.cover(particles_, workers);
     if (particles_.empty()) return;
-    grid_.sort(particles_, workers);
+    grid_.sort(particles_, particle_share(), solids_.in_reach(share, h), workers);
     solids_.measure(share, grid_, workers);
+    if (grid_.on_grid() == 0) return solids_.advance(share);
     find_places(share, workers);
-    particles_to_grid(grid_, particles_, places_, static_cast<float>(properties_.particle_volume / (h * h * h)),
-                      workers);
+    particles_to_grid(grid_, particles_, places_, particle_share(), workers);
     grid_.for_tiles(workers, [&](const Cell& corner) {
         grid_.for_rows(corner, [&](int first, const Cell&) {
             for (auto& field : grid_.velocity) std::fill_n(field.begin() + first, FluidGrid::tile[0], 0.0f);
@@ -81,7 +81,8 @@ void FluidSolver::displace(double share, Followed& followed, TaskPool& workers) 
     extrapolate(grid_, grid_.velocity, 2, workers);
     follow_solids(grid_, solids_, 0, workers);
 
-    share_among(workers, particles_.size(), particles_.size() > few_particles, [&](int, Share part) {
+    const std::size_t count = grid_.on_grid();
+    share_among(workers, count, count > few_particles, [&](int, Share part) {
         ParticleCollider collider(grid_, solids_, share);
         for (std::size_t i = part.first; i < part.last; ++i) {
             FluidParticle moved = particles_[i];

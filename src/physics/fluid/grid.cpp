@@ -59,11 +59,12 @@ struct Box {
     Cell lower, size;
 };
 
-// What an array of an element a cell of one box becomes in another box.
+// What an array of an element a cell of one box becomes in another box; `none` where there was nothing.
 template <class T>
-void carry_over(std::vector<T>& array, const Box& from, const Box& to) {
+void carry_over(std::vector<T>& array, const Box& from, const Box& to, T none = {}) {
     std::vector<T> old(static_cast<std::size_t>(to.size[0]) * static_cast<std::size_t>(to.size[1]) *
-                       static_cast<std::size_t>(to.size[2]));
+                           static_cast<std::size_t>(to.size[2]),
+                       none);
     old.swap(array);
     if (from.size[0] == 0) return;
     const Cell shift{from.lower[0] - to.lower[0], from.lower[1] - to.lower[1], from.lower[2] - to.lower[2]};
@@ -132,15 +133,14 @@ void FluidGrid::resize(const Cell& lower, const Cell& upper) {
         for (auto& array : *arrays) array.assign(cells, 0);
     }
     for (auto& array : known) array.assign(cells, 0);
-    for (auto* array : {&density, &surface, &solid, &room}) {
-        array->assign(cells, 0);
-    }
+    for (auto* array : {&density, &surface}) array->assign(cells, 0);
     solid_owner.assign(cells, -1);
-    thin.assign(cells, 0);
     row.assign(cells, -1);
     first_particle.assign(cells, 0);
     particle_count.assign(cells, 0);
     tile_state_.assign(tiles, 0);
+    tile_count_.assign(tiles, 0);
+    wet_cells_.assign(tiles, 0);
     active_.clear();
 
     // The last pressure is the next solve's guess; static solids stand where they stood.
@@ -154,47 +154,20 @@ void FluidGrid::resize(const Cell& lower, const Cell& upper) {
     };
     const Cell one{1, 1, 1};
     const Box from = box_of(old_lower, old_size, one), to = box_of(lower_, size_, one);
-    for (auto* array : {&pressure, &static_distance, &static_room}) carry_over(*array, from, to);
+    constexpr float far = 2;  // cells
+    carry_over(pressure, from, to);
+    carry_over(static_distance, from, to, far);
+    carry_over(static_room, from, to, 1.0f);
     for (auto& array : static_share) carry_over(array, from, to);
     carry_over(static_thin, from, to);
     carry_over(is_static_known, box_of(old_lower, old_size, tile), box_of(lower_, size_, tile));
+    solid = static_distance;
+    room = static_room;
+    thin = static_thin;
 }
 
-void FluidGrid::list_tiles() {
-    active_.clear();
-    for (auto& list : colored_) list.clear();
-    for (int z = 0, i = 0; z < tiles_[2]; ++z) {
-        for (int y = 0; y < tiles_[1]; ++y) {
-            for (int x = 0; x < tiles_[0]; ++x, ++i) {
-                if (tile_state_[i] == 0) continue;
-                const auto place = static_cast<std::uint32_t>(active_.size());
-                active_.push_back({x * tile[0], y * tile[1], z * tile[2]});
-                if (tile_state_[i] != 2) continue;
-                colored_[(x & 1) | (y & 1) << 1 | (z & 1) << 2].push_back(place);
-            }
-        }
-    }
-}
-
-void FluidGrid::mark_tiles() {
-    std::fill(tile_state_.begin(), tile_state_.end(), 0);
-    for (const std::uint32_t t : tile_of_particle_) tile_state_[t] = 2;
-    for (int z = 1; z + 1 < tiles_[2]; ++z) {
-        for (int y = 1; y + 1 < tiles_[1]; ++y) {
-            for (int x = 1; x + 1 < tiles_[0]; ++x) {
-                if (tile_state_[x + tiles_[0] * (y + tiles_[1] * z)] != 2) continue;
-                for (int k = 0; k < 27; ++k) {
-                    std::uint8_t& state =
-                        tile_state_[x + k % 3 - 1 + tiles_[0] * (y + k / 3 % 3 - 1 + tiles_[1] * (z + k / 9 - 1))];
-                    state = std::max<std::uint8_t>(state, 1);
-                }
-            }
-        }
-    }
-    list_tiles();
-}
-
-void FluidGrid::sort(std::vector<FluidParticle>& particles, TaskPool& workers) {
+void FluidGrid::sort(std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near,
+                     TaskPool& workers) {
     // Which cell each is in, and which tiles that makes active.
     const std::size_t count = particles.size();
     cell_of_.resize(count);
@@ -208,13 +181,17 @@ void FluidGrid::sort(std::vector<FluidParticle>& particles, TaskPool& workers) {
             tile_of_particle_[i] = static_cast<std::uint32_t>(tile_of(c));
         }
     });
-    mark_tiles();
+    mark_tiles(particles, volume, near);
 
-    // Counting sort, stable, tile by tile. Places first: to move the particles takes longest and can be shared.
+    // Counting sort, stable, tile by tile, drops after all others. Places first: to move the particles takes longest
+    // and can be shared.
     for (const Cell& corner : active_) {
         for_rows(corner, [&](int first, const Cell&) { std::fill_n(particle_count.begin() + first, tile[0], 0u); });
     }
-    for (const std::uint32_t cell : cell_of_) ++particle_count[cell];
+    const auto is_on_grid = [&](std::size_t i) { return (tile_state_[tile_of_particle_[i]] & tile_on_grid) != 0; };
+    for (std::size_t i = 0; i < count; ++i) {
+        if (is_on_grid(i)) ++particle_count[cell_of_[i]];
+    }
     std::uint32_t next = 0;
     for (const Cell& corner : active_) {
         for_cells(corner, [&](int cell, const Cell&) {
@@ -222,7 +199,8 @@ void FluidGrid::sort(std::vector<FluidParticle>& particles, TaskPool& workers) {
             next += particle_count[cell];
         });
     }
-    for (std::uint32_t& cell : cell_of_) cell = first_particle[cell]++;
+    on_grid_ = next;
+    for (std::size_t i = 0; i < count; ++i) cell_of_[i] = is_on_grid(i) ? first_particle[cell_of_[i]]++ : next++;
     sorted_.resize(count);
     share_among(workers, count, count > few_particles, [&](int, Share share) {
         for (std::size_t i = share.first; i < share.last; ++i) sorted_[cell_of_[i]] = particles[i];

@@ -7,12 +7,21 @@
 #include <vector>
 
 #include "foundation/task_pool.h"
+#include "math/bounds.h"
 #include "math/vec3.h"
 #include "physics/fluid/particle.h"
 
 namespace embody::physics {
 
 using Cell = std::array<int, 3>;
+
+/// What a tile is to the particles.
+enum TileMark : std::uint8_t {
+    tile_active = 1,        ///< has particles that meet the grid, or is next to such a tile
+    tile_on_grid = 2,       ///< the particles in it meet the grid
+    tile_wet = 4,           ///< there may be liquid cells in it
+    tile_around_drops = 8,  ///< has particles that do not meet the grid, or is next to such a tile
+};
 
 /// The staggered (MAC) grid of a fluid: a box of cells around its particles, of which only the tiles near particles
 /// are ever touched. Cell (x, y, z) counts from the box's lowest; face `axis` of a cell is its lower one. Every array
@@ -27,8 +36,11 @@ public:
 
     /// Makes the box hold the particles. Removes those that would make it too large, and returns how many.
     std::size_t cover(std::vector<FluidParticle>& particles, TaskPool& workers);
-    /// Sorts the particles by cell and lists the active tiles.
-    void sort(std::vector<FluidParticle>& particles, TaskPool& workers);
+    /// Sorts the particles by cell and lists the active tiles. `volume`: a particle's, in cells; `near`: boxes of the
+    /// fluid's frame in which even drops meet the grid.
+    void sort(std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near, TaskPool& workers);
+    /// How many particles meet the grid, the first ones; those after them are drops that fly by themselves.
+    [[nodiscard]] std::size_t on_grid() const { return on_grid_; }
 
     [[nodiscard]] double cell_size() const { return cell_; }
     [[nodiscard]] const Cell& lower() const { return lower_; }
@@ -48,13 +60,19 @@ public:
     [[nodiscard]] int tile_of(const Cell& c) const {
         return c[0] / tile[0] + tiles_[0] * (c[1] / tile[1] + tiles_[1] * (c[2] / tile[2]));
     }
-    [[nodiscard]] bool is_active(const Cell& c) const { return tile_state_[tile_of(c)] != 0; }
+    [[nodiscard]] bool is_active(const Cell& c) const { return (tile_state_[tile_of(c)] & tile_active) != 0; }
     /// Lowest cells of the active tiles, ascending in z, y, x.
     [[nodiscard]] std::span<const Cell> tiles() const { return active_; }
     /// Indices into tiles() of those that hold particles, by one of eight colours: tiles of a colour are never next to
     /// each other.
     [[nodiscard]] std::span<const std::uint32_t> colored(int color) const { return colored_[color]; }
     static constexpr int colors = 8;
+    /// Lowest cells of tiles that were active when the particles were last sorted, and are not now.
+    [[nodiscard]] std::span<const Cell> left() const { return left_; }
+    /// Of tiles around drops that fly by themselves, whose static solids are not known yet.
+    [[nodiscard]] std::span<const Cell> unknown_around_drops() const { return unknown_; }
+    /// Makes a tile what it is where there is neither liquid nor any moving solid. Inactive tiles are so.
+    void clear_tile(const Cell& corner);
 
     /// Calls visit(index of the row's first cell, its cell) for each row of eight cells of a tile.
     template <class Visit>
@@ -104,17 +122,23 @@ public:
 
 private:
     void resize(const Cell& lower, const Cell& upper);
-    void mark_tiles();
+    void mark_tiles(const std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near);
+    void mark_wet_tiles(const std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near);
     void list_tiles();
+    template <class Visit>
+    void for_tiles_around(int place, Visit visit) const;
 
     double cell_;
     float per_cell_;
     Cell lower_{}, size_{}, tiles_{};
-    std::vector<std::uint8_t> tile_state_;  // 0: nothing, 1: next to particles, 2: has particles
-    std::vector<Cell> active_;
+    std::vector<std::uint8_t> tile_state_;   // bits of TileMark
+    std::vector<std::uint32_t> tile_count_;  // particles in it
+    std::vector<int> wet_cells_;             // in it, of those that few particles fill
+    std::vector<Cell> active_, left_, unknown_;
     std::array<std::vector<std::uint32_t>, colors> colored_;
     std::vector<std::uint32_t> cell_of_, tile_of_particle_;  // of each particle; then the place it is sorted to
     std::vector<FluidParticle> sorted_;
+    std::size_t on_grid_ = 0;
 };
 
 /// What FluidGrid::thin says of a cell.

@@ -8,9 +8,6 @@ namespace embody::physics {
 
 namespace {
 
-// Cells of which less than this is free have no surface of their own: they take it from their neighbours.
-constexpr float least_room = 0.3f;
-
 // How far the surface lies above a centre, in cells, if the half space below it fills this share of the tent kernel.
 float height_of_surface(float filled) {
     if (filled <= 0.5f) return std::sqrt(2 * std::max(filled, 0.0f)) - 1;

@@ -9,6 +9,9 @@
 
 namespace embody::physics {
 
+/// Cells of which solids leave less have no surface of their own: they take it from their neighbours.
+inline constexpr float least_room = 0.3f;
+
 /// The cells of liquid by row.
 struct LiquidCells {
     std::vector<std::uint32_t> cells;

@@ -125,6 +125,7 @@ void FluidSolids::measure_static_tile(FluidGrid& grid, const Cell& corner, std::
         grid.static_thin[cell] = region.thin(here);
     });
     grid.is_static_known[grid.tile_of(corner)] = 1;
+    grid.clear_tile(corner);
 }
 
 void FluidSolids::measure_static(FluidGrid& grid, TaskPool& workers) {
@@ -132,6 +133,8 @@ void FluidSolids::measure_static(FluidGrid& grid, TaskPool& workers) {
     for (const Cell& corner : grid.tiles()) {
         if (!grid.is_static_known[grid.tile_of(corner)]) unknown.push_back(corner);
     }
+    const auto around_drops = grid.unknown_around_drops();
+    unknown.insert(unknown.end(), around_drops.begin(), around_drops.end());
     if (unknown.empty()) return;
     // Neighbours cost alike: every worker takes each so many-th.
     const auto number = static_cast<std::size_t>(workers.workers());
@@ -210,6 +213,19 @@ void FluidSolids::place_moving(MovingSolid& moving, int owner, FluidGrid& grid) 
     }
 }
 
+std::vector<Bounds> FluidSolids::in_reach(double dt, double cell_size) const {
+    constexpr double cells = 6;  // as far as a particle goes in a part, and what it asks of its surroundings
+    std::vector<Bounds> boxes;
+    for (const MovingSolid& moving : moving_) {
+        const FluidSolid& solid = *moving.solid;
+        const Bounds bounds = solid.shape->bounds(solid.pose);
+        const double radius = length(bounds.half_extents()) + length(bounds.center() - solid.center);
+        const double way = length(moving.linear_velocity) * dt + length(moving.center - moving.kept_center);
+        boxes.push_back(enlarged(Bounds{moving.center, moving.center}, radius + way + cells * cell_size));
+    }
+    return boxes;
+}
+
 void FluidSolids::place() {
     for (MovingSolid& moving : moving_) {
         const FluidSolid& solid = *moving.solid;
@@ -220,6 +236,7 @@ void FluidSolids::place() {
 
 void FluidSolids::measure(double dt, FluidGrid& grid, TaskPool& workers) {
     measure_static(grid, workers);
+    for (const Cell& corner : grid.left()) grid.clear_tile(corner);
     grid.for_tiles(workers, [&](const Cell& corner) {
         grid.for_rows(corner, [&](int first, const Cell&) {
             for (int cell = first; cell < first + FluidGrid::tile[0]; ++cell) {

@@ -70,6 +70,8 @@ public:
     /// back to where and as fast as they are.
     void begin_catching_up();
     void end_catching_up();
+    /// Boxes that hold what the moving ones may meet in a part of that length, in the fluid's frame.
+    [[nodiscard]] std::vector<Bounds> in_reach(double dt, double cell_size) const;
     /// Puts the probes of the moving ones where they are.
     void place();
     /// Measures with the poses in the middle of the part.

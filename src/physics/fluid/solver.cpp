@@ -96,7 +96,7 @@ void FluidSolver::prepare(std::span<FluidSolid> solids, TaskPool& workers) {
     grid_.cover(particles, workers);
     if (particles.empty()) return;
     solids_.begin(solids, grid_);
-    grid_.sort(particles, workers);
+    grid_.sort(particles, particle_share(), solids_.in_reach(0, grid_.cell_size()), workers);
     solids_.measure(0, grid_, workers);
 }
 
@@ -155,16 +155,29 @@ Conserved FluidSolver::conserved(Vec3 gravity) const {
     return sum;
 }
 
-void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers) {
+float FluidSolver::particle_share() const {
     const double h = grid_.cell_size();
+    return static_cast<float>(properties_.particle_volume / (h * h * h));
+}
+
+void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers) {
     outcome.lost += grid_.cover(particles_, workers);
     if (particles_.empty()) return;
-    grid_.sort(particles_, workers);
+    grid_.sort(particles_, particle_share(), solids_.in_reach(dt, grid_.cell_size()), workers);
     solids_.measure(dt, grid_, workers);
     solids_.accelerate(dt);
+    const bool has_liquid = grid_.on_grid() > 0;
+    if (has_liquid) advance_grid(dt, gravity, outcome, workers);
+    move_particles(dt, workers);
+    fly(dt, gravity * dt, workers);
+    if (has_liquid) lumps_.end(gravity * dt, solids_, properties_.density * properties_.particle_volume, particles_);
+    solids_.advance(dt);
+}
+
+void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers) {
+    const double h = grid_.cell_size();
     find_places(dt, workers);
-    particles_to_grid(grid_, particles_, places_, static_cast<float>(properties_.particle_volume / (h * h * h)),
-                      workers);
+    particles_to_grid(grid_, particles_, places_, particle_share(), workers);
     accelerate(gravity * dt, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
 
@@ -187,14 +200,12 @@ void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, T
     extrapolate(grid_, grid_.velocity, 2, workers);
     follow_solids(grid_, solids_, sticking_of(liquid, h, speed_), workers);
     spread_out(workers);
-    move_particles(dt, workers);
-    lumps_.end(gravity * dt, solids_, properties_.density * properties_.particle_volume, particles_);
-    solids_.advance(dt);
 }
 
 void FluidSolver::find_places(double dt, TaskPool& workers) {
-    places_.resize(particles_.size());
-    share_among(workers, particles_.size(), particles_.size() > few_particles, [&](int, Share share) {
+    const std::size_t count = grid_.on_grid();
+    places_.resize(count);
+    share_among(workers, count, count > few_particles, [&](int, Share share) {
         ParticleCollider collider(grid_, solids_, dt);
         for (std::size_t i = share.first; i < share.last; ++i) places_[i] = collider.place_of(particles_[i]);
     });
@@ -300,7 +311,8 @@ void FluidSolver::spread_out(TaskPool& workers) {
 
 void FluidSolver::move_particles(double dt, TaskPool& workers) {
     const auto time = static_cast<float>(dt);
-    share_among(workers, particles_.size(), particles_.size() > few_particles, [&](int, Share share) {
+    const std::size_t count = grid_.on_grid();
+    share_among(workers, count, count > few_particles, [&](int, Share share) {
         ParticleCollider collider(grid_, solids_, dt);
         for (std::size_t i = share.first; i < share.last; ++i) {
             FluidParticle& particle = particles_[i];
@@ -321,6 +333,26 @@ void FluidSolver::move_particles(double dt, TaskPool& workers) {
                 const float* g = particle.affine[a];
                 const float turn = g[0] * sample.value[0] + g[1] * sample.value[1] + g[2] * sample.value[2];
                 end[a] = particle.position[a] + time * (sample.value[a] + 0.5f * time * turn) + shift[a];
+            }
+            collider.move(particle, end);
+        }
+    });
+}
+
+// Drops away from all liquid, by themselves: only walls that do not move are near.
+void FluidSolver::fly(double dt, Vec3 change, TaskPool& workers) {
+    const std::size_t first = grid_.on_grid(), count = particles_.size() - first;
+    share_among(workers, count, count > few_particles, [&](int, Share share) {
+        ParticleCollider collider(grid_, solids_, dt);
+        for (std::size_t i = first + share.first; i < first + share.last; ++i) {
+            FluidParticle& particle = particles_[i];
+            float* velocity = particle.velocity;
+            float end[3];
+            for (int axis = 0; axis < 3; ++axis) velocity[axis] += static_cast<float>(change[axis]);
+            slow_at_wall(grid_, solids_, properties_, dt, particle.position, velocity);
+            for (int axis = 0; axis < 3; ++axis) {
+                std::fill_n(particle.affine[axis], 3, 0.0f);
+                end[axis] = particle.position[axis] + static_cast<float>(dt) * velocity[axis];
             }
             collider.move(particle, end);
         }

@@ -86,6 +86,9 @@ private:
     void keep_out(TaskPool& workers);
     void displace(double share, Followed& followed, TaskPool& workers);
     void advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers);
+    void advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers);
+    void fly(double dt, Vec3 change, TaskPool& workers);
+    [[nodiscard]] float particle_share() const;  // of a cell's volume
     void find_places(double dt, TaskPool& workers);
     void accelerate(Vec3 change, TaskPool& workers);
     void project(double dt, FluidOutcome& outcome, TaskPool& workers);
