@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import { BufferGeometry, type Color, DoubleSide, DynamicDrawUsage, type Group, InstancedBufferAttribute, InstancedMesh, Matrix4 } from "three";
+import { BufferGeometry, type Color, DoubleSide, DynamicDrawUsage, type Group, InstancedBufferAttribute, InstancedMesh, type Material, Matrix4, MeshBasicMaterial } from "three";
 import type { Drawable } from "./drawable";
 import { type Quality, tintable } from "./tint";
 
@@ -7,7 +7,7 @@ const placed = new Matrix4();
 
 /** All entities that look the same, drawn with one call a part. */
 export class Batch {
-  private meshes: InstancedMesh[] = [];
+  private meshes: InstancedMesh<BufferGeometry, Material | Material[]>[] = [];
   private readonly slots: number[] = [];
   private readonly slotOf = new Map<number, number>();
   private capacity = 0;
@@ -103,9 +103,10 @@ export class Batch {
       // The instanced attributes lie in the geometry, so each batch has its own one around the shared buffers.
       const geometry = sharing(part.geometry);
       geometry.setAttribute("tint", new InstancedBufferAttribute(new Float32Array(capacity * 4), 4).setUsage(DynamicDrawUsage));
-      const material = tintable(part.material, this.quality, !this.drawable.hasTwoSides);
+      const material = tintable(part.material, this.quality, !this.drawable.isCloth);
       if (this.drawable.hasTwoSides) material.side = DoubleSide;
-      const mesh = new InstancedMesh(geometry, material, capacity);
+      const mesh = new InstancedMesh<BufferGeometry, Material | Material[]>(geometry, material, capacity);
+      if (this.drawable.isCloth && material.transparent) drawNearestOnly(mesh, material);
       mesh.instanceColor = new InstancedBufferAttribute(new Float32Array(capacity * 3).fill(1), 3);
       mesh.instanceMatrix.setUsage(DynamicDrawUsage);
       const old = before[at];
@@ -129,9 +130,21 @@ export class Batch {
   private release(mesh: InstancedMesh): void {
     this.group.remove(mesh);
     mesh.geometry.dispose();
-    (mesh.material as { dispose(): void }).dispose();
+    for (const material of [mesh.material].flat()) material.dispose();
     mesh.dispose();
   }
+}
+
+/**
+ * Of folds behind each other only the nearest lets through what is behind the cloth: first all of it goes into the depth buffer alone.
+ * In whatever order its triangles come, they would else hide each other here and there.
+ */
+function drawNearestOnly(mesh: InstancedMesh<BufferGeometry, Material | Material[]>, material: Material): void {
+  material.forceSinglePass = true;
+  // Transparent, so that it is drawn together with the other, which comes second.
+  const depth = new MeshBasicMaterial({ colorWrite: false, transparent: true, side: material.side, forceSinglePass: true });
+  mesh.material = [depth, material];
+  for (const which of [0, 1]) mesh.geometry.addGroup(0, Infinity, which);
 }
 
 function attributesOf(mesh: InstancedMesh): InstancedBufferAttribute[] {
@@ -143,7 +156,7 @@ export function sharing(original: BufferGeometry): BufferGeometry {
   const geometry = new BufferGeometry();
   geometry.setIndex(original.index);
   for (const [name, attribute] of Object.entries(original.attributes)) geometry.setAttribute(name, attribute);
-  geometry.groups = original.groups;
+  geometry.groups = [...original.groups];
   geometry.boundingBox = original.boundingBox;
   geometry.boundingSphere = original.boundingSphere;
   return geometry;

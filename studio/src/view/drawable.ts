@@ -15,6 +15,34 @@ export interface Drawable {
   castsShadow: boolean;
   /** Faces are seen from behind too. */
   hasTwoSides?: boolean;
+  /** It lies in folds, which turn away from the eye everywhere. */
+  isCloth?: boolean;
+}
+
+/** Whether a geometry has an inside: each edge of a triangle is another one's, the other way round. */
+export function isClosed(geometry: BufferGeometry): boolean {
+  const position = geometry.getAttribute("position");
+  const count = geometry.index?.count ?? position.count;
+  // Vertices with several normals lie at one place.
+  const places = new Map<string, number>();
+  const placeOf = (corner: number): number => {
+    const v = geometry.index?.getX(corner) ?? corner;
+    const key = `${position.getX(v)} ${position.getY(v)} ${position.getZ(v)}`;
+    const known = places.get(key);
+    if (known !== undefined) return known;
+    places.set(key, places.size);
+    return places.size - 1;
+  };
+  const open = new Map<number, number>();
+  for (let corner = 0; corner + 2 < count; corner += 3) {
+    const at = [placeOf(corner), placeOf(corner + 1), placeOf(corner + 2)];
+    at.forEach((from, k) => {
+      const to = at[(k + 1) % 3]!;
+      const key = Math.min(from, to) * position.count + Math.max(from, to);
+      open.set(key, (open.get(key) ?? 0) + Math.sign(to - from));
+    });
+  }
+  return [...open.values()].every((ways) => ways === 0);
 }
 
 export function drawable(parts: DrawablePart[], castsShadow = true): Drawable {

@@ -60,7 +60,7 @@ export class Environment {
     this.scene.environment = high ? this.reflections : null;
     // State colours wash out under strong image-based light.
     this.scene.environmentIntensity = 0.35;
-    this.sky.intensity = high ? 0.5 : 1.1;
+    this.sky.intensity = high ? 0.5 : 2.1;
   }
 
   showGrid(shown: boolean): void {

@@ -22,7 +22,7 @@ import { type Drawable, type DrawablePart, drawable } from "./drawable";
 /** Half the side of the square that stands for an endless plane, m. */
 const PLANE_REACH = 500;
 /** Faces of a hull that meet at less than this are drawn as one round surface, rad. */
-const CREASE = 0.6;
+const CREASE = 0.75;
 const UP = new Vector3(0, 1, 0);
 const ONE = new Vector3(1, 1, 1);
 const NONE = new Vector3();

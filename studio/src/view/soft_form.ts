@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Matrix4, Matrix3, Quaternion, Vector3 } from "three";
 import type { SimulationMesh } from "../connection/messages";
-import type { Drawable, DrawablePart } from "./drawable";
+import { type Drawable, type DrawablePart, isClosed } from "./drawable";
 import { refine } from "./refine";
 import type { Quality } from "./tint";
 
@@ -9,7 +9,7 @@ const NONE = new Matrix4();
 /** How long drawn edges may be, in edges of the elements: short ones look round between the nodes of cloth and ropes. */
 const LONGEST: Record<Quality, { solid: number; cloth: number; rope: number }> = {
   high: { solid: 1, cloth: 0.7, rope: 0.7 },
-  low: { solid: 1, cloth: 1.4, rope: 0.7 },
+  low: { solid: 1, cloth: 1, rope: 0.7 },
 };
 
 /** Which nodes an element has: four of a solid, three of cloth, two of a rope. */
@@ -417,7 +417,7 @@ export class SoftSkin {
       matrix: NONE,
     }));
     this.parts = parts.map(({ geometry }) => new CarriedPart(geometry, form, finder));
-    this.drawable = { parts, bounds: plain.bounds.clone(), castsShadow: plain.castsShadow, hasTwoSides: form.corners === 3 };
+    this.drawable = { parts, bounds: plain.bounds.clone(), castsShadow: plain.castsShadow, ...(form.corners === 3 && { isCloth: true, hasTwoSides: !plain.parts.every(({ geometry }) => isClosed(geometry)) }) };
   }
 
   /** As it is drawn now; for tests. */

@@ -21,6 +21,9 @@ export interface Hit {
 
 const GROUND = new Plane(new Vector3(0, 1, 0), 0);
 const LONGEST_STEP_S = 0.1;
+/** Where edges are not smoothed: after so long without a new picture, ms, the last one is drawn again, so many times as fine. */
+const STILL_MS = 400;
+const STILL_FINENESS = 2;
 /** So many pictures on end, each as late as this after the one before, are slow drawing. */
 const SLOW_PICTURES = 12;
 const SLOW_MS = 120;
@@ -43,6 +46,10 @@ export class View {
   /** Least time from a picture to the next of what moves by itself, ms; what the user does is drawn at once. */
   pace = 0;
   private waiting = 0;
+  private still = 0;
+  /** What is seen was drawn finer than what moves is. */
+  private isFine = false;
+  private readonly hasSmoothEdges: boolean;
   private asked = false;
   private halted = false;
   private lastFrame = 0;
@@ -50,6 +57,7 @@ export class View {
   private goesOn = false;
   /** Slow pictures on end; -1 once that has been said. */
   private slowPictures = 0;
+  private pixelRatio = 1;
   private readonly size = new Vector2();
   private readonly raycaster = new Raycaster();
   private readonly instance = new Matrix4();
@@ -62,6 +70,7 @@ export class View {
   ) {
     // Smooth edges are the larger half of what a picture costs without a graphics card; a context has them for ever or never.
     this.renderer = new WebGLRenderer({ canvas, antialias: quality === "high", stencil: true, powerPreference: "high-performance" });
+    this.hasSmoothEdges = this.renderer.getContext().getContextAttributes()?.antialias ?? false;
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.shadowMap.autoUpdate = false;
@@ -77,6 +86,7 @@ export class View {
 
   /** Asks for a new picture. */
   invalidate(): void {
+    clearTimeout(this.still);
     if (this.asked || this.halted || this.renderer.xr.isPresenting) return;
     this.asked = true;
     requestAnimationFrame((now) => this.draw(now));
@@ -84,6 +94,7 @@ export class View {
 
   /** Asks for a picture as soon as the pace allows. */
   drawSoon(): void {
+    clearTimeout(this.still);
     const wait = this.lastFrame + this.pace - performance.now();
     if (wait <= 0) this.invalidate();
     else
@@ -97,6 +108,7 @@ export class View {
   halt(): void {
     // What was asked for is drawn first: a canvas of a new size would stay empty.
     if (this.asked) this.draw(performance.now());
+    if (!this.isFine) this.drawStill();
     this.halted = true;
   }
 
@@ -106,7 +118,8 @@ export class View {
   }
 
   setQuality(quality: Quality): void {
-    this.renderer.setPixelRatio(quality === "low" ? 1 : Math.min(devicePixelRatio, 2));
+    this.pixelRatio = quality === "low" ? 1 : Math.min(devicePixelRatio, 2);
+    this.renderer.setPixelRatio(this.pixelRatio);
     this.environment.setQuality(quality);
     this.entities.setQuality(quality);
     this.resize();
@@ -177,6 +190,7 @@ export class View {
   private draw(now: number): void {
     this.asked = false;
     if (this.halted) return;
+    if (this.isFine) this.setFine(false);
     const seconds = Math.min((now - this.lastFrame) / 1000, LONGEST_STEP_S);
     this.watchPace(now - this.lastFrame);
     this.lastFrame = now;
@@ -195,6 +209,19 @@ export class View {
     this.goesOn = flying || moving;
     if (flying) this.invalidate();
     else if (moving) this.drawSoon();
+    else if (!this.hasSmoothEdges) this.still = window.setTimeout(() => this.drawStill(), STILL_MS);
+  }
+
+  /** The last picture again, with edges smoothed by many points a pixel. */
+  private drawStill(): void {
+    if (this.halted || this.hasSmoothEdges || this.renderer.xr.isPresenting) return;
+    this.setFine(true);
+    this.renderer.render(this.scene, this.rig.camera);
+  }
+
+  private setFine(isFine: boolean): void {
+    this.isFine = isFine;
+    this.renderer.setPixelRatio(isFine ? STILL_FINENESS * this.pixelRatio : this.pixelRatio);
   }
 
   private watchPace(interval: number): void {
