@@ -163,11 +163,15 @@ double RopeLine::energy(const Substep& substep, std::span<const Vec3> moves) con
     return sum;
 }
 
+double RopeLine::merit_pressed(const Substep& substep, std::span<const BodyInertia> inertias) const {
+    return merit(substep, inertias, moves_, body_moves_, energy_pressed);
+}
+
 double RopeLine::merit(const Substep& substep, std::span<const BodyInertia> inertias, std::span<const Vec3> moves,
-                       std::span<const BodyMove> body_moves) const {
+                       std::span<const BodyMove> body_moves, SpringEnergy spring_energy) const {
     double sum = energy(substep, moves);
     for (std::size_t b = 0; b < inertias.size(); ++b) sum += energy_of(inertias[b], body_moves[b]);
-    for (const TouchSpring& spring : springs_.springs()) sum += energy_of(spring, moves, body_moves);
+    for (const TouchSpring& spring : springs_.springs()) sum += spring_energy(spring, moves, body_moves);
     for (const TouchSpring& spring : held_) sum += energy_of(spring, moves, body_moves);
     if (!clamps_.holds_any()) return sum;
     std::vector<Vec3> at(moves.size());
@@ -252,6 +256,10 @@ bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> 
         moves_ = rest;
         assemble(substep);
     }
+    // Of rounds that do not come to an end, those moves that leave the least.
+    std::vector<Vec3> best_moves = moves_;
+    std::vector<BodyMove> best_body_moves = body_moves_;
+    double least = merit_pressed(substep, inertias);
     for (rounds_ = 1;; ++rounds_) {
         springs_ = chosen;
         if (rounds_ > 1) assemble(substep);
@@ -264,7 +272,17 @@ bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> 
             change = std::max(change, length(moves_[i] - before[i]));
         }
         const bool has_changed = chosen.choose(moves_, body_moves_, false);
-        if (rounds_ == most_rounds || (!has_changed && change < small * segments_[0].length)) return true;
+        if (!has_changed && change < small * segments_[0].length) return true;
+        if (const double left = merit_pressed(substep, inertias); left < least) {
+            least = left;
+            best_moves = moves_;
+            best_body_moves = body_moves_;
+        } else if (rounds_ == most_rounds) {
+            moves_ = best_moves;
+            body_moves_ = best_body_moves;
+            springs_.choose(moves_, body_moves_, false);
+        }
+        if (rounds_ == most_rounds) return true;
     }
 }
 

@@ -91,8 +91,11 @@ private:
     void add_bend(std::size_t node);
     bool solve_round(const Substep& substep, std::span<const BodyInertia> inertias);
     // What the round's step minimises: inertia, elastic energy, damping and springs of these moves, J.
+    using SpringEnergy = double (*)(const TouchSpring&, std::span<const Vec3>, std::span<const BodyMove>);
     [[nodiscard]] double merit(const Substep& substep, std::span<const BodyInertia> inertias,
-                               std::span<const Vec3> moves, std::span<const BodyMove> body_moves) const;
+                               std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
+                               SpringEnergy spring_energy = energy_of) const;
+    [[nodiscard]] double merit_pressed(const Substep& substep, std::span<const BodyInertia> inertias) const;
     bool take_step(const Substep& substep, std::span<const BodyInertia> inertias);
     bool solve_moves(const Substep& substep, std::span<const TouchedBody> bodies);
     void break_segments();

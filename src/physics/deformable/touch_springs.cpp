@@ -9,15 +9,21 @@ namespace embody::physics {
 namespace {
 
 constexpr double stiffness_factor = 20;  // over what the node's neighbours resist with, or over a point's inertia
+constexpr double recovery_factor = 2;    // over the inertia of a body at the place where something began inside it
 constexpr double load_factor = 4;        // over the inertia of what weighs on a point
 
 // A new contact that is deeper than its point can have come in the substep began inside, or something was put there. It
 // is brought out at a bounded speed, by no more than the point's own inertia asks for: where the point is held inside
-// by something else, a force that is remembered would grow for ever.
-void begin_recovery(TouchSpring& spring, double h) {
+// by something else, a force that is remembered would grow for ever. Nor by more than a few times what that of a light
+// body asks for: squeezed between points on both sides of it by all that a heavy rope can give, it turns out of there
+// faster than substeps can follow.
+void begin_recovery(TouchSpring& spring, const TouchedBody& body, double h) {
     spring.is_recovery = true;
     spring.friction = 0;
     spring.stiffness = stiffness_factor * spring.inertia;
+    const Vec3 turning = cross(spring.arm, spring.normal);
+    const double body_give = body.inverse_mass + dot(turning, body.inverse_inertia * turning);  // 1/kg
+    if (body_give > 0) spring.stiffness = std::min(spring.stiffness, recovery_factor / (body_give * h * h));
     spring.gap = -recovery_speed * h - dot(spring.carried, spring.normal);
 }
 
@@ -101,6 +107,14 @@ double energy_of(const TouchSpring& spring, std::span<const Vec3> node_moves, st
     if (!spring.acts) return 0;
     const Vec3 s = spring.lead(node_moves, body_moves);
     return 0.5 * dot(s, spring.matrix * s) - dot(spring.load, s);
+}
+
+double energy_pressed(const TouchSpring& spring, std::span<const Vec3> node_moves,
+                      std::span<const BodyMove> body_moves) {
+    if (spring.is_attachment) return energy_of(spring, node_moves, body_moves);
+    const double depth = -(spring.gap + dot(spring.normal, spring.lead(node_moves, body_moves)));
+    const double push = std::max(0.0, dot(spring.pull, spring.normal) + spring.stiffness * depth);
+    return push * push / (2 * spring.stiffness);
 }
 
 double energy_of(const BodyInertia& inertia, const BodyMove& move) {
@@ -188,7 +202,7 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
     if (node_stiffness.empty()) soften(substep, give, body.inverse_mass > 0, spring);
     if (!is_known && gap_at_start < -recovery_speed * substep.h - came_in) {
         if (std::ranges::find(attachment_bodies, plane.body) != attachment_bodies.end()) return;
-        begin_recovery(spring, substep.h);
+        begin_recovery(spring, body, substep.h);
     }
     springs_.push_back(spring);
 }

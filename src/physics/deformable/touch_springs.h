@@ -95,6 +95,9 @@ inline bool moves_body(const TouchSpring& spring, std::span<const BodyInertia> b
 /// What a solve minimises has of these: of a spring that acts, of a body's moves; J.
 double energy_of(const TouchSpring& spring, std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves);
 double energy_of(const BodyInertia& inertia, const BodyMove& move);
+/// The same of a spring whatever acted in the solve: of a contact, which only pushes, without friction.
+double energy_pressed(const TouchSpring& spring, std::span<const Vec3> node_moves,
+                      std::span<const BodyMove> body_moves);
 
 /// Of each body, how much of what the springs push it for these moves it may get: 1 where it goes by that as the solve
 /// has it in the substep of h seconds, less where a solve that has not come to its end left stiff springs with far
