@@ -19,8 +19,8 @@ export interface TestHook {
   seenAt(index: number): { x: number; y: number } | null;
   /** Red, green, blue and amount of the state colour an entity is drawn with. */
   tintOf(index: number): number[];
-  /** Points that an entity is drawn as, and the box around them; null where it is drawn as a thing. */
-  points(index: number): { count: number; liquid: boolean; lower: number[]; upper: number[] } | null;
+  /** Points that an entity is drawn as, triangles of their surface where they are a liquid, and the box around them; null where it is drawn as a thing. */
+  points(index: number): { count: number; triangles: number; liquid: boolean; lower: number[]; upper: number[] } | null;
   /** Size of the box around a soft thing's drawn form in its own frame, its vertices and the mean length of their normals; null for others. */
   bent(index: number): { size: number[]; vertices: number; normals: number } | null;
   /** Nodes of the selection that are marked as held. */
@@ -63,7 +63,7 @@ export function offerTestHook(studio: Studio): void {
     tintOf: (index) => studio.entities.tintOf(index),
     points: (index) => {
       const cloud = studio.entities.clouds.of(index);
-      return cloud ? { count: cloud.count, liquid: cloud.isLiquid, lower: cloud.bounds.min.toArray(), upper: cloud.bounds.max.toArray() } : null;
+      return cloud ? { count: cloud.count, triangles: cloud.isLiquid ? cloud.triangles : 0, liquid: cloud.isLiquid, lower: cloud.bounds.min.toArray(), upper: cloud.bounds.max.toArray() } : null;
     },
     bent: (index) => studio.entities.softs.skinOf(index)?.measure() ?? null,
     pinned: () => studio.view.pins.count,

@@ -37,13 +37,14 @@ describe("liquids in the Studio", { timeout: 600000 }, () => {
   const command = (name, params) => session.command(name, params);
   // Made beside the page: it comes a while after the points.
   async function surface() {
-    await page.waitForFunction((water) => window.embody.points(water)?.count > 100, WATER);
+    await page.waitForFunction((water) => window.embody.points(water)?.triangles > 100, WATER);
     return page.evaluate((water) => window.embody.points(water), WATER);
   }
 
   it("draws one surface that runs apart, and is as it was after a reset", async () => {
     const filled = await surface();
     assert.equal(filled.liquid, true);
+    assert.ok(filled.count > 1000 && filled.count <= 2000, `${filled.count} drops of a budget of 2000`);
     assert.ok(filled.upper[0] < 0.12 && filled.lower[1] > -0.01, JSON.stringify(filled));
     await command("simulation.step", { count: 40 });
     await page.waitForFunction((water) => window.embody.points(water).upper[0] > 0.2, WATER);
@@ -75,7 +76,7 @@ describe("liquids in the Studio", { timeout: 600000 }, () => {
     const drawn = await pictureOfScene(page);
     // As who comes now sees it.
     const other = await openStudio(session.browser, session.address);
-    await other.waitForFunction((water) => window.embody.points(water)?.count > 100, WATER);
+    await other.waitForFunction((water) => window.embody.points(water)?.triangles > 100, WATER);
     const share = await difference(page, drawn, await pictureOfScene(other));
     await other.context().close();
     assert.ok(share < 0.002, `${share} of the pixels differ`);
@@ -98,7 +99,7 @@ describe("liquids in the Studio", { timeout: 600000 }, () => {
   it("can be added as a primitive", async () => {
     await page.locator("[data-testid=primitive-water]").dblclick();
     await page.waitForFunction(() => window.embody.entities().length === 3);
-    await page.waitForFunction(() => window.embody.points(3)?.liquid === true && window.embody.points(3).count > 100);
+    await page.waitForFunction(() => window.embody.points(3)?.liquid === true && window.embody.points(3).triangles > 100);
     assert.deepEqual(page.faults, []);
   });
 

@@ -127,8 +127,13 @@ export class LiquidSurface {
     this.take(set, 0, 0);
   }
 
-  /** Triangles that are drawn. */
+  /** Drops that it is the surface of. */
   get count(): number {
+    return this.set.positions.length / 3;
+  }
+
+  /** Triangles that are drawn. */
+  get triangles(): number {
     return this.geometry.drawRange.count / 3;
   }
 
