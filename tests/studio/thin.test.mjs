@@ -108,6 +108,29 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
     await page.waitForFunction(() => Math.abs((window.embody.bent(3)?.size[1] ?? 0) - 1.23) < 0.05 && window.embody.bent(3).normals > 0.99);
   });
 
+  it("begins with fast drawing where there is no graphics card, and what stands still is drawn finely", async () => {
+    // Nobody says how it shall be drawn.
+    const other = await openStudio(session.browser, session.address, { quality: "" });
+    const software = await other.evaluate(() => {
+      const gl = document.createElement("canvas").getContext("webgl2");
+      return /llvmpipe|swiftshader/i.test(gl.getParameter(gl.getExtension("WEBGL_debug_renderer_info").UNMASKED_RENDERER_WEBGL));
+    });
+    await other.getByTestId("view.options").click();
+    assert.equal(await other.getByTestId("option-view.quality").isChecked(), software);
+    await other.keyboard.press("Escape");
+    const points = (times) => other.waitForFunction((times) => document.querySelector("[data-testid=canvas]").width === times * document.querySelector("[data-testid=canvas]").clientWidth, times);
+    await points(software ? 2 : 1);
+    const drawn = await other.evaluate(() => window.embody.frames());
+    await send("simulation.play", {});
+    await other.waitForFunction((drawn) => window.embody.frames() > drawn + 3, drawn);
+    await points(1);
+    await send("simulation.reset", {});
+    await points(software ? 2 : 1);
+    assert.deepEqual(other.faults, []);
+    await other.context().close();
+    await page.waitForFunction(() => window.embody.simulation().state === "stopped");
+  });
+
   it("is drawn as it is after it was selected and let go", async () => {
     await send("simulation.step", { count: 1 });
     await page.waitForFunction(() => window.embody.simulation().step === 1);
