@@ -101,17 +101,25 @@ std::array<float, 3> ParticleCollider::place_of(const FluidParticle& particle) {
     std::array<float, 3> place{particle.position[0], particle.position[1], particle.position[2]};
     if (!is_near_thin(particle.position)) return place;
 
-    // The cell whose centre it sees: its own, or the nearest one beside it.
+    // The cell whose centre it sees: its own, or the nearest one beside it. One that is shut all around holds nothing:
+    // its centre lies in a wall, or on its surface.
     const Vec3 p = to_vec(particle.position);
     Cell cell = cell_at(grid_, particle.position);
-    if (!sees(p, grid_.center(cell))) {
+    const auto is_shut = [&](const Cell& c) {
+        constexpr int all = closed_x | closed_y | closed_z;
+        const int index = grid_.index(c);
+        bool shut = (grid_.thin[index] & all) == all;
+        for (int axis = 0; axis < 3; ++axis) shut = shut && (grid_.thin[index + grid_.stride(axis)] & (1 << axis)) != 0;
+        return shut;
+    };
+    if (is_shut(cell) || !sees(p, grid_.center(cell))) {
         double nearest = 1e300;
         Cell found = cell;
         for (int k = 0; k < 6; ++k) {
             Cell other = cell;
             other[k / 2] += k % 2 == 0 ? -1 : 1;
             const double distance = length_squared(grid_.center(other) - p);
-            if (distance >= nearest || !sees(p, grid_.center(other))) continue;
+            if (distance >= nearest || is_shut(other) || !sees(p, grid_.center(other))) continue;
             nearest = distance;
             found = other;
         }

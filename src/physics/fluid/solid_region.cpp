@@ -222,7 +222,7 @@ float SolidRegion::room(int cell) const {
     for (int axis = 0; axis < 3 && any_thin_; ++axis) {
         const int bit = 1 << axis;
         if ((thin_[cell] & bit) || (thin_[cell + stride(axis)] & bit)) {
-            return std::clamp(0.5f + distance_[cell], 0.0f, 1.0f);
+            return std::clamp(0.5f + distance_[cell], 0.0f, 1.5f);
         }
     }
     return room_[cell];

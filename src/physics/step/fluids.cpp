@@ -14,7 +14,7 @@ namespace {
 constexpr double quiet_speed = 0.01;     // m/s: a fluid whose particles are slower, but for a few drops, may sleep
 constexpr double time_to_sleep = 1;      // s
 constexpr double noticed_change = 0.05;  // of a sleeping body's weight: another force by more wakes it
-constexpr double most_support = 1.5;     // of the weight of a body and of its volume of the fluid
+constexpr double most_support = 1.5;     // of the weight of a body and of its volume of the fluid, or what it carries
 constexpr double farthest_jump = 0.5;    // m: a body that was put farther away was not moved through the fluid
 
 Vec3 angular_momentum_of(const WorldState& world, std::uint32_t slot, Vec3 angular_velocity) {
@@ -43,8 +43,8 @@ Support support_of(const WorldState& world, std::uint32_t slot, double density) 
     const Vec3 linear = (state.linear_velocity - touch.linear_velocity - touch.acceleration * dt) * mass;
     const Vec3 angular =
         angular_momentum_of(world, slot, state.angular_velocity - touch.angular_velocity) - touch.torque * dt;
-    const double volume = record.shape->mass_properties().volume;
-    const double most = most_support * (mass + density * volume) * length(world.settings.gravity) * dt;
+    const double gravity = length(world.settings.gravity), volume = record.shape->mass_properties().volume;
+    const double most = most_support * (mass * gravity + std::max(density * volume * gravity, touch.carried)) * dt;
     return {at_most(linear, most), at_most(angular, most * record.reach)};
 }
 
@@ -160,12 +160,17 @@ void note_touches(WorldState& world) {
     for (const std::uint32_t slot : world.pushed_by_fluids) {
         if (!world.is_dynamic(slot) || world.is_asleep(slot)) continue;
         const BodyState& state = world.motion[slot];
+        const FluidTouch& before = world.fluid_touches[slot];
+        if (before.step == world.report.step) continue;  // pushed by several
+        const double last = before.step + 1 == world.report.step ? length(before.force_asleep) : 0;
+        const double carried = std::min(length(world.record(slot).fluid_force), last);
         world.fluid_touches[slot] = {world.report.step,
                                      state.linear_velocity,
                                      state.angular_velocity,
                                      world.constants[slot].acceleration,
                                      world.constants[slot].torque,
-                                     world.record(slot).fluid_force};
+                                     world.record(slot).fluid_force,
+                                     carried};
     }
 }
 

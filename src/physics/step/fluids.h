@@ -38,7 +38,8 @@ struct FluidTouch {
     std::uint64_t step = 0;                  ///< last one in which a fluid saw it
     Vec3 linear_velocity, angular_velocity;  ///< when that step began
     Vec3 acceleration, torque;               ///< in that step, with the fluids'
-    Vec3 force_asleep;                       ///< of the fluids when it fell asleep, N
+    Vec3 force_asleep;                       ///< of the fluids in that step, the last one before it fell asleep, N
+    double carried = 0;                      ///< force of the fluids in that step and the one before, the lesser one, N
 };
 
 /// Particles that fill the definition's volume and no solid. Fails where there are none or too many, or a hull is flat.
