@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ropes and sheets that begin inside of bodies: they come out gently, and no energy comes from nowhere.
+// Ropes, sheets and solids that begin inside of bodies: they come out gently, and no energy comes from nowhere.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -102,6 +102,27 @@ TEST(BeginsInside, ASheetInABoxComesOutOrStays) {
     const Motion motion = watch(*world, sheet, 2);
     EXPECT_LT(motion.highest_energy, gravity * world->mass(sheet) * 0.15);
     EXPECT_LT(motion.fastest, 1);
+}
+
+// The faces around it would pull it apart: it leaves by the shortest way, here all equal, so up, and lies there whole.
+TEST(BeginsInside, ASoftCubeLeavesABoxWhole) {
+    const auto world = make_world({});
+    BodyDefinition box{.kind = BodyKind::static_body,
+                       .shape = world->create_shape(BoxShape{{0.15, 0.15, 0.15}}).value()};
+    ASSERT_TRUE(world->create_body(box).ok());
+    DeformableDefinition cube = tetrahedral_brick({0.2, 0.2, 0.2}, {4, 4, 4});
+    SoftSolid& matter = std::get<SoftSolid>(cube.matter);
+    matter.density = 1000;
+    matter.youngs_modulus = 1e5;
+    matter.rayleigh_damping = 0.02;
+    cube.pose.position = {-0.1, -0.1, -0.1};
+    const DeformableHandle soft = world->create_deformable(cube).value();
+    const Motion motion = watch(*world, soft, 3);
+    const double lift = 0.25 + 0.01;
+    EXPECT_LT(motion.highest_energy, world->mass(soft) * (gravity * lift + 0.5 * 0.5 * 0.5));
+    EXPECT_LT(motion.fastest, 1);
+    EXPECT_NEAR(world->center_of_mass(soft).y, 0.25, 0.01);
+    EXPECT_TRUE(world->is_asleep(soft));
 }
 
 // A rope may go through what it is tied to: a ball on a string, whose middle holds the string's end.

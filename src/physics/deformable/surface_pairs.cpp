@@ -141,23 +141,6 @@ double PlacedSurface::share_within(const PlacedSurface& other, double depth) con
     return asked > 0 ? static_cast<double>(inside) / static_cast<double>(asked) : 0;
 }
 
-namespace {
-
-constexpr double much = 0.125;                         // of one within the other: not the work of contact
-constexpr double sure_depth = 0.5, least_depth = 0.1;  // of points asked, in mean sides
-
-/// The way on which one solid leaves another.
-struct WayOut {
-    int axis = 0;
-    double sign = 1;
-};
-
-double volume(const Bounds& box) {
-    const Vec3 size = box.size();
-    return box.is_empty() ? 0 : size.x * size.y * size.z;
-}
-
-// The shortest way on which the box of `one` leaves that of `two`; of equal ones the first upwards for the later one.
 WayOut shortest_way(const Bounds& one, const Bounds& two, bool is_later) {
     WayOut best;
     double least = std::numeric_limits<double>::infinity();
@@ -171,6 +154,15 @@ WayOut shortest_way(const Bounds& one, const Bounds& two, bool is_later) {
     return best;
 }
 
+namespace {
+
+constexpr double sure_depth = 0.5, least_depth = 0.1;  // of points asked, in mean sides
+
+double volume(const Bounds& box) {
+    const Vec3 size = box.size();
+    return box.is_empty() ? 0 : size.x * size.y * size.z;
+}
+
 // Where much of one of the two lies within the other, as a scene may begin; or where any does and they have been
 // parting.
 std::optional<WayOut> find_way_out(const SolidDeformable& one, const PlacedSurface& surface_one,
@@ -179,13 +171,13 @@ std::optional<WayOut> find_way_out(const SolidDeformable& one, const PlacedSurfa
     const double depth = is_parting ? least_depth : sure_depth;
     const double most =
         std::max(surface_one.share_within(surface_two, depth), surface_two.share_within(surface_one, depth));
-    if (!(is_parting ? most > 0 : most >= much)) return std::nullopt;
+    if (!(is_parting ? most > 0 : most >= much_within)) return std::nullopt;
     return shortest_way(one.bounds(), two.bounds(), is_later);
 }
 
 bool may_be_within(const Bounds& one, const Bounds& two) {
     const Bounds common{max(one.lower, two.lower), min(one.upper, two.upper)};
-    return volume(common) >= much * std::min(volume(one), volume(two));
+    return volume(common) >= much_within * std::min(volume(one), volume(two));
 }
 
 }  // namespace

@@ -10,6 +10,16 @@
 
 namespace embody::physics {
 
+/// The way on which one thing leaves another that it lies within.
+struct WayOut {
+    int axis = 0;
+    double sign = 1;
+};
+/// The shortest on which the box of `one` leaves that of `two`; of equal ones the first upwards for the later one.
+[[nodiscard]] WayOut shortest_way(const Bounds& one, const Bounds& two, bool is_later);
+
+inline constexpr double much_within = 0.125;  ///< share of one thing within another: not the work of contact
+
 /// A solid's surface as it lies now.
 class PlacedSurface {
 public:

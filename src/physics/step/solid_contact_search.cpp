@@ -14,6 +14,7 @@ namespace embody::physics {
 namespace {
 
 constexpr double small_body = 1.5;  // reach over the mean side of the surface's triangles
+constexpr double deep_share = 0.5;  // of the mean side: no contact that closed in a step leaves a node so deep
 
 std::uint32_t index_of(std::span<const TouchedBody> bodies, std::uint32_t slot) {
     return static_cast<std::uint32_t>(std::ranges::lower_bound(bodies, slot, {}, &TouchedBody::body) - bodies.begin());
@@ -51,12 +52,10 @@ public:
         std::vector<NodeContact> found;
         find_node_contacts(solid.nodes(), solid.surface_nodes(), *record_.node_ball, radius(), colliding_,
                            world_.settings.time_step, world_.settings.gravity, found);
-        for (const NodeContact& node : found) {
-            SolidContact contact = contact_with(colliding_[node.body]);
-            contact.point = {number_, 1, {node.node}, {1}};
-            contact.anchor = node.anchor;
-            contact.normal = node.normal;
-            contacts.push_back(contact);
+        for (auto first = found.begin(); first != found.end();) {
+            const auto last = std::find_if(first, found.end(), [&](const auto& at) { return at.body != first->body; });
+            add_node_contacts(colliding_[first->body], std::span(first, last), contacts);
+            first = last;
         }
         std::optional<PlacedSurface> surface;
         for (const TouchedBody& body : colliding_) {
@@ -66,6 +65,57 @@ public:
     }
 
 private:
+    // Of nodes with one body. Those that are inside where it is to be left by a way go along that, to its box's end.
+    void add_node_contacts(const TouchedBody& body, std::span<const NodeContact> found,
+                           std::vector<SolidContact>& contacts) const {
+        const Bounds box = body.shape->bounds(body.start);
+        const std::optional<WayOut> way = find_way_out(body, box, found);
+        std::uint32_t last_parted = no_node;
+        for (const NodeContact& node : found) {
+            SolidContact contact = contact_with(body);
+            contact.point = {number_, 1, {node.node}, {1}};
+            contact.anchor = node.anchor;
+            contact.normal = node.normal;
+            if (way && height(body, node) < 0) {
+                if (node.node == last_parted) continue;
+                last_parted = node.node;
+                const double end = way->sign > 0 ? box.upper[way->axis] : box.lower[way->axis];
+                Vec3 place = record_.nodes().position[node.node];
+                place[way->axis] = end;
+                contact.anchor = place - body.start_center;
+                contact.normal = {};
+                contact.normal[way->axis] = way->sign;
+                contact.parts = true;
+            }
+            contacts.push_back(contact);
+        }
+    }
+
+    [[nodiscard]] double height(const TouchedBody& body, const NodeContact& node) const {
+        return dot(record_.nodes().position[node.node] - body.start_center - node.anchor, node.normal);
+    }
+
+    // Where much of the solid is within a body whose faces push it to different sides, as a scene may begin, these
+    // would pull it apart; until none of it is inside it leaves by the shortest way.
+    [[nodiscard]] std::optional<WayOut> find_way_out(const TouchedBody& body, const Bounds& box,
+                                                     std::span<const NodeContact> found) const {
+        const SolidDeformable& solid = *record_.solid;
+        const bool is_parting = std::ranges::any_of(
+            record_.contacts, [&](const SolidContact& c) { return c.parts && c.has_body() && c.partner == body.body; });
+        if (!is_parting) {
+            double inside = 0;
+            Vec3 normals;
+            for (const NodeContact& node : found) {
+                if (height(body, node) > -deep_share * solid.mean_side()) continue;
+                ++inside;
+                normals += node.normal;
+            }
+            if (inside < much_within * static_cast<double>(solid.surface_nodes().size())) return std::nullopt;
+            if (length(normals) > 0.5 * inside) return std::nullopt;
+        }
+        return shortest_way(solid.bounds(), box, true);
+    }
+
     void add_feature_contacts(const TouchedBody& body, std::optional<PlacedSurface>& surface,
                               std::vector<SolidContact>& contacts) const {
         const double dt = world_.settings.time_step;
