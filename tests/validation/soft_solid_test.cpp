@@ -431,6 +431,22 @@ TEST(SoftSolid, HeldToALightBodyItGainsNoEnergy) {
     }
 }
 
+// Its own weight would squash it to a twentieth of nothing: it lies on the floor as a puddle, no part of it below.
+TEST(SoftSolid, MatterThatCannotBearItselfLiesOnTheFloor) {
+    const auto world = make_world({});
+    add_plane(*world, friction(0.5));
+    DeformableDefinition cube = brick({0.2, 0.2, 0.2}, {4, 4, 4}, 1000, 100, 0.3, 0.02);
+    cube.pose.position = {-0.1, 0.05, -0.1};
+    const DeformableHandle soft = world->create_deformable(cube).value();
+    const double most = 1.01 * energy(*world);
+    for (int k = 0; k < 240; ++k) {
+        world->step();
+        EXPECT_LT(energy(*world), most) << k;
+    }
+    for (const Vec3 node : world->node_positions(soft)) EXPECT_GT(node.y, -0.002);
+    EXPECT_TRUE(world->is_asleep(soft));
+}
+
 // A ton hangs by nine nodes of a cube of 8 kg, which cannot bear it and stretches far: it neither floats nor rises.
 TEST(SoftSolid, WhatItCannotBearStretchesItWithoutEnergyFromNowhere) {
     const auto world = make_world({});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 #include "physics/deformable/body_features.h"
@@ -50,8 +51,11 @@ public:
     void add_body_contacts(std::vector<SolidContact>& contacts) const {
         const SolidDeformable& solid = *record_.solid;
         std::vector<NodeContact> found;
-        find_node_contacts(solid.nodes(), solid.surface_nodes(), *record_.node_ball, radius(), colliding_,
-                           world_.settings.time_step, world_.settings.gravity, found);
+        // Inner ones too: what its own weight squashes flat would hang below the floor by them.
+        std::vector<std::uint32_t> all(solid.nodes().size());
+        std::iota(all.begin(), all.end(), 0u);
+        find_node_contacts(solid.nodes(), all, *record_.node_ball, radius(), colliding_, world_.settings.time_step,
+                           world_.settings.gravity, found);
         for (auto first = found.begin(); first != found.end();) {
             const auto last = std::find_if(first, found.end(), [&](const auto& at) { return at.body != first->body; });
             add_node_contacts(colliding_[first->body], std::span(first, last), contacts);
@@ -110,7 +114,7 @@ private:
                 ++inside;
                 normals += node.normal;
             }
-            if (inside < much_within * static_cast<double>(solid.surface_nodes().size())) return std::nullopt;
+            if (inside < much_within * static_cast<double>(solid.nodes().size())) return std::nullopt;
             if (length(normals) > 0.5 * inside) return std::nullopt;
         }
         return shortest_way(solid.bounds(), box, true);
