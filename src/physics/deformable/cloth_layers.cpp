@@ -26,13 +26,21 @@ struct ClothLayers::Search {
 };
 
 ClothLayers::ClothLayers(const std::vector<std::array<std::uint32_t, 3>>& triangles, const std::vector<Vec3>& nodes)
-    : triangles_(triangles) {
+    : triangles_(triangles), patches_(triangles, nodes.size()) {
+    leaf_nodes_.resize(patches_.leaves());
+    leaf_edges_.resize(patches_.leaves());
+    std::vector<bool> has_leaf(nodes.size(), false);
     std::set<std::pair<std::uint32_t, std::uint32_t>> known;
     std::vector<std::vector<std::uint32_t>> around(nodes.size());
-    for (const auto& triangle : triangles_) {
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+        const auto& triangle = triangles_[t];
+        const std::uint32_t leaf = patches_.leaf_of(t);
         for (std::size_t k = 0; k < 3; ++k) {
+            if (!has_leaf[triangle[k]]) leaf_nodes_[leaf].push_back(triangle[k]);
+            has_leaf[triangle[k]] = true;
             const auto [a, b] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
             if (!known.emplace(a, b).second) continue;
+            leaf_edges_[leaf].push_back(static_cast<std::uint32_t>(edges_.size()));
             edges_.push_back({a, b});
             around[a].push_back(b);
             around[b].push_back(a);
@@ -56,7 +64,7 @@ bool ClothLayers::are_neighbours(std::uint32_t a, std::uint32_t b) const {
 }
 
 // The whole's own move is left out: what falls together does not meet.
-void ClothLayers::find_boxes(const Search& search) {
+void ClothLayers::find_boxes(const Search& search, TaskPool& workers) {
     const Nodes& nodes = search.nodes;
     Vec3 mean;
     double mass = 0;
@@ -70,83 +78,80 @@ void ClothLayers::find_boxes(const Search& search) {
         const Vec3 start = nodes.position[i], end = start + search.moves[i] - mean;
         node_boxes_[i] = enlarged(Bounds{min(start, end), max(start, end)}, search.thickness);
     }
-    const auto joined = [&](const auto& corners) {
-        Bounds box;
-        for (const std::uint32_t corner : corners) box.add(node_boxes_[corner]);
-        return box;
-    };
-    edge_boxes_.resize(edges_.size());
     triangle_boxes_.resize(triangles_.size());
-    for (std::size_t e = 0; e < edges_.size(); ++e) edge_boxes_[e] = joined(edges_[e]);
-    for (std::size_t t = 0; t < triangles_.size(); ++t) triangle_boxes_[t] = joined(triangles_[t]);
+    leans_.resize(triangles_.size());
+    share_among(workers, triangles_.size(), triangles_.size() >= 1000, [&](int, Share share) {
+        for (std::size_t t = share.first; t < share.last; ++t) {
+            const auto [p, q, r] = triangles_[t];
+            triangle_boxes_[t] = box_around(triangles_[t]);
+            const Vec3 a = nodes.position[q] - nodes.position[p], b = nodes.position[r] - nodes.position[p];
+            const Vec3 a_way = search.moves[q] - search.moves[p], b_way = search.moves[r] - search.moves[p];
+            leans_[t] = leans_of(cross(a, b)) & leans_of(cross(a + a_way, b + b_way));
+        }
+    });
+    patches_.update(triangle_boxes_, leans_);
 }
 
-void ClothLayers::search_node(const Search& search, std::uint32_t node, std::vector<std::uint32_t>& seen,
+void ClothLayers::search_node(const Search& search, std::uint32_t node, std::uint32_t triangle,
                               std::vector<LayerContact>& found) const {
     const std::vector<Vec3>& x = search.nodes.position;
-    const Bounds& box = node_boxes_[node];
-    const std::size_t first_found = found.size();
     // Where neighbours lie nearer than layers may.
     const bool is_fine = edge_length_ < 4 * search.thickness;
-    const auto is_near = [&](std::uint32_t p, std::uint32_t q, std::uint32_t r) {
-        return are_neighbours(node, p) || are_neighbours(node, q) || are_neighbours(node, r);
-    };
-    grid_.visit(box, [&](std::uint32_t t) {
-        if (!overlaps(triangle_boxes_[t], box) || seen[t] == node) return;
-        seen[t] = node;
-        const auto [p, q, r] = triangles_[t];
-        if (node == p || node == q || node == r || (is_fine && is_near(p, q, r))) return;
-        const auto weight = nearest_weights(x[node], x[p], x[q], x[r]);
-        const Vec3 away = x[node] - (weight[0] * x[p] + weight[1] * x[q] + weight[2] * x[r]);
-        search.add({{node, p, q, r}, {1, -weight[0], -weight[1], -weight[2]}, {}, 0}, away, found);
-    });
-    // Whatever the order of the cells.
-    const auto order = [](const LayerContact& a, const LayerContact& b) { return a.node < b.node; };
-    std::sort(found.begin() + static_cast<std::ptrdiff_t>(first_found), found.end(), order);
+    const auto [p, q, r] = triangles_[triangle];
+    if (node == p || node == q || node == r || !overlaps(triangle_boxes_[triangle], node_boxes_[node])) return;
+    if (is_fine && (are_neighbours(node, p) || are_neighbours(node, q) || are_neighbours(node, r))) return;
+    const auto weight = nearest_weights(x[node], x[p], x[q], x[r]);
+    const Vec3 away = x[node] - (weight[0] * x[p] + weight[1] * x[q] + weight[2] * x[r]);
+    search.add({{node, p, q, r}, {1, -weight[0], -weight[1], -weight[2]}, {}, 0}, away, found);
 }
 
-void ClothLayers::search_edge(const Search& search, std::uint32_t edge, std::vector<std::uint32_t>& seen,
-                              std::vector<LayerContact>& found) const {
+void ClothLayers::search_edges(const Search& search, std::uint32_t edge, std::uint32_t other,
+                               std::vector<LayerContact>& found) const {
     const std::vector<Vec3>& x = search.nodes.position;
-    const std::uint32_t a = edges_[edge][0], b = edges_[edge][1];
-    const Bounds& box = edge_boxes_[edge];
-    const std::size_t first_found = found.size();
-    edge_grid_.visit(box, [&](std::uint32_t other) {
-        if (other <= edge || seen[other] == edge) return;
-        seen[other] = edge;
-        const auto [c, d] = edges_[other];
-        if (a == c || a == d || b == c || b == d || !overlaps(edge_boxes_[other], box)) return;
-        double s = 0, u = 0;
-        if (!nearest_inside(x[a], x[b], x[c], x[d], s, u)) return;
-        const Vec3 away = (1 - s) * x[a] + s * x[b] - (1 - u) * x[c] - u * x[d];
-        search.add({{a, b, c, d}, {1 - s, s, u - 1, -u}, {}, 0}, away, found);
-    });
-    const auto order = [](const LayerContact& p, const LayerContact& q) { return p.node < q.node; };
-    std::sort(found.begin() + static_cast<std::ptrdiff_t>(first_found), found.end(), order);
+    const auto [a, b] = edges_[edge];
+    const auto [c, d] = edges_[other];
+    if (a == c || a == d || b == c || b == d) return;
+    double s = 0, u = 0;
+    if (!nearest_inside(x[a], x[b], x[c], x[d], s, u)) return;
+    const Vec3 away = (1 - s) * x[a] + s * x[b] - (1 - u) * x[c] - u * x[d];
+    search.add({{a, b, c, d}, {1 - s, s, u - 1, -u}, {}, 0}, away, found);
+}
+
+// All of one leaf with all of another, or with its own.
+void ClothLayers::search_pair(const Search& search, const std::array<std::uint32_t, 2>& leaves,
+                              std::vector<LayerContact>& found) const {
+    const bool is_own = leaves[0] == leaves[1];
+    for (const bool is_swapped : {false, true}) {
+        const std::uint32_t of_nodes = leaves[is_swapped ? 1 : 0], of_triangles = leaves[is_swapped ? 0 : 1];
+        if (is_swapped && is_own) break;
+        const Bounds& box = patches_.box_of(of_triangles);
+        for (const std::uint32_t node : leaf_nodes_[of_nodes]) {
+            if (!overlaps(node_boxes_[node], box)) continue;
+            for (const std::uint32_t triangle : patches_.triangles_of(of_triangles))
+                search_node(search, node, triangle, found);
+        }
+    }
+    for (const std::uint32_t edge : leaf_edges_[leaves[0]]) {
+        const Bounds box = box_around(edges_[edge]);
+        if (!overlaps(box, patches_.box_of(leaves[1]))) continue;
+        for (const std::uint32_t other : leaf_edges_[leaves[1]]) {
+            if ((!is_own || edge < other) && overlaps(box, box_around(edges_[other])))
+                search_edges(search, edge, other, found);
+        }
+    }
 }
 
 void ClothLayers::find(const Nodes& nodes, double thickness, std::span<const Vec3> moves, TaskPool& workers) {
-    const std::size_t count = nodes.size();
     const Search search{nodes, moves, thickness};
-    find_boxes(search);
-    grid_.fill(triangle_boxes_, edge_length_);
-    edge_grid_.fill(edge_boxes_, edge_length_);
-    const int number = std::max(1, workers.workers());
-    std::vector<std::vector<LayerContact>> of_nodes(static_cast<std::size_t>(number)), of_edges(of_nodes);
-    share_among(workers, count, count >= 1000, [&](int worker, Share share) {
-        std::vector<std::uint32_t> seen(triangles_.size(), 0xFFFFFFFFu);
-        for (std::size_t i = share.first; i < share.last; ++i)
-            search_node(search, static_cast<std::uint32_t>(i), seen, of_nodes[static_cast<std::size_t>(worker)]);
-    });
-    share_among(workers, edges_.size(), count >= 1000, [&](int worker, Share share) {
-        std::vector<std::uint32_t> seen(edges_.size(), 0xFFFFFFFFu);
-        for (std::size_t e = share.first; e < share.last; ++e)
-            search_edge(search, static_cast<std::uint32_t>(e), seen, of_edges[static_cast<std::size_t>(worker)]);
+    find_boxes(search, workers);
+    patches_.find_pairs(leaf_pairs_);
+    std::vector<std::vector<LayerContact>> found(static_cast<std::size_t>(std::max(1, workers.workers())));
+    share_among(workers, leaf_pairs_.size(), leaf_pairs_.size() >= 200, [&](int worker, Share share) {
+        for (std::size_t p = share.first; p < share.last; ++p)
+            search_pair(search, leaf_pairs_[p], found[static_cast<std::size_t>(worker)]);
     });
     contacts_.clear();
-    for (const auto* lists : {&of_nodes, &of_edges}) {
-        for (const auto& list : *lists) contacts_.insert(contacts_.end(), list.begin(), list.end());
-    }
+    for (const auto& list : found) contacts_.insert(contacts_.end(), list.begin(), list.end());
 }
 
 namespace {

@@ -8,8 +8,8 @@
 
 #include "foundation/task_pool.h"
 #include "math/bounds.h"
-#include "physics/deformable/box_grid.h"
 #include "physics/deformable/nodes.h"
+#include "physics/deformable/patch_tree.h"
 
 namespace embody::physics {
 
@@ -46,21 +46,32 @@ public:
 private:
     struct Search;
     void find(const Nodes& nodes, double thickness, std::span<const Vec3> moves, TaskPool& workers);
-    void find_boxes(const Search& search);
-    void search_node(const Search& search, std::uint32_t node, std::vector<std::uint32_t>& seen,
+    void find_boxes(const Search& search, TaskPool& workers);
+    void search_pair(const Search& search, const std::array<std::uint32_t, 2>& leaves,
                      std::vector<LayerContact>& found) const;
-    void search_edge(const Search& search, std::uint32_t edge, std::vector<std::uint32_t>& seen,
+    void search_node(const Search& search, std::uint32_t node, std::uint32_t triangle,
                      std::vector<LayerContact>& found) const;
+    void search_edges(const Search& search, std::uint32_t edge, std::uint32_t other,
+                      std::vector<LayerContact>& found) const;
+    // Of a way that some nodes go.
+    [[nodiscard]] Bounds box_around(const auto& nodes) const {
+        Bounds box;
+        for (const std::uint32_t node : nodes) box.add(node_boxes_[node]);
+        return box;
+    }
     [[nodiscard]] bool are_neighbours(std::uint32_t a, std::uint32_t b) const;
 
     std::vector<std::array<std::uint32_t, 3>> triangles_;
     std::vector<std::array<std::uint32_t, 2>> edges_;
     std::vector<std::uint32_t> neighbour_start_, neighbours_;  // of nodes
     double edge_length_ = 0;                                   // mean, m
+    PatchTree patches_;
+    std::vector<std::vector<std::uint32_t>> leaf_nodes_, leaf_edges_;  // each in one leaf that has a triangle with it
 
     // Of the substep. Boxes hold the way that something goes, without that of the whole, and the thickness around it.
-    std::vector<Bounds> node_boxes_, edge_boxes_, triangle_boxes_;
-    BoxGrid grid_, edge_grid_;  // of triangles, of edges
+    std::vector<Bounds> node_boxes_, triangle_boxes_;
+    std::vector<LeanMask> leans_;  // of triangles, at its start and its end
+    std::vector<std::array<std::uint32_t, 2>> leaf_pairs_;
     std::vector<LayerContact> contacts_;
 };
 

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "math/bounds.h"
+
+namespace embody::physics {
+
+/// Directions that all normals of some triangles lean to, a bit each. Triangles of one piece that share such a direction
+/// lie over each other nowhere along it (P. Volino and N. Magnenat-Thalmann, "Efficient self-collision detection on
+/// smoothly discretized surface animations using geometrical shape regularity", 1994; directions as in J. Mezger,
+/// S. Kimmerle and O. Etzmuß, "Hierarchical techniques in collision detection for cloth animation", 2003).
+using LeanMask = std::uint32_t;
+inline constexpr LeanMask all_leans = 0x3FFF;  ///< 14: faces and corners of a cube
+/// Of a triangle's normal of any length; none for zero.
+LeanMask leans_of(Vec3 normal);
+
+/// Patches of a sheet's triangles in halves, and halves of those, down to a few triangles, to find where it may touch
+/// itself: only patches whose boxes overlap, and of neighbours only such as are bent enough.
+class PatchTree {
+public:
+    using Triangle = std::array<std::uint32_t, 3>;
+    static constexpr std::size_t usual_leaf = 4;
+    /// `nodes`: how many there are. Leaves have from `leaf_size` triangles on to twice as many, where there are as many.
+    PatchTree(std::span<const Triangle> triangles, std::size_t nodes, std::size_t leaf_size = usual_leaf);
+
+    /// What the search needs of each triangle.
+    void update(std::span<const Bounds> boxes, std::span<const LeanMask> leans);
+    /// Pairs of leaves, the lower first, one with itself too, that may have something that touches; in a fixed order.
+    void find_pairs(std::vector<std::array<std::uint32_t, 2>>& pairs) const;
+
+    [[nodiscard]] std::uint32_t leaves() const { return static_cast<std::uint32_t>(leaf_start_.size()) - 1; }
+    /// In the order of a walk from neighbour to neighbour.
+    [[nodiscard]] std::span<const std::uint32_t> triangles_of(std::uint32_t leaf) const {
+        return std::span(order_).subspan(leaf_start_[leaf], leaf_start_[leaf + 1] - leaf_start_[leaf]);
+    }
+    [[nodiscard]] std::uint32_t leaf_of(std::uint32_t triangle) const { return leaf_of_[triangle]; }
+    [[nodiscard]] const Bounds& box_of(std::uint32_t leaf) const { return boxes_[leaves() - 1 + leaf]; }
+
+private:
+    // A full binary tree: patch p has the halves 2 p + 1 and 2 p + 2; all leaves lie equally deep.
+    struct Neighbours {
+        std::vector<std::uint32_t> start, other;  // of a patch, those of its depth that share nodes with it, ascending
+    };
+    void order_halves(std::span<const Triangle> triangles, std::size_t nodes, std::size_t leaf_size);
+    void find_neighbours(std::span<const Triangle> triangles, std::size_t nodes);
+    void visit_one(std::uint32_t patch, std::vector<std::array<std::uint32_t, 2>>& pairs) const;
+    void visit_two(std::uint32_t a, std::uint32_t b, std::vector<std::array<std::uint32_t, 2>>& pairs) const;
+    [[nodiscard]] bool is_leaf(std::uint32_t patch) const { return patch + 1 >= leaves(); }
+    [[nodiscard]] bool are_neighbours(std::uint32_t a, std::uint32_t b) const;
+
+    std::vector<std::uint32_t> order_, leaf_start_, leaf_of_;
+    std::vector<bool> is_piece_;  // of a patch: small enough, and each of its triangles hangs on the others
+    Neighbours neighbours_;
+    // Of the substep, of patches.
+    std::vector<Bounds> boxes_;
+    std::vector<LeanMask> leans_;
+};
+
+}  // namespace embody::physics
