@@ -197,6 +197,26 @@ TEST(RopeInWorld, ABallOnARopeSwings) {
     }
 }
 
+TEST(ClothInWorld, FoldsOnABallGainNoEnergyAndSleep) {
+    // Layers that lie on each other are held apart by what the sheet's own stretch knows of.
+    const auto world = make_world({});
+    add_plane(*world, {});
+    add_body(*world, SphereShape{0.3}, {0, 0.3, 0});
+    auto sheet = cloth_rectangle(1.2, 1.2, 0.03, {.rayleigh_damping = 0.01});
+    sheet.pose.position = {0, 0.62, 0};
+    sheet.contact_radius = 3.5e-3;
+    const DeformableHandle handle = world->create_deformable(sheet).value();
+    const auto energy = [&] { return world->conserved().kinetic_energy + world->conserved().potential_energy; };
+    run(*world, 1);
+    double before = energy();
+    for (int i = 0; i < 10; ++i) {
+        run(*world, 0.5);
+        EXPECT_LT(energy(), 1.002 * before) << i;
+        before = energy();
+    }
+    EXPECT_TRUE(world->is_asleep(handle));
+}
+
 TEST(RopeInWorld, ARopeOverABoxEdgeDoesNotPassThrough) {
     // Segments longer than the box's corner is wide: only contacts between the nodes can hold it.
     const auto world = make_world({});

@@ -10,6 +10,7 @@
 namespace embody::physics {
 
 struct ClothLayers::Search {
+    const ClothLayers& layers;
     const Nodes& nodes;
     std::span<const Vec3> moves;
     double thickness = 0;
@@ -17,7 +18,7 @@ struct ClothLayers::Search {
     // Adds it if it may come nearer than twice the thickness.
     void add(LayerContact contact, Vec3 away, std::vector<LayerContact>& found) const {
         contact.distance = length(away);
-        if (contact.distance < 1e-9) return;
+        if (contact.distance < 1e-9 || layers.is_same_layer(contact, thickness)) return;
         contact.normal = away / contact.distance;
         double end = contact.distance;
         for (std::size_t k = 0; k < 4; ++k) end += contact.weight[k] * dot(contact.normal, moves[contact.node[k]]);
@@ -26,41 +27,36 @@ struct ClothLayers::Search {
 };
 
 ClothLayers::ClothLayers(const std::vector<std::array<std::uint32_t, 3>>& triangles, const std::vector<Vec3>& nodes)
-    : triangles_(triangles), patches_(triangles, nodes.size()) {
+    : triangles_(triangles), rest_(nodes), rest_normal_(nodes.size()), patches_(triangles, nodes.size()) {
     leaf_nodes_.resize(patches_.leaves());
     leaf_edges_.resize(patches_.leaves());
     std::vector<bool> has_leaf(nodes.size(), false);
     std::set<std::pair<std::uint32_t, std::uint32_t>> known;
-    std::vector<std::vector<std::uint32_t>> around(nodes.size());
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
         const auto& triangle = triangles_[t];
         const std::uint32_t leaf = patches_.leaf_of(t);
+        const Vec3 normal = cross(nodes[triangle[1]] - nodes[triangle[0]], nodes[triangle[2]] - nodes[triangle[0]]);
         for (std::size_t k = 0; k < 3; ++k) {
             if (!has_leaf[triangle[k]]) leaf_nodes_[leaf].push_back(triangle[k]);
             has_leaf[triangle[k]] = true;
+            rest_normal_[triangle[k]] += normal;
             const auto [a, b] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
             if (!known.emplace(a, b).second) continue;
             leaf_edges_[leaf].push_back(static_cast<std::uint32_t>(edges_.size()));
             edges_.push_back({a, b});
-            around[a].push_back(b);
-            around[b].push_back(a);
             edge_length_ += length(nodes[b] - nodes[a]);
         }
     }
     edge_length_ /= static_cast<double>(edges_.size());
-    neighbour_start_.push_back(0);
-    for (const auto& of_node : around) {
-        neighbours_.insert(neighbours_.end(), of_node.begin(), of_node.end());
-        neighbour_start_.push_back(static_cast<std::uint32_t>(neighbours_.size()));
-    }
 }
 
-bool ClothLayers::are_neighbours(std::uint32_t a, std::uint32_t b) const {
-    if (a == b) return true;
-    for (std::uint32_t k = neighbour_start_[a]; k < neighbour_start_[a + 1]; ++k) {
-        if (neighbours_[k] == b) return true;
-    }
-    return false;
+// What lay that near on the same side when it was made belongs together.
+bool ClothLayers::is_same_layer(const LayerContact& contact, double reach) const {
+    const std::size_t other = contact.kind == ThinFeature::edge_on_edge ? 2 : 1;
+    if (dot(rest_normal_[contact.node[0]], rest_normal_[contact.node[other]]) <= 0) return false;
+    Vec3 away;
+    for (std::size_t k = 0; k < 4; ++k) away += contact.weight[k] * rest_[contact.node[k]];
+    return length(away) < 3 * reach;
 }
 
 // The whole's own move is left out: what falls together does not meet.
@@ -95,14 +91,18 @@ void ClothLayers::find_boxes(const Search& search, TaskPool& workers) {
 void ClothLayers::search_node(const Search& search, std::uint32_t node, std::uint32_t triangle,
                               std::vector<LayerContact>& found) const {
     const std::vector<Vec3>& x = search.nodes.position;
-    // Where neighbours lie nearer than layers may.
-    const bool is_fine = edge_length_ < 4 * search.thickness;
     const auto [p, q, r] = triangles_[triangle];
     if (node == p || node == q || node == r || !overlaps(triangle_boxes_[triangle], node_boxes_[node])) return;
-    if (is_fine && (are_neighbours(node, p) || are_neighbours(node, q) || are_neighbours(node, r))) return;
     const auto weight = nearest_weights(x[node], x[p], x[q], x[r]);
     const Vec3 away = x[node] - (weight[0] * x[p] + weight[1] * x[q] + weight[2] * x[r]);
-    search.add({{node, p, q, r}, {1, -weight[0], -weight[1], -weight[2]}, {}, 0}, away, found);
+    search.add({ThinFeature::node_on_triangle,
+                node,
+                triangle,
+                {node, p, q, r},
+                {1, -weight[0], -weight[1], -weight[2]},
+                {},
+                0},
+               away, found);
 }
 
 void ClothLayers::search_edges(const Search& search, std::uint32_t edge, std::uint32_t other,
@@ -114,12 +114,12 @@ void ClothLayers::search_edges(const Search& search, std::uint32_t edge, std::ui
     double s = 0, u = 0;
     if (!nearest_inside(x[a], x[b], x[c], x[d], s, u)) return;
     const Vec3 away = (1 - s) * x[a] + s * x[b] - (1 - u) * x[c] - u * x[d];
-    search.add({{a, b, c, d}, {1 - s, s, u - 1, -u}, {}, 0}, away, found);
+    search.add({ThinFeature::edge_on_edge, edge, other, {a, b, c, d}, {1 - s, s, u - 1, -u}, {}, 0}, away, found);
 }
 
 // All of one leaf with all of another, or with its own.
 void ClothLayers::search_pair(const Search& search, const std::array<std::uint32_t, 2>& leaves,
-                              std::vector<LayerContact>& found) const {
+                              std::vector<LayerContact>& nodes, std::vector<LayerContact>& edges) const {
     const bool is_own = leaves[0] == leaves[1];
     for (const bool is_swapped : {false, true}) {
         const std::uint32_t of_nodes = leaves[is_swapped ? 1 : 0], of_triangles = leaves[is_swapped ? 0 : 1];
@@ -128,7 +128,7 @@ void ClothLayers::search_pair(const Search& search, const std::array<std::uint32
         for (const std::uint32_t node : leaf_nodes_[of_nodes]) {
             if (!overlaps(node_boxes_[node], box)) continue;
             for (const std::uint32_t triangle : patches_.triangles_of(of_triangles))
-                search_node(search, node, triangle, found);
+                search_node(search, node, triangle, nodes);
         }
     }
     for (const std::uint32_t edge : leaf_edges_[leaves[0]]) {
@@ -136,22 +136,34 @@ void ClothLayers::search_pair(const Search& search, const std::array<std::uint32
         if (!overlaps(box, patches_.box_of(leaves[1]))) continue;
         for (const std::uint32_t other : leaf_edges_[leaves[1]]) {
             if ((!is_own || edge < other) && overlaps(box, box_around(edges_[other])))
-                search_edges(search, edge, other, found);
+                search_edges(search, edge, other, edges);
         }
     }
 }
 
 void ClothLayers::find(const Nodes& nodes, double thickness, std::span<const Vec3> moves, TaskPool& workers) {
-    const Search search{nodes, moves, thickness};
+    const Search search{*this, nodes, moves, thickness};
     find_boxes(search, workers);
     patches_.find_pairs(leaf_pairs_);
-    std::vector<std::vector<LayerContact>> found(static_cast<std::size_t>(std::max(1, workers.workers())));
+    struct Found {
+        std::vector<LayerContact> nodes, edges;
+    };
+    std::vector<Found> found(static_cast<std::size_t>(std::max(1, workers.workers())));
     share_among(workers, leaf_pairs_.size(), leaf_pairs_.size() >= 200, [&](int worker, Share share) {
+        Found& own = found[static_cast<std::size_t>(worker)];
         for (std::size_t p = share.first; p < share.last; ++p)
-            search_pair(search, leaf_pairs_[p], found[static_cast<std::size_t>(worker)]);
+            search_pair(search, leaf_pairs_[p], own.nodes, own.edges);
     });
+    // Whatever the order of the patches.
     contacts_.clear();
-    for (const auto& list : found) contacts_.insert(contacts_.end(), list.begin(), list.end());
+    const auto append = [&](std::vector<LayerContact> Found::*kind) {
+        const auto first = static_cast<std::ptrdiff_t>(contacts_.size());
+        for (const Found& own : found) contacts_.insert(contacts_.end(), (own.*kind).begin(), (own.*kind).end());
+        std::sort(contacts_.begin() + first, contacts_.end(),
+                  [](const LayerContact& a, const LayerContact& b) { return a.node < b.node; });
+    };
+    append(&Found::nodes);
+    append(&Found::edges);
 }
 
 namespace {
@@ -218,6 +230,16 @@ void join(std::span<const LayerContact> contacts, double thickness, std::span<co
 }
 
 }  // namespace
+
+std::vector<ThinCandidate> ClothLayers::near(const Nodes& nodes, double reach, std::span<const Vec3> moves,
+                                             TaskPool& workers) {
+    find(nodes, reach, moves, workers);
+    std::vector<ThinCandidate> candidates;
+    for (const LayerContact& contact : contacts_)
+        candidates.push_back({contact.kind, false, contact.first, contact.second});
+    std::ranges::stable_sort(candidates, {}, [](const ThinCandidate& c) { return std::pair(c.kind, c.first); });
+    return candidates;
+}
 
 double ClothLayers::longest_way(const Nodes& nodes, double thickness, std::span<const Vec3> moves, TaskPool& workers) {
     find(nodes, thickness, moves, workers);

@@ -10,19 +10,22 @@
 #include "math/bounds.h"
 #include "physics/deformable/nodes.h"
 #include "physics/deformable/patch_tree.h"
+#include "physics/deformable/thin_pairs.h"
 
 namespace embody::physics {
 
 /// A node over a triangle of the same sheet, or two of its edges that cross: Σ weight x is the way between their
 /// nearest points when the substep began, `distance` (m) long along the unit `normal`.
 struct LayerContact {
+    ThinFeature kind = ThinFeature::node_on_triangle;
+    std::uint32_t first = 0, second = 0;  ///< node and triangle, or edges
     std::array<std::uint32_t, 4> node{};
     std::array<double, 4> weight{};
     Vec3 normal;
     double distance = 0;
 };
 
-/// Keeps the layers of a sheet apart: after the solve, as a correction of its moves.
+/// Finds where a sheet may touch itself, and keeps its layers from going through each other.
 class ClothLayers {
 public:
     ClothLayers(const std::vector<std::array<std::uint32_t, 3>>& triangles, const std::vector<Vec3>& nodes);
@@ -33,6 +36,9 @@ public:
     /// be missed.
     void part(const Nodes& nodes, double thickness, double friction, std::span<const double> give,
               std::span<Vec3> moves, TaskPool& workers);
+    /// What may come nearer than twice `reach` (m) by these moves, in the order that PairSprings asks for.
+    [[nodiscard]] std::vector<ThinCandidate> near(const Nodes& nodes, double reach, std::span<const Vec3> moves,
+                                                  TaskPool& workers);
     /// The longest way (m) that those which come near each other by these moves go against each other.
     [[nodiscard]] double longest_way(const Nodes& nodes, double thickness, std::span<const Vec3> moves,
                                      TaskPool& workers);
@@ -47,8 +53,8 @@ private:
     struct Search;
     void find(const Nodes& nodes, double thickness, std::span<const Vec3> moves, TaskPool& workers);
     void find_boxes(const Search& search, TaskPool& workers);
-    void search_pair(const Search& search, const std::array<std::uint32_t, 2>& leaves,
-                     std::vector<LayerContact>& found) const;
+    void search_pair(const Search& search, const std::array<std::uint32_t, 2>& leaves, std::vector<LayerContact>& nodes,
+                     std::vector<LayerContact>& edges) const;
     void search_node(const Search& search, std::uint32_t node, std::uint32_t triangle,
                      std::vector<LayerContact>& found) const;
     void search_edges(const Search& search, std::uint32_t edge, std::uint32_t other,
@@ -59,12 +65,12 @@ private:
         for (const std::uint32_t node : nodes) box.add(node_boxes_[node]);
         return box;
     }
-    [[nodiscard]] bool are_neighbours(std::uint32_t a, std::uint32_t b) const;
+    [[nodiscard]] bool is_same_layer(const LayerContact& contact, double reach) const;
 
     std::vector<std::array<std::uint32_t, 3>> triangles_;
     std::vector<std::array<std::uint32_t, 2>> edges_;
-    std::vector<std::uint32_t> neighbour_start_, neighbours_;  // of nodes
-    double edge_length_ = 0;                                   // mean, m
+    std::vector<Vec3> rest_, rest_normal_;  // of nodes, as it was made
+    double edge_length_ = 0;                // mean, m
     PatchTree patches_;
     std::vector<std::vector<std::uint32_t>> leaf_nodes_, leaf_edges_;  // each in one leaf that has a triangle with it
 

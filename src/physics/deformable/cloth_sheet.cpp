@@ -252,19 +252,25 @@ bool ClothSheet::solve_moves(const Substep& substep, std::span<const TouchedBody
     moves_.resize(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) moves_[i] = h * nodes_.mean_velocity[i];
     springs_.choose(moves_, body_moves_, true);
+    layer_springs_.choose(moves_, true);
     rounds_ = solves_ = 0;
     constexpr int most_solves = 4;
+    std::vector<TouchSpring> all;
     for (;;) {
-        const int rounds =
-            solver.solve(std::array{system()}, {}, springs_.springs(), inertias_, moves_, body_moves_, workers);
+        all.assign(springs_.springs().begin(), springs_.springs().end());
+        all.insert(all.end(), layer_springs_.springs().begin(), layer_springs_.springs().end());
+        const int rounds = solver.solve(std::array{system()}, {}, all, inertias_, moves_, body_moves_, workers);
         if (rounds == ClothSolver::not_finite) return false;
         rounds_ += rounds;
         ++solves_;
-        if (springs_.springs().empty() || solves_ == most_solves) break;
+        if (all.empty() || solves_ == most_solves) break;
         // The last solve's springs stay as they were in it, so that what bodies feel is what nodes felt.
         TouchSprings next = springs_;
-        if (!next.choose(moves_, body_moves_, false)) break;
+        PairSprings next_layers = layer_springs_;
+        const bool has_changed = next.choose(moves_, body_moves_, false);
+        if (!next_layers.choose(moves_, false) && !has_changed) break;
         springs_ = std::move(next);
+        layer_springs_ = std::move(next_layers);
     }
     for (const Vec3 move : moves_) {
         if (!is_finite(move)) return false;
@@ -288,15 +294,32 @@ void ClothSheet::keep_momentum(const Substep& substep, std::span<const Vec3> giv
     keep_momenta(nodes_, all, h, moves_);
 }
 
-// What lies on a body gives way last.
+// As of two sheets, but that this one is both.
+void ClothSheet::find_layers(const Substep& substep, TaskPool& workers) {
+    const double gravity = length(substep.gravity);
+    std::vector<Vec3> moves(nodes_.size());
+    for (std::size_t i = 0; i < moves.size(); ++i) moves[i] = substep.h * nodes_.mean_velocity[i];
+    ThinMember member;
+    member.surface = {.nodes = &nodes_,
+                      .triangles = cloth_.triangles,
+                      .edges = layers_->edges(),
+                      .radius = apart() / 2,
+                      .edge_length = layers_->edge_length(),
+                      .friction = springs_.friction};
+    member.load.assign(nodes_.size(), 0);
+    const ThinPair self{0, 0, layers_->near(nodes_, apart() + gravity * substep.h * substep.h, moves, workers)};
+    layer_springs_.begin(std::span(&member, 1), std::span(&self, 1), layer_contacts_, substep.h, gravity);
+}
+
+// What no spring held off in time; what lies on a body gives way last.
 void ClothSheet::part_layers(TaskPool& workers) {
-    constexpr double give_on_body = 0.05;
+    constexpr double give_on_body = 0.05, least_share = 0.5;
     std::vector<double> give = nodes_.inverse_mass;
     for (const TouchSpring& spring : springs_.springs()) {
         for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count) && spring.acts; ++k)
             give[spring.node[k]] = give_on_body * nodes_.inverse_mass[spring.node[k]];
     }
-    layers_->part(nodes_, apart(), springs_.friction, give, moves_, workers);
+    layers_->part(nodes_, least_share * apart(), springs_.friction, give, moves_, workers);
 }
 
 // Layers are kept apart reliably where they pass each other by no more than half an edge: faster ones take more parts.
@@ -347,6 +370,7 @@ void ClothSheet::begin(const Substep& substep, std::span<const NodeContact> cont
     springs_.attachment_bodies.assign(attachment_bodies.begin(), attachment_bodies.end());
     springs_.begin(nodes_, contacts, bodies, substep, node_stiffness_);
     for (const SheetContact& contact : between) springs_.add(nodes_, contact, bodies, substep);
+    find_layers(substep, workers);
 }
 
 void ClothSheet::freeze() {
@@ -361,6 +385,8 @@ void ClothSheet::end(const Substep& substep, std::span<const Vec3> moves, std::s
     const bool is_held = std::any_of(fixed_.begin(), fixed_.end(), [](std::uint8_t f) { return f != 0; });
     if (!is_held && std::none_of(springs_.springs().begin(), springs_.springs().end(), acts))
         keep_momentum(substep, given);
+    std::vector<Vec3> within(nodes_.size());  // forces that are in the moves already
+    layer_springs_.finish(moves_, within, layer_contacts_);
     springs_.finish(moves_, body_moves, substep, bodies);
     part_layers(workers);
     set_velocities(nodes_, moves_, substep.h);

@@ -9,6 +9,7 @@
 #include "physics/deformable/cloth_mesh.h"
 #include "physics/deformable/cloth_solver.h"
 #include "physics/deformable/nodes.h"
+#include "physics/deformable/pair_springs.h"
 #include "physics/deformable/touch_springs.h"
 
 namespace embody::physics {
@@ -28,17 +29,19 @@ public:
     // The same in parts, where sheets and ropes that touch each other are solved together (docs/physics/cloth.md):
     /// How many parts the substep takes.
     [[nodiscard]] int parts_of(double h, TaskPool& workers);
-    /// Finds system() and touch() for the part.
+    /// Finds system(), touch() and layers() for the part.
     void begin(const Substep& substep, std::span<const NodeContact> contacts, std::span<const SheetContact> between,
                std::span<const std::uint32_t> attachment_bodies, std::span<const TouchedBody> bodies,
                TaskPool& workers);
     /// What the solve needs of it, valid until the next begin().
     [[nodiscard]] SheetSystem system() { return {&matrix_, rhs_, small_load_, fixed_}; }
     [[nodiscard]] TouchSprings& touch() { return springs_; }
+    /// Where the sheet touches itself.
+    [[nodiscard]] PairSprings& layers() { return layer_springs_; }
     /// How each node resists on its own, N/m, since begin().
     [[nodiscard]] std::span<const double> node_stiffness() const { return node_stiffness_; }
-    /// Goes by these moves, which touch() was solved with. `given`: forces on the nodes besides, N; none or one a node.
-    /// Pushes the bodies.
+    /// Goes by these moves, which touch() and layers() were solved with. `given`: forces on the nodes besides, N; none
+    /// or one a node. Pushes the bodies.
     void end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
              std::span<const Vec3> given, std::span<TouchedBody> bodies, TaskPool& workers);
     /// Stops it for good where it is.
@@ -55,7 +58,10 @@ public:
     [[nodiscard]] const std::vector<ClothTriangle>& triangles() const { return triangles_; }
     /// Energies of what it is now, J.
     /// What it touches goes on as of another sheet of as many nodes.
-    void go_on_from(const ClothSheet& other) { springs_.go_on_from(other.springs_); }
+    void go_on_from(const ClothSheet& other) {
+        springs_.go_on_from(other.springs_);
+        layer_contacts_ = other.layer_contacts_;
+    }
     [[nodiscard]] double elastic_energy() const;
     /// Contacts and attachments of the last substep.
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_.springs(); }
@@ -88,6 +94,7 @@ private:
     void fill_row(std::size_t i, const Substep& substep);
     bool solve_moves(const Substep& substep, std::span<const TouchedBody> bodies, TaskPool& workers);
     void keep_momentum(const Substep& substep, std::span<const Vec3> given);
+    void find_layers(const Substep& substep, TaskPool& workers);
     void part_layers(TaskPool& workers);
     // Layers lie as far from each other as two of them from a body between.
     [[nodiscard]] double apart() const { return std::max(cloth_.thickness, 2 * springs_.radius); }
@@ -102,6 +109,8 @@ private:
     std::vector<double> near_bending_;  // of the blocks between neighbours
     TouchSprings springs_;
     std::optional<ClothLayers> layers_;
+    PairSprings layer_springs_;
+    ThinContacts layer_contacts_;  // what they have left from the last substep
     std::vector<std::uint8_t> fixed_;
 
     // Of the substep.

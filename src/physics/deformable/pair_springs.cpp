@@ -32,6 +32,7 @@ struct PairSprings::Search {
     }
     [[nodiscard]] bool place(const ThinCandidate& candidate, Found& found) const;
     [[nodiscard]] Vec3 side_of(const ThinCandidate& candidate) const;
+    [[nodiscard]] bool is_next_to(const ThinContact& memory, const ThinCandidate& candidate) const;
     void recall(Found& found) const;
     [[nodiscard]] bool is_near(const Found& found) const;
     void add_nodes(std::span<const ThinCandidate> of_node, std::vector<Found>& kept) const;
@@ -60,6 +61,16 @@ Vec3 PairSprings::Search::side_of(const ThinCandidate& candidate) const {
     return normalized((candidate.is_swapped ? -1.0 : 1.0) * cross(x[q] - x[p], x[r] - x[p]), {0, 1, 0});
 }
 
+// Whether something on the wrong side has come through there: in a stack of one sheet's layers a node is above one and
+// below another.
+bool PairSprings::Search::is_next_to(const ThinContact& known, const ThinCandidate& candidate) const {
+    if (&a != &b || known.kind != ThinFeature::node_on_triangle) return true;
+    const auto& triangles = a.surface.triangles;
+    return std::ranges::any_of(triangles[candidate.second], [&](std::uint32_t node) {
+        return std::ranges::find(triangles[known.second], node) != triangles[known.second].end();
+    });
+}
+
 // A sheet has no inside: which side something is on is remembered.
 void PairSprings::Search::recall(Found& found) const {
     constexpr double same_way = 0.8, same_side = 0.5;  // cosines
@@ -71,7 +82,7 @@ void PairSprings::Search::recall(Found& found) const {
          at != memory.end() && at->key() == found.key(); ++at) {
         if (found.candidate.kind == ThinFeature::edge_on_edge && at->second != found.candidate.second) continue;
         const double cosine = std::fabs(dot(at->normal, found.normal));
-        if (cosine < most) continue;
+        if (cosine < most || !is_next_to(*at, found.candidate)) continue;
         most = cosine;
         nearest = &*at;
     }
@@ -125,10 +136,12 @@ void PairSprings::add(const Search& search, const Found& found) {
     constexpr double least_weight = 0.1;     // of a node that bears what lies there
     constexpr double recovery = 0.2;         // share of a depth that is parted in a substep
     constexpr double fastest = 0.2;          // m/s: no faster than this
+    constexpr double forgotten = 0.2;        // of both radii: at that depth layers of one sheet remember no force
     const double h = search.h;
     TouchSpring spring{.node = found.points.node, .weight = found.points.weight, .count = found.points.count};
     std::array<double, 2> mass{};
-    double give = 0, load = found.memory != nullptr ? found.memory->carried : 0;
+    const bool is_self = &search.a == &search.b;
+    double give = 0, load = found.memory != nullptr && !is_self ? found.memory->carried : 0;
     for (int k = 0; k < found.points.count; ++k) {
         const auto at = static_cast<std::size_t>(k);
         const ThinMember& member = search.member_of(found, k);
@@ -148,7 +161,9 @@ void PairSprings::add(const Search& search, const Found& found) {
     spring.gap = gap > 0 ? gap : std::max(recovery * gap, -fastest * h);
     spring.friction = std::sqrt(search.a.surface.friction * search.b.surface.friction);
     if (found.memory != nullptr) {
-        spring.pull = found.memory->push * found.normal;
+        // Layers that something holds in each other push no harder and harder: the deeper, the more they forget.
+        const double kept = is_self ? std::clamp(1 + gap / (forgotten * search.radius), 0.0, 1.0) : 1;
+        spring.pull = kept * found.memory->push * found.normal;
         spring.hold = (found.memory->stiffness / spring.stiffness) * across(found.memory->hold, found.normal);
     }
     springs_.push_back(spring);
@@ -177,7 +192,8 @@ void PairSprings::begin(std::span<const ThinMember> members, std::span<const Thi
         const Search search{a, b,       known == memories.end() ? std::span<const ThinContact>() : known->second,
                             h, gravity, a.surface.radius + b.surface.radius};
         kept.clear();
-        std::vector<Vec3> held_a(a.surface.nodes->size()), held_b(b.surface.nodes->size());
+        std::vector<Vec3> held(a.surface.nodes->size()), held_by_b(pair.a == pair.b ? 0 : b.surface.nodes->size());
+        std::vector<Vec3>& held_b = pair.a == pair.b ? held : held_by_b;
         const bool are_sheets = !a.surface.triangles.empty() && !b.surface.triangles.empty();
         const std::span<const ThinCandidate> all = pair.candidates;
         for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
@@ -190,12 +206,12 @@ void PairSprings::begin(std::span<const ThinMember> members, std::span<const Thi
             const std::size_t before = kept.size();
             if (all[first].kind != ThinFeature::edge_on_edge) {
                 search.add_nodes(run, kept);
-                if (kept.size() > before) (run[0].is_swapped ? held_b : held_a)[run[0].first] = kept[before].normal;
+                if (kept.size() > before) (run[0].is_swapped ? held_b : held)[run[0].first] = kept[before].normal;
                 continue;
             }
             for (const ThinCandidate& candidate : run) {
                 Found found;
-                if (search.place(candidate, found) && !(are_sheets && search.is_held(found, held_a, held_b)))
+                if (search.place(candidate, found) && !(are_sheets && search.is_held(found, held, held_b)))
                     kept.push_back(found);
             }
         }

@@ -33,13 +33,13 @@ struct ThinMember {
     std::uint32_t first = 0;   ///< number of its first node among those of all
     std::vector<double> load;  ///< kg a node: of bodies that lie on it
 };
-/// Two of them, by index, the lower slot first, with what may touch.
+/// Two of them, by index, the lower slot first, with what may touch; or a sheet with itself.
 struct ThinPair {
     std::uint32_t a = 0, b = 0;
     std::vector<ThinCandidate> candidates;
 };
 
-/// Contacts between different sheets and ropes, as springs of two to four nodes each, one-sided and with friction, like
+/// Contacts between sheets and ropes, as springs of two to four nodes each, one-sided and with friction, like
 /// those with bodies. Their forces are equal and opposite, so they leave the whole's momentum as it is.
 class PairSprings {
 public:

@@ -9,6 +9,7 @@ namespace embody::physics {
 
 namespace {
 
+constexpr std::size_t leaf_size = 4;        // triangles, at least; fewer than twice as many
 constexpr std::size_t largest_piece = 256;  // triangles: a longer strip could wind itself over itself
 
 // Triangles around each node.
@@ -104,14 +105,14 @@ LeanMask leans_of(Vec3 normal) {
     return leans;
 }
 
-PatchTree::PatchTree(std::span<const Triangle> triangles, std::size_t nodes, std::size_t leaf_size) {
-    order_halves(triangles, nodes, leaf_size);
+PatchTree::PatchTree(std::span<const Triangle> triangles, std::size_t nodes) {
+    order_halves(triangles, nodes);
     find_neighbours(triangles, nodes);
     boxes_.resize(is_piece_.size());
     leans_.resize(is_piece_.size());
 }
 
-void PatchTree::order_halves(std::span<const Triangle> triangles, std::size_t nodes, std::size_t leaf_size) {
+void PatchTree::order_halves(std::span<const Triangle> triangles, std::size_t nodes) {
     order_.resize(triangles.size());
     for (std::uint32_t t = 0; t < order_.size(); ++t) order_[t] = t;
     std::vector<std::uint32_t> start{0, static_cast<std::uint32_t>(order_.size())};

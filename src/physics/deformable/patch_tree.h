@@ -10,10 +10,10 @@
 
 namespace embody::physics {
 
-/// Directions that all normals of some triangles lean to, a bit each. Triangles of one piece that share such a direction
-/// lie over each other nowhere along it (P. Volino and N. Magnenat-Thalmann, "Efficient self-collision detection on
-/// smoothly discretized surface animations using geometrical shape regularity", 1994; directions as in J. Mezger,
-/// S. Kimmerle and O. Etzmuß, "Hierarchical techniques in collision detection for cloth animation", 2003).
+/// Directions that all normals of some triangles lean to, a bit each. Triangles of one piece that share such a
+/// direction lie over each other nowhere along it (P. Volino and N. Magnenat-Thalmann, "Efficient self-collision
+/// detection on smoothly discretized surface animations using geometrical shape regularity", 1994; directions as in J.
+/// Mezger, S. Kimmerle and O. Etzmuß, "Hierarchical techniques in collision detection for cloth animation", 2003).
 using LeanMask = std::uint32_t;
 inline constexpr LeanMask all_leans = 0x3FFF;  ///< 14: faces and corners of a cube
 /// Of a triangle's normal of any length; none for zero.
@@ -24,9 +24,8 @@ LeanMask leans_of(Vec3 normal);
 class PatchTree {
 public:
     using Triangle = std::array<std::uint32_t, 3>;
-    static constexpr std::size_t usual_leaf = 4;
-    /// `nodes`: how many there are. Leaves have from `leaf_size` triangles on to twice as many, where there are as many.
-    PatchTree(std::span<const Triangle> triangles, std::size_t nodes, std::size_t leaf_size = usual_leaf);
+    /// `nodes`: how many there are.
+    PatchTree(std::span<const Triangle> triangles, std::size_t nodes);
 
     /// What the search needs of each triangle.
     void update(std::span<const Bounds> boxes, std::span<const LeanMask> leans);
@@ -34,7 +33,6 @@ public:
     void find_pairs(std::vector<std::array<std::uint32_t, 2>>& pairs) const;
 
     [[nodiscard]] std::uint32_t leaves() const { return static_cast<std::uint32_t>(leaf_start_.size()) - 1; }
-    /// In the order of a walk from neighbour to neighbour.
     [[nodiscard]] std::span<const std::uint32_t> triangles_of(std::uint32_t leaf) const {
         return std::span(order_).subspan(leaf_start_[leaf], leaf_start_[leaf + 1] - leaf_start_[leaf]);
     }
@@ -46,7 +44,7 @@ private:
     struct Neighbours {
         std::vector<std::uint32_t> start, other;  // of a patch, those of its depth that share nodes with it, ascending
     };
-    void order_halves(std::span<const Triangle> triangles, std::size_t nodes, std::size_t leaf_size);
+    void order_halves(std::span<const Triangle> triangles, std::size_t nodes);
     void find_neighbours(std::span<const Triangle> triangles, std::size_t nodes);
     void visit_one(std::uint32_t patch, std::vector<std::array<std::uint32_t, 2>>& pairs) const;
     void visit_two(std::uint32_t a, std::uint32_t b, std::vector<std::array<std::uint32_t, 2>>& pairs) const;

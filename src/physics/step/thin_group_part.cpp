@@ -79,6 +79,7 @@ void ThinGroupPart::begin_members(std::span<const TouchedBody> bodies, std::span
             record.cloth->begin(member.substep, thin.contacts, thin.sheet_contacts, thin.attachment_bodies, bodies,
                                 *world_.workers);
             member.touch = record.cloth->touch();
+            member.layers = record.cloth->layers();
         } else {
             record.rope->set_attachments(thin.attachments);
             record.rope->set_clamps(record.definition.clamps);
@@ -138,7 +139,10 @@ void ThinGroupPart::begin(std::span<const TouchedBody> bodies) {
     begin_members(bodies, seen);
     load_nodes(bodies, seen);
     begin_pairs(seen);
-    for (Member& member : members_) member.touch.choose(part(moves_, member), body_moves_, true);
+    for (Member& member : members_) {
+        member.touch.choose(part(moves_, member), body_moves_, true);
+        member.layers.choose(part(moves_, member), true);
+    }
     pairs_.choose(moves_, true);
     // From rest or from inertia, whichever is nearer to the end, as RopeLine does.
     for (const Member& member : ropes()) {
@@ -153,10 +157,12 @@ void ThinGroupPart::begin(std::span<const TouchedBody> bodies) {
 void ThinGroupPart::gather_springs() {
     springs_.clear();
     for (const Member& member : members_) {
-        for (TouchSpring spring : member.touch.springs()) {
-            for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
-                spring.node[k] += static_cast<std::uint32_t>(member.first);
-            springs_.push_back(spring);
+        for (const std::span<const TouchSpring> springs : {member.touch.springs(), member.layers.springs()}) {
+            for (TouchSpring spring : springs) {
+                for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
+                    spring.node[k] += static_cast<std::uint32_t>(member.first);
+                springs_.push_back(spring);
+            }
         }
     }
     springs_.insert(springs_.end(), pairs_.springs().begin(), pairs_.springs().end());
@@ -168,14 +174,20 @@ void ThinGroupPart::gather_springs() {
 bool ThinGroupPart::choose_again() {
     bool has_changed = false;
     std::vector<TouchSprings> touch;
+    std::vector<PairSprings> layers;
     for (const Member& member : members_) {
         touch.push_back(member.touch);
+        layers.push_back(member.layers);
         has_changed |= touch.back().choose(part(moves_, member), body_moves_, false);
+        has_changed |= layers.back().choose(part(moves_, member), false);
     }
     PairSprings pairs = pairs_;
     has_changed |= pairs.choose(moves_, false);
     if (!has_changed) return false;
-    for (std::size_t m = 0; m < members_.size(); ++m) members_[m].touch = std::move(touch[m]);
+    for (std::size_t m = 0; m < members_.size(); ++m) {
+        members_[m].touch = std::move(touch[m]);
+        members_[m].layers = std::move(layers[m]);
+    }
     pairs_ = std::move(pairs);
     return true;
 }
@@ -274,6 +286,7 @@ void ThinGroupPart::end(std::span<TouchedBody> bodies) {
         const std::span<const Vec3> moves = part(moves_, member), given = part(given_, member);
         if (record.cloth) {
             record.cloth->touch() = std::move(member.touch);
+            record.cloth->layers() = std::move(member.layers);
             record.cloth->end(member.substep, moves, body_moves_, given, bodies, *world_.workers);
         } else if (record.rope->has_clamps()) {
             record.rope->advance(member.substep, member.thin->contacts, member.thin->segment_contacts,

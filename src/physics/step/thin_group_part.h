@@ -20,6 +20,7 @@ private:
         Substep substep;
         std::size_t first = 0, count = 0;  // of its nodes among all
         TouchSprings touch;                // as the last solve had them
+        PairSprings layers;                // of a sheet
         std::vector<std::array<std::uint32_t, 2>> segments;
         [[nodiscard]] DeformableRecord& record() const { return *thin->record; }
     };
