@@ -129,6 +129,7 @@ bool ClothSolver::prepare(std::span<const SheetSystem> sheets, std::span<const L
     for (const SheetSystem& sheet : sheets)
         own_.insert(own_.end(), sheet.matrix->diagonal.begin(), sheet.matrix->diagonal.end());
     coupled_.clear();
+    std::vector<Link> links;
     for (std::uint32_t s = 0; s < springs.size(); ++s) {
         const TouchSpring& spring = springs[s];
         if (!spring.acts) continue;
@@ -141,8 +142,12 @@ bool ClothSolver::prepare(std::span<const SheetSystem> sheets, std::span<const L
             own.z += added.z;
         }
         if (is_contained(spring, bodies)) continue;
-        if (moves_body(spring, bodies) || !add_to_matrix(sheets, spring)) coupled_.push_back(s);
+        if (is_between_sheets(spring, bodies))
+            add_links(spring, links);
+        else
+            coupled_.push_back(s);
     }
+    sort_links(links);
     inverse_.resize(nodes_);
     for (std::size_t s = 0; s < sheets.size(); ++s) {
         for (std::size_t i = 0; i < sheets[s].rhs.size(); ++i) {
@@ -156,36 +161,30 @@ bool ClothSolver::prepare(std::span<const SheetSystem> sheets, std::span<const L
     return true;
 }
 
-// What a spring between neighbours of one sheet adds beside the diagonal. False, and nothing done, where it is of
-// others.
-bool ClothSolver::add_to_matrix(std::span<const SheetSystem> sheets, const TouchSpring& spring) {
+bool ClothSolver::is_between_sheets(const TouchSpring& spring, std::span<const BodyInertia> bodies) const {
     const auto nodes = std::span(spring.node).first(static_cast<std::size_t>(spring.count));
-    if (std::ranges::any_of(nodes, [&](std::uint32_t node) { return node >= nodes_; })) return false;
-    const std::size_t sheet = sheet_of(nodes[0]), before = sheet_first_[sheet];
-    std::array<Block*, 16> blocks{};
-    for (std::size_t a = 0; a < nodes.size(); ++a) {
-        if (sheet_of(nodes[a]) != sheet) return false;
-        ClothMatrix& matrix = *sheets[sheet].matrix;
-        const std::size_t row = nodes[a] - before;
-        for (std::size_t b = 0; b < nodes.size(); ++b) {
-            for (std::uint32_t k = matrix.start[row]; k < matrix.start[row + 1] && b != a; ++k) {
-                if (matrix.column[k] + before == nodes[b]) blocks[4 * a + b] = &matrix.block[k];
-            }
-            if (b != a && blocks[4 * a + b] == nullptr) return false;
+    return !moves_body(spring, bodies) && std::ranges::all_of(nodes, [&](std::uint32_t n) { return n < nodes_; });
+}
+
+// What a spring between nodes of sheets adds beside the diagonal.
+void ClothSolver::add_links(const TouchSpring& spring, std::vector<Link>& links) {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(spring.count); ++a) {
+        for (std::size_t b = 0; b < static_cast<std::size_t>(spring.count); ++b) {
+            if (b == a || spring.weight[a] * spring.weight[b] == 0) continue;
+            links.push_back(
+                {spring.node[a], spring.node[b], to_block((spring.weight[a] * spring.weight[b]) * spring.matrix)});
         }
     }
-    for (std::size_t a = 0; a < nodes.size(); ++a) {
-        for (std::size_t b = 0; b < nodes.size(); ++b) {
-            if (b == a) continue;
-            Block& block = *blocks[4 * a + b];
-            added_to_.emplace_back(&block, block);
-            const Block added = to_block((spring.weight[a] * spring.weight[b]) * spring.matrix);
-            block.x += added.x;
-            block.y += added.y;
-            block.z += added.z;
-        }
-    }
-    return true;
+}
+
+// By row, in each in the order of the springs.
+void ClothSolver::sort_links(std::span<const Link> links) {
+    link_start_.assign(nodes_ + 1, 0);
+    for (const Link& link : links) ++link_start_[link.row + 1];
+    for (std::size_t i = 0; i < nodes_; ++i) link_start_[i + 1] += link_start_[i];
+    links_.resize(links.size());
+    std::vector<std::uint32_t> next(link_start_.begin(), link_start_.end() - 1);
+    for (const Link& link : links) links_[next[link.row]++] = link;
 }
 
 void ClothSolver::prepare_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies) {
@@ -227,6 +226,8 @@ void ClothSolver::multiply_rows(std::span<const SheetSystem> sheets, std::size_t
             row += operator_times(matrix.block[k], direction[matrix.column[k]]);
         for (std::uint32_t k = matrix.far_start[own]; k < matrix.far_start[own + 1]; ++k)
             row += matrix.far_value[k] * direction[matrix.far_column[k]];
+        for (std::uint32_t k = link_start_[i]; k < link_start_[i + 1]; ++k)
+            row += operator_times(links_[k].block, direction_[links_[k].column]);
         product_[i] = row;
         sum += product(row, direction_[i]);
     }
@@ -469,20 +470,11 @@ void ClothSolver::find_residual(std::span<const SheetSystem> sheets, std::span<c
         line_residual_[i] = line_fixed_[i] ? Vec3{} : line_own_product_[i] - line_product_[i];
 }
 
-// In the order that undoes several springs of one block.
-void ClothSolver::put_back_matrices() {
-    for (auto at = added_to_.rbegin(); at != added_to_.rend(); ++at) *at->first = at->second;
-    added_to_.clear();
-}
-
 int ClothSolver::solve(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
                        std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies, std::span<Vec3> moves,
                        std::span<BodyMove> body_moves, TaskPool& workers) {
     lay_out(sheets, lines);
-    if (!prepare(sheets, lines, springs, bodies)) {
-        put_back_matrices();
-        return not_finite;
-    }
+    if (!prepare(sheets, lines, springs, bodies)) return not_finite;
     parts_.assign(chunks_.size() + 1, 0);
     other_parts_.assign(chunks_.size() + 1, 0);
     for (auto* vector : {&body_direction_, &body_product_, &body_residual_, &body_better_, &body_answer_})
@@ -498,7 +490,6 @@ int ClothSolver::solve(std::span<const SheetSystem> sheets, std::span<const Line
         workers.run([&](int worker) { iterate(sheets, springs, bodies, enough, worker, barrier); });
     else
         iterate(sheets, springs, bodies, enough, 0, barrier);
-    put_back_matrices();
     for (std::size_t i = 0; i < nodes_; ++i) moves[i] = to_vec3(answer_[i]);
     std::ranges::copy(line_answer_, moves.begin() + static_cast<std::ptrdiff_t>(nodes_));
     for (std::size_t b = 0; b < bodies.size(); ++b) body_moves[b] = body_answer_[b];

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -31,7 +30,7 @@ struct ClothMatrix {
 
 /// A sheet's part of the equations, an entry a node.
 struct SheetSystem {
-    ClothMatrix* matrix = nullptr;        ///< springs are added to it while it is solved
+    ClothMatrix* matrix = nullptr;
     std::span<const Vec3> rhs;            ///< N
     std::span<const Vec3> small_load;     ///< N
     std::span<const std::uint8_t> fixed;  ///< nodes that do not move
@@ -76,6 +75,11 @@ private:
         std::size_t line = 0;
         std::array<std::vector<Vec3>, 6> column, given;
     };
+    // What springs couple a node of a sheet with another of any.
+    struct Link {
+        std::uint32_t row = 0, column = 0;
+        Block block;
+    };
     // A run of nodes of one sheet.
     struct Chunk {
         std::uint32_t sheet = 0;
@@ -84,11 +88,9 @@ private:
     void lay_out(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines);
     bool prepare(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
                  std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
-    [[nodiscard]] std::size_t sheet_of(std::uint32_t node) const {
-        return static_cast<std::size_t>(std::ranges::upper_bound(sheet_first_, node) - sheet_first_.begin()) - 1;
-    }
-    void put_back_matrices();
-    bool add_to_matrix(std::span<const SheetSystem> sheets, const TouchSpring& spring);
+    [[nodiscard]] bool is_between_sheets(const TouchSpring& spring, std::span<const BodyInertia> bodies) const;
+    static void add_links(const TouchSpring& spring, std::vector<Link>& links);
+    void sort_links(std::span<const Link> links);
     void prepare_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
     bool prepare_lines(std::span<const LineSystem> lines, std::span<const TouchSpring> springs);
     void prepare_line_holds(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
@@ -129,8 +131,9 @@ private:
     std::vector<const BandCholesky*> factors_;
     std::vector<Chunk> chunks_;
     std::vector<std::size_t> sheet_first_;
-    std::vector<std::uint32_t> coupled_;  // springs that neither the preconditioner's blocks nor the matrices hold
-    std::vector<std::pair<Block*, Block>> added_to_;  // blocks of matrices as they were before springs were added
+    std::vector<std::uint32_t> coupled_;     // springs that neither the preconditioner's blocks nor links hold
+    std::vector<std::uint32_t> link_start_;  // by node, one more than nodes of sheets
+    std::vector<Link> links_;
     std::vector<double> parts_, other_parts_;
     std::size_t nodes_ = 0;  // of sheets
     int workers_ = 1, rounds_ = 0;
