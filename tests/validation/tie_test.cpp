@@ -127,6 +127,40 @@ TEST(Tie, ARopeHangsOnARope) {
     }
 }
 
+// It bears less than the ball weighs: it breaks, the ball falls freely with what is left at it, and the tie keeps the
+// rest.
+TEST(Tie, ATiedRopeBreaksUnderTooMuch) {
+    const auto world = make_world({.air_density = 0, .sleeping = false});
+    const Frame frame(*world);
+    auto upper = line({-0.5, 3, 0}, {0.5, 3, 0});
+    frame.hold(upper, 0);
+    frame.hold(upper, static_cast<std::uint32_t>(upper.nodes.size() - 1));
+    const DeformableHandle taut = world->create_deformable(upper).value();
+    auto lower = line({0, 3, 0}, {0, 2.5, 0});
+    std::get<Rope>(lower.matter).break_tension = 5;
+    tie(lower, *world, taut);
+    BodyDefinition ball{.kind = BodyKind::dynamic_body,
+                        .shape = world->create_shape(SphereShape{0.03}).value(),
+                        .position = {0, 2.5, 0}};
+    ball.mass.mass = 1;
+    const BodyHandle body = world->create_body(ball).value();
+    lower.attachments = {{static_cast<std::uint32_t>(lower.nodes.size() - 1), body, {}}};
+    const DeformableHandle rope = world->create_deformable(lower).value();
+    const double most = energy(*world) + 1e-3;
+    int breaks = 0;
+    for (int k = 0; k < 30; ++k) {
+        world->step();
+        breaks += static_cast<int>(world->rope_break_events().size());
+        EXPECT_LT(energy(*world), most) << k;
+    }
+    ASSERT_GE(breaks, 1);
+    const double speed = world->linear_velocity(body).y;
+    run(*world, 0.25);
+    EXPECT_NEAR(world->linear_velocity(body).y, speed - gravity * 0.25, 0.02 * gravity * 0.25);
+    EXPECT_LT(energy(*world), most);
+    EXPECT_LT(widest_gap(*world, rope), 1e-3);
+}
+
 TEST(Tie, ASheetHangsOnASheet) {
     const auto world = make_world({.air_density = 0, .sleeping = false});
     const Frame frame(*world);

@@ -197,7 +197,7 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
     spring.friction = std::sqrt(friction * body.friction);
     spring.carried = place.way_of(spring.arm) + substep.h * plane.velocity;
     const double gap_at_start = spring.gap + dot(spring.carried, spring.normal);
-    const double came_in = length(velocity) * substep.h + std::fabs(dot(spring.carried, spring.normal));
+    const double came_in = std::max(0.0, dot(spring.carried - substep.h * velocity, spring.normal));
     const bool is_known = recall(body, spring);
     if (node_stiffness.empty()) soften(substep, give, body.inverse_mass > 0, spring);
     if (!is_known && gap_at_start < -recovery_speed * substep.h - came_in) {
