@@ -152,7 +152,7 @@ SCENES = {
     "cushions_on_a_sofa": (12, True, cushions),
     "dominoes": (12, True, dominoes),
     "furnished_room": (12, True, lambda run: ()),
-    "honey_on_bread": (5, False, honey),
+    "honey_on_bread": (8, False, honey),
     "hourglass": (12, True, hourglass),
     "joints": (3, False, joints),
     "rope_bridge": (4, False, bridge),

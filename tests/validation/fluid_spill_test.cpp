@@ -39,6 +39,33 @@ TEST(FluidSpill, ALitreOnTheFloorStaysWholeAndComesToRest) {
     EXPECT_LT(distances[count * 9 / 10], 0.8);
 }
 
+TEST(FluidSpill, HoneyThatStillRunsDoesNotSleep) {
+    // H. E. Huppert, "The propagation of two-dimensional and axisymmetric viscous gravity currents over a rigid
+    // horizontal surface" (1982): R = 0.894 (ρ g V³ t / 3 μ)^(1/8), at a few mm/s and slower.
+    auto world = make_world({});
+    ASSERT_TRUE(world->create_body(
+        {.kind = BodyKind::static_body, .shape = world->create_shape(PlaneShape{{0, 1, 0}, 0}).value()}));
+    FluidDefinition honey{.boxes = {{{-0.02, 0, -0.02}, {0.02, 0.05, 0.02}}}, .cell_size = 0.005};
+    honey.density = 1420;
+    honey.viscosity = 25;
+    honey.surface_tension = 0.08;
+    const FluidHandle handle = world->create_fluid(honey).value();
+    const double volume = 0.04 * 0.04 * 0.05;
+    const auto radius = [&] {
+        const std::vector<double> distances = distances_from_axis(*world, handle);
+        return distances[distances.size() * 95 / 100];
+    };
+    std::vector<double> radii;
+    for (const double t : {2.0, 4.0}) {
+        for (int i = 0; i < 2 * 60; ++i) world->step();
+        EXPECT_FALSE(world->fluid_particles(handle).is_asleep) << t;
+        const double expected = 0.894 * std::pow(1420 * 9.81 * std::pow(volume, 3) * t / (3 * 25), 0.125);
+        radii.push_back(radius());
+        EXPECT_NEAR(radii.back(), expected, 0.12 * expected) << t;
+    }
+    EXPECT_GT(radii[1], 1.03 * radii[0]);
+}
+
 /// How far single drops on an incline have come after a second, m.
 double way_on_incline(double degrees) {
     const double angle = degrees * pi / 180;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double quiet_speed = 0.01;     // m/s: a fluid whose particles are slower, but for a few drops, may sleep
 constexpr double time_to_sleep = 1;      // s
+constexpr double quiet_sinking = 0.02;   // cells a second: a fluid whose middle sinks faster does not sleep
 constexpr double noticed_change = 0.05;  // of a sleeping body's weight: another force by more wakes it
 constexpr double most_support = 1.5;     // of the weight of a body and of its volume of the fluid, or what it carries
 constexpr double farthest_jump = 0.5;    // m: a body that was put farther away was not moved through the fluid
@@ -188,9 +189,29 @@ void note_outcome(WorldState& world, FluidRecord& fluid, const FluidOutcome& out
     }
 }
 
+// Of all particles' middle, against gravity, m.
+double height_of(const FluidSolver& solver, Vec3 gravity) {
+    if (solver.particles().empty() || gravity == Vec3{}) return 0;
+    const Vec3 up = -normalized(gravity);
+    double sum = 0;
+    for (const FluidParticle& particle : solver.particles()) {
+        const auto& [x, y, z] = particle.position;
+        sum += dot(up, {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+    }
+    return sum / static_cast<double>(solver.particles().size());
+}
+
+// Honey that runs is slower than water at rest trembles: what still sinks as a whole does not sleep.
+bool has_sunk(const WorldState& world, const FluidRecord& fluid) {
+    const double sunk = fluid.quiet_height - height_of(*fluid.solver, world.settings.gravity);
+    return sunk > quiet_sinking * fluid.definition.cell_size * fluid.quiet_time;
+}
+
 void fall_asleep_if_quiet(WorldState& world, FluidRecord& fluid) {
     const bool is_quiet = fluid.solver->particles().empty() || fluid.solver->usual_speed(*world.workers) < quiet_speed;
+    if (is_quiet && fluid.quiet_time == 0) fluid.quiet_height = height_of(*fluid.solver, world.settings.gravity);
     fluid.quiet_time = is_quiet ? fluid.quiet_time + world.settings.time_step : 0;
+    if (fluid.quiet_time >= time_to_sleep && has_sunk(world, fluid)) fluid.quiet_time = 0;
     if (!is_quiet) {
         // What floats is quiet at its turning points, too: it waits for the liquid.
         for (const auto& [slot, seen] : fluid.seen) {

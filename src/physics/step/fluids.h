@@ -28,6 +28,7 @@ struct FluidRecord {
     std::vector<std::uint32_t> ids;
     std::map<std::uint32_t, SeenBody> seen;  ///< by slot: bodies near it in the last step
     double quiet_time = 0;                   ///< s
+    double quiet_height = 0;                 ///< of its middle when that began, m
     bool is_asleep = false, is_frozen = false;
     std::uint64_t version = 0;  ///< of what is read
     std::uint64_t lost = 0;     ///< particles that flew out of reach
