@@ -30,6 +30,8 @@ export function refine(geometry: BufferGeometry, matrix: Matrix4, longest: numbe
     if (!split) break;
     triangles = split;
   }
+  // Half the way between two directions is shorter than they are.
+  placeAll(attributes.get("normal")!, (vector) => vector.normalize());
 
   const refined = new BufferGeometry();
   for (const [name, { size, values }] of attributes) refined.setAttribute(name, new BufferAttribute(new Float32Array(values), size));
