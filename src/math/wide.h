@@ -9,6 +9,7 @@
 // lanes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #if defined(__SSE2__)
@@ -219,6 +220,57 @@ EMBODY_WIDE_INLINE void store_3(float* to, const Wide3& v) {
     store(to + lanes, v.y);
     store(to + 2 * lanes, v.z);
 }
+
+// Rows of four floats, of which the first three count.
+
+#if EMBODY_LANES == 4
+EMBODY_WIDE_INLINE void transpose_quads(Wide r[4]) { transpose_4(r[0], r[1], r[2], r[3]); }
+#else
+/// Of each four lanes: four rows to four columns (its own inverse).
+EMBODY_WIDE_INLINE void transpose_quads(Wide r[4]) {
+    const Wide a0 = EMBODY_SHUFFLE(r[0], r[1], 0, 8, 1, 9, 4, 12, 5, 13);
+    const Wide a1 = EMBODY_SHUFFLE(r[0], r[1], 2, 10, 3, 11, 6, 14, 7, 15);
+    const Wide a2 = EMBODY_SHUFFLE(r[2], r[3], 0, 8, 1, 9, 4, 12, 5, 13);
+    const Wide a3 = EMBODY_SHUFFLE(r[2], r[3], 2, 10, 3, 11, 6, 14, 7, 15);
+    r[0] = EMBODY_SHUFFLE(a0, a2, 0, 1, 8, 9, 4, 5, 12, 13);
+    r[1] = EMBODY_SHUFFLE(a0, a2, 2, 3, 10, 11, 6, 7, 14, 15);
+    r[2] = EMBODY_SHUFFLE(a1, a3, 0, 1, 8, 9, 4, 5, 12, 13);
+    r[3] = EMBODY_SHUFFLE(a1, a3, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+#endif
+
+/// The rows that `row` counts from `base`, one a lane.
+EMBODY_WIDE_INLINE Wide3 gather_quads(const float* base, const std::uint32_t* row) {
+    using Quad = float __attribute__((vector_size(16)));
+    Wide r[4];
+    for (int i = 0; i < 4; ++i) {
+        Quad quad[lanes / 4];
+        for (int part = 0; part < lanes / 4; ++part)
+            std::memcpy(&quad[part], base + std::size_t{4} * row[4 * part + i], sizeof(Quad));
+#if EMBODY_LANES == 4
+        r[i] = quad[0];
+#elif EMBODY_LANES == 8
+        r[i] = __builtin_shufflevector(quad[0], quad[1], 0, 1, 2, 3, 4, 5, 6, 7);
+#else
+        const Row lower = __builtin_shufflevector(quad[0], quad[1], 0, 1, 2, 3, 4, 5, 6, 7);
+        const Row upper = __builtin_shufflevector(quad[2], quad[3], 0, 1, 2, 3, 4, 5, 6, 7);
+        r[i] = __builtin_shufflevector(lower, upper, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#endif
+    }
+    transpose_quads(r);
+    return {r[0], r[1], r[2]};
+}
+
+/// One row a lane, one after the other; fourth numbers are zero.
+EMBODY_WIDE_INLINE void store_quads(float* to, const Wide3& v) {
+    Wide r[4] = {v.x, v.y, v.z, Wide{}};
+    transpose_quads(r);
+    float rows[4][lanes];
+    for (int i = 0; i < 4; ++i) store(rows[i], r[i]);
+    for (int lane = 0; lane < lanes; ++lane)
+        std::memcpy(to + 4 * lane, rows[lane % 4] + lane / 4 * 4, 4 * sizeof(float));
+}
+
 EMBODY_WIDE_INLINE Wide3 operator+(const Wide3& a, const Wide3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 EMBODY_WIDE_INLINE Wide3 operator-(const Wide3& a, const Wide3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 EMBODY_WIDE_INLINE Wide3 operator*(const Wide3& a, Wide s) { return {a.x * s, a.y * s, a.z * s}; }

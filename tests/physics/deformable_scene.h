@@ -56,7 +56,7 @@ struct DeformableScene {
     void step() {
         contacts.clear();
         find_node_contacts(deformable.nodes(), all_nodes, *node_ball, radius, bodies, substep.h, substep.gravity,
-                           contacts);
+                           contacts, workers);
         for (TouchedBody& body : bodies) body.shift = body.turn = body.impulse = body.angular_impulse = {};
         if constexpr (std::is_same_v<Deformable, RopeLine>)
             deformable.advance(substep, contacts, segment_contacts, attachments, bodies);

@@ -16,21 +16,9 @@ namespace embody::physics {
 
 namespace {
 
+constexpr std::uint32_t not_far = ~std::uint32_t{0};
+
 Mat3 symmetric_outer(Vec3 a) { return outer(a, a); }
-
-float to_float(double v) { return static_cast<float>(v); }
-
-Block to_block(const Mat3& m) {
-    const auto column = [](Vec3 v) { return Float4{to_float(v.x), to_float(v.y), to_float(v.z), 0}; };
-    return {column(m.x), column(m.y), column(m.z)};
-}
-
-void add(Block& to, const Mat3& m) {
-    const Block b = to_block(m);
-    to.x += b.x;
-    to.y += b.y;
-    to.z += b.z;
-}
 
 // The nearest positive semidefinite matrix of [a b; b c].
 void make_positive(double& a, double& b, double& c) {
@@ -96,28 +84,26 @@ void ClothSheet::make_pattern(const ScalarRows& bending) {
             }
         }
     }
-    matrix_.diagonal.resize(count);
-    matrix_.start.push_back(0);
-    matrix_.far_start.push_back(0);
+    std::vector<std::vector<std::uint32_t>> near(count), far(count);
+    far_element_.assign(bending.column.size(), not_far);
     for (std::size_t i = 0; i < count; ++i) {
-        for (auto& [other, slot] : neighbours[i]) {
-            slot = static_cast<std::uint32_t>(matrix_.column.size());
-            matrix_.column.push_back(other);
+        for (auto& [other, which] : neighbours[i]) {
+            which = static_cast<std::uint32_t>(near[i].size());
+            near[i].push_back(other);
         }
-        near_bending_.resize(matrix_.column.size(), 0);
+        near_bending_.resize(near_bending_.size() + near[i].size(), 0);
+        double* near_bending = near_bending_.data() + near_bending_.size() - near[i].size();
         for (std::uint32_t k = bending.start[i]; k < bending.start[i + 1]; ++k) {
-            const auto near = neighbours[i].find(bending.column[k]);
-            if (near != neighbours[i].end()) {
-                near_bending_[near->second] = bending.value[k];
+            const auto neighbour = neighbours[i].find(bending.column[k]);
+            if (neighbour != neighbours[i].end()) {
+                near_bending[neighbour->second] = bending.value[k];
             } else if (bending.column[k] != i) {
-                matrix_.far_column.push_back(bending.column[k]);
+                far_element_[k] = static_cast<std::uint32_t>(far[i].size());
+                far[i].push_back(bending.column[k]);
             }
         }
-        matrix_.start.push_back(static_cast<std::uint32_t>(matrix_.column.size()));
-        matrix_.far_start.push_back(static_cast<std::uint32_t>(matrix_.far_column.size()));
     }
-    matrix_.block.resize(matrix_.column.size());
-    matrix_.far_value.resize(matrix_.far_column.size());
+    matrix_.set_pattern(near, far);
 
     std::vector<std::vector<Corner>> corners(count);
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
@@ -125,7 +111,7 @@ void ClothSheet::make_pattern(const ScalarRows& bending) {
             const std::uint32_t node = triangles_[t].node[k];
             Corner corner{t, k, {}};
             for (std::size_t other = 0; other < 3; ++other) {
-                if (other != k) corner.slot[other] = neighbours[node].at(triangles_[t].node[other]);
+                if (other != k) corner.element[other] = neighbours[node].at(triangles_[t].node[other]);
             }
             corners[node].push_back(corner);
         }
@@ -181,24 +167,24 @@ void ClothSheet::find_strains(const Substep& substep, TaskPool& workers) {
     share_among(workers, triangles_.size(), triangles_.size() >= 1000, work);
 }
 
-void ClothSheet::fill_row(std::size_t i, const Substep& substep) {
+// `near`: to work with.
+void ClothSheet::fill_row(std::size_t i, const Substep& substep, std::vector<Block>& near) {
     const double h = substep.h, damped = 1 + cloth_.rayleigh_damping / h;
     const double inertia = nodes_.mass[i] / (h * h);
     Mat3 own = Mat3::diagonal({inertia, inertia, inertia});
     Vec3 load = nodes_.mass[i] / h * nodes_.mean_velocity[i] + weight_[i];
 
-    for (std::uint32_t k = matrix_.start[i]; k < matrix_.start[i + 1]; ++k) {
-        const double b = damped * near_bending_[k];
-        matrix_.block[k] = to_block(Mat3::diagonal({b, b, b}));
+    const std::size_t first = matrix_.near_first(i);
+    near.resize(matrix_.near_first(i + 1) - first);
+    for (std::size_t k = 0; k < near.size(); ++k) {
+        const double b = damped * near_bending_[first + k];
+        near[k] = to_block(Mat3::diagonal({b, b, b}));
     }
-    std::uint32_t far = matrix_.far_start[i];
     for (std::uint32_t k = bending_.start[i]; k < bending_.start[i + 1]; ++k) {
-        const std::uint32_t other = bending_.column[k];
-        load -= bending_.value[k] * nodes_.position[other];
-        if (other == i)
-            own += damped * bending_.value[k] * Mat3::identity();
-        else if (far < matrix_.far_start[i + 1] && matrix_.far_column[far] == other)
-            matrix_.far_value[far++] = to_float(damped * bending_.value[k]);
+        load -= bending_.value[k] * nodes_.position[bending_.column[k]];
+        if (bending_.column[k] == i) own += damped * bending_.value[k] * Mat3::identity();
+        if (far_element_[k] != not_far)
+            matrix_.set_far(i, far_element_[k], static_cast<float>(damped * bending_.value[k]));
     }
     for (std::uint32_t c = corner_start_[i]; c < corner_start_[i + 1]; ++c) {
         const Corner& corner = corners_[c];
@@ -218,12 +204,13 @@ void ClothSheet::fill_row(std::size_t i, const Substep& substep) {
             if (other == corner.corner)
                 own += block;
             else
-                add(matrix_.block[corner.slot[other]], block);
+                near[corner.element[other]] += to_block(block);
         }
         const Vec3 air = air_[corner.triangle];
         own += (1 / h) * symmetric_outer(air);
         load += dot(air, winds_[corner.triangle]) * air;
     }
+    for (std::size_t k = 0; k < near.size(); ++k) matrix_.set_near(i, k, near[k]);
     matrix_.diagonal[i] = to_block(own);
     node_stiffness_[i] = trace(own) / 3;
     rhs_[i] = load;
@@ -241,7 +228,8 @@ void ClothSheet::fill_rows(const Substep& substep, TaskPool& workers) {
         small_load_[i] = {0, nodes_.mass[i] * least, 0};
     }
     share_among(workers, count, count >= 1000, [&](int, Share share) {
-        for (std::size_t i = share.first; i < share.last; ++i) fill_row(i, substep);
+        std::vector<Block> near;
+        for (std::size_t i = share.first; i < share.last; ++i) fill_row(i, substep, near);
     });
 }
 

@@ -77,7 +77,7 @@ private:
     // How a triangle meets a node's row of the matrix.
     struct Corner {
         std::uint32_t triangle = 0, corner = 0;
-        std::array<std::uint32_t, 3> slot{};  // of the row's blocks; own: the diagonal
+        std::array<std::uint32_t, 3> element{};  // of the row, near its diagonal; own: the diagonal
     };
     // Of a triangle, this substep: F's columns and what the energy makes of them.
     struct Strain {
@@ -91,7 +91,7 @@ private:
     void make_pattern(const ScalarRows& bending);
     void find_strains(const Substep& substep, TaskPool& workers);
     void fill_rows(const Substep& substep, TaskPool& workers);
-    void fill_row(std::size_t i, const Substep& substep);
+    void fill_row(std::size_t i, const Substep& substep, std::vector<Block>& near);
     bool solve_moves(const Substep& substep, std::span<const TouchedBody> bodies, TaskPool& workers);
     void keep_momentum(const Substep& substep, std::span<const Vec3> given);
     void find_layers(const Substep& substep, TaskPool& workers);
@@ -106,7 +106,8 @@ private:
     ClothMatrix matrix_;
     std::vector<std::uint32_t> corner_start_;
     std::vector<Corner> corners_;
-    std::vector<double> near_bending_;  // of the blocks between neighbours
+    std::vector<double> near_bending_;        // of the blocks between neighbours
+    std::vector<std::uint32_t> far_element_;  // of bending_'s elements: which of the row's far ones each is
     TouchSprings springs_;
     std::optional<ClothLayers> layers_;
     PairSprings layer_springs_;

@@ -3,19 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace embody::physics {
 
 namespace {
 
-constexpr std::size_t chunk_size = 128;  // nodes whose products are summed before the others'
-
-Float4 to_float4(Vec3 v) {
-    return Float4{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), 0};
-}
-Vec3 to_vec3(Float4 v) { return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])}; }
-Block to_block(const Mat3& m) { return {to_float4(m.x), to_float4(m.y), to_float4(m.z)}; }
-Mat3 to_matrix(const Block& b) { return {to_vec3(b.x), to_vec3(b.y), to_vec3(b.z)}; }
+constexpr std::size_t worth_sharing = 1000;  // nodes
+constexpr std::size_t chunk_slices = 8;      // whose products are summed before the others'
 
 template <int lane>
 Float4 spread(Float4 v) {
@@ -76,15 +71,26 @@ void add_at_arm(std::array<double, 36>& to, const Mat3& m, Vec3 arm) {
 
 double energy_of(const SheetSystem& sheet, std::span<const Vec3> moves) {
     const ClothMatrix& matrix = *sheet.matrix;
+    const std::size_t slices = slices_for(moves.size());
+    SliceBlocks own;
+    SliceVectors way, force;
+    std::vector<Float4> quads(slices * slice_rows);
+    own.resize(slices);
+    way.resize(slices);
+    force.resize(slices);
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+        own.set(i / slice_rows, i % slice_rows, matrix.diagonal[i]);
+        way.set(i, quads[i] = to_float4(moves[i]));
+    }
+    const ClothVectors vectors{.stride = way.stride(),
+                               .direction = way.slice(0),
+                               .product = force.slice(0),
+                               .quads = reinterpret_cast<float*>(quads.data())};
+    double unused[slice_rows] = {};
+    widest_cloth_row_kernels().multiply(matrix.rows(own.slice(0)), vectors, 0, slices, unused);
     double sum = 0;
     for (std::size_t i = 0; i < moves.size(); ++i) {
-        if (sheet.fixed[i] != 0) continue;
-        Float4 row = operator_times(matrix.diagonal[i], to_float4(moves[i]));
-        for (std::uint32_t k = matrix.start[i]; k < matrix.start[i + 1]; ++k)
-            row += operator_times(matrix.block[k], to_float4(moves[matrix.column[k]]));
-        for (std::uint32_t k = matrix.far_start[i]; k < matrix.far_start[i + 1]; ++k)
-            row += matrix.far_value[k] * to_float4(moves[matrix.far_column[k]]);
-        sum += dot(0.5 * to_vec3(row) - sheet.rhs[i], moves[i]);
+        if (sheet.fixed[i] == 0) sum += dot(0.5 * to_vec3(force.at(i)) - sheet.rhs[i], moves[i]);
     }
     return sum;
 }
@@ -102,12 +108,20 @@ void ClothSolver::lay_out(std::span<const SheetSystem> sheets, std::span<const L
     nodes_ = 0;
     chunks_.clear();
     sheet_first_.clear();
-    for (std::uint32_t s = 0; s < sheets.size(); ++s) {
-        const std::size_t count = sheets[s].rhs.size();
+    sheet_slice_.clear();
+    needs_quads_.clear();
+    place_.clear();
+    std::size_t slices = 0;
+    for (std::size_t s = 0; s < sheets.size(); ++s) {
+        const std::size_t count = sheets[s].rhs.size(), own_slices = slices_for(count);
         sheet_first_.push_back(nodes_);
-        for (std::size_t first = 0; first < count; first += chunk_size)
-            chunks_.push_back({s, nodes_ + first, nodes_ + std::min(count, first + chunk_size)});
+        sheet_slice_.push_back(slices);
+        needs_quads_.push_back(sheets[s].matrix->needs_quads());
+        for (std::size_t i = 0; i < count; ++i) place_.push_back(static_cast<std::uint32_t>(slices * slice_rows + i));
+        for (std::size_t first = 0; first < own_slices; first += chunk_slices)
+            chunks_.push_back({s, first, std::min(own_slices, first + chunk_slices)});
         nodes_ += count;
+        slices += own_slices;
     }
     line_of_.clear();
     line_fixed_.clear();
@@ -117,14 +131,18 @@ void ClothSolver::lay_out(std::span<const SheetSystem> sheets, std::span<const L
         line_fixed_.insert(line_fixed_.end(), lines[l].fixed->begin(), lines[l].fixed->end());
         line_first_.push_back(line_of_.size());
     }
-    for (auto* vector : {&direction_, &product_, &residual_, &better_, &answer_}) vector->assign(nodes_, Float4{});
+    for (auto* vector : {&direction_, &product_, &residual_, &better_, &answer_}) vector->resize(slices);
+    own_blocks_.resize(slices);
+    inverse_blocks_.resize(slices);
+    quads_.assign(std::ranges::count(needs_quads_, true) > 0 ? slices * slice_rows : 0, Float4{});
     for (auto* vector : {&line_direction_, &line_own_product_, &line_product_, &line_residual_, &line_better_,
                          &line_answer_, &line_own_better_})
         vector->assign(line_of_.size(), {});
 }
 
 bool ClothSolver::prepare(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
-                          std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies) {
+                          std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies,
+                          TaskPool& workers) {
     own_.clear();
     for (const SheetSystem& sheet : sheets)
         own_.insert(own_.end(), sheet.matrix->diagonal.begin(), sheet.matrix->diagonal.end());
@@ -135,11 +153,7 @@ bool ClothSolver::prepare(std::span<const SheetSystem> sheets, std::span<const L
         if (!spring.acts) continue;
         for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k) {
             if (spring.node[k] >= nodes_) continue;
-            const Block added = to_block(spring.weight[k] * spring.weight[k] * spring.matrix);
-            Block& own = own_[spring.node[k]];
-            own.x += added.x;
-            own.y += added.y;
-            own.z += added.z;
+            own_[spring.node[k]] += to_block(spring.weight[k] * spring.weight[k] * spring.matrix);
         }
         if (is_contained(spring, bodies)) continue;
         if (is_between_sheets(spring, bodies))
@@ -150,10 +164,16 @@ bool ClothSolver::prepare(std::span<const SheetSystem> sheets, std::span<const L
     sort_links(links);
     inverse_.resize(nodes_);
     for (std::size_t s = 0; s < sheets.size(); ++s) {
-        for (std::size_t i = 0; i < sheets[s].rhs.size(); ++i) {
-            const std::size_t at = sheet_first_[s] + i;
-            inverse_[at] = sheets[s].fixed[i] != 0 ? Block{} : to_block(inverse_or_zero(to_matrix(own_[at])));
-        }
+        const std::size_t count = sheets[s].rhs.size();
+        share_among(workers, count, count >= worth_sharing, [&](int, Share share) {
+            for (std::size_t i = share.first; i < share.last; ++i) {
+                const std::size_t at = sheet_first_[s] + i, slice = place_[at] / slice_rows,
+                                  lane = place_[at] % slice_rows;
+                inverse_[at] = sheets[s].fixed[i] != 0 ? Block{} : to_block(inverse_or_zero(to_matrix(own_[at])));
+                own_blocks_.set(slice, lane, own_[at]);
+                inverse_blocks_.set(slice, lane, inverse_[at]);
+            }
+        });
     }
     if (!prepare_lines(lines, springs)) return false;
     prepare_line_holds(springs, bodies);
@@ -177,14 +197,17 @@ void ClothSolver::add_links(const TouchSpring& spring, std::vector<Link>& links)
     }
 }
 
-// By row, in each in the order of the springs.
-void ClothSolver::sort_links(std::span<const Link> links) {
-    link_start_.assign(nodes_ + 1, 0);
-    for (const Link& link : links) ++link_start_[link.row + 1];
-    for (std::size_t i = 0; i < nodes_; ++i) link_start_[i + 1] += link_start_[i];
-    links_.resize(links.size());
-    std::vector<std::uint32_t> next(link_start_.begin(), link_start_.end() - 1);
-    for (const Link& link : links) links_[next[link.row]++] = link;
+// By row, in each in the order of the springs; the chunks' rows follow each other.
+void ClothSolver::sort_links(std::vector<Link>& links) {
+    std::ranges::stable_sort(links, {}, &Link::row);
+    links_.swap(links);
+    std::size_t at = 0;
+    for (Chunk& chunk : chunks_) {
+        const std::size_t end = (sheet_slice_[chunk.sheet] + chunk.last) * slice_rows;
+        chunk.first_link = at;
+        while (at < links_.size() && place_[links_[at].row] < end) ++at;
+        chunk.last_link = at;
+    }
 }
 
 void ClothSolver::prepare_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies) {
@@ -213,29 +236,41 @@ void ClothSolver::prepare_bodies(std::span<const TouchSpring> springs, std::span
     for (BodyFactor& body : body_factors_) factorize(body.factor);
 }
 
+ClothVectors ClothSolver::vectors_of(std::size_t sheet) {
+    const std::size_t slice = sheet_slice_[sheet];
+    return {.stride = direction_.stride(),
+            .direction = direction_.slice(slice),
+            .product = product_.slice(slice),
+            .residual = residual_.slice(slice),
+            .better = better_.slice(slice),
+            .answer = answer_.slice(slice),
+            .quads = needs_quads_[sheet] ? reinterpret_cast<float*>(quads_.data() + slice * slice_rows) : nullptr,
+            .inverse = inverse_blocks_.slice(slice)};
+}
+
+// kernel(vectors, first slice, last slice, sums) of a chunk.
+template <class Kernel>
+double ClothSolver::sum_of_chunk(std::size_t chunk, Kernel kernel) {
+    std::array<double, slice_rows> sums{};
+    kernel(vectors_of(chunks_[chunk].sheet), chunks_[chunk].first, chunks_[chunk].last, sums.data());
+    return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
 void ClothSolver::multiply_rows(std::span<const SheetSystem> sheets, std::size_t chunk) {
-    const auto [sheet, first, last] = chunks_[chunk];
-    const ClothMatrix& matrix = *sheets[sheet].matrix;
-    const std::size_t before = sheet_first_[sheet];
-    const Float4* direction = direction_.data() + before;
-    double sum = 0;
-    for (std::size_t i = first; i < last; ++i) {
-        const std::size_t own = i - before;
-        Float4 row = operator_times(own_[i], direction_[i]);
-        for (std::uint32_t k = matrix.start[own]; k < matrix.start[own + 1]; ++k)
-            row += operator_times(matrix.block[k], direction[matrix.column[k]]);
-        for (std::uint32_t k = matrix.far_start[own]; k < matrix.far_start[own + 1]; ++k)
-            row += matrix.far_value[k] * direction[matrix.far_column[k]];
-        for (std::uint32_t k = link_start_[i]; k < link_start_[i + 1]; ++k)
-            row += operator_times(links_[k].block, direction_[links_[k].column]);
-        product_[i] = row;
-        sum += product(row, direction_[i]);
+    const Chunk& run = chunks_[chunk];
+    const ClothRows rows = sheets[run.sheet].matrix->rows(own_blocks_.slice(sheet_slice_[run.sheet]));
+    double sum = sum_of_chunk(chunk, [&](const ClothVectors& vectors, std::size_t first, std::size_t last,
+                                         double* sums) { kernels_->multiply(rows, vectors, first, last, sums); });
+    for (const Link& link : std::span(links_).subspan(run.first_link, run.last_link - run.first_link)) {
+        const Float4 added = operator_times(link.block, direction_.at(place_[link.column]));
+        product_.add(place_[link.row], added);
+        sum += product(added, direction_.at(place_[link.row]));
     }
     parts_[chunk] = sum;
 }
 
 Vec3 ClothSolver::direction_of(std::uint32_t node) const {
-    return node < nodes_ ? to_vec3(direction_[node]) : line_direction_[node - nodes_];
+    return node < nodes_ ? to_vec3(direction_.at(place_[node])) : line_direction_[node - nodes_];
 }
 
 // What springs add between nodes and to bodies: what the blocks of nodes and lines hold is in their products already.
@@ -267,8 +302,8 @@ void ClothSolver::add_springs(std::span<const TouchSpring> springs, std::span<co
             }
             const Vec3 added = spring.weight[n] * (force - k * held);
             if (node < nodes_) {
-                product_[node] += to_float4(added);
-                sum += dot(added, to_vec3(direction_[node]));
+                product_.add(place_[node], to_float4(added));
+                sum += dot(added, direction_of(node));
             } else {
                 line_product_[node - nodes_] += added;
             }
@@ -295,7 +330,7 @@ void ClothSolver::precondition_bodies(std::span<const TouchSpring> springs, std:
     for (const std::uint32_t s : coupled_) {
         if (!is_held(s)) continue;
         const TouchSpring& spring = springs[s];
-        const Vec3 felt = spring.matrix * to_vec3(better_[spring.node[0]]);
+        const Vec3 felt = spring.matrix * to_vec3(better_.at(place_[spring.node[0]]));
         body_better_[spring.body].shift += felt;
         body_better_[spring.body].turn += cross(spring.arm, felt);
     }
@@ -307,7 +342,7 @@ void ClothSolver::precondition_bodies(std::span<const TouchSpring> springs, std:
         if (!is_held(s)) continue;
         const TouchSpring& spring = springs[s];
         const Vec3 taken = spring.matrix * at_arm(body_better_[spring.body], spring.arm);
-        better_[spring.node[0]] += operator_times(inverse_[spring.node[0]], to_float4(taken));
+        better_.add(place_[spring.node[0]], operator_times(inverse_[spring.node[0]], to_float4(taken)));
     }
     follow_bodies();
 }
@@ -347,23 +382,23 @@ void ClothSolver::go_along(double way, std::size_t bodies) {
 void ClothSolver::iterate(std::span<const SheetSystem> sheets, std::span<const TouchSpring> springs,
                           std::span<const BodyInertia> bodies, double enough, int worker, Barrier& barrier) {
     const Share share = share_of(chunks_.size(), worker, workers_);
-    const std::size_t first = share.first < chunks_.size() ? chunks_[share.first].first : nodes_;
-    const std::size_t last = share.last < chunks_.size() ? chunks_[share.last].first : nodes_;
     const bool has_others = !coupled_.empty() || !factors_.empty();
-    const auto precondition = [&] {
-        for (std::size_t i = first; i < last; ++i) better_[i] = operator_times(inverse_[i], residual_[i]);
+    // Goes along the direction and finds better = D⁻¹ residual; returns better · residual.
+    const auto advance = [&](double way) {
+        for (std::size_t c = share.first; c < share.last; ++c) {
+            other_parts_[c] = sum_of_chunk(c, [&](const auto& vectors, auto first, auto last, double* sums) {
+                kernels_->advance(vectors, static_cast<float>(way), first, last, sums);
+            });
+        }
         if (has_others) {
+            if (worker == 0) go_along(way, bodies.size());
             barrier.wait();
             if (worker == 0) {
                 precondition_lines();
                 precondition_bodies(springs, bodies);
             }
             barrier.wait();
-        }
-        for (std::size_t c = share.first; c < share.last; ++c) {
-            double sum = 0;
-            for (std::size_t i = chunks_[c].first; i < chunks_[c].last; ++i) sum += product(better_[i], residual_[i]);
-            other_parts_[c] = sum;
+            for (std::size_t c = share.first; c < share.last; ++c) other_parts_[c] = sum_of_chunk(c, kernels_->dot);
         }
         if (worker == 0) {
             other_parts_.back() = 0;
@@ -375,15 +410,15 @@ void ClothSolver::iterate(std::span<const SheetSystem> sheets, std::span<const T
         barrier.wait();
         return sum_of(other_parts_);
     };
-    double size = precondition(), previous = 0;
+    double size = advance(0), previous = 0;
     // Floats cannot tell less.
     enough = std::max(enough, 1e-12 * size);
     int round = 0;
     bool is_finite = std::isfinite(size);
     for (; round < most_rounds && size > enough; ++round) {
         const double turn = round == 0 ? 0 : size / previous;
-        const auto turn_f = static_cast<float>(turn);
-        for (std::size_t i = first; i < last; ++i) direction_[i] = better_[i] + turn_f * direction_[i];
+        for (std::size_t c = share.first; c < share.last; ++c)
+            kernels_->turn(vectors_of(chunks_[c].sheet), static_cast<float>(turn), chunks_[c].first, chunks_[c].last);
         if (worker == 0 && has_others) go_on(bodies, turn);
         barrier.wait();
         for (std::size_t c = share.first; c < share.last; ++c) multiply_rows(sheets, c);
@@ -395,15 +430,8 @@ void ClothSolver::iterate(std::span<const SheetSystem> sheets, std::span<const T
         const double bend = sum_of(parts_);
         is_finite = is_finite && std::isfinite(bend);
         if (!(bend > 0) || !is_finite) break;
-        const double way = size / bend;
-        const auto step = static_cast<float>(way);
-        for (std::size_t i = first; i < last; ++i) {
-            answer_[i] += step * direction_[i];
-            residual_[i] -= step * product_[i];
-        }
-        if (worker == 0 && has_others) go_along(way, bodies.size());
         previous = size;
-        size = precondition();
+        size = advance(size / bend);
     }
     if (worker == 0) rounds_ = is_finite && std::isfinite(size) ? round : not_finite;
 }
@@ -415,7 +443,10 @@ double ClothSolver::guess(std::span<const SheetSystem> sheets, std::span<const L
     for (std::size_t s = 0; s < sheets.size(); ++s) {
         for (std::size_t i = 0; i < sheets[s].rhs.size(); ++i) {
             const std::size_t at = sheet_first_[s] + i;
-            answer_[at] = direction_[at] = sheets[s].fixed[i] != 0 ? Float4{} : to_float4(moves[at]);
+            const Float4 move = sheets[s].fixed[i] != 0 ? Float4{} : to_float4(moves[at]);
+            answer_.set(place_[at], move);
+            direction_.set(place_[at], move);
+            if (!quads_.empty()) quads_[place_[at]] = move;
             const Float4 small = to_float4(sheets[s].small_load[i]);
             load += product(operator_times(inverse_[at], small), small);
         }
@@ -446,20 +477,23 @@ double ClothSolver::guess(std::span<const SheetSystem> sheets, std::span<const L
 // Of the guess, forces of springs with it.
 void ClothSolver::find_residual(std::span<const SheetSystem> sheets, std::span<const TouchSpring> springs,
                                 std::span<const BodyInertia> bodies, TaskPool& workers) {
-    share_among(workers, chunks_.size(), nodes_ >= 1000, [&](int, Share share) {
+    share_among(workers, chunks_.size(), nodes_ >= worth_sharing, [&](int, Share share) {
         for (std::size_t c = share.first; c < share.last; ++c) multiply_rows(sheets, c);
     });
     add_springs(springs, bodies);
     for (std::size_t s = 0; s < sheets.size(); ++s) {
-        for (std::size_t i = 0; i < sheets[s].rhs.size(); ++i)
-            residual_[sheet_first_[s] + i] = to_float4(sheets[s].rhs[i]) - product_[sheet_first_[s] + i];
+        for (std::size_t i = 0; i < sheets[s].rhs.size(); ++i) {
+            const std::uint32_t place = place_[sheet_first_[s] + i];
+            residual_.set(place, to_float4(sheets[s].rhs[i]) - product_.at(place));
+        }
     }
     for (std::size_t b = 0; b < bodies.size(); ++b)
         body_residual_[b] = {-body_product_[b].shift, -body_product_[b].turn};
     for (const TouchSpring& spring : springs) {
         if (!spring.acts) continue;
         for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k) {
-            if (spring.node[k] < nodes_) residual_[spring.node[k]] += to_float4(spring.weight[k] * spring.load);
+            if (spring.node[k] < nodes_)
+                residual_.add(place_[spring.node[k]], to_float4(spring.weight[k] * spring.load));
         }
         if (!moves_body(spring, bodies)) continue;
         body_residual_[spring.body].shift -= spring.load;
@@ -474,7 +508,7 @@ int ClothSolver::solve(std::span<const SheetSystem> sheets, std::span<const Line
                        std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies, std::span<Vec3> moves,
                        std::span<BodyMove> body_moves, TaskPool& workers) {
     lay_out(sheets, lines);
-    if (!prepare(sheets, lines, springs, bodies)) return not_finite;
+    if (!prepare(sheets, lines, springs, bodies, workers)) return not_finite;
     parts_.assign(chunks_.size() + 1, 0);
     other_parts_.assign(chunks_.size() + 1, 0);
     for (auto* vector : {&body_direction_, &body_product_, &body_residual_, &body_better_, &body_answer_})
@@ -482,15 +516,16 @@ int ClothSolver::solve(std::span<const SheetSystem> sheets, std::span<const Line
     const double load = guess(sheets, lines, springs, moves);
     for (std::size_t b = 0; b < bodies.size(); ++b) body_answer_[b] = body_direction_[b] = body_moves[b];
     find_residual(sheets, springs, bodies, workers);
+    parts_.back() = 0;
     // Fixed nodes give way to nothing: their part of the residual is the force that holds them.
     const double enough = tolerance * tolerance * load;
-    workers_ = nodes_ >= 1000 ? workers.workers() : 1;
+    workers_ = nodes_ >= worth_sharing ? workers.workers() : 1;
     Barrier barrier(workers_);
     if (workers_ > 1)
         workers.run([&](int worker) { iterate(sheets, springs, bodies, enough, worker, barrier); });
     else
         iterate(sheets, springs, bodies, enough, 0, barrier);
-    for (std::size_t i = 0; i < nodes_; ++i) moves[i] = to_vec3(answer_[i]);
+    for (std::size_t i = 0; i < nodes_; ++i) moves[i] = to_vec3(answer_.at(place_[i]));
     std::ranges::copy(line_answer_, moves.begin() + static_cast<std::ptrdiff_t>(nodes_));
     for (std::size_t b = 0; b < bodies.size(); ++b) body_moves[b] = body_answer_[b];
     return rounds_;

@@ -7,30 +7,14 @@
 
 #include "foundation/task_pool.h"
 #include "physics/deformable/band_cholesky.h"
+#include "physics/deformable/cloth_matrix.h"
 #include "physics/deformable/touch_springs.h"
 
 namespace embody::physics {
 
-using Float4 = float __attribute__((vector_size(16)));
-
-/// 3 × 3 floats by columns; the fourth rows are zero.
-struct Block {
-    Float4 x{}, y{}, z{};
-};
-
-/// A symmetric matrix over nodes: a block a node on the diagonal, blocks between neighbours, and multiples of the
-/// identity between nodes farther off. Row i of each holds its elements from start[i] to start[i + 1].
-struct ClothMatrix {
-    std::vector<Block> diagonal;
-    std::vector<std::uint32_t> start, column;
-    std::vector<Block> block;
-    std::vector<std::uint32_t> far_start, far_column;
-    std::vector<float> far_value;
-};
-
 /// A sheet's part of the equations, an entry a node.
 struct SheetSystem {
-    ClothMatrix* matrix = nullptr;
+    const ClothMatrix* matrix = nullptr;
     std::span<const Vec3> rhs;            ///< N
     std::span<const Vec3> small_load;     ///< N
     std::span<const std::uint8_t> fixed;  ///< nodes that do not move
@@ -80,17 +64,17 @@ private:
         std::uint32_t row = 0, column = 0;
         Block block;
     };
-    // A run of nodes of one sheet.
+    // A run of slices of one sheet, and its links.
     struct Chunk {
-        std::uint32_t sheet = 0;
-        std::size_t first = 0, last = 0;
+        std::size_t sheet = 0, first = 0, last = 0;
+        std::size_t first_link = 0, last_link = 0;
     };
     void lay_out(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines);
     bool prepare(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
-                 std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
+                 std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies, TaskPool& workers);
     [[nodiscard]] bool is_between_sheets(const TouchSpring& spring, std::span<const BodyInertia> bodies) const;
     static void add_links(const TouchSpring& spring, std::vector<Link>& links);
-    void sort_links(std::span<const Link> links);
+    void sort_links(std::vector<Link>& links);
     void prepare_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
     bool prepare_lines(std::span<const LineSystem> lines, std::span<const TouchSpring> springs);
     void prepare_line_holds(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
@@ -99,7 +83,10 @@ private:
                  std::span<const TouchSpring> springs, std::span<const Vec3> moves);
     void find_residual(std::span<const SheetSystem> sheets, std::span<const TouchSpring> springs,
                        std::span<const BodyInertia> bodies, TaskPool& workers);
+    [[nodiscard]] ClothVectors vectors_of(std::size_t sheet);
     void multiply_rows(std::span<const SheetSystem> sheets, std::size_t chunk);
+    template <class Kernel>
+    [[nodiscard]] double sum_of_chunk(std::size_t chunk, Kernel kernel);
     void add_springs(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
     void precondition_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
     void precondition_lines();
@@ -118,7 +105,9 @@ private:
     [[nodiscard]] double sum_of(const std::vector<double>& parts) const;
 
     std::vector<Block> own_, inverse_;  // node's own block, springs with it, and its inverse
-    std::vector<Float4> direction_, product_, residual_, better_, answer_;  // p, q, r, z, d
+    SliceBlocks own_blocks_, inverse_blocks_;
+    SliceVectors direction_, product_, residual_, better_, answer_;  // p, q, r, z, d
+    std::vector<Float4> quads_;                                      // p again where a matrix needs it
     std::vector<BodyMove> body_direction_, body_product_, body_residual_, body_better_, body_answer_;
     std::vector<BodyFactor> body_factors_;
     // Of nodes of lines; product: of the line's own factor, and with what couples it.
@@ -130,10 +119,12 @@ private:
     std::vector<bool> line_fixed_;
     std::vector<const BandCholesky*> factors_;
     std::vector<Chunk> chunks_;
-    std::vector<std::size_t> sheet_first_;
-    std::vector<std::uint32_t> coupled_;     // springs that neither the preconditioner's blocks nor links hold
-    std::vector<std::uint32_t> link_start_;  // by node, one more than nodes of sheets
-    std::vector<Link> links_;
+    std::vector<std::size_t> sheet_first_, sheet_slice_;  // node and slice where a sheet begins
+    std::vector<bool> needs_quads_;                       // a sheet
+    std::vector<std::uint32_t> place_;                    // of a node: lanes of all slices counted through
+    std::vector<std::uint32_t> coupled_;  // springs that neither the preconditioner's blocks nor links hold
+    std::vector<Link> links_;             // by row
+    const ClothRowKernels* kernels_ = &widest_cloth_row_kernels();
     std::vector<double> parts_, other_parts_;
     std::size_t nodes_ = 0;  // of sheets
     int workers_ = 1, rounds_ = 0;

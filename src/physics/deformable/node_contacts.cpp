@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "physics/deformable/node_contacts.h"
 
+#include <algorithm>
+
 namespace embody::physics {
 
-double way_of(const TouchedBody& body, double time_step) {
-    const Vec3 local_center = rotate(conjugate(body.start.rotation), body.start_center - body.start.position);
-    return (length(body.path_velocity) + length(body.path_spin) * body.shape->radius_about(local_center)) * time_step;
-}
+namespace {
 
-void find_node_contacts(const Nodes& nodes, std::span<const std::uint32_t> candidates, const CollisionShape& node_ball,
-                        double radius, std::span<const TouchedBody> bodies, double time_step, Vec3 gravity,
-                        std::vector<NodeContact>& contacts) {
+constexpr std::size_t worth_sharing = 500;  // nodes
+
+void find_share(const Nodes& nodes, std::span<const std::uint32_t> candidates, const CollisionShape& node_ball,
+                double radius, std::span<const TouchedBody> bodies, double time_step, Vec3 gravity,
+                std::vector<NodeContact>& contacts) {
     const double fall = length(gravity) * time_step;  // m/s
     std::vector<Manifold> manifolds;
     for (std::uint32_t b = 0; b < bodies.size(); ++b) {
@@ -30,6 +31,26 @@ void find_node_contacts(const Nodes& nodes, std::span<const std::uint32_t> candi
             }
         }
     }
+}
+
+}  // namespace
+
+double way_of(const TouchedBody& body, double time_step) {
+    const Vec3 local_center = rotate(conjugate(body.start.rotation), body.start_center - body.start.position);
+    return (length(body.path_velocity) + length(body.path_spin) * body.shape->radius_about(local_center)) * time_step;
+}
+
+void find_node_contacts(const Nodes& nodes, std::span<const std::uint32_t> candidates, const CollisionShape& node_ball,
+                        double radius, std::span<const TouchedBody> bodies, double time_step, Vec3 gravity,
+                        std::vector<NodeContact>& contacts, TaskPool& workers) {
+    std::vector<std::vector<NodeContact>> found(static_cast<std::size_t>(workers.workers()));
+    share_among(workers, candidates.size(), candidates.size() >= worth_sharing, [&](int worker, Share share) {
+        find_share(nodes, candidates.subspan(share.first, share.last - share.first), node_ball, radius, bodies,
+                   time_step, gravity, found[static_cast<std::size_t>(worker)]);
+    });
+    const std::size_t before = contacts.size();
+    for (const auto& part : found) contacts.insert(contacts.end(), part.begin(), part.end());
+    std::ranges::stable_sort(std::span(contacts).subspan(before), {}, &NodeContact::body);
 }
 
 double gap(const NodeContact& contact, Vec3 node_position, double radius, const TouchedBody& body, double time) {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "foundation/task_pool.h"
 #include "physics/deformable/nodes.h"
 #include "physics/deformable/touched_body.h"
 
@@ -19,7 +20,7 @@ struct NodeContact {
 /// nearest faces of that body as planes. `node_ball` is a sphere of that radius. Ordered by body, then as candidates.
 void find_node_contacts(const Nodes& nodes, std::span<const std::uint32_t> candidates, const CollisionShape& node_ball,
                         double radius, std::span<const TouchedBody> bodies, double time_step, Vec3 gravity,
-                        std::vector<NodeContact>& contacts);
+                        std::vector<NodeContact>& contacts, TaskPool& workers);
 
 /// How far a body's surface goes on its path within `time_step` (s), at most, m.
 double way_of(const TouchedBody& body, double time_step);

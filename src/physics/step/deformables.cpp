@@ -163,7 +163,8 @@ void find_contacts_of(const WorldState& world, const MovingDeformables& moving, 
         const bool is_there = world.bodies.find(attachment.body) != nullptr;
         thin.attachment_bodies.push_back(is_there ? moving.index_of(attachment.body.index) : no_body);
     }
-    find_thin_contacts(moving.bodies, colliding, world.settings.time_step, world.settings.gravity, thin);
+    find_thin_contacts(moving.bodies, colliding, world.settings.time_step, world.settings.gravity, thin,
+                       *world.workers);
 }
 
 // What sheets and ropes pushed the solids in their last substep.

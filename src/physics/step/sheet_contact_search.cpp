@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "physics/collision/collision_shape_data.h"
 #include "physics/deformable/box_grid.h"
@@ -17,7 +18,8 @@ constexpr double end_share = 0.02;  // of an edge or triangle: nearer to its end
 /// One body beside one sheet.
 class SheetSearch {
 public:
-    SheetSearch(const TouchedBody& body, std::uint32_t index, double time_step, Vec3 gravity, ThinDeformable& thin)
+    SheetSearch(const TouchedBody& body, std::uint32_t index, double time_step, Vec3 gravity, ThinDeformable& thin,
+                TaskPool& workers)
         : body_(body),
           index_(index),
           time_step_(time_step),
@@ -25,23 +27,33 @@ public:
           way_(way_of(body, time_step)),
           bounds_(body.shape->bounds(body.start)),
           thin_(thin),
+          workers_(workers),
           nodes_(thin.record->nodes()),
           radius_(thin.record->definition.contact_radius) {
         const auto of_body = std::ranges::equal_range(thin.contacts, index, {}, &NodeContact::body);
         planes_ = {of_body.begin(), of_body.end()};
+        first_plane_.assign(nodes_.size() + 1, 0);
+        for (const NodeContact& plane : planes_) ++first_plane_[plane.node + 1];
+        std::partial_sum(first_plane_.begin(), first_plane_.end(), first_plane_.begin());
     }
     void find_edges();
     void find_corners();
 
 private:
+    struct NearTriangle {
+        std::array<std::uint32_t, 3> node{};
+        Bounds box;  // as far as corners are looked for
+    };
     [[nodiscard]] std::span<const NodeContact> planes_of(std::uint32_t node) const {
-        const auto found = std::ranges::equal_range(planes_, node, {}, &NodeContact::node);
-        return {found.begin(), found.end()};
+        return std::span(planes_).subspan(first_plane_[node], first_plane_[node + 1] - first_plane_[node]);
     }
     [[nodiscard]] double reach(double speed) const { return 2 * radius_ + way_ + (speed + fall_) * time_step_; }
     [[nodiscard]] double speed(std::uint32_t node) const { return length(nodes_.mean_velocity[node]); }
     [[nodiscard]] bool is_over_same(std::uint32_t a, std::uint32_t b) const;
-    void find_edge(std::uint32_t a, std::uint32_t b, double reach);
+    void find_edge(std::uint32_t a, std::uint32_t b, double reach, std::vector<Manifold>& manifolds,
+                   std::vector<SheetContact>& found) const;
+    template <class Found, class Find>
+    [[nodiscard]] std::vector<Found> gather(std::size_t count, Find find) const;
     void gather_triangles();
     void find_corner(Vec3 point, Vec3 inside, double radius, std::uint32_t number, const auto& is_outwards);
 
@@ -50,12 +62,12 @@ private:
     double time_step_, fall_, way_;
     Bounds bounds_;
     ThinDeformable& thin_;
+    TaskPool& workers_;
     const Nodes& nodes_;
     double radius_;
-    std::vector<NodeContact> planes_;  // of nodes with the body
-    std::vector<Manifold> manifolds_;
-    std::vector<std::array<std::uint32_t, 3>> triangles_;  // that do not lie over one plane
-    std::vector<Bounds> boxes_;                            // of these, as far as corners are looked for
+    std::vector<NodeContact> planes_;         // of nodes with the body, by node
+    std::vector<std::uint32_t> first_plane_;  // of each node, one more than nodes
+    std::vector<NearTriangle> triangles_;     // that do not lie over one plane
     BoxGrid grid_;
 };
 
@@ -76,45 +88,64 @@ bool SheetSearch::is_over_same(std::uint32_t a, std::uint32_t b) const {
            std::ranges::all_of(of_b, [&](const NodeContact& plane) { return has_twin(plane, of_a); });
 }
 
-void SheetSearch::find_edge(std::uint32_t a, std::uint32_t b, double reach) {
+// All that find(share, found) finds, in the order of the shares.
+template <class Found, class Find>
+std::vector<Found> SheetSearch::gather(std::size_t count, Find find) const {
+    constexpr std::size_t worth_sharing = 1000;
+    std::vector<std::vector<Found>> parts(static_cast<std::size_t>(workers_.workers()));
+    share_among(workers_, count, count >= worth_sharing,
+                [&](int worker, Share share) { find(share, parts[static_cast<std::size_t>(worker)]); });
+    std::vector<Found> all = std::move(parts.front());
+    for (std::size_t w = 1; w < parts.size(); ++w) all.insert(all.end(), parts[w].begin(), parts[w].end());
+    return all;
+}
+
+void SheetSearch::find_edge(std::uint32_t a, std::uint32_t b, double reach, std::vector<Manifold>& manifolds,
+                            std::vector<SheetContact>& found) const {
     const Vec3 from = nodes_.position[a], edge = nodes_.position[b] - from;
     const double size = length(edge);
     if (!(size > 0)) return;
-    manifolds_.clear();
-    collide_capsule(from, from + edge, radius_, *body_.shape, body_.start, reach, manifolds_);
-    for (const Manifold& manifold : manifolds_) {
+    manifolds.clear();
+    collide_capsule(from, from + edge, radius_, *body_.shape, body_.start, reach, manifolds);
+    for (const Manifold& manifold : manifolds) {
         for (int k = 0; k < manifold.count; ++k) {
             const ManifoldPoint& point = manifold.points[static_cast<std::size_t>(k)];
             const double along = dot(point.position - from, edge) / (size * size);
             if (along < end_share || along > 1 - end_share) continue;
             const Vec3 normal = -manifold.normal;  // from the body to the sheet
             const Vec3 anchor = from + along * edge - (point.separation + radius_) * normal - body_.start_center;
-            thin_.sheet_contacts.push_back({{a, b}, {1 - along, along}, 2, {a, b}, {a, index_, anchor, normal, {}}});
+            found.push_back({{a, b}, {1 - along, along}, 2, {a, b}, {a, index_, anchor, normal, {}}});
         }
     }
 }
 
 void SheetSearch::find_edges() {
-    for (const auto& [a, b] : thin_.record->cloth->edges()) {
-        const double far = reach(std::max(speed(a), speed(b)));
-        Bounds box;
-        box.add(nodes_.position[a]);
-        box.add(nodes_.position[b]);
-        if (!overlaps(enlarged(bounds_, far), box) || is_over_same(a, b)) continue;
-        find_edge(a, b, far);
-    }
+    const auto edges = thin_.record->cloth->edges();
+    const auto found = gather<SheetContact>(edges.size(), [&](Share share, std::vector<SheetContact>& contacts) {
+        std::vector<Manifold> manifolds;
+        for (const auto& [a, b] : edges.subspan(share.first, share.last - share.first)) {
+            const double far = reach(std::max(speed(a), speed(b)));
+            Bounds box;
+            box.add(nodes_.position[a]);
+            box.add(nodes_.position[b]);
+            if (overlaps(enlarged(bounds_, far), box) && !is_over_same(a, b)) find_edge(a, b, far, manifolds, contacts);
+        }
+    });
+    thin_.sheet_contacts.insert(thin_.sheet_contacts.end(), found.begin(), found.end());
 }
 
 void SheetSearch::gather_triangles() {
-    for (const auto& triangle : std::get<Cloth>(thin_.record->definition.matter).triangles) {
-        const auto [a, b, c] = triangle;
-        Bounds box;
-        for (const std::uint32_t node : triangle) box.add(nodes_.position[node]);
-        box = enlarged(box, reach(std::max({speed(a), speed(b), speed(c)})));
-        if (!overlaps(bounds_, box) || (is_over_same(a, b) && is_over_same(b, c))) continue;
-        triangles_.push_back(triangle);
-        boxes_.push_back(box);
-    }
+    const auto& triangles = std::get<Cloth>(thin_.record->definition.matter).triangles;
+    triangles_ = gather<NearTriangle>(triangles.size(), [&](Share share, std::vector<NearTriangle>& near) {
+        for (std::size_t t = share.first; t < share.last; ++t) {
+            const auto [a, b, c] = triangles[t];
+            Bounds box;
+            for (const std::uint32_t node : triangles[t]) box.add(nodes_.position[node]);
+            box = enlarged(box, reach(std::max({speed(a), speed(b), speed(c)})));
+            if (overlaps(bounds_, box) && !(is_over_same(a, b) && is_over_same(b, c)))
+                near.push_back({triangles[t], box});
+        }
+    });
 }
 
 // `inside`: a point of the body well below it; `is_outwards(n)`: whether what is around the point lies below it as seen
@@ -125,7 +156,7 @@ void SheetSearch::find_corner(Vec3 point, Vec3 inside, double radius, std::uint3
     std::ranges::sort(near);
     near.erase(std::unique(near.begin(), near.end()), near.end());
     for (const std::uint32_t t : near) {
-        const auto& triangle = triangles_[t];
+        const auto& triangle = triangles_[t].node;
         const std::vector<Vec3>& x = nodes_.position;
         const Vec3 a = x[triangle[0]], b = x[triangle[1]], c = x[triangle[2]];
         const auto weight = nearest_weights(point, a, b, c);
@@ -143,7 +174,9 @@ void SheetSearch::find_corners() {
     constexpr std::uint32_t most_corners = 1u << 16;  // of a piece
     gather_triangles();
     if (triangles_.empty()) return;
-    grid_.fill(boxes_, thin_.record->cloth->edge_length());
+    std::vector<Bounds> boxes;
+    for (const NearTriangle& triangle : triangles_) boxes.push_back(triangle.box);
+    grid_.fill(boxes, thin_.record->cloth->edge_length());
     const std::vector<ConvexPiece>& pieces = body_.shape->data().pieces;
     for (std::uint32_t p = 0; p < pieces.size(); ++p) {
         const PlacedConvex piece = place(pieces[p], body_.start, {});
@@ -172,11 +205,11 @@ void SheetSearch::find_corners() {
 }  // namespace
 
 void find_sheet_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide, double time_step,
-                         Vec3 gravity, ThinDeformable& thin) {
+                         Vec3 gravity, ThinDeformable& thin, TaskPool& workers) {
     for (std::uint32_t b = 0; b < bodies.size(); ++b) {
         // Nodes tell all of a plane.
         if (!may_collide[b] || std::holds_alternative<PlaneShape>(bodies[b].shape->definition())) continue;
-        SheetSearch search(bodies[b], b, time_step, gravity, thin);
+        SheetSearch search(bodies[b], b, time_step, gravity, thin, workers);
         search.find_edges();
         search.find_corners();
     }

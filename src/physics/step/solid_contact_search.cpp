@@ -55,7 +55,7 @@ public:
         std::vector<std::uint32_t> all(solid.nodes().size());
         std::iota(all.begin(), all.end(), 0u);
         find_node_contacts(solid.nodes(), all, *record_.node_ball, radius(), colliding_, world_.settings.time_step,
-                           world_.settings.gravity, found);
+                           world_.settings.gravity, found, *world_.workers);
         for (auto first = found.begin(); first != found.end();) {
             const auto last = std::find_if(first, found.end(), [&](const auto& at) { return at.body != first->body; });
             add_node_contacts(colliding_[first->body], std::span(first, last), contacts);

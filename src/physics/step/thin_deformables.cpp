@@ -56,7 +56,7 @@ std::span<const TouchSpring> springs_of(const DeformableRecord& record) {
 }
 
 void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide, double time_step,
-                        Vec3 gravity, ThinDeformable& thin) {
+                        Vec3 gravity, ThinDeformable& thin, TaskPool& workers) {
     const DeformableRecord& record = *thin.record;
     std::vector<std::uint32_t> all(record.nodes().size());
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
@@ -68,12 +68,12 @@ void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<b
         place.push_back(b);
     }
     find_node_contacts(record.nodes(), all, *record.node_ball, record.definition.contact_radius, colliding, time_step,
-                       gravity, thin.contacts);
+                       gravity, thin.contacts, workers);
     for (NodeContact& contact : thin.contacts) contact.body = place[contact.body];
     if (record.rope)
         find_segment_contacts(bodies, may_collide, time_step, gravity, thin);
     else
-        find_sheet_contacts(bodies, may_collide, time_step, gravity, thin);
+        find_sheet_contacts(bodies, may_collide, time_step, gravity, thin, workers);
 }
 
 void advance_thin(ThinDeformable& thin, const Substep& substep, std::span<TouchedBody> bodies, TaskPool& workers) {

@@ -21,7 +21,7 @@ struct ThinDeformable {
 
 /// What it may touch in a step of `time_step` seconds. `may_collide`: for each of `bodies`, those of the step.
 void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide, double time_step,
-                        Vec3 gravity, ThinDeformable& thin);
+                        Vec3 gravity, ThinDeformable& thin, TaskPool& workers);
 /// One substep of it; pushes the bodies.
 void advance_thin(ThinDeformable& thin, const Substep& substep, std::span<TouchedBody> bodies, TaskPool& workers);
 /// Its contacts and attachments in the last substep.

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+//
+// How the equations of a sheet lie in memory, and what a round of conjugate gradients does with them. Only numbers
+// here: kernels include this file, and inline code would be merged across instruction sets.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace embody::physics {
+
+/// Nodes that lie side by side, a lane each: a slice.
+inline constexpr std::size_t slice_rows = 16;
+/// Floats of a 3 × 3 block for each node of a slice: element (r, c) of lane l is at (3 c + r) slice_rows + l.
+inline constexpr std::size_t slice_block = 9 * slice_rows;
+
+/// Elements beside the diagonal. Slot k holds one of each row of a slice, zero where a row has none there: of slice s
+/// the slots from start[s] to start[s + 1]. Those before rest[s] lie on one diagonal, offset[k] columns from each row;
+/// of the others `column` names slice_rows columns a slot.
+struct ClothSlots {
+    const std::uint32_t *start, *rest;
+    const std::int32_t* offset;
+    const std::uint32_t* column;
+    const float* value;
+};
+
+/// A matrix of 3 × 3 blocks over the nodes of a sheet.
+struct ClothRows {
+    ClothSlots near;   ///< blocks: slice_block floats a slot
+    ClothSlots far;    ///< multiples of the identity: slice_rows floats a slot
+    const float* own;  ///< the diagonal: slice_block floats a slice
+};
+
+/// Vectors over nodes: x of all, then y and z, `stride` floats apart; zero in lanes beyond the last node. Begins of the
+/// sheet that a kernel works on.
+struct ClothVectors {
+    std::size_t stride;
+    float *direction, *product, *residual, *better, *answer;
+    float* quads;          ///< direction again, x y z 0 of each node; null where no slot names columns
+    const float* inverse;  ///< of the preconditioner: slice_block floats a slice
+};
+
+/// All work on the slices from `first` to below `last`. `sums`: slice_rows partial sums that are added to. Any width of
+/// the processor's registers gives the same bits.
+struct ClothRowKernels {
+    /// direction = better + turn direction.
+    void (*turn)(const ClothVectors& of, float turn, std::size_t first, std::size_t last);
+    /// product = matrix direction; sums += direction · product. A row's elements are added in order: its own, near, far
+    /// ones.
+    void (*multiply)(const ClothRows& matrix, const ClothVectors& of, std::size_t first, std::size_t last,
+                     double* sums);
+    /// answer += way direction, residual −= way product, better = inverse residual; sums += better · residual.
+    void (*advance)(const ClothVectors& of, float way, std::size_t first, std::size_t last, double* sums);
+    /// sums += better · residual.
+    void (*dot)(const ClothVectors& of, std::size_t first, std::size_t last, double* sums);
+};
+
+/// Of 4, 8 or 16 floats side by side; nothing where this processor has none of that width.
+const ClothRowKernels* cloth_row_kernels(int lanes);
+/// The widest that this processor has.
+const ClothRowKernels& widest_cloth_row_kernels();
+
+}  // namespace embody::physics

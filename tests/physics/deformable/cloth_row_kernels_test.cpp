@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "physics/deformable/cloth_row_kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "foundation/random.h"
+#include "physics/deformable/cloth_matrix.h"
+
+namespace embody::physics {
+namespace {
+
+struct Element {
+    std::size_t row, column;
+    Mat3 block;
+};
+
+Float4 random_vector(Random& random) {
+    return to_float4({random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)});
+}
+
+Mat3 random_matrix(Random& random) {
+    const auto column = [&] { return to_vec3(random_vector(random)); };
+    return {column(), column(), column()};
+}
+
+/// A grid of nodes, row by row or in any order, each with its neighbours and those two steps off.
+struct Sheet {
+    static constexpr int side = 21;
+    static constexpr std::size_t count = std::size_t{side} * side, slices = (count + slice_rows - 1) / slice_rows;
+    ClothMatrix matrix;
+    SliceBlocks own, inverse;
+    SliceVectors direction, product, residual, better, answer;
+    std::vector<Float4> quads = std::vector<Float4>(slices * slice_rows);
+    std::vector<Element> elements;
+
+    explicit Sheet(bool in_order) {
+        Random random(5);
+        std::vector<std::uint32_t> number(count);
+        for (std::size_t i = 0; i < count; ++i) number[i] = static_cast<std::uint32_t>(i);
+        for (std::size_t i = count; !in_order && i-- > 1;)
+            std::swap(number[i], number[static_cast<std::size_t>(random.between(0, static_cast<double>(i)))]);
+        std::vector<std::vector<std::uint32_t>> near(count), far(count);
+        for (int x = 0; x < side; ++x) {
+            for (int y = 0; y < side; ++y) {
+                for (const auto& [u, v, is_near] :
+                     {std::array{0, 1, 1}, {1, 0, 1}, {1, 1, 1}, {0, 2, 0}, {2, 0, 0}, {1, 2, 0}}) {
+                    if (x + u >= side || y + v >= side) continue;
+                    const std::uint32_t a = number[static_cast<std::size_t>(x * side + y)],
+                                        b = number[static_cast<std::size_t>((x + u) * side + y + v)];
+                    (is_near == 1 ? near : far)[a].push_back(b);
+                    (is_near == 1 ? near : far)[b].push_back(a);
+                }
+            }
+        }
+        for (auto* rows : {&near, &far}) {
+            for (auto& row : *rows) std::ranges::sort(row);
+        }
+        matrix.set_pattern(near, far);
+        for (auto* blocks : {&own, &inverse}) blocks->resize(slices);
+        for (auto* vector : {&direction, &product, &residual, &better, &answer}) vector->resize(slices);
+        for (std::size_t row = 0; row < count; ++row) {
+            for (std::size_t k = 0; k < near[row].size(); ++k) {
+                const Mat3 block = random_matrix(random);
+                matrix.set_near(row, k, to_block(block));
+                elements.push_back({row, near[row][k], block});
+            }
+            for (std::size_t k = 0; k < far[row].size(); ++k) {
+                const auto value = static_cast<float>(random.between(-1, 1));
+                matrix.set_far(row, k, value);
+                elements.push_back({row, far[row][k], static_cast<double>(value) * Mat3::identity()});
+            }
+            const Mat3 block = random_matrix(random);
+            elements.push_back({row, row, block});
+            own.set(row / slice_rows, row % slice_rows, to_block(block));
+            inverse.set(row / slice_rows, row % slice_rows, to_block(random_matrix(random)));
+            for (auto* vector : {&direction, &residual, &better, &answer}) vector->set(row, random_vector(random));
+        }
+    }
+    ClothVectors vectors() {
+        return {.stride = direction.stride(),
+                .direction = direction.slice(0),
+                .product = product.slice(0),
+                .residual = residual.slice(0),
+                .better = better.slice(0),
+                .answer = answer.slice(0),
+                .quads = matrix.needs_quads() ? reinterpret_cast<float*>(quads.data()) : nullptr,
+                .inverse = inverse.slice(0)};
+    }
+    /// A round, in two pieces; all that comes of it.
+    std::vector<double> round(const ClothRowKernels& kernels) {
+        std::array<double, slice_rows> bend{}, size{}, again{};
+        const ClothVectors all = vectors();
+        const ClothRows rows = matrix.rows(own.slice(0));
+        constexpr std::size_t middle = slices / 2;
+        for (const auto& [first, last] : {std::array{std::size_t{0}, middle}, {middle, slices}})
+            kernels.turn(all, 0.7f, first, last);
+        for (const auto& [first, last] : {std::array{std::size_t{0}, middle}, {middle, slices}}) {
+            kernels.multiply(rows, all, first, last, bend.data());
+            kernels.advance(all, 0.3f, first, last, size.data());
+            kernels.dot(all, first, last, again.data());
+        }
+        std::vector<double> result;
+        for (const auto* sums : {&bend, &size, &again}) result.insert(result.end(), sums->begin(), sums->end());
+        for (const auto* vector : {&direction, &product, &residual, &better, &answer}) {
+            for (std::size_t i = 0; i < count; ++i) {
+                const Vec3 v = to_vec3(vector->at(i));
+                result.insert(result.end(), {v.x, v.y, v.z});
+            }
+        }
+        return result;
+    }
+};
+
+class ClothRowKernelTest : public testing::TestWithParam<bool> {};
+
+TEST_P(ClothRowKernelTest, MultipliesAsTheMatrixDoes) {
+    Sheet sheet(GetParam());
+    std::vector<Vec3> direction(Sheet::count), expected(Sheet::count);
+    for (std::size_t i = 0; i < Sheet::count; ++i)
+        direction[i] = to_vec3(sheet.better.at(i)) + 0.7 * to_vec3(sheet.direction.at(i));
+    double bend = 0;
+    for (const Element& element : sheet.elements) expected[element.row] += element.block * direction[element.column];
+    for (std::size_t i = 0; i < Sheet::count; ++i) bend += dot(expected[i], direction[i]);
+    const std::vector<double> result = sheet.round(widest_cloth_row_kernels());
+    double sum = 0;
+    for (std::size_t lane = 0; lane < slice_rows; ++lane) sum += result[lane];
+    EXPECT_NEAR(sum, bend, 1e-4 * std::abs(bend));
+    for (std::size_t i = 0; i < Sheet::count; ++i)
+        EXPECT_LT(length(to_vec3(sheet.product.at(i)) - expected[i]), 1e-5 * (1 + length(expected[i])));
+}
+
+TEST_P(ClothRowKernelTest, AnyNumberOfLanesGivesTheSameBits) {
+    const std::vector<double> expected = Sheet(GetParam()).round(*cloth_row_kernels(4));
+    int compared = 0;
+    for (const int lanes : {8, 16}) {
+        const ClothRowKernels* kernels = cloth_row_kernels(lanes);
+        if (!kernels) continue;
+        EXPECT_EQ(Sheet(GetParam()).round(*kernels), expected) << lanes;
+        ++compared;
+    }
+    if (compared == 0) GTEST_SKIP() << "this processor has no wider registers";
+}
+
+INSTANTIATE_TEST_SUITE_P(Sheets, ClothRowKernelTest, testing::Bool());
+
+}  // namespace
+}  // namespace embody::physics
