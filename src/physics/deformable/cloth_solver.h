@@ -50,6 +50,8 @@ public:
     int most_rounds = 200;
 
 private:
+    static constexpr std::size_t worth_sharing = 1000;  // nodes
+
     struct BodyFactor {
         std::array<double, 36> factor{};  // of its mass and what springs add, what nodes give way taken off
     };
