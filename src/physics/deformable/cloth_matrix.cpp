@@ -29,7 +29,7 @@ void ClothMatrix::Slots::make(std::span<const std::vector<std::uint32_t>> rows) 
         for (std::size_t lane = 0; lane < slice.size(); ++lane) {
             for (const std::uint32_t other : slice[lane]) ++counts[offset_of(lane, other)];
         }
-        // What other rows than those that have such an element read there must exist.
+        // All rows of the slice read along a band: each place must exist.
         std::map<std::int32_t, std::uint32_t> slot_of;
         for (const auto& [along, count] : counts) {
             const std::int64_t from = static_cast<std::int64_t>(begin) + along;
@@ -61,13 +61,6 @@ void ClothMatrix::Slots::make(std::span<const std::vector<std::uint32_t>> rows) 
 
 ClothSlots ClothMatrix::Slots::view(const float* value) const {
     return {start.data(), rest.data(), offset.data(), column.data(), value};
-}
-
-bool ClothMatrix::Slots::has_rest() const {
-    for (std::size_t slice = 0; slice < rest.size(); ++slice) {
-        if (rest[slice] < start[slice + 1]) return true;
-    }
-    return false;
 }
 
 void ClothMatrix::set_pattern(std::span<const std::vector<std::uint32_t>> near,

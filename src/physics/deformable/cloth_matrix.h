@@ -47,7 +47,7 @@ public:
     void resize(std::size_t slices) { values_.assign(slices * (slice_block / slice_rows), {}); }
     void set(std::size_t slice, std::size_t lane, const Block& block);
     [[nodiscard]] const float* slice(std::size_t slice) const {
-        return values_.data()->lane.data() + slice * slice_block;
+        return values_.empty() ? nullptr : values_.data()->lane.data() + slice * slice_block;
     }
 
 private:
@@ -59,7 +59,9 @@ class SliceVectors {
 public:
     void resize(std::size_t slices) { values_.assign(3 * slices, {}); }
     [[nodiscard]] std::size_t stride() const { return values_.size() / 3 * slice_rows; }
-    [[nodiscard]] float* slice(std::size_t slice) { return values_.data()->lane.data() + slice * slice_rows; }
+    [[nodiscard]] float* slice(std::size_t slice) {
+        return values_.empty() ? nullptr : values_.data()->lane.data() + slice * slice_rows;
+    }
     /// `place`: slice_rows a slice.
     [[nodiscard]] Float4 at(std::size_t place) const {
         const float* x = values_.data()->lane.data() + place;
@@ -82,7 +84,6 @@ public:
     /// Columns of each row's elements beside the diagonal, ascending; all elements zero.
     void set_pattern(std::span<const std::vector<std::uint32_t>> near, std::span<const std::vector<std::uint32_t>> far);
 
-    [[nodiscard]] std::size_t size() const { return diagonal.size(); }
     /// Of the row's elements in the order of their columns.
     void set_near(std::size_t row, std::size_t which, const Block& block) {
         near_blocks_.set(near_.slot[near_.first[row] + which], row % slice_rows, block);
@@ -90,13 +91,11 @@ public:
     void set_far(std::size_t row, std::size_t which, float value) {
         far_values_[far_.slot[far_.first[row] + which]].lane[row % slice_rows] = value;
     }
-    /// A number for each element near the diagonal, row by row: of the row's first, one more than rows.
+    /// Where a row's near elements begin when all are counted row by row; of the row after the last, their number.
     [[nodiscard]] std::size_t near_first(std::size_t row) const { return near_.first[row]; }
 
     /// For the kernels, with `own` on the diagonal.
     [[nodiscard]] ClothRows rows(const float* own) const;
-    /// Whether any slot names its columns.
-    [[nodiscard]] bool needs_quads() const { return near_.has_rest() || far_.has_rest(); }
 
     std::vector<Block> diagonal;
 
@@ -108,7 +107,6 @@ private:
 
         void make(std::span<const std::vector<std::uint32_t>> rows);
         [[nodiscard]] ClothSlots view(const float* value) const;
-        [[nodiscard]] bool has_rest() const;
     };
     Slots near_, far_;
     SliceBlocks near_blocks_;

@@ -59,7 +59,7 @@ void turn(const ClothVectors& of, float turn, std::size_t first, std::size_t las
         const Wide3 direction =
             load_planes(of.better + row, of.stride) + load_planes(of.direction + row, of.stride) * by;
         store_planes(of.direction + row, of.stride, direction);
-        if (of.quads) store_quads(of.quads + 4 * row, direction);
+        store_quads(of.quads + 4 * row, direction);
     }
 }
 

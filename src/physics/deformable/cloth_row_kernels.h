@@ -16,7 +16,7 @@ inline constexpr std::size_t slice_block = 9 * slice_rows;
 
 /// Elements beside the diagonal. Slot k holds one of each row of a slice, zero where a row has none there: of slice s
 /// the slots from start[s] to start[s + 1]. Those before rest[s] lie on one diagonal, offset[k] columns from each row;
-/// of the others `column` names slice_rows columns a slot.
+/// of the others `column` names slice_rows columns a slot (what it has for bands is not read).
 struct ClothSlots {
     const std::uint32_t *start, *rest;
     const std::int32_t* offset;
@@ -36,7 +36,7 @@ struct ClothRows {
 struct ClothVectors {
     std::size_t stride;
     float *direction, *product, *residual, *better, *answer;
-    float* quads;          ///< direction again, x y z 0 of each node; null where no slot names columns
+    float* quads;          ///< direction again, x y z 0 of each node, for slots that name columns
     const float* inverse;  ///< of the preconditioner: slice_block floats a slice
 };
 
@@ -45,8 +45,8 @@ struct ClothVectors {
 struct ClothRowKernels {
     /// direction = better + turn direction.
     void (*turn)(const ClothVectors& of, float turn, std::size_t first, std::size_t last);
-    /// product = matrix direction; sums += direction · product. A row's elements are added in order: its own, near, far
-    /// ones.
+    /// product = matrix direction; sums += direction · product. Added in order: a row's own element, then near and far
+    /// ones slot by slot.
     void (*multiply)(const ClothRows& matrix, const ClothVectors& of, std::size_t first, std::size_t last,
                      double* sums);
     /// answer += way direction, residual −= way product, better = inverse residual; sums += better · residual.

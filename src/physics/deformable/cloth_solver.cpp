@@ -74,7 +74,7 @@ ClothVectors ClothSolver::vectors_of(std::size_t sheet) {
             .residual = residual_.slice(slice),
             .better = better_.slice(slice),
             .answer = answer_.slice(slice),
-            .quads = needs_quads_[sheet] ? reinterpret_cast<float*>(quads_.data() + slice * slice_rows) : nullptr,
+            .quads = reinterpret_cast<float*>(quads_.data() + slice * slice_rows),
             .inverse = inverse_blocks_.slice(slice)};
 }
 
@@ -276,7 +276,7 @@ double ClothSolver::guess(std::span<const SheetSystem> sheets, std::span<const L
             const Float4 move = sheets[s].fixed[i] != 0 ? Float4{} : to_float4(moves[at]);
             answer_.set(place_[at], move);
             direction_.set(place_[at], move);
-            if (!quads_.empty()) quads_[place_[at]] = move;
+            quads_[place_[at]] = move;
             const Float4 small = to_float4(sheets[s].small_load[i]);
             load += product(operator_times(inverse_[at], small), small);
         }

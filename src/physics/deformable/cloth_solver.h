@@ -109,7 +109,7 @@ private:
     std::vector<Block> own_, inverse_;  // node's own block, springs with it, and its inverse
     SliceBlocks own_blocks_, inverse_blocks_;
     SliceVectors direction_, product_, residual_, better_, answer_;  // p, q, r, z, d
-    std::vector<Float4> quads_;                                      // p again where a matrix needs it
+    std::vector<Float4> quads_;                                      // p again, node by node
     std::vector<BodyMove> body_direction_, body_product_, body_residual_, body_better_, body_answer_;
     std::vector<BodyFactor> body_factors_;
     // Of nodes of lines; product: of the line's own factor, and with what couples it.
@@ -122,7 +122,6 @@ private:
     std::vector<const BandCholesky*> factors_;
     std::vector<Chunk> chunks_;
     std::vector<std::size_t> sheet_first_, sheet_slice_;  // node and slice where a sheet begins
-    std::vector<bool> needs_quads_;                       // a sheet
     std::vector<std::uint32_t> place_;                    // of a node: lanes of all slices counted through
     std::vector<std::uint32_t> coupled_;  // springs that neither the preconditioner's blocks nor links hold
     std::vector<Link> links_;             // by row

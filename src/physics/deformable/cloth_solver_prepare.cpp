@@ -53,14 +53,12 @@ void ClothSolver::lay_out(std::span<const SheetSystem> sheets, std::span<const L
     chunks_.clear();
     sheet_first_.clear();
     sheet_slice_.clear();
-    needs_quads_.clear();
     place_.clear();
     std::size_t slices = 0;
     for (std::size_t s = 0; s < sheets.size(); ++s) {
         const std::size_t count = sheets[s].rhs.size(), own_slices = slices_for(count);
         sheet_first_.push_back(nodes_);
         sheet_slice_.push_back(slices);
-        needs_quads_.push_back(sheets[s].matrix->needs_quads());
         for (std::size_t i = 0; i < count; ++i) place_.push_back(static_cast<std::uint32_t>(slices * slice_rows + i));
         for (std::size_t first = 0; first < own_slices; first += chunk_slices)
             chunks_.push_back({s, first, std::min(own_slices, first + chunk_slices)});
@@ -78,7 +76,7 @@ void ClothSolver::lay_out(std::span<const SheetSystem> sheets, std::span<const L
     for (auto* vector : {&direction_, &product_, &residual_, &better_, &answer_}) vector->resize(slices);
     own_blocks_.resize(slices);
     inverse_blocks_.resize(slices);
-    quads_.assign(std::ranges::count(needs_quads_, true) > 0 ? slices * slice_rows : 0, Float4{});
+    quads_.assign(slices * slice_rows, Float4{});
     for (auto* vector : {&line_direction_, &line_own_product_, &line_product_, &line_residual_, &line_better_,
                          &line_answer_, &line_own_better_})
         vector->assign(line_of_.size(), {});

@@ -44,10 +44,11 @@ void find_node_contacts(const Nodes& nodes, std::span<const std::uint32_t> candi
                         double radius, std::span<const TouchedBody> bodies, double time_step, Vec3 gravity,
                         std::vector<NodeContact>& contacts, TaskPool& workers) {
     std::vector<std::vector<NodeContact>> found(static_cast<std::size_t>(workers.workers()));
-    share_among(workers, candidates.size(), candidates.size() >= worth_sharing, [&](int worker, Share share) {
-        find_share(nodes, candidates.subspan(share.first, share.last - share.first), node_ball, radius, bodies,
-                   time_step, gravity, found[static_cast<std::size_t>(worker)]);
-    });
+    share_among(workers, candidates.size(), !bodies.empty() && candidates.size() >= worth_sharing,
+                [&](int worker, Share share) {
+                    find_share(nodes, candidates.subspan(share.first, share.last - share.first), node_ball, radius,
+                               bodies, time_step, gravity, found[static_cast<std::size_t>(worker)]);
+                });
     const std::size_t before = contacts.size();
     for (const auto& part : found) contacts.insert(contacts.end(), part.begin(), part.end());
     std::ranges::stable_sort(std::span(contacts).subspan(before), {}, &NodeContact::body);

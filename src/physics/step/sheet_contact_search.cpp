@@ -206,9 +206,20 @@ void SheetSearch::find_corners() {
 
 void find_sheet_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide, double time_step,
                          Vec3 gravity, ThinDeformable& thin, TaskPool& workers) {
+    const Nodes& nodes = thin.record->nodes();
+    Bounds sheet;
+    double fastest = 0;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        sheet.add(nodes.position[i]);
+        fastest = std::max(fastest, length(nodes.mean_velocity[i]));
+    }
+    const double own_reach =
+        2 * thin.record->definition.contact_radius + (fastest + length(gravity) * time_step) * time_step;
     for (std::uint32_t b = 0; b < bodies.size(); ++b) {
         // Nodes tell all of a plane.
         if (!may_collide[b] || std::holds_alternative<PlaneShape>(bodies[b].shape->definition())) continue;
+        const double reach = own_reach + way_of(bodies[b], time_step);
+        if (!overlaps(enlarged(bodies[b].shape->bounds(bodies[b].start), reach), sheet)) continue;
         SheetSearch search(bodies[b], b, time_step, gravity, thin, workers);
         search.find_edges();
         search.find_corners();
