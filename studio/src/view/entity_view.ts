@@ -240,6 +240,8 @@ export class EntityView {
       // It may have become another thing while the mesh was on its way.
       if (skin && this.document.entity(index) === entity && this.softs.skinOf(index) === skin) {
         this.join(entity, key, () => skin.drawable);
+        // Never at rest, where its nodes are not.
+        this.place(index, performance.now());
         this.pointed.emit(index);
       } else if (skin) {
         this.discard(entity, skin.drawable);
