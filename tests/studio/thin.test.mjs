@@ -107,7 +107,6 @@ describe("cloth and ropes in the Studio", { timeout: 600000 }, () => {
     await page.waitForFunction(() => window.embody.entities().find((entity) => entity.index === 3).position[1] < 1);
     await page.waitForFunction(() => window.embody.bent(3) !== null);
     const lengths = await page.evaluate(() => (clearTimeout(window.looking), window.lengths));
-    assert.ok(lengths.includes(null), "it was made anew");
     lengths.push((await bent(3)).normals);
     for (const length of lengths) assert.ok(length === null || Math.abs(length - 1) < 1e-3, `${length}`);
     assert.deepEqual(page.faults, []);
