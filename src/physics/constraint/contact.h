@@ -84,6 +84,7 @@ struct ContactGlance {
     bool touches : 1 = false;  ///< in this step, once it was solved
     bool is_sunk : 1 = false;  ///< deeper than its load explains, once it was solved
     bool is_kept : 1 = false;  ///< as in the last step: both bodies stand
+    bool is_idle : 1 = false;  ///< connects nothing: its bodies fly free and keep apart through the step
 };
 static_assert(sizeof(ContactGlance) == 16);
 

@@ -22,11 +22,6 @@ constexpr double mend_speed = 3;     // m/s, at most
 constexpr double mend_gap = 1e-7;    // m: in motion smaller ones are let be
 // Products of 6×6 blocks, of a round and of all lists of a step, where the sweeps would do as well.
 constexpr std::size_t most_products_slow = 16000, most_products_step = 60000;
-constexpr double least_turn = 1e-3;  // rad in a step: slower, the inertia hardly turns with the body
-
-bool has_gyroscopic_torque(const BodyState& state, const BodyConstants& constants, double time) {
-    return !constants.is_isotropic && length_squared(state.angular_velocity) * time * time > least_turn * least_turn;
-}
 
 // How the point moved with the body in this step; on a round body only the tilt counts (contact.cpp).
 Vec3 motion_at(Vec3 way, const Quat& turn, Vec3 arm, bool is_round) {
@@ -180,8 +175,10 @@ void DirectContactSolver::gather(const List& list, std::span<const BodyState> bo
         BodyState state = bodies[motion.slot];
         const BodyConstants& c = constants[motion.slot];
         state.hidden_momentum = {};
-        if (has_gyroscopic_torque(state, c, substep_ * substeps_)) split_gyroscopic(state, c, substep_ * substeps_);
+        const double step = substep_ * substeps_;
+        if (has_gyroscopic_torque(state, c, step)) split_gyroscopic_of_turns(state, c, step, substeps);
         motion.hidden_momentum = state.hidden_momentum;
+        motion.hidden_energy = state.hidden_energy;
         motion.kick = make_vec6(c.acceleration * h_, state.inverse_inertia * (c.torque * h_));
         motion.linear_damping = 1 / (1 + h_ * c.linear_damping);
         motion.angular_damping = 1 / (1 + h_ * c.angular_damping);
@@ -210,14 +207,8 @@ void DirectContactSolver::scatter(std::span<BodyState> bodies, std::span<const B
         state.linear_velocity = velocity_[i].linear();
         state.angular_velocity = velocity_[i].angular();
         state.hidden_momentum = motion.hidden_momentum;
-
-        // The momentum that turned with the mean velocity belongs to another velocity of the turned body.
-        const bool has_hidden = state.hidden_momentum != Vec3{};
-        const Vec3 momentum = has_hidden ? momentum_of(state, c) : Vec3{};
-        state.turn = motion.turn;
-        state.rotation = normalized(motion.turn * state.start_rotation);
-        refresh_inertia(state, c);
-        if (has_hidden) state.angular_velocity = state.inverse_inertia * momentum;
+        state.hidden_energy = motion.hidden_energy;
+        if (motion.turn != state.turn) finish_turn(state, c, motion.turn);
     }
     for (const DirectPatch& patch : patches_) {
         write_patch(patch, static_cast<double>(substeps) / substeps_, contacts[patch.contact]);

@@ -53,6 +53,7 @@ private:
         Vec3 way;                                        // of the centre of mass, m
         Quat turn;
         Vec3 hidden_momentum;  // as in BodyState
+        double hidden_energy = 0;
     };
 
     void number_bodies(std::span<const std::uint32_t> slots, std::size_t all);

@@ -267,7 +267,8 @@ ImpactOutcome solve_frictional_impact(const Mat3& inverse_mass, Vec3 velocity, c
     outcome.compression_velocity = state.velocity;
 
     const double compression_work = -state.normal_work;
-    release(inverse_mass, coefficients, coefficients.restitution * coefficients.restitution * compression_work, state);
+    const double work = coefficients.restitution * coefficients.restitution * compression_work;
+    release(inverse_mass, coefficients, work, state, {.stop_speed = stop_share * length(velocity)});
     outcome.velocity_after = velocity + inverse_mass * state.impulse;
     outcome.impulse = state.impulse;
     outcome.sticks = state.sticks;

@@ -19,6 +19,8 @@ namespace embody::physics {
 
 namespace {
 
+constexpr double slide_rounding = 1e-5;  // of the approach: what a followed slide may be wrong by at its end
+
 Vec3 velocity_of(const ImpactSite& s, std::span<const BodyState> bodies) {
     return velocity_at(bodies[s.b], s.arm_b) - velocity_at(bodies[s.a], s.arm_a);
 }
@@ -123,7 +125,7 @@ int compress_all(std::vector<ImpactWork>& works, std::span<BodyState> bodies, Sl
     // Many sites need not come to the last digit: the substeps hold what is left.
     const bool is_rough = works.size() > 8 || path == SlidePath::estimated;
     const double tolerance = (path == SlidePath::estimated ? 1e-2 : is_rough ? 1e-2 : 1e-4) * fastest + 1e-12;
-    const ImpactPrecision fine{.step_share = 0.25, .end_share = 1e-6, .stop_speed = 1e-5 * fastest};
+    const ImpactPrecision fine{.step_share = 0.25, .end_share = 1e-6, .stop_speed = slide_rounding * fastest};
     const ImpactPrecision coarse{.step_share = 0.5, .end_share = 1e-3, .stop_speed = 1e-3 * fastest};
     const std::size_t most_rounds = 64 + 64 * works.size();
     for (std::size_t round = 0; round < most_rounds; ++round) {
@@ -155,8 +157,10 @@ int compress_all(std::vector<ImpactWork>& works, std::span<BodyState> bodies, Sl
 
 // Stronge's expansion of a site that collided alone.
 void expand_alone(ImpactWork& work, std::span<BodyState> bodies, SlidePath path) {
-    const ImpactPrecision precision =
+    ImpactPrecision precision =
         path == SlidePath::estimated ? ImpactPrecision{.step_share = 0.5, .end_share = 1e-3} : ImpactPrecision{};
+    // A slide that stopped with the compression has left no direction to slide on along, but its rounding.
+    precision.stop_speed = slide_rounding * length(work.velocity_before);
     const double e = work.site->coefficients.restitution;
     const Vec3 before = work.state.impulse;
     work.state.velocity = site_velocity(work, bodies);

@@ -38,13 +38,6 @@ std::int32_t lane_bits(const Contact& contact) {
            (contact.b_is_round ? LaneBit::round_b : 0) | points * LaneBit::first_point;
 }
 
-// Slower than this in a step the inertia hardly turns with the body: no gyroscopic torque, rad.
-constexpr double least_turn = 1e-3;
-
-bool has_gyroscopic_torque(const BodyState& state, const BodyConstants& constants, double time) {
-    return !constants.is_isotropic && length_squared(state.angular_velocity) * time * time > least_turn * least_turn;
-}
-
 bool may_wait(const Contact& contact) {
     return std::any_of(contact.points.begin(), contact.points.begin() + contact.count,
                        [](const ContactPoint& point) { return point.inactive_until > 0; });
@@ -75,6 +68,13 @@ void WideContactSolver::begin(const Members& members, double substep, int subste
         rows->front() = {};
     }
     motion_.front() = {{0, 0, 0, 0, 0, 0, 1, 0}};
+
+    groups_.assign(members.groups.begin(), members.groups.end());
+    group_of_row_.assign(1, 0);
+    for (std::uint32_t i = 0; i < groups_.size(); ++i) group_of_row_.insert(group_of_row_.end(), groups_[i].bodies, i);
+    free_.resize(movable_rows_);
+    work_.resize(movable_rows_);
+    kept_share_.resize(groups_.size());
 }
 
 void WideContactSolver::fill_row(std::size_t row, const Work& work) {
@@ -271,11 +271,18 @@ void WideContactSolver::solve_share(const Work& work, int worker) {
         }
     }
 
+    // What the contacts did gives no energy.
+    const std::size_t last_movable = std::min(share.last + 1, movable_rows_);
+    for (std::size_t row = share.first + 1; row < last_movable; ++row) measure_work(row, work);
+    work.barrier.wait();
+    if (worker == 0) set_kept_shares();
+    work.barrier.wait();
+
     // Results.
-    for (std::int32_t row = first_row; row < last_row; ++row) {
-        const auto r = static_cast<std::size_t>(row);
-        const std::uint32_t body = slot_of_row_[r];
-        if (r < movable_rows_) write_body(r, work.bodies[body], work.constants[body]);
+    for (std::size_t row = share.first + 1; row < last_movable; ++row) {
+        const std::uint32_t body = slot_of_row_[row];
+        bound_work(row);
+        write_body(row, work.bodies[body], work.constants[body]);
     }
     for (const std::uint32_t i : own) {
         const Batch& batch = batches_[i];
@@ -314,6 +321,39 @@ void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::
     } else {
         pool.run([&](int worker) { solve_share(work, worker); });
     }
+}
+
+void WideContactSolver::measure_work(std::size_t row, const Work& work) {
+    // The kicks alone, as the kernels do them.
+    float* free = free_[row].value;
+    for (int i = 0; i < 6; ++i) {
+        free[i] = 0;
+        for (int k = 0; k < substeps_; ++k) free[i] = free[i] * damping_[row].value[i] + kick_[row].value[i];
+    }
+    const BodyState& state = work.bodies[slot_of_row_[row]];
+    const float* v = velocity_[row].value;
+    const VelocityPair without{state.linear_velocity + Vec3{free[0], free[1], free[2]},
+                               state.angular_velocity + Vec3{free[3], free[4], free[5]}};
+    const VelocityPair change{Vec3{v[0], v[1], v[2]} - Vec3{free[0], free[1], free[2]},
+                              Vec3{v[3], v[4], v[5]} - Vec3{free[3], free[4], free[5]}};
+    work_[row] = contact_work(work.constants[slot_of_row_[row]], state.rotation, without, change);
+}
+
+// In the order of the rows, whoever measured them.
+void WideContactSolver::set_kept_shares() {
+    std::size_t row = 1;
+    for (std::size_t i = 0; i < groups_.size(); ++i) {
+        ContactWork sum;
+        for (std::uint32_t k = 0; k < groups_[i].bodies; ++k) sum += work_[row++];
+        kept_share_[i] = groups_[i].is_driven ? 1 : to_float(share_without_gain(sum));
+    }
+}
+
+void WideContactSolver::bound_work(std::size_t row) {
+    const float share = kept_share_[group_of_row_[row]];
+    if (share >= 1) return;
+    float* v = velocity_[row].value;
+    for (int i = 0; i < 6; ++i) v[i] = free_[row].value[i] + share * (v[i] - free_[row].value[i]);
 }
 
 void WideContactSolver::write_body(std::size_t row, BodyState& state, const BodyConstants& constants) const {

@@ -10,6 +10,7 @@
 #include "physics/constraint/contact.h"
 #include "physics/constraint/contact_batch.h"
 #include "physics/constraint/contact_solver.h"
+#include "physics/constraint/contact_work.h"
 
 namespace embody::physics {
 
@@ -21,9 +22,15 @@ public:
     explicit WideContactSolver(const ContactKernels& kernels) : kernels_(&kernels) {}
     [[nodiscard]] int lanes() const { return kernels_->lanes; }
 
-    /// Bodies (slots) that contacts move, and kinematic ones in motion; all others stand still.
+    /// Movable bodies that touch each other, directly or through others, and nobody else.
+    struct Group {
+        std::uint32_t bodies = 0;  ///< how many
+        bool is_driven = false;    ///< bodies that move by themselves may give it energy
+    };
+    /// Bodies (slots) that contacts move, group after group, and kinematic ones in motion; all others stand still.
     struct Members {
         std::span<const std::uint32_t> movable, carriers;
+        std::span<const Group> groups;
     };
 
     /// Starts a step of `substeps` substeps of `substep` s.
@@ -85,6 +92,9 @@ private:
     /// Calls kernel(batch's floats, points) for this worker's batches, stage after stage from the top down.
     template <class Kernel>
     void sweep_down(const Work& work, int worker, Kernel kernel);
+    void measure_work(std::size_t row, const Work& work);
+    void set_kept_shares();
+    void bound_work(std::size_t row);
     void write_body(std::size_t row, BodyState& state, const BodyConstants& constants) const;
     void write_contact(const Batch& batch, std::uint32_t lane, const ContactSoftness& softness, Contact& contact,
                        ContactGlance& glance) const;
@@ -98,6 +108,11 @@ private:
     std::vector<std::uint32_t> slot_of_row_;
     std::vector<std::int32_t> row_of_slot_;  // valid where slot_of_row_ agrees
     std::size_t movable_rows_ = 0;
+    std::vector<Row> free_;          // change of the velocity in the step had there been no contacts
+    std::vector<ContactWork> work_;  // of the contacts on each movable body
+    std::vector<std::uint32_t> group_of_row_;
+    std::vector<Group> groups_;
+    std::vector<float> kept_share_;  // of what contacts did to a group
 
     std::vector<Batch> batches_;
     std::vector<std::uint32_t> stages_;                               // first batch of each

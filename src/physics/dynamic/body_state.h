@@ -21,6 +21,7 @@ struct BodyState {
     Quat turn;  ///< rotation since then: rotation · start_rotation⁻¹
 
     Vec3 hidden_momentum;  ///< angular momentum that the midpoint velocity does not carry during a drift (see drift())
+    double hidden_energy = 0;  ///< the energy that it does not carry, J
 };
 
 /// What does not move with the body; touched once a half step.

@@ -13,11 +13,17 @@
 // mean angular velocity for which constraints can be solved between the kick and the drift.
 #include "physics/dynamic/equations_of_motion.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace embody::physics {
 
 Quat cayley(Vec3 angle) { return normalized(Quat{angle.x / 2, angle.y / 2, angle.z / 2, 1}); }
+
+bool has_gyroscopic_torque(const BodyState& state, const BodyConstants& constants, double time) {
+    constexpr double least_turn = 1e-3;  // rad
+    return !constants.is_isotropic && length_squared(state.angular_velocity) * time * time > least_turn * least_turn;
+}
 
 void refresh_inertia(BodyState& state, const BodyConstants& constants) {
     state.inverse_inertia =
@@ -68,8 +74,10 @@ double time_of_one_turn(double speed, double time, int parts) {
 // Gives the body the mean velocity (body axes) and keeps the rest of its momentum aside.
 void hide_momentum(BodyState& state, const BodyConstants& constants, Vec3 mean) {
     const Vec3 omega = rotate_inverse(state.rotation, state.angular_velocity);
+    const Vec3 momentum = constants.inertia * omega, mean_momentum = constants.inertia * mean;
     state.angular_velocity = rotate(state.rotation, mean);
-    state.hidden_momentum = rotate(state.rotation, constants.inertia * (omega - mean));
+    state.hidden_momentum = rotate(state.rotation, momentum - mean_momentum);
+    state.hidden_energy = (dot(omega, momentum) - dot(mean, mean_momentum)) / 2;
 }
 
 }  // namespace
@@ -109,12 +117,13 @@ void finish_turn(BodyState& state, const BodyConstants& constants, Quat turn) {
 
     // In the body's axes: the momentum before, and after the turn what the world holds fast: that momentum, or without
     // the split the velocity.
-    const Vec3 momentum = constants.inertia * rotate_inverse(before, state.angular_velocity) +
-                          rotate_inverse(before, state.hidden_momentum);
+    const Vec3 mean = rotate_inverse(before, state.angular_velocity), mean_momentum = constants.inertia * mean;
+    const Vec3 momentum = mean_momentum + rotate_inverse(before, state.hidden_momentum);
     const Vec3 velocity = has_hidden
                               ? constants.inverse_inertia * rotate_inverse(state.rotation, rotate(before, momentum))
                               : rotate_inverse(state.rotation, state.angular_velocity);
-    const double allowed = dot(momentum, constants.inverse_inertia * momentum);
+    const double hidden = has_hidden ? 2 * state.hidden_energy : 0;
+    const double allowed = std::max(0.0, dot(mean, mean_momentum) + hidden);
     const double energy = dot(velocity, constants.inertia * velocity);
     const double scale = energy > allowed ? std::sqrt(allowed / energy) : 1;
     if (has_hidden || scale < 1) state.angular_velocity = rotate(state.rotation, velocity * scale);
@@ -137,6 +146,59 @@ void drift(BodyState& state, const BodyConstants& constants, double time) {
 
     // The same momentum in the turned body is another angular velocity.
     if (!constants.is_isotropic) state.angular_velocity = state.inverse_inertia * momentum;
+}
+
+namespace {
+
+// Velocity after `time` of an acceleration and of damping, as kick() does it; a negative time takes it back.
+Vec3 kicked(Vec3 velocity, Vec3 acceleration, double damping, double time) {
+    if (time < 0) return velocity * (1 - time * damping) + acceleration * time;
+    return (velocity + acceleration * time) * (1 / (1 + time * damping));
+}
+
+// The body's angular velocity seen in its own axes, over a turn by the mean velocity ω_m: ω₁ = 2 ω_m − ω₀.
+void turn_freely(Quat& rotation, Vec3& omega, const BodyConstants& constants, double time) {
+    if (constants.is_isotropic) {
+        rotation = normalized(rotation * cayley(omega * time));
+        return;
+    }
+    const Vec3 momentum = constants.inertia * omega;
+    const Vec3 guess = omega - constants.inverse_inertia * (cross(omega, momentum) * (time / 2));
+    const Vec3 mean = solve_midpoint(constants.inertia, momentum, guess, time);
+    rotation = normalized(rotation * cayley(mean * time));
+    omega = 2 * mean - omega;
+}
+
+}  // namespace
+
+void fly(BodyState& state, const BodyConstants& constants, double time) {
+    const double half = time / 2;
+    const Vec3 acceleration = constants.acceleration;
+    state.linear_velocity = kicked(state.linear_velocity, acceleration, constants.linear_damping, half);
+    state.center += state.linear_velocity * time;
+    state.linear_velocity = kicked(state.linear_velocity, acceleration, constants.linear_damping, half);
+    state.hidden_momentum = {};
+    if (state.angular_velocity == Vec3{} && constants.torque == Vec3{}) return;
+
+    // In the body's axes; forwards and backwards alike, as the midpoint rule is symmetric in time. Its error goes with
+    // the square of the turn.
+    constexpr double widest_turn = 0.1;  // rad
+    constexpr int most_parts = 16;
+    Quat rotation = state.rotation;
+    Vec3 omega = rotate_inverse(rotation, state.angular_velocity);
+    const auto push = [&] {
+        const Vec3 angular = constants.inverse_inertia * rotate_inverse(rotation, constants.torque);
+        omega = kicked(omega, angular, constants.angular_damping, half);
+    };
+    const double turn = constants.is_isotropic ? 0 : length(omega) * std::fabs(time);
+    const int parts = static_cast<int>(std::min(1 + turn / widest_turn, double{most_parts}));
+    push();
+    for (int i = 0; i < parts; ++i) turn_freely(rotation, omega, constants, time / parts);
+    push();
+    state.rotation = rotation;
+    state.turn = rotation * conjugate(state.start_rotation);
+    state.angular_velocity = rotate(rotation, omega);
+    refresh_inertia(state, constants);
 }
 
 void drift_kinematic(BodyState& state, double time) {

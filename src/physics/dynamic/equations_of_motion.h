@@ -19,18 +19,27 @@ void split_gyroscopic(BodyState& state, const BodyConstants& constants, double t
 void split_gyroscopic_of_turns(BodyState& state, const BodyConstants& constants, double time, int parts);
 
 /// Sets the rotation to `turn` · start_rotation, and the angular velocity to the one that the turned body has: by what
-/// split_gyroscopic_of_turns() hid, and never with more energy. A turn by other velocities than the split's (contacts
-/// change them) is not the one that Euler's equations ask for, and a thin rod would gain from each such mismatch.
+/// split_gyroscopic_of_turns() hid, and never with more energy than the split left and contacts gave to the mean
+/// velocity. A turn by other velocities than the split's (contacts change them) is not the one that Euler's equations
+/// ask for, and a thin rod would gain from each such mismatch.
 void finish_turn(BodyState& state, const BodyConstants& constants, Quat turn);
 
 /// Moves the body by its mean velocities over `time` and turns the angular velocity into the one at the end.
 void drift(BodyState& state, const BodyConstants& constants, double time);
+
+/// Free flight over `time` (s): one substep without constraints, in parts where the body spins fast. A negative time
+/// goes back the same way. Energy and angular momentum are kept up to rounding, either way.
+void fly(BodyState& state, const BodyConstants& constants, double time);
 
 /// As drift(), for a body that only its own velocity moves.
 void drift_kinematic(BodyState& state, double time);
 
 /// Angular momentum about the centre of mass in the world, with what split_gyroscopic() hid.
 Vec3 momentum_of(const BodyState& state, const BodyConstants& constants);
+
+/// Whether the inertia turns with the body in `time` (s) by enough to matter: not for spheres and cubes, nor for what
+/// turns by less than a thousandth of a radian.
+bool has_gyroscopic_torque(const BodyState& state, const BodyConstants& constants, double time);
 
 /// The world inverse inertia at the current rotation.
 void refresh_inertia(BodyState& state, const BodyConstants& constants);

@@ -44,12 +44,14 @@ void find_levels(std::span<const BodyState> bodies, std::span<const ContactGlanc
     // Neighbours of each body by counting sort.
     std::vector<std::uint32_t> first(bodies.size() + 1, 0), neighbour(2 * contacts.size());
     for (const ContactGlance& c : contacts) {
+        if (c.is_idle) continue;
         ++first[c.a + 1];
         ++first[c.b + 1];
     }
     for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
     std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
     for (const ContactGlance& c : contacts) {
+        if (c.is_idle) continue;
         neighbour[next[c.a]++] = c.b;
         neighbour[next[c.b]++] = c.a;
     }
@@ -57,7 +59,7 @@ void find_levels(std::span<const BodyState> bodies, std::span<const ContactGlanc
     std::vector<std::uint32_t> front;
     for (const ContactGlance& c : contacts) {
         for (const std::uint32_t body : {c.a, c.b}) {
-            if (is_movable(bodies[body]) || level[body] == 0) continue;
+            if (c.is_idle || is_movable(bodies[body]) || level[body] == 0) continue;
             level[body] = 0;
             front.push_back(body);
         }
@@ -72,19 +74,22 @@ void find_levels(std::span<const BodyState> bodies, std::span<const ContactGlanc
     }
 }
 
-// Sorts `count` items into islands by counting; `island_of(i)` tells the island of item i.
+// Sorts `count` items into islands by counting; `island_of(i)` tells the island of item i, `none` if it has none.
 template <class IslandOf, class SetFirst, class SetCount>
 void distribute(std::size_t count, std::vector<Island>& list, std::vector<std::uint32_t>& items, IslandOf island_of,
                 SetFirst first_of, SetCount count_of) {
-    for (std::size_t i = 0; i < count; ++i) ++count_of(list[island_of(i)]);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (island_of(i) != none) ++count_of(list[island_of(i)]);
+    }
     std::uint32_t sum = 0;
     for (Island& island : list) {
         first_of(island) = sum;
         sum += count_of(island);
         count_of(island) = 0;
     }
-    items.resize(count);
+    items.resize(sum);
     for (std::size_t i = 0; i < count; ++i) {
+        if (island_of(i) == none) continue;
         Island& island = list[island_of(i)];
         items[first_of(island) + count_of(island)++] = static_cast<std::uint32_t>(i);
     }
@@ -114,7 +119,9 @@ void list_graph(std::span<const std::uint32_t> awake, std::span<const ContactGla
     graph.bodies.assign(awake.begin(), awake.end());
     graph.contacts.clear();
     graph.joints.clear();
-    for (const ContactGlance& c : contacts) graph.contacts.push_back({c.a, c.b});
+    for (const ContactGlance& c : contacts) {
+        graph.contacts.push_back(c.is_idle ? ContactGraph::Ends{none, none} : ContactGraph::Ends{c.a, c.b});
+    }
     for (const Joint& j : joints) graph.joints.push_back({j.a_is_world ? none : j.a, j.b});
 }
 
@@ -129,7 +136,7 @@ void build_islands(std::span<const std::uint32_t> awake, std::span<const BodySta
     // Immovable bodies do not connect: two boxes on one floor are two islands.
     DisjointSets sets(bodies.size());
     for (const ContactGlance& c : contacts) {
-        if (is_movable(bodies[c.a]) && is_movable(bodies[c.b])) sets.unite(c.a, c.b);
+        if (!c.is_idle && is_movable(bodies[c.a]) && is_movable(bodies[c.b])) sets.unite(c.a, c.b);
     }
     for (const Joint& j : joints) {
         if (!j.a_is_world && is_movable(bodies[j.a]) && is_movable(bodies[j.b])) sets.unite(j.a, j.b);
@@ -152,7 +159,10 @@ void build_islands(std::span<const std::uint32_t> awake, std::span<const BodySta
     for (std::uint32_t& body : islands.bodies) body = awake[body];
     distribute(
         contacts.size(), islands.list, islands.contacts,
-        [&](std::size_t i) { return island_of(is_movable(bodies[contacts[i].a]) ? contacts[i].a : contacts[i].b); },
+        [&](std::size_t i) {
+            const ContactGlance& c = contacts[i];
+            return c.is_idle ? none : island_of(is_movable(bodies[c.a]) ? c.a : c.b);
+        },
         [](Island& i) -> std::uint32_t& { return i.first_contact; },
         [](Island& i) -> std::uint32_t& { return i.contact_count; });
     distribute(

@@ -23,7 +23,7 @@ struct Island {
 struct ContactGraph {
     using Ends = std::array<std::uint32_t, 2>;
     std::vector<std::uint32_t> bodies;   ///< movable ones
-    std::vector<Ends> contacts, joints;  ///< of joints with the world one end is 0xFFFFFFFF
+    std::vector<Ends> contacts, joints;  ///< of joints with the world one end is 0xFFFFFFFF, of idle contacts both
     friend bool operator==(const ContactGraph&, const ContactGraph&) = default;
 };
 

@@ -96,13 +96,26 @@ std::optional<double> meeting_time(const WorldState& world, std::uint32_t a, std
     return time_of_impact(*record.shape, path_a, *world.record(b).shape, path_b, {touch_gap / 2, touch_gap, harmless});
 }
 
+// The velocity with which a body that has `velocity` under the constant `acceleration` was at the place `back` from
+// here: what the forces did on the way since is taken back, ½ |v|² − a·x stays. Else each stop of a falling body would
+// lift it for nothing.
+Vec3 velocity_before(Vec3 velocity, Vec3 acceleration, Vec3 back) {
+    // ½ |v − a t|² = ½ |v|² + a·back, the smaller t; where there is none, the slowest v − a t.
+    const double squared = length_squared(acceleration), along = dot(velocity, acceleration);
+    if (squared == 0) return velocity;
+    const double root = std::sqrt(std::max(0.0, along * along + 2 * squared * dot(acceleration, back)));
+    return velocity - acceleration * ((along < 0 ? along + root : along - root) / squared);
+}
+
 // Puts a body back to a share of its way. The spin stays as the body's axes see it: in the world's, the inertia that
 // turns back would take or give energy.
 void put_back(WorldState& world, std::uint32_t body, double share) {
     if (share >= 1) return;
     BodyState& state = world.motion[body];
     const Vec3 spin = rotate_inverse(state.rotation, state.angular_velocity);
-    state.center = state.start_center + (state.center - state.start_center) * share;
+    const Vec3 back = (state.start_center - state.center) * (1 - share);
+    state.linear_velocity = velocity_before(state.linear_velocity, world.constants[body].acceleration, back);
+    state.center += back;
     const Quat end = dot(state.rotation, state.start_rotation) < 0
                          ? Quat{-state.rotation.x, -state.rotation.y, -state.rotation.z, -state.rotation.w}
                          : state.rotation;

@@ -15,6 +15,20 @@ bool stands(const WorldState& world, std::uint32_t body) {
            world.constants[body].torque == Vec3{};
 }
 
+// All places of the body while it turns in this step: no surface point leaves its place by more than its chord, nor the
+// ball around the centre of mass.
+Bounds turned_bounds(const WorldState& world, std::uint32_t body) {
+    const BodyRecord& record = world.record(body);
+    const BodyState& state = world.motion[body];
+    Bounds bounds = record.shape->bounds(world.pose(body));
+    const double way = length(state.angular_velocity) * world.settings.time_step * record.reach;
+    if (record.is_ball || way == 0) return bounds;
+    const Vec3 chord{way, way, way}, reach{record.reach, record.reach, record.reach};
+    bounds.add(
+        Bounds{max(bounds.lower - chord, state.center - reach), min(bounds.upper + chord, state.center + reach)});
+    return bounds;
+}
+
 // Lists which of a share of the awake bodies have left their bounds, and the bounds they want.
 void list_leaving(WorldState& world, Share share, std::vector<LeavingBody>& leaving) {
     const double dt = world.settings.time_step;
@@ -29,7 +43,7 @@ void list_leaving(WorldState& world, Share share, std::vector<LeavingBody>& leav
             world.motion[body].linear_velocity * dt + world.constants[body].acceleration * (dt * dt / 2);
 
         // The whole way counts as bounds: what lies on it must be a pair before the body gets there.
-        Bounds swept = record.shape->bounds(world.pose(body));
+        Bounds swept = turned_bounds(world, body);
         swept.add(Bounds{swept.lower + motion, swept.upper + motion});
         if (!world.broad_phase.holds(body, swept, motion)) leaving.push_back({body, swept, motion});
     }

@@ -7,7 +7,8 @@
 // Each impact happens at its own time t within the step: there the velocities are v + a t, eq. (3) changes them by Δv,
 // and the motion goes on from there. To keep one step for all bodies, the body is put on the path that leads through
 // the place of impact with the new velocity:  x ← x − t Δv,  v ← v + Δv  at the start of the step. A ball with
-// restitution 1 so keeps its energy exactly, whatever the time step.
+// restitution 1 so keeps its energy exactly, whatever the time step. What spins goes the same way by its free rotation
+// (BodyPaths), forth to the impact and back.
 //
 // What hits a heap without a bounce is kept cheap: its time is that of straight paths, its region found anew only where
 // the bodies have moved on, and the sliding estimated. Many contacts at once stop it, in an order that no model knows.
@@ -32,8 +33,9 @@ public:
     explicit ImpactStage(WorldState& world)
         : world_(world),
           memory_(world.impact_memory),
-          paths_(world),
-          regions_(world, paths_),
+          bodies_(world),
+          paths_(world, bodies_),
+          regions_(world, bodies_, paths_),
           step_(world.settings.time_step) {}
 
     void run();
@@ -41,17 +43,18 @@ public:
 private:
     void push(double time, std::uint32_t contact);
     void predict(std::uint32_t contact);
+    void note(std::uint32_t contact, ImpactPaths::Prediction next);
     void predict_all();
     void predict_again();
     void list_contacts();
     void take(const ImpactEvent& event);
     void list_bodies();
     void solve(std::uint32_t contact, double time, SlidePath path);
-    void bend_path(const ImpactMemory::Moved& before, double time);
     void note_impulse(Contact& contact, Vec3 position, Vec3 impulse, double time);
 
     WorldState& world_;
     ImpactMemory& memory_;
+    BodyPaths bodies_;
     ImpactPaths paths_;
     ImpactRegions regions_;
     const double step_;
@@ -63,25 +66,49 @@ void ImpactStage::push(double time, std::uint32_t contact) {
 }
 
 void ImpactStage::predict(std::uint32_t contact) {
+    memory_.is_open[contact] = 0;
     if (memory_.impacts[contact] >= most_impacts) return;
-    const double time = paths_.predict(world_.contacts[contact]);
-    if (time <= step_) push(time, contact);
+    note(contact, paths_.predict(world_.contacts[contact]));
+}
+
+void ImpactStage::note(std::uint32_t contact, ImpactPaths::Prediction next) {
+    if (next.may_hide) next.time = regions_.first_touch(world_.contacts[contact]);
+    memory_.is_open[contact] = next.is_open && next.time > step_ ? 1 : 0;
+    if (next.time <= step_) push(next.time, contact);
 }
 
 // Contacts are looked at on their own, so all workers can; the events are listed in the order of the contacts.
 void ImpactStage::predict_all() {
     constexpr std::size_t fewest_shared = 1000;
     const std::size_t count = world_.contacts.size();
-    memory_.first_time.resize(count);
+    std::vector<ImpactPaths::Prediction>& first = memory_.first;
+    first.assign(count, {});
     share_among(*world_.workers, count, count >= fewest_shared, [&](int, Share share) {
-        for (std::size_t i = share.first; i < share.last; ++i) {
-            const bool is_slow = paths_.is_surely_slow(world_.contact_glances[i]);
-            memory_.first_time[i] = is_slow ? ImpactPaths::never : paths_.predict(world_.contacts[i]);
+        for (auto i = static_cast<std::uint32_t>(share.first); i < share.last; ++i) {
+            if (paths_.is_surely_slow(world_.contact_glances[i])) continue;
+            first[i] = paths_.predict_straight(world_.contacts[i]);
         }
     });
+
+    // Where straight paths do not tell.
+    memory_.uncertain.clear();
+    memory_.uncertain_bodies.clear();
     for (std::uint32_t i = 0; i < count; ++i) {
-        if (memory_.first_time[i] <= step_) push(memory_.first_time[i], i);
+        if (first[i].is_certain) continue;
+        memory_.uncertain.push_back(i);
+        for (const std::uint32_t body : {world_.contact_glances[i].a, world_.contact_glances[i].b}) {
+            if (paths_.turns_far(body)) memory_.uncertain_bodies.push_back(body);
+        }
     }
+    bodies_.remember(memory_.uncertain_bodies);
+    share_among(*world_.workers, memory_.uncertain.size(), memory_.uncertain.size() >= fewest_shared / 4,
+                [&](int, Share share) {
+                    for (std::size_t k = share.first; k < share.last; ++k) {
+                        const std::uint32_t i = memory_.uncertain[k];
+                        first[i] = paths_.predict_exactly(world_.contacts[i]);
+                    }
+                });
+    for (std::uint32_t i = 0; i < count; ++i) note(i, first[i]);
 }
 
 // The contacts of each body.
@@ -136,19 +163,8 @@ void ImpactStage::list_bodies() {
         for (const std::uint32_t body : {site.a, site.b}) {
             const auto is_it = [body](const ImpactMemory::Moved& moved) { return moved.body == body; };
             const bool is_known = std::any_of(memory_.bodies.begin(), memory_.bodies.end(), is_it);
-            if (world_.motion[body].inverse_mass > 0 && !is_known) memory_.bodies.push_back({body, false, {}, {}});
+            if (world_.motion[body].inverse_mass > 0 && !is_known) memory_.bodies.push_back({body, false, {}, {}, {}});
         }
-    }
-}
-
-// Puts a body back to the start of the step, on the path that leads through the place of impact with the new velocity.
-void ImpactStage::bend_path(const ImpactMemory::Moved& before, double time) {
-    BodyState& state = world_.motion[before.body];
-    state.center -= (state.linear_velocity - before.linear_velocity) * time;
-    if (state.angular_velocity != before.angular_velocity) {
-        state.rotation = normalized(cayley(-time * state.angular_velocity) *
-                                    (cayley(time * before.angular_velocity) * state.rotation));
-        state.turn = state.rotation * conjugate(state.start_rotation);
     }
 }
 
@@ -157,10 +173,11 @@ void ImpactStage::solve(std::uint32_t contact, double time, SlidePath path) {
     regions_.add_loaded_neighbours(contact, time);
     list_bodies();
 
-    // Velocities at the time of impact, the collision, and back to the start of the step on the new path.
+    // To the place of the impact, the collision, and back to the start of the step on the new path.
     for (ImpactMemory::Moved& moved : memory_.bodies) {
         BodyState& state = world_.motion[moved.body];
-        state.linear_velocity += paths_.free_acceleration(moved.body) * time;
+        moved.start = state;
+        state = bodies_.kept_state_at(moved.body, time);
         moved.linear_velocity = state.linear_velocity;
         moved.angular_velocity = state.angular_velocity;
     }
@@ -168,19 +185,23 @@ void ImpactStage::solve(std::uint32_t contact, double time, SlidePath path) {
     if (!report.converged) {
         world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
     }
+    for (std::size_t i = 0; i < memory_.sites.size(); ++i) {
+        const ImpactSite& site = memory_.sites[i];
+        if (site.impulse == Vec3{}) continue;
+        const BodyState& b = world_.motion[site.b];
+        const Vec3 center = b.inverse_mass > 0 ? b.center : bodies_.kept_state_at(site.b, time).center;
+        note_impulse(world_.contacts[memory_.site_contact[i]], site.arm_b + center, site.impulse, time);
+    }
     for (ImpactMemory::Moved& moved : memory_.bodies) {
         BodyState& state = world_.motion[moved.body];
         moved.has_changed =
             state.linear_velocity != moved.linear_velocity || state.angular_velocity != moved.angular_velocity;
-        bend_path(moved, time);
-        state.linear_velocity -= paths_.free_acceleration(moved.body) * time;
-        if (moved.has_changed) memory_.last_time[moved.body] = time;
-    }
-    for (std::size_t i = 0; i < memory_.sites.size(); ++i) {
-        const ImpactSite& site = memory_.sites[i];
-        if (site.impulse == Vec3{}) continue;
-        note_impulse(world_.contacts[memory_.site_contact[i]], site.arm_b + paths_.center_at(site.b, time),
-                     site.impulse, time);
+        if (moved.has_changed) {
+            bodies_.lead_through(moved.body, state, time);
+            memory_.last_time[moved.body] = time;
+        } else {
+            state = moved.start;
+        }
     }
 }
 
@@ -194,7 +215,10 @@ void ImpactStage::take(const ImpactEvent& event) {
     if (!as_found) {
         if (!regions_.refine(contact, time, manifold)) {
             // They pass each other: the region found at the start must not hold them up.
-            if (regions_.is_open_at_end(contact)) paths_.leave_open(contact);
+            if (regions_.is_open_at_end(contact)) {
+                paths_.leave_open(contact);
+                memory_.is_open[event.contact] = 1;
+            }
             return;
         }
         if (!memory_.events.empty() && time > memory_.events.front().time + (in_heap ? heap_slack * step_ : 1e-12)) {
@@ -225,6 +249,7 @@ void ImpactStage::take(const ImpactEvent& event) {
 void ImpactStage::predict_again() {
     for (const ImpactMemory::Moved& moved : memory_.bodies) {
         if (!moved.has_changed) continue;
+        if (paths_.turns_far(moved.body)) bodies_.remember({&moved.body, 1});
         for (std::uint32_t k = memory_.first_of_body[moved.body]; k < memory_.first_of_body[moved.body + 1]; ++k) {
             const std::uint32_t other = memory_.of_body[k];
             const ContactGlance& glance = world_.contact_glances[other];
@@ -238,6 +263,7 @@ void ImpactStage::predict_again() {
 void ImpactStage::run() {
     const std::size_t count = world_.contacts.size();
     memory_.version.assign(count, 0);
+    memory_.is_open.assign(count, 0);
     memory_.impacts.assign(count, 0);
     memory_.events.clear();
     memory_.has_lists = false;

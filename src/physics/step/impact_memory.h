@@ -19,20 +19,37 @@ struct ImpactEvent {
     }
 };
 
+/// A contact's next impact in the step.
+struct ImpactPrediction {
+    static constexpr double never = 1e300;
+    double time = never;     ///< s since the step began
+    bool is_open = false;    ///< the bodies keep apart until the step's end
+    bool is_certain = true;  ///< else only the exact paths tell
+    bool may_hide = false;   ///< no point meets, but surfaces that turn as fast may, at others
+};
+
 /// Memory of the impact stage: nothing in it outlives a step, but a steady step allocates nothing.
 struct ImpactMemory {
     // By body.
-    std::vector<std::uint8_t> is_supported;  ///< a contact carried it in the last step
-    std::vector<double> last_time;           ///< its last impact in this step, s
-    std::vector<double> liveliness;          ///< product of the restitutions of its bounces in this step
-    std::vector<float> speed_gain;           ///< most that its free motion can add to an approach in the step, m/s
+    std::vector<std::uint8_t> is_supported;   ///< a contact carried it in the last step
+    std::vector<double> last_time;            ///< its last impact in this step, s
+    std::vector<double> liveliness;           ///< product of the restitutions of its bounces in this step
+    std::vector<float> speed_gain;            ///< most that its free motion can add to an approach in the step, m/s
+    std::vector<std::uint32_t> path_of_body;  ///< first of its path's states, see BodyPaths
+    std::vector<BodyState> path_states;
+    std::vector<std::uint32_t> remembered_bodies;
 
     // By contact; the lists of each body's contacts once there is an impact at all.
-    std::vector<double> first_time;  ///< of its first impact as predicted at the step's start
+    std::vector<ImpactPrediction> first;  ///< its first impact as predicted at the step's start
     std::vector<std::uint32_t> version;
-    std::vector<std::uint8_t> impacts;  ///< in this step
+    std::vector<std::uint8_t> impacts;     ///< in this step
+    std::vector<std::uint8_t> is_open;     ///< its bodies keep apart for the rest of the step if nothing else hits them
+    std::vector<std::uint32_t> uncertain;  ///< contacts whose first impact straight paths do not tell
+    std::vector<std::uint32_t> uncertain_bodies;
     std::vector<std::uint32_t> first_of_body, of_body;
     bool has_lists = false;
+
+    std::vector<std::uint8_t> is_held;  ///< by body: something else than free flight moves it
 
     std::size_t heap_bounces = 0;  ///< of bodies that others carry
 
@@ -44,7 +61,8 @@ struct ImpactMemory {
     struct Moved {
         std::uint32_t body;
         bool has_changed;
-        Vec3 linear_velocity, angular_velocity;  ///< before
+        BodyState start;                         ///< of the step, on the path that led to the impact
+        Vec3 linear_velocity, angular_velocity;  ///< before the impact, at its time
     };
     std::vector<Moved> bodies;
     ImpactGroupMemory group;

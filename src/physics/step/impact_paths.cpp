@@ -10,8 +10,9 @@
 
 namespace embody::physics {
 
-ImpactPaths::ImpactPaths(WorldState& world)
+ImpactPaths::ImpactPaths(WorldState& world, const BodyPaths& bodies)
     : world_(world),
+      bodies_(bodies),
       memory_(world.impact_memory),
       step_(world.settings.time_step),
       substep_(step_ / world.settings.substeps),
@@ -20,34 +21,13 @@ ImpactPaths::ImpactPaths(WorldState& world)
     const std::size_t count = world.motion.size();
     memory_.last_time.assign(count, 0);
     memory_.liveliness.assign(count, 1);
-    memory_.is_supported.assign(count, 0);
-    for (const ContactGlance& contact : world.contact_glances) {
-        if (contact.was_loaded) memory_.is_supported[contact.a] = memory_.is_supported[contact.b] = 1;
-    }
 
     // What the end of a free path can be faster than its start.
     memory_.speed_gain.assign(count, 0);
     for_each_awake(world, [&](std::uint32_t body) {
         const double turning = length_squared(world.motion[body].angular_velocity) * world.record(body).reach;
-        memory_.speed_gain[body] = static_cast<float>(step_ * (length(free_acceleration(body)) + turning));
+        memory_.speed_gain[body] = static_cast<float>(step_ * (length(bodies.free_acceleration(body)) + turning));
     });
-}
-
-Vec3 ImpactPaths::free_acceleration(std::uint32_t body) const {
-    const bool is_free = world_.motion[body].inverse_mass > 0 && !memory_.is_supported[body];
-    return is_free ? world_.constants[body].acceleration : Vec3{};
-}
-
-Vec3 ImpactPaths::center_at(std::uint32_t body, double time) const {
-    const BodyState& state = world_.motion[body];
-    return state.center + state.linear_velocity * time + free_acceleration(body) * (time * time / 2);
-}
-
-Transform ImpactPaths::pose_at(std::uint32_t body, double time) const {
-    BodyState state = world_.motion[body];
-    state.center = center_at(body, time);
-    state.rotation = normalized(cayley(state.angular_velocity * time) * state.rotation);
-    return body_pose(state, world_.constants[body].local_center);
 }
 
 double ImpactPaths::earliest_time(const Contact& contact) const {
@@ -98,12 +78,25 @@ bool ImpactPaths::is_surely_slow(const ContactGlance& glance) const {
     return glance.approach_speed + memory_.speed_gain[glance.a] + memory_.speed_gain[glance.b] < slowest;
 }
 
+// Prediction needs no more of a path than half a millimetre; what turns slowly turns evenly for that.
 ImpactPaths::Motion ImpactPaths::motion_at(std::uint32_t body, double time) const {
-    const BodyState& state = world_.motion[body];
-    Motion motion{center_at(body, time) - state.start_center, state.linear_velocity + free_acceleration(body) * time,
-                  state.angular_velocity, state.turn, state.angular_velocity * time};
-    if (time > 0) motion.turn = normalized(cayley(motion.tilt) * state.turn);
-    return motion;
+    BodyPaths::Motion motion;
+    if (time > 0 && turns_far(body)) {
+        motion = bodies_.motion_about(body, time);
+    } else {
+        const BodyState& now = world_.motion[body];
+        const Vec3 acceleration = bodies_.free_acceleration(body);
+        motion = {now.center - now.start_center + (now.linear_velocity + acceleration * (time / 2)) * time,
+                  now.linear_velocity + acceleration * time, now.angular_velocity, now.turn};
+        if (time > 0 && now.angular_velocity != Vec3{}) motion.turn = cayley(now.angular_velocity * time) * now.turn;
+    }
+    const Quat& turn = motion.turn;
+    return {motion, (turn.w < 0 ? -2 : 2) * Vec3{turn.x, turn.y, turn.z}};
+}
+
+bool ImpactPaths::turns_far(std::uint32_t body) const {
+    const Vec3 turn = world_.motion[body].angular_velocity * step_;
+    return length_squared(turn) * world_.touch_memory.bodies[body].size / 2 > patch_gap;
 }
 
 namespace {
@@ -168,53 +161,58 @@ double ImpactPaths::touch_time(const Contact& contact, const ContactPoint& point
     return time;
 }
 
-double ImpactPaths::predict(Contact& contact) {
+ImpactPaths::Prediction ImpactPaths::predict_straight(Contact& contact) {
     const double slowest = slowest_speed(contact);
-    if (slowest == never) return never;
+    if (slowest == never) return {};
 
-    // How far the true paths can leave the straight ones.
     const Motion a = motion_at(contact.a, 0), b = motion_at(contact.b, 0);
-    const auto count = static_cast<std::size_t>(contact.count);
-    double arm_a = 0, arm_b = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        arm_a = std::max<double>(arm_a, length_squared(contact.points[i].arm_a));
-        arm_b = std::max<double>(arm_b, length_squared(contact.points[i].arm_b));
-    }
-    const double bend = length_squared(a.spin) * std::sqrt(arm_a) + length_squared(b.spin) * std::sqrt(arm_b) +
-                        length(free_acceleration(contact.a) - free_acceleration(contact.b));
-    const double slack = bend * step_ * step_ / 2, gain = bend * step_;
-
-    // Along straight paths: certain for what keeps away or is slow, and enough for what hits a heap.
+    const Bend bend = bend_of(contact, a, b);
     const double start = earliest_time(contact);
-    const bool straight = hits_heap(contact) && !bounces(contact);
-    double first = never;
-    bool is_certain = true;
-    for (std::size_t i = 0; i < count; ++i) {
-        const Gap now = gap_between(contact, contact.points[i], a, b);
+    Prediction first{.is_open = start == 0};
+    for (int i = 0; i < contact.count; ++i) {
+        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        const Gap now = gap_between(contact, point, a, b);
         const double end = now.size + now.rate * step_;
-        const bool may_meet = now.size <= touch_gap || std::min(now.size, end) < slack;
-        if (may_meet && now.rate - gain < -slowest) is_certain = false;
-        mark_open(contact.points[i], now.rate < -slowest && now.size > 0 && end > 0, step_);
-        if (now.rate < -slowest && end <= 0) first = std::min(first, std::max(start, now.size / -now.rate));
+        const bool may_meet = now.size <= touch_gap || std::min(now.size, end) < bend.way;
+        if (may_meet && now.rate - bend.speed < -slowest) first.is_certain = false;
+        if (may_meet) first.is_open = false;
+        mark_open(point, now.rate < -slowest && now.size > 0 && end > 0, step_);
+        if (now.rate < -slowest && end <= 0) first.time = std::min(first.time, std::max(start, now.size / -now.rate));
     }
-    if (straight) return first;
-    return is_certain ? never : predict_exactly(contact, slowest);
+    const bool is_enough = hits_heap(contact) && !bounces(contact);
+    if (first.is_certain && !is_enough) first.time = never;
+    first.is_certain = first.is_certain || is_enough;
+    return first;
 }
 
-double ImpactPaths::predict_exactly(Contact& contact, double slowest) {
+ImpactPaths::Bend ImpactPaths::bend_of(const Contact& contact, const Motion& a, const Motion& b) const {
+    double arm_a = 0, arm_b = 0;
+    for (int i = 0; i < contact.count; ++i) {
+        const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        arm_a = std::max<double>(arm_a, length_squared(point.arm_a));
+        arm_b = std::max<double>(arm_b, length_squared(point.arm_b));
+    }
+    const double bend = length_squared(a.spin) * std::sqrt(arm_a) + length_squared(b.spin) * std::sqrt(arm_b) +
+                        length(bodies_.free_acceleration(contact.a) - bodies_.free_acceleration(contact.b));
+    return {bend * step_ * step_ / 2, bend * step_};
+}
+
+ImpactPaths::Prediction ImpactPaths::predict_exactly(Contact& contact) {
     struct Motions {
         Motion a, b;
     };
+    const double slowest = slowest_speed(contact);
     const auto at = [&](double time) { return Motions{motion_at(contact.a, time), motion_at(contact.b, time)}; };
     const double start = earliest_time(contact);
     const Motions now = at(0), end = at(step_), begin = start > 0 ? at(start) : now;
     Motions at_first;
-    double first = never;
+    double first = never, nearest = never;
     for (int i = 0; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const auto gap = [&](const Motions& m) { return gap_between(contact, point, m.a, m.b); };
         const Gap gap_now = gap(now), gap_end = gap(end);
         mark_open(point, gap_now.rate < -slowest && gap_now.size > 0 && gap_end.size > 0, step_);
+        nearest = std::min(nearest, std::min(gap_now.size, gap_end.size));
 
         // Whatever is still apart when an earlier point touches comes later.
         if (first < never && gap(at_first).size > touch_gap) continue;
@@ -225,7 +223,26 @@ double ImpactPaths::predict_exactly(Contact& contact, double slowest) {
         first = time;
         at_first = then;
     }
-    return first;
+    if (first < never) return {.time = first};
+    const double farthest_turn = widest_followed_turn / step_;
+    const auto is_fast = [&](const Motion& m) { return length_squared(m.spin) > farthest_turn * farthest_turn; };
+    const bool is_clear = start == 0 && nearest > bend_of(contact, now.a, now.b).way;
+    return {.is_open = is_clear || keeps_apart(contact, start), .may_hide = is_fast(now.a) || is_fast(now.b)};
+}
+
+// Whether the surfaces part at `start` or are apart then, and stay so: told at the ends of the substeps.
+bool ImpactPaths::keeps_apart(const Contact& contact, double start) const {
+    for (int k = 0; k <= world_.settings.substeps; ++k) {
+        const double time = k == 0 ? start : k * substep_;
+        if (k > 0 && time <= start) continue;
+        const Motion a = motion_at(contact.a, time), b = motion_at(contact.b, time);
+        for (int i = 0; i < contact.count; ++i) {
+            const Gap gap = gap_between(contact, contact.points[static_cast<std::size_t>(i)], a, b);
+            const bool parts = k == 0 && gap.rate > slowest_impact;
+            if (gap.size <= touch_gap && !parts) return false;
+        }
+    }
+    return true;
 }
 
 void ImpactPaths::leave_open(Contact& contact) {

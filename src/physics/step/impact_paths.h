@@ -3,26 +3,25 @@
 
 #include <cstdint>
 
-#include "physics/step/world_state.h"
+#include "physics/step/body_paths.h"
 
 namespace embody::physics {
 
-/// Where bodies are within a step if nothing but their free motion and the impacts so far move them, and which contacts
-/// close as fast as an impact does. A view of the world, made anew each step; its memory is the world's.
+/// Which contacts close as fast as an impact does, and when, on the paths that their bodies take through the step. A
+/// view of the world, made anew each step; its memory is the world's.
 class ImpactPaths {
 public:
-    static constexpr double never = 1e300;
-    static constexpr double touch_gap = 1e-6;       ///< m: bodies this near touch
+    using Prediction = ImpactPrediction;
+    static constexpr double never = Prediction::never;
+    static constexpr double touch_gap = 1e-6;  ///< m: bodies this near touch
+    static constexpr double patch_gap = 5e-4;  ///< m: corners this near to the first one collide together with it
+    static constexpr double widest_followed_turn =
+        0.25;                                       ///< rad in a step: farther, other corners than known may touch
     static constexpr double slowest_impact = 0.02;  ///< m/s: slower contacts rest
     static constexpr double least_liveliness = 0.05;
 
-    /// Classifies the bodies by what the touch stage noted of their contacts.
-    explicit ImpactPaths(WorldState& world);
+    ImpactPaths(WorldState& world, const BodyPaths& bodies);
 
-    /// What carries a body cancels its weight: only bodies in free motion gain speed before the impact. m/s².
-    [[nodiscard]] Vec3 free_acceleration(std::uint32_t body) const;
-    [[nodiscard]] Vec3 center_at(std::uint32_t body, double time) const;
-    [[nodiscard]] Transform pose_at(std::uint32_t body, double time) const;
     /// The last impact of either body in this step, s.
     [[nodiscard]] double earliest_time(const Contact& contact) const;
     /// Gap of a point and its rate, the turning of the bodies included: a foot of a spinning chair does not move
@@ -43,26 +42,38 @@ public:
     /// stage noted of them. Holds for bodies that had no impact in this step.
     [[nodiscard]] bool is_surely_slow(const ContactGlance& glance) const;
 
-    /// The time of the contact's next impact in this step, `never` if it has none. Points that close as fast but meet
-    /// after the step are the next step's impact: they are left open, so that the substeps do not brake them before.
-    double predict(Contact& contact);
+    /// Along straight paths: certain for what keeps away or is slow, and enough for what hits a heap. Points that close
+    /// as fast as an impact but meet after the step are the next step's impact: they are left open, so that the
+    /// substeps do not brake them before.
+    Prediction predict_straight(Contact& contact);
+    Prediction predict_exactly(Contact& contact);
+    Prediction predict(Contact& contact) {
+        const Prediction straight = predict_straight(contact);
+        return straight.is_certain ? straight : predict_exactly(contact);
+    }
+    /// Whether the body turns so far in the step that its path must be known exactly for a prediction.
+    [[nodiscard]] bool turns_far(std::uint32_t body) const;
     /// The surfaces `pass` each other in this step: leaves open all points that are apart now.
     void leave_open(Contact& contact);
 
 private:
-    /// How the matter of a body has moved since its contacts were found.
-    struct Motion {
-        Vec3 shift, velocity, spin;
-        Quat turn;
-        Vec3 tilt;  ///< ω t since the step began, rad: all that a round body's turning does to its contacts
+    struct Motion : BodyPaths::Motion {
+        Vec3 tilt;  ///< twice its imaginary part, rad: all that a round body's turning does to its contacts
     };
     [[nodiscard]] Motion motion_at(std::uint32_t body, double time) const;
     [[nodiscard]] double slowest_speed(const Contact& contact) const;
     [[nodiscard]] double touch_time(const Contact& contact, const ContactPoint& point, double start, Gap first,
                                     Gap last) const;
-    double predict_exactly(Contact& contact, double slowest);
+    /// How far the true paths of the contact's points can leave the straight ones, m, and how much faster they can
+    /// become, m/s.
+    struct Bend {
+        double way, speed;
+    };
+    [[nodiscard]] Bend bend_of(const Contact& contact, const Motion& a, const Motion& b) const;
+    [[nodiscard]] bool keeps_apart(const Contact& contact, double start) const;
 
     WorldState& world_;
+    const BodyPaths& bodies_;
     ImpactMemory& memory_;
     const double step_, substep_;
     const std::size_t most_heap_bounces_;  ///< in a step; the collapse of a large heap of bouncing bodies has no end

@@ -9,7 +9,7 @@ namespace embody::physics {
 
 namespace {
 
-constexpr double patch_gap = 5e-4;   // m: corners this near to the first one collide together with it
+constexpr double patch_gap = ImpactPaths::patch_gap;
 constexpr double near_share = 0.05;  // of a body's size
 
 ImpactCoefficients coefficients_of(const Material& material, double restitution) {
@@ -28,7 +28,7 @@ void ImpactRegions::collide_at(const Contact& contact, double time) {
     const auto watch = std::lower_bound(touch.watches.begin(), touch.watches.end(), pair,
                                         [](const PairWatch& w, const BroadPhase::Pair& p) { return w.pair < p; });
     PairMemory pair_memory = touch.records[watch->record].memory;
-    collide(*a.shape, paths_.pose_at(contact.a, time), *b.shape, paths_.pose_at(contact.b, time), 0.02, pair_memory,
+    collide(*a.shape, bodies_.pose_at(contact.a, time), *b.shape, bodies_.pose_at(contact.b, time), 0.02, pair_memory,
             memory_.manifolds);
 }
 
@@ -41,7 +41,7 @@ double ImpactRegions::least_separation(const Manifold& manifold) {
 }
 
 bool ImpactRegions::is_beside(const Manifold& first, double nearest, const Manifold& other, const Contact& contact,
-                              double time) const {
+                              double time) {
     const bool is_first = other.piece_a == first.piece_a && other.piece_b == first.piece_b && other.part == first.part;
     if (is_first || other.count == 0) return false;
     const double gap = least_separation(other);
@@ -58,16 +58,14 @@ std::optional<std::uint32_t> ImpactRegions::find_contact(std::uint32_t beside, c
 }
 
 // How fast the nearest points of the region close, m/s.
-double ImpactRegions::closing_speed(const Contact& contact, const Manifold& manifold, double time, double gap) const {
+double ImpactRegions::closing_speed(const Contact& contact, const Manifold& manifold, double time, double gap) {
+    const BodyState &a = bodies_.kept_state_at(contact.a, time), &b = bodies_.kept_state_at(contact.b, time);
     double speed = 0;
     for (int i = 0; i < manifold.count; ++i) {
         const ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
         if (point.separation > gap + patch_gap) continue;
-        const auto velocity = [&](std::uint32_t body) {
-            return velocity_at(world_.motion[body], point.position - paths_.center_at(body, time)) +
-                   paths_.free_acceleration(body) * time;
-        };
-        speed = std::max(speed, -dot(velocity(contact.b) - velocity(contact.a), manifold.normal));
+        const auto velocity = [&](const BodyState& body) { return velocity_at(body, point.position - body.center); };
+        speed = std::max(speed, -dot(velocity(b) - velocity(a), manifold.normal));
     }
     return speed;
 }
@@ -84,6 +82,32 @@ bool ImpactRegions::is_near(const Contact& contact, double time) const {
     return way < near_share * size;
 }
 
+const Manifold* ImpactRegions::find_region(const Contact& contact) const {
+    const auto found = std::find_if(memory_.manifolds.begin(), memory_.manifolds.end(), [&](const Manifold& m) {
+        return m.piece_a == contact.piece_a && m.piece_b == contact.piece_b && m.part == contact.part;
+    });
+    return found != memory_.manifolds.end() && found->count > 0 ? &*found : nullptr;
+}
+
+double ImpactRegions::first_touch(const Contact& contact) {
+    const double start = paths_.earliest_time(contact), substep = step_ / world_.settings.substeps;
+    double last_time = start, last_gap = 0;
+    for (int k = 0; k <= world_.settings.substeps; ++k) {
+        const double time = k == 0 ? start : k * substep;
+        if (k > 0 && time <= start) continue;
+        collide_at(contact, time);
+        const Manifold* region = find_region(contact);
+        const double gap = region != nullptr ? least_separation(*region) : ImpactPaths::never;
+        const bool was_seen = last_gap < ImpactPaths::never;
+        if (gap <= 0 && last_gap > 0) {
+            return was_seen ? last_time + (time - last_time) * last_gap / (last_gap - gap) : time;
+        }
+        last_time = time;
+        last_gap = gap;
+    }
+    return ImpactPaths::never;
+}
+
 // Follows the closing surfaces (secant) for a few rounds.
 bool ImpactRegions::refine(const Contact& contact, double& time, Manifold& manifold) {
     const bool is_rough = paths_.hits_heap(contact) && !paths_.bounces(contact);
@@ -92,10 +116,8 @@ bool ImpactRegions::refine(const Contact& contact, double& time, Manifold& manif
     const double tolerance = is_rough ? patch_gap : ImpactPaths::touch_gap;
     for (int round = 0; round < most_rounds; ++round) {
         collide_at(contact, time);
-        const auto found = std::find_if(memory_.manifolds.begin(), memory_.manifolds.end(), [&](const Manifold& m) {
-            return m.piece_a == contact.piece_a && m.piece_b == contact.piece_b && m.part == contact.part;
-        });
-        if (found == memory_.manifolds.end() || found->count == 0) return false;
+        const Manifold* found = find_region(contact);
+        if (found == nullptr) return false;
         manifold = *found;
 
         const double gap = least_separation(manifold), speed = closing_speed(contact, manifold, time, gap);
@@ -114,20 +136,22 @@ bool ImpactRegions::is_open_at_end(const Contact& contact) {
                        [](const Manifold& manifold) { return least_separation(manifold) > 0; });
 }
 
-void ImpactRegions::add_site(const Contact& contact, Vec3 arm_a, Vec3 arm_b, Vec3 normal, bool may_bounce) {
-    const Vec3 velocity = velocity_at(world_.motion[contact.b], arm_b) - velocity_at(world_.motion[contact.a], arm_a);
+void ImpactRegions::add_site(const Contact& contact, const SitePlace& place, double time, bool may_bounce) {
+    const BodyState &a = bodies_.kept_state_at(contact.a, time), &b = bodies_.kept_state_at(contact.b, time);
+    const Vec3 velocity = velocity_at(b, place.arm_b) - velocity_at(a, place.arm_a);
     const Material material = paths_.material_of(contact);
-    const bool bounces = may_bounce && -dot(velocity, normal) >= material.restitution_threshold;
-    memory_.sites.push_back({contact.a, contact.b, arm_a, arm_b, normal,
+    const bool bounces = may_bounce && -dot(velocity, place.normal) >= material.restitution_threshold;
+    memory_.sites.push_back({contact.a, contact.b, place.arm_a, place.arm_b, place.normal,
                              coefficients_of(material, bounces ? material.restitution : 0), Vec3{}});
 }
 
 // A flat region collides as one patch at its middle and, where it tilts, at its corners.
 void ImpactRegions::add_manifold_sites(const Contact& contact, const Manifold& manifold, double time, bool may_bounce) {
     const double nearest = least_separation(manifold);
-    const Vec3 center_a = paths_.center_at(contact.a, time), center_b = paths_.center_at(contact.b, time);
+    const Vec3 center_a = bodies_.kept_state_at(contact.a, time).center;
+    const Vec3 center_b = bodies_.kept_state_at(contact.b, time).center;
     const auto add = [&](Vec3 position) {
-        add_site(contact, position - center_a, position - center_b, manifold.normal, may_bounce);
+        add_site(contact, {position - center_a, position - center_b, manifold.normal}, time, may_bounce);
     };
     Vec3 sum;
     int count = 0;
@@ -144,29 +168,39 @@ void ImpactRegions::add_manifold_sites(const Contact& contact, const Manifold& m
     }
 }
 
-// The same by the region found at the start of the step.
-void ImpactRegions::add_point_sites(const Contact& contact, double time) {
-    std::array<double, Manifold::max_points> gap{};
-    double nearest = ImpactPaths::never;
+// The same by the region found at the start of the step, on straight paths: the points that lie lower than `highest`,
+// as a patch at their middle and one by one. Without the patch, which goes first, what lands flat would lean to the
+// corner that happens to be solved first.
+void ImpactRegions::add_points_below(const Contact& contact, double highest, double time) {
+    Vec3 arm_a, arm_b;
+    std::array<bool, Manifold::max_points> is_low{};
+    int touching = 0;
     const auto count = static_cast<std::size_t>(contact.count);
     for (std::size_t i = 0; i < count; ++i) {
-        const ImpactPaths::Gap now = paths_.gap_at(contact, contact.points[i], 0);
-        gap[i] = now.size + now.rate * time;
-        nearest = std::min(nearest, gap[i]);
-    }
-    Vec3 arm_a, arm_b;
-    int touching = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        if (gap[i] > nearest + patch_gap) continue;
+        is_low[i] = straight_gap(contact, contact.points[i], time) <= highest;
+        if (!is_low[i]) continue;
         arm_a += contact.points[i].arm_a;
         arm_b += contact.points[i].arm_b;
         ++touching;
     }
-    if (touching > 1) add_site(contact, arm_a / touching, arm_b / touching, contact.normal, false);
+    if (touching > 1) add_site(contact, {arm_a / touching, arm_b / touching, contact.normal}, time, false);
     for (std::size_t i = 0; i < count; ++i) {
-        if (gap[i] > nearest + patch_gap) continue;
-        add_site(contact, contact.points[i].arm_a, contact.points[i].arm_b, contact.normal, false);
+        if (is_low[i])
+            add_site(contact, {contact.points[i].arm_a, contact.points[i].arm_b, contact.normal}, time, false);
     }
+}
+
+double ImpactRegions::straight_gap(const Contact& contact, const ContactPoint& point, double time) const {
+    const ImpactPaths::Gap now = paths_.gap_at(contact, point, 0);
+    return now.size + now.rate * time;
+}
+
+void ImpactRegions::add_point_sites(const Contact& contact, double time) {
+    double nearest = ImpactPaths::never;
+    for (int i = 0; i < contact.count; ++i) {
+        nearest = std::min(nearest, straight_gap(contact, contact.points[static_cast<std::size_t>(i)], time));
+    }
+    add_points_below(contact, nearest + patch_gap, time);
 }
 
 // Loaded contacts of the colliding bodies take part, without a bounce. Others that collide at the same time have their
@@ -180,14 +214,8 @@ void ImpactRegions::add_loaded_neighbours(std::uint32_t contact, double time) {
             if (!world_.contact_glances[other].was_loaded) continue;
             const auto& known = memory_.site_contact;
             if (std::find(known.begin(), known.end(), other) != known.end()) continue;
-            const Contact& c = world_.contacts[other];
-            for (int i = 0; i < c.count; ++i) {
-                const ContactPoint& point = c.points[static_cast<std::size_t>(i)];
-                const ImpactPaths::Gap now = paths_.gap_at(c, point, 0);
-                if (now.size + now.rate * time > patch_gap) continue;
-                add_site(c, point.arm_a, point.arm_b, c.normal, false);
-                memory_.site_contact.push_back(other);
-            }
+            add_points_below(world_.contacts[other], patch_gap, time);
+            memory_.site_contact.resize(memory_.sites.size(), other);
         }
     }
 }

@@ -11,14 +11,21 @@ namespace embody::physics {
 /// view of the world for one step.
 class ImpactRegions {
 public:
-    ImpactRegions(WorldState& world, const ImpactPaths& paths)
-        : world_(world), memory_(world.impact_memory), paths_(paths), step_(world.settings.time_step) {}
+    ImpactRegions(WorldState& world, BodyPaths& bodies, const ImpactPaths& paths)
+        : world_(world),
+          memory_(world.impact_memory),
+          bodies_(bodies),
+          paths_(paths),
+          step_(world.settings.time_step) {}
 
     /// Whether the region found at the start of the step is still right at `time`: the bodies have hardly moved on.
     [[nodiscard]] bool is_near(const Contact& contact, double time) const;
     /// The contact region at the moment of impact, found at the bodies' places then, and that moment: the prediction
     /// used the normal of the start of the step. False: they pass each other.
     bool refine(const Contact& contact, double& time, Manifold& manifold);
+    /// When the regions found at the ends of the substeps first overlap, s; `never` if they do not. For what turns so
+    /// fast that other corners come down than those that were near at the step's start.
+    double first_touch(const Contact& contact);
     /// Whether the bodies are apart at the end of the step, if nothing else happens to them.
     bool is_open_at_end(const Contact& contact);
 
@@ -43,17 +50,24 @@ public:
     void add_loaded_neighbours(std::uint32_t contact, double time);
 
 private:
+    /// Of those that collide_at() found, the contact's; nullptr if it has none.
+    [[nodiscard]] const Manifold* find_region(const Contact& contact) const;
     static double least_separation(const Manifold& manifold);
-    bool is_beside(const Manifold& first, double nearest, const Manifold& other, const Contact& contact,
-                   double time) const;
+    bool is_beside(const Manifold& first, double nearest, const Manifold& other, const Contact& contact, double time);
     /// Of the same two bodies, the contact of this region.
     [[nodiscard]] std::optional<std::uint32_t> find_contact(std::uint32_t beside, const Manifold& manifold) const;
-    double closing_speed(const Contact& contact, const Manifold& manifold, double time, double gap) const;
+    double closing_speed(const Contact& contact, const Manifold& manifold, double time, double gap);
+    void add_points_below(const Contact& contact, double highest, double time);
+    [[nodiscard]] double straight_gap(const Contact& contact, const ContactPoint& point, double time) const;
     void collide_at(const Contact& contact, double time);
-    void add_site(const Contact& contact, Vec3 arm_a, Vec3 arm_b, Vec3 normal, bool may_bounce);
+    struct SitePlace {
+        Vec3 arm_a, arm_b, normal;  ///< as in ImpactSite
+    };
+    void add_site(const Contact& contact, const SitePlace& place, double time, bool may_bounce);
 
     WorldState& world_;
     ImpactMemory& memory_;
+    BodyPaths& bodies_;
     const ImpactPaths& paths_;
     const double step_;
 };

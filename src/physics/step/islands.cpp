@@ -17,6 +17,28 @@ bool is_active(const WorldState& world, const JointDefinition& joint) {
     return is_there(joint.body_a.index) && (moves(joint.body_a.index) || moves(joint.body_b.index));
 }
 
+// Contacts that need no solver: the paths of the impact stage say that the surfaces keep apart, and nothing else holds
+// either body. Such bodies then fly free, exactly, instead of sharing the contact solver's approximate turns.
+void set_idle_contacts(WorldState& world) {
+    const std::vector<std::uint8_t>& is_open = world.impact_memory.is_open;
+    std::vector<std::uint8_t>& is_held = world.impact_memory.is_held;
+    is_held.assign(world.motion.size(), 0);
+    for (std::size_t i = 0; i < world.contacts.size(); ++i) {
+        const ContactGlance& contact = world.contact_glances[i];
+        if (!is_open[i]) is_held[contact.a] = is_held[contact.b] = 1;
+    }
+    for (const Joint& joint : world.active_joints) {
+        is_held[joint.b] = 1;
+        if (!joint.a_is_world) is_held[joint.a] = 1;
+    }
+    const auto is_free = [&](std::uint32_t body) { return world.motion[body].inverse_mass == 0 || !is_held[body]; };
+    for (std::size_t i = 0; i < world.contacts.size(); ++i) {
+        ContactGlance& contact = world.contact_glances[i];
+        contact.is_idle = is_open[i] && is_free(contact.a) && is_free(contact.b);
+        if (contact.is_idle) contact.touches = is_touching(world.contacts[i]);
+    }
+}
+
 }  // namespace
 
 void find_islands(WorldState& world) {
@@ -31,6 +53,8 @@ void find_islands(WorldState& world) {
         world.active_joints.push_back(record.constraint);
         world.active_joint_slots.push_back(slot);
     }
+
+    set_idle_contacts(world);
 
     // Kinematic bodies are awake, but no island holds them.
     std::vector<std::uint32_t> movable;

@@ -70,10 +70,24 @@ std::vector<std::uint32_t> list_carriers(const WorldState& world) {
     return carriers;
 }
 
+// Whether a kinematic body may give the island energy by a contact.
+bool is_pushed(const WorldState& world, const Island& island) {
+    const auto pushes = [&](std::uint32_t body) {
+        const BodyState& state = world.motion[body];
+        return state.inverse_mass == 0 && (state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{});
+    };
+    const auto contacts = contacts_of(world, island);
+    return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t index) {
+        return pushes(world.contacts[index].a) || pushes(world.contacts[index].b);
+    });
+}
+
 // Solves all given islands, of contacts only, through the step.
 void solve_wide(WorldState& world, const SolveWays::Wide& way) {
     std::vector<std::uint32_t> order, bodies;
+    std::vector<WideContactSolver::Group> groups;
     for (const Island& island : way.islands) {
+        groups.push_back({island.body_count, is_pushed(world, island)});
         const auto contacts = contacts_of(world, island);
         order.insert(order.end(), contacts.begin(), contacts.end());
         const auto members = bodies_of(world, island);
@@ -82,7 +96,7 @@ void solve_wide(WorldState& world, const SolveWays::Wide& way) {
     WideContactSolver& solver = world.wide_solver;
     build_schedule(order, world.contact_glances, world.motion, solver.lanes(), world.schedule);
     const ContactSoftness softness = way.plan.softness(world.settings.time_step);
-    solver.begin({bodies, list_carriers(world)}, softness.substep, way.plan.substeps);
+    solver.begin({bodies, list_carriers(world), groups}, softness.substep, way.plan.substeps);
     for (const SolveSchedule::Stage& stage : world.schedule.stages) {
         solver.begin_stage();
         for (std::uint32_t i = 0; i < stage.batch_count; ++i) {
@@ -318,18 +332,6 @@ void freeze_lost_bodies(WorldState& world) {
     clear_traces_of_lost(world);
 }
 
-// Whether a kinematic body may give the island energy by a contact.
-bool is_pushed(const WorldState& world, const Island& island) {
-    const auto pushes = [&](std::uint32_t body) {
-        const BodyState& state = world.motion[body];
-        return state.inverse_mass == 0 && (state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{});
-    };
-    const auto contacts = contacts_of(world, island);
-    return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t index) {
-        return pushes(world.contacts[index].a) || pushes(world.contacts[index].b);
-    });
-}
-
 // Sweeps over joints and contacts by turns may come to no end, and what they miss must not swing up. A substep does not
 // end with more energy than the forces gave; before the drift, bodies may also be parting and be mended.
 class EnergyBounds {
@@ -383,12 +385,7 @@ void solve_free(WorldState& world, const std::vector<std::uint32_t>& bodies, dou
         for (std::size_t i = share.first; i < share.last; ++i) {
             BodyState& state = world.motion[bodies[i]];
             const BodyConstants& constants = world.constants[bodies[i]];
-            for (int k = 0; k < world.settings.substeps; ++k) {
-                kick(state, constants, h / 2);
-                split_gyroscopic(state, constants, h);
-                drift(state, constants, h);
-                kick(state, constants, h / 2);
-            }
+            for (int k = 0; k < world.settings.substeps; ++k) fly(state, constants, h);
         }
     });
 }
