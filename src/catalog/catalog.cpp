@@ -111,6 +111,11 @@ Result<std::unique_ptr<Catalog>> Catalog::open(const std::filesystem::path& file
 
     std::unique_ptr<Catalog> catalog(new Catalog);
     catalog->state_ = std::make_unique<State>(std::move(*connection), std::move(*taxonomy));
+    const auto newest = catalog->state_->changes.newest_batch();
+    if (!newest) return newest.error();
+    catalog->state_->seen_batch = *newest;
+
+    if (catalog->state_->connection->is_read_only()) return catalog;
 
     // Another taxonomy than the one that the stored attributes come from: resolve them all again.
     const std::string hash = taxonomy_hash(taxonomy_folder, user_taxonomy);
@@ -120,9 +125,6 @@ Result<std::unique_ptr<Catalog>> Catalog::open(const std::filesystem::path& file
         if (auto refreshed = catalog->state_->refresh_attributes(hash, options); !refreshed) return refreshed.error();
     }
     if (auto stored = catalog->state_->store_primitives(); !stored) return stored.error();
-    const auto newest = catalog->state_->changes.newest_batch();
-    if (!newest) return newest.error();
-    catalog->state_->seen_batch = *newest;
     return catalog;
 }
 
@@ -524,7 +526,7 @@ Result<ConvexParts> Catalog::convex_parts(std::int64_t id, int max_hulls, double
     const auto model = mesh(id);
     if (!model) return model.error();
     auto parts = make_convex_parts(*model, max_hulls, error);
-    if (!parts) return parts.error();
+    if (!parts || state_->connection->is_read_only()) return parts;
     if (auto kept = table.put(id, stored_form(*parts)); !kept) return kept.error();
     return parts;
 }
@@ -541,11 +543,13 @@ Result<SoftMesh> Catalog::soft_mesh(std::int64_t id) const {
     const auto model = mesh(id);
     if (!model) return model.error();
     auto made = make_soft_mesh(*model);
+    if (state_->connection->is_read_only()) return made;
     if (auto kept = table.put(id, stored_form(made)); !kept) return kept.error();
     return made;
 }
 
 Result<ImportReport> Catalog::import(const std::vector<std::filesystem::path>& paths, const ImportOptions& options) {
+    if (auto writable = state_->connection->need_writable(); !writable) return writable.error();
     ConfinedPoolOptions pool;
     pool.workers = options.workers;
     pool.worker_program = options.worker_program;

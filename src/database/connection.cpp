@@ -2,6 +2,7 @@
 #include "database/connection.h"
 
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <map>
@@ -63,6 +64,30 @@ Result<void> prepare_place(const std::filesystem::path& file) {
     return {};
 }
 
+/// Whether the file is there but cannot be changed, or nothing can be made beside it, which writing needs: by its mode,
+/// or because the disk is read-only.
+bool can_only_be_read(const std::filesystem::path& file) {
+    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    return access(file.c_str(), F_OK) == 0 && (access(file.c_str(), W_OK) != 0 || access(folder.c_str(), W_OK) != 0);
+}
+
+/// "file:" and the path, in which "?", "#" and "%" are no longer signs of a URI.
+std::string as_uri(const std::filesystem::path& file) {
+    std::string uri = "file:";
+    for (const char c : std::filesystem::absolute(file).string()) {
+        if (c == '?') {
+            uri += "%3f";
+        } else if (c == '#') {
+            uri += "%23";
+        } else if (c == '%') {
+            uri += "%25";
+        } else {
+            uri += c;
+        }
+    }
+    return uri;
+}
+
 }  // namespace
 
 Connection::Connection(std::filesystem::path file, std::unique_ptr<Handles> handles)
@@ -74,20 +99,50 @@ Result<std::unique_ptr<Connection>> Connection::open(const std::filesystem::path
                                                      const ConnectionOptions& options) {
     if (auto place = prepare_place(file); !place) return place.error();
 
-    // One instance a thread, so the library needs no lock of its own.
-    auto handles = std::make_unique<Handles>();
-    const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
-    const int code = sqlite3_open_v2(file.c_str(), &handles->database, flags, nullptr);
-    if (code != SQLITE_OK) return describe(file, code, handles->database ? sqlite3_errmsg(handles->database) : nullptr);
-    std::unique_ptr<Connection> connection(new Connection(file, std::move(handles)));
+    const bool read_only = can_only_be_read(file);
+    auto connection =
+        read_only ? open_for_reading(file) : open_handle(file, file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    if (!connection) return connection;
+    (*connection)->read_only_ = read_only;
 
     // Nothing is written before the file is known to be ours or new.
-    sqlite3_busy_timeout(connection->handles_->database, options.wait_milliseconds);
-    if (auto owned = connection->check_ownership(options); !owned) return owned.error();
-    if (sqlite3_db_readonly(connection->handles_->database, "main") == 1)
-        return describe(file, SQLITE_READONLY, nullptr);
-    if (auto configured = connection->configure(options); !configured) return configured.error();
+    sqlite3_busy_timeout((*connection)->handles_->database, options.wait_milliseconds);
+    if (auto owned = (*connection)->check_ownership(options); !owned) return owned.error();
+    if (auto configured = (*connection)->configure(options); !configured) return configured.error();
     return connection;
+}
+
+Result<std::unique_ptr<Connection>> Connection::open_handle(const std::filesystem::path& file, const std::string& name,
+                                                            int flags) {
+    // One instance a thread, so the library needs no lock of its own.
+    auto handles = std::make_unique<Handles>();
+    const int code =
+        sqlite3_open_v2(name.c_str(), &handles->database, flags | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
+    if (code != SQLITE_OK) return describe(file, code, handles->database ? sqlite3_errmsg(handles->database) : nullptr);
+    return std::unique_ptr<Connection>(new Connection(file, std::move(handles)));
+}
+
+Result<std::unique_ptr<Connection>> Connection::open_for_reading(const std::filesystem::path& file) {
+    // With the write-ahead log of a program that is writing now.
+    auto connection = open_handle(file, file, SQLITE_OPEN_READONLY);
+    if (!connection) return connection;
+    const auto tables = (*connection)->query_integer("SELECT count(*) FROM sqlite_schema");
+    const int code = sqlite3_extended_errcode((*connection)->handles_->database) & 0xff;
+    if (tables || (code != SQLITE_CANTOPEN && code != SQLITE_READONLY)) return connection;
+
+    // The log's index cannot be made beside the file. Without a log all is in the file itself, which nobody changes as
+    // long as there is none.
+    std::error_code no_log;
+    if (std::filesystem::file_size(file.string() + "-wal", no_log) > 0 && !no_log) {
+        return Error{file.string(), "is read-only, and its last changes are still in the log beside it",
+                     "let a program that may write there open it once, or make file and folder writable"};
+    }
+    return open_handle(file, as_uri(file) + "?immutable=1", SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
+}
+
+Result<void> Connection::need_writable() const {
+    if (!read_only_) return {};
+    return describe(file_, SQLITE_READONLY, nullptr);
 }
 
 Result<void> Connection::check_ownership(const ConnectionOptions& options) {
@@ -114,6 +169,7 @@ Result<void> Connection::compare_marks(const ConnectionOptions& options) {
 }
 
 Result<void> Connection::configure(const ConnectionOptions& options) {
+    if (read_only_) return execute("PRAGMA cache_size = -32768; PRAGMA temp_store = MEMORY");
     // A page size counts only before the first write; the mark is set by whoever comes first.
     if (auto size = execute("PRAGMA page_size = " + std::to_string(page_bytes)); !size) return size;
     if (auto log = switch_to_write_ahead_log(options.wait_milliseconds); !log) return log;

@@ -22,8 +22,9 @@ struct ConnectionOptions {
 /// of them writes at a time, the others wait, and readers never wait (write-ahead log).
 class Connection {
 public:
-    /// Opens the file or creates it (with its folder). Errors: not a database, another program's database, read-only, a
-    /// folder, no space, locked for too long.
+    /// Opens the file or creates it (with its folder). A file that cannot be written is opened for reading, also in a
+    /// folder or on a disk that cannot be written; commands that write then fail. Errors: not a database, another
+    /// program's database, a folder, no space, locked for too long, or read-only with changes still in its log.
     static Result<std::unique_ptr<Connection>> open(const std::filesystem::path& file,
                                                     const ConnectionOptions& options);
     ~Connection();
@@ -31,6 +32,9 @@ public:
     Connection& operator=(const Connection&) = delete;
 
     [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+    [[nodiscard]] bool is_read_only() const { return read_only_; }
+    /// The error that a command which writes would give; to be asked before long work is done for it.
+    [[nodiscard]] Result<void> need_writable() const;
 
     /// Runs one or more commands that take no values and give no rows.
     Result<void> execute(const std::string& commands);
@@ -48,6 +52,9 @@ private:
     friend class Statement;
     struct Handles;
     Connection(std::filesystem::path file, std::unique_ptr<Handles> handles);
+    static Result<std::unique_ptr<Connection>> open_handle(const std::filesystem::path& file, const std::string& name,
+                                                           int flags);
+    static Result<std::unique_ptr<Connection>> open_for_reading(const std::filesystem::path& file);
     [[nodiscard]] Error last_error() const;
     Result<void> check_ownership(const ConnectionOptions& options);
     Result<void> compare_marks(const ConnectionOptions& options);
@@ -58,6 +65,7 @@ private:
 
     std::filesystem::path file_;
     std::unique_ptr<Handles> handles_;
+    bool read_only_ = false;
 };
 
 }  // namespace embody::database

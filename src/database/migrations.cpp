@@ -33,6 +33,12 @@ Result<void> migrate(Connection& connection, std::span<const Migration> migratio
                          std::to_string(known),
                      "open it with the newer Embody that wrote it, or name another file with --database"};
     }
+    if (*version < known && connection.is_read_only()) {
+        return Error{connection.file().string(),
+                     "has schema version " + std::to_string(*version) + ", this program needs " +
+                         std::to_string(known) + " and cannot change the file: it is read-only",
+                     "make file and folder writable, or open a copy with --database"};
+    }
     for (const Migration& migration : migrations) {
         if (migration.version <= *version) continue;
         if (auto step = take_step(connection, migration); !step) return step;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <functional>
 #include <sstream>
 
 #include "database/migrations.h"
@@ -81,24 +82,92 @@ TEST(Connection, RefusesAFileBelowAFile) {
     EXPECT_NE(connection.error().where.find("below"), std::string::npos);
 }
 
-TEST(Connection, TellsAReadOnlyFile) {
-    TemporaryFolder folder;
-    { ASSERT_TRUE(Connection::open(folder / "models.sqlite", ours)); }
-    chmod((folder / "models.sqlite").c_str(), 0444);
-    chmod(folder.path().c_str(), 0755);
-
-    // The administrator may write everywhere, so somebody else has to try.
+/// What `look` returns as somebody who may not write what this process makes: the administrator may write everywhere.
+/// "" is well.
+std::string as_another_person(const std::function<std::string()>& look) {
+    int ends[2];
+    EXPECT_EQ(pipe(ends), 0);
     const pid_t child = fork();
-    ASSERT_GE(child, 0);
     if (child == 0) {
-        if (geteuid() == 0 && setuid(65534) != 0) _exit(2);
-        const auto connection = Connection::open(folder / "models.sqlite", ours);
-        const bool told = !connection && connection.error().why.find("read-only") != std::string::npos;
-        _exit(told ? 0 : 1);
+        const std::string told = geteuid() == 0 && setuid(65534) != 0 ? "cannot be somebody else" : look();
+        _exit(::write(ends[1], told.data(), told.size()) == static_cast<ssize_t>(told.size()) ? 0 : 1);
     }
+    close(ends[1]);
+    std::string told(4096, '\0');
+    const ssize_t count = ::read(ends[0], told.data(), told.size());
+    close(ends[0]);
     int status = 0;
-    waitpid(child, &status, 0);
+    EXPECT_EQ(waitpid(child, &status, 0), child);
     EXPECT_EQ(status, 0);
+    told.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+    return told;
+}
+
+/// Reads `rows` rows from the table `letter`, and is told by name that it cannot be written.
+std::string read_only_fault(const std::filesystem::path& file, std::int64_t rows) {
+    const auto connection = Connection::open(file, ours);
+    if (!connection) return connection.error().message();
+    const auto found = (*connection)->query_integer("SELECT count(*) FROM letter");
+    if (!found) return found.error().message();
+    if (*found != rows) return "found " + std::to_string(*found) + " rows";
+    for (const auto& refused :
+         {(*connection)->execute("INSERT INTO letter VALUES (9)"), (*connection)->need_writable()})
+        if (refused || refused.error().why.find("read-only") == std::string::npos) return "was written";
+    return "";
+}
+
+TEST(Connection, AReadOnlyFileIsReadAndTellsWhoWritesIt) {
+    // Names that mean something in a URI are names all the same.
+    for (const char* name : {"models.sqlite", "50%25 of #1?mode=rw.sqlite"}) {
+        for (const mode_t folder_mode : {0777, 0555}) {
+            for (const mode_t file_mode : {0444, 0666}) {
+                if (folder_mode == 0777 && file_mode == 0666) continue;
+                TemporaryFolder folder;
+                {
+                    const auto connection = Connection::open(folder / name, ours);
+                    ASSERT_TRUE(connection);
+                    ASSERT_TRUE((*connection)->execute("CREATE TABLE letter (number); INSERT INTO letter VALUES (1)"));
+                }
+                chmod((folder / name).c_str(), file_mode);
+                chmod(folder.path().c_str(), folder_mode);
+                const std::string before = bytes_of(folder / name);
+                EXPECT_EQ(as_another_person([&] { return read_only_fault(folder / name, 1); }), "")
+                    << name << std::oct << " " << folder_mode << " " << file_mode;
+                EXPECT_EQ(bytes_of(folder / name), before);
+                chmod(folder.path().c_str(), 0755);
+            }
+        }
+    }
+}
+
+TEST(Connection, AReadOnlyFileIsReadWhileItsOwnerWrites) {
+    TemporaryFolder folder;
+    const auto owner = Connection::open(folder / "models.sqlite", ours);
+    ASSERT_TRUE(owner);
+    ASSERT_TRUE((*owner)->execute("CREATE TABLE letter (number); INSERT INTO letter VALUES (1)"));
+    chmod((folder / "models.sqlite").c_str(), 0644);
+    chmod(folder.path().c_str(), 0755);
+    for (std::int64_t rows = 1; rows < 4; ++rows) {
+        EXPECT_EQ(as_another_person([&] { return read_only_fault(folder / "models.sqlite", rows); }), "");
+        ASSERT_TRUE((*owner)->execute("INSERT INTO letter VALUES (2)"));
+    }
+}
+
+TEST(Connection, TellsAReadOnlyFileWhoseLastChangesAreInItsLog) {
+    TemporaryFolder folder;
+    {
+        const auto owner = Connection::open(folder / "models.sqlite", ours);
+        ASSERT_TRUE(owner);
+        ASSERT_TRUE((*owner)->execute("CREATE TABLE letter (number); INSERT INTO letter VALUES (1)"));
+        // As a killed program leaves them.
+        std::filesystem::copy_file(folder / "models.sqlite", folder / "killed.sqlite");
+        std::filesystem::copy_file(folder / "models.sqlite-wal", folder / "killed.sqlite-wal");
+    }
+    chmod(folder.path().c_str(), 0555);
+    const std::string told = as_another_person([&] { return read_only_fault(folder / "killed.sqlite", 1); });
+    EXPECT_NE(told.find("killed.sqlite: is read-only, and its last changes are still in the log"), std::string::npos)
+        << told;
+    chmod(folder.path().c_str(), 0755);
 }
 
 TEST(Connection, TellsADamagedFile) {
@@ -228,6 +297,21 @@ TEST(Migrations, RefuseANewerSchemaByItsVersion) {
     EXPECT_NE(migrated.error().why.find("version 7"), std::string::npos);
     EXPECT_FALSE(migrated.error().remedy.empty());
     EXPECT_EQ(*(*connection)->query_integer("SELECT count(*) FROM sqlite_schema"), 0);
+}
+
+TEST(Migrations, OfAReadOnlyFileAreTold) {
+    TemporaryFolder folder;
+    ASSERT_TRUE(Connection::open(folder / "models.sqlite", ours));
+    chmod((folder / "models.sqlite").c_str(), 0444);
+    chmod(folder.path().c_str(), 0755);
+    const std::string told = as_another_person([&] {
+        const auto connection = Connection::open(folder / "models.sqlite", ours);
+        if (!connection) return connection.error().message();
+        const auto migrated = migrate(**connection, model_migrations());
+        return migrated ? "migrated" : migrated.error().message();
+    });
+    EXPECT_NE(told.find("has schema version 0"), std::string::npos) << told;
+    EXPECT_NE(told.find("is read-only"), std::string::npos) << told;
 }
 
 TEST(Migrations, KeepRowsOfAnOlderSchema) {
