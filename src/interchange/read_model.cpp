@@ -51,6 +51,8 @@ Result<RawScene> read_model(const FileSource& source, const std::string& path) {
 }
 
 Result<RawScene> read_model(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored)) return Error{file.string(), "is a folder, not a file"};
     return read_model(FolderSource(file.parent_path()), file.filename().string());
 }
 

@@ -15,8 +15,8 @@
 
 #include "interchange/assimp/assimp_materials.h"
 #include "interchange/assimp/read_by_assimp.h"
+#include "interchange/assimp/refusal.h"
 #include "interchange/assimp/source_files.h"
-#include "interchange/one_line.h"
 #include "interchange/read_model.h"
 
 namespace embody::interchange {
@@ -129,6 +129,10 @@ Result<void> add_meshes(const aiScene& read, RawScene& scene) {
 
 Result<RawScene> read_by_assimp(const FileSource& source, const std::string& path) {
     const std::string where = source.describe(path);
+    // Read before the library does, which would not say why it cannot.
+    const auto bytes = source.read(path);
+    if (!bytes) return Error{where, bytes.error().why, bytes.error().remedy};
+    if (bytes->empty()) return Error{where, "is empty"};
     Assimp::Importer importer;
     keep_our_formats(importer);
     importer.SetIOHandler(new_source_files(source));  // the importer owns and deletes it
@@ -141,9 +145,9 @@ Result<RawScene> read_by_assimp(const FileSource& source, const std::string& pat
     const aiScene* read = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_RemoveComponent);
     if (read == nullptr || read->mRootNode == nullptr) {
         // assimp catches what runs out of memory, and says no more than its name.
-        const std::string reason = one_line(importer.GetErrorString());
-        if (reason == "std::bad_alloc") throw std::bad_alloc();
-        return Error{where, reason.empty() ? "is no model file of its kind" : reason};
+        const std::string told = importer.GetErrorString();
+        if (told == "std::bad_alloc") throw std::bad_alloc();
+        return Error{where, reason_of_refusal(source, path, *bytes, told)};
     }
 
     RawScene scene;

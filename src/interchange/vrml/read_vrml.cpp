@@ -353,6 +353,7 @@ Result<RawScene> read_vrml(const FileSource& source, const std::string& path) {
     const auto bytes = source.read(path);
     if (!bytes) return bytes.error();
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    if (text.empty()) return Error{where, "is empty"};
     if (!text.starts_with("#VRML V2.0")) return Error{where, "is no VRML 2.0 text", "save it as VRML97 or glTF"};
     if (depth_of(text) > deepest) {
         return Error{where, "nests nodes deeper than " + std::to_string(deepest)};
@@ -364,7 +365,7 @@ Result<RawScene> read_vrml(const FileSource& source, const std::string& path) {
     input.setBuffer(text.data(), text.size());
     const Kept root(SoDB::readAll(&input));
     if (root.get() == nullptr) {
-        return Error{where, first_complaint.empty() ? "is no model file of its kind" : first_complaint};
+        return Error{where, first_complaint.empty() ? "holds no VRML node" : first_complaint};
     }
     RawScene scene;
     if (const auto walked = Walk(source, path, scene).run(root.get()); !walked) {
