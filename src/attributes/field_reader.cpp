@@ -3,7 +3,10 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
+
+#include "attributes/json_text.h"
 
 namespace embody::attributes {
 namespace {
@@ -25,11 +28,9 @@ Result<json> read_json(const std::filesystem::path& file) {
     if (std::filesystem::is_directory(file, ignored)) return Error{file.string(), "is a folder", "name a file"};
     std::ifstream stream(file, std::ios::binary);
     if (!stream) return Error{file.string(), "cannot be opened"};
-    try {
-        return json::parse(stream);
-    } catch (const json::exception& problem) {
-        return Error{file.string(), problem.what()};
-    }
+    const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    if (stream.bad()) return Error{file.string(), "cannot be read"};
+    return parse_json(text, file.string());
 }
 
 FieldReader::FieldReader(const json& object, std::string where) : object_(object), where_(std::move(where)) {

@@ -14,7 +14,7 @@
 
 namespace embody::attributes {
 
-/// The JSON document of a file; the error names the file, and the place where it is broken.
+/// The JSON document of a file, read as parse_json() does; the error names the file, and the place where it is broken.
 Result<nlohmann::json> read_json(const std::filesystem::path& file);
 
 /// Reads the fields of one object of the taxonomy's files; remembers the first thing that is wrong and which fields

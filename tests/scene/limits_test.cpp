@@ -5,24 +5,12 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "scene/json/nesting.h"
 #include "scene/session.h"
 
 namespace embody::scene {
 namespace {
 
 using nlohmann::json;
-
-TEST(Nesting, IsCountedOutsideOfTextsOnly) {
-    const std::size_t most = deepest_nesting;
-    EXPECT_TRUE(nests_too_deep(std::string(most + 1, '[')));
-    EXPECT_TRUE(nests_too_deep(R"("\"")" + std::string(most + 1, '{')));
-    EXPECT_FALSE(nests_too_deep(std::string(most, '[') + std::string(most, ']')));
-    EXPECT_FALSE(nests_too_deep("\"" + std::string(1000, '[') + "\""));
-    EXPECT_FALSE(nests_too_deep("\"\\\"" + std::string(1000, '[') + "\""));
-    EXPECT_FALSE(nests_too_deep("\"\\"));
-    EXPECT_FALSE(nests_too_deep(""));
-}
 
 TEST(Limits, ManyStepsEndWhereTheOwnerSaysSo) {
     int asked = 0;

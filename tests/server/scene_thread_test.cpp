@@ -14,6 +14,13 @@ TEST_F(SceneThreadTest, WhatIsNoCommandIsRefused) {
     EXPECT_EQ(ask(R"({"id": 7, "command": "hello", "params": [1]})").at("error").at("where"), "params");
 }
 
+TEST_F(SceneThreadTest, AFieldThatIsWrittenTwiceIsRefused) {
+    const json reply = ask(R"({"id": 1, "command": "entity.remove", "params": {"indices": [1], "indices": []}})");
+    EXPECT_EQ(reply.at("ok"), false);
+    EXPECT_TRUE(reply.at("id").is_null()) << "which of two ids would be meant?";
+    EXPECT_EQ(reply.at("error").at("where"), "message, line 1, column 66: params.indices");
+}
+
 // Copying or freeing such a value walks a level of the stack for each bracket.
 TEST_F(SceneThreadTest, AMillionBracketsAreRefusedAndTheServerGoesOn) {
     const std::string open(1'000'000, '['), close(1'000'000, ']');

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "attributes/json_text.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace embody::attributes {
+namespace {
+
+using nlohmann::json;
+
+std::string message_of(const std::string& text) {
+    const auto parsed = parse_json(text, "file.json");
+    return parsed ? "accepted" : parsed.error().message();
+}
+
+TEST(JsonText, NestingIsCountedOutsideOfTextsOnly) {
+    const std::size_t most = deepest_nesting;
+    EXPECT_TRUE(nests_too_deep(std::string(most + 1, '[')));
+    EXPECT_TRUE(nests_too_deep(R"("\"")" + std::string(most + 1, '{')));
+    EXPECT_FALSE(nests_too_deep(std::string(most, '[') + std::string(most, ']')));
+    EXPECT_FALSE(nests_too_deep("\"" + std::string(1000, '[') + "\""));
+    EXPECT_FALSE(nests_too_deep("\"\\\"" + std::string(1000, '[') + "\""));
+    EXPECT_FALSE(nests_too_deep("\"\\"));
+    EXPECT_FALSE(nests_too_deep(""));
+    EXPECT_NE(message_of(std::string(100, '[')).find("nest more than 64 deep"), std::string::npos);
+}
+
+TEST(JsonText, AFieldThatIsWrittenTwiceIsRefusedByNameAndPlace) {
+    struct Case {
+        const char* text;
+        const char* says;
+    };
+    const Case cases[] = {
+        {R"({"a": 1, "a": 1})", "file.json, line 1, column 10: a: is written a second time in the same object"},
+        {"{\n \"mass\": 1,\n \"b\": [],\n \"mass\": 2}", "line 4, column 2: mass: "},
+        {R"({"entities": [{"x": 1}, {"y": {"m": 1, "n": 2, "m": 3}}]})", ": entities[1].y.m: is written"},
+        {R"([[], [{"a": {}, "b": [1, {"c": 0}], "a": {}}]])", ": [1][0].a: is written"},
+        {R"({"a": 1, "\u0061": 2})", ": a: is written"},
+        {R"({"": 1, "": 2})", "is written a second time"},
+        {R"({"a\"b": 1, "c": {"d": "}"}, "a\"b": 2})", "is written a second time"},
+        {R"({"pose": {}, "shape": {"type": "box"}, "pose": {}})", ": pose: is written"},
+    };
+    for (const Case& wrong : cases)
+        EXPECT_NE(message_of(wrong.text).find(wrong.says), std::string::npos) << wrong.text << "\n"
+                                                                              << message_of(wrong.text);
+}
+
+TEST(JsonText, EqualNamesInDifferentObjectsAndTextsAreRight) {
+    for (const char* text :
+         {R"({"a": {"a": {"a": 1}}})", R"([{"a": 1}, {"a": 2}])",
+          R"({"a": "a", "b": ["a", "a"], "c": {"a": 1, "b": 2}})", R"({"a": [{"a": 1}, {"a": 1}], "A": 1, " a": 2})",
+          R"({"a": "{\"b\": 1, \"b\": 2}"})", R"("a")", "3", "[]", "\xef\xbb\xbf{\"a\": 1}"})
+        EXPECT_EQ(message_of(text), "accepted") << text;
+}
+
+TEST(JsonText, ManyFieldsAreSearchedInOneObject) {
+    std::string text = "{";
+    for (int i = 0; i < 300000; ++i) text += "\"" + std::to_string(i) + "\": 0,";
+    EXPECT_EQ(message_of(text + "\"last\": 0}"), "accepted");
+    EXPECT_NE(message_of(text + "\"77\": 0}").find(": 77: is written"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace embody::attributes
