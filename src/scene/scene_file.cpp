@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "scene/document_field.h"
 #include "scene/json/print.h"
 #include "scene/json/text.h"
 #include "scene/whole_file.h"
@@ -38,9 +39,7 @@ Result<Document> load_document(const std::filesystem::path& file) {
     if (!parsed.ok()) return parsed.error();
     Result<Document> document = document_from_json(parsed.value());
     if (document.ok()) return document;
-    Error error = document.error();
-    error.where = file.string() + (error.where.empty() ? "" : ": " + error.where);
-    return error;
+    return in_place(file.string(), document.error());
 }
 
 Result<void> save_document(const Document& document, const std::filesystem::path& file) {

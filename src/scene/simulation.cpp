@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "attributes/surfaces.h"
+#include "scene/document_field.h"
 #include "scene/liquid_notes.h"
 #include "scene/simulation_state.h"
 
@@ -60,7 +61,8 @@ Simulation::~Simulation() = default;
 Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document, catalog::Catalog* catalog,
                                                        std::shared_ptr<FormCache> forms) {
     Result<std::unique_ptr<physics::World>> world = physics::World::create(document.settings);
-    if (!world.ok()) return Error{"settings." + world.error().where, world.error().why, world.error().remedy};
+    if (!world.ok())
+        return Error{"settings." + document_field(world.error().where), world.error().why, world.error().remedy};
     std::unique_ptr<Simulation> simulation(new Simulation);
     if (!forms) forms = std::make_shared<FormCache>();
     forms->begin();
@@ -131,7 +133,7 @@ Result<void> Simulation::set_settings(const physics::WorldSettings& settings) {
     Result<void> set = state_->world->set_settings(settings);
     if (set.ok()) return state_->apply_settings();
     state_->settings = before;
-    return set;
+    return Error{document_field(set.error().where), set.error().why, set.error().remedy};
 }
 
 bool Simulation::contains(EntityIndex entity) const { return state_->live.contains(entity); }

@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "physics/inter/definitions/grain_material.h"
+#include "scene/document_field.h"
 #include "scene/liquid_notes.h"
 #include "scene/simulation_state.h"
 
@@ -17,8 +18,8 @@ Error of_entity(const Entity& entity, Error error) {
     if (!entity.name.empty()) who += " (" + entity.name + ")";
     // What comes from deeper down may have said so already.
     if (error.where.starts_with(who)) return error;
-    error.where = error.where.empty() ? who : who + ": " + error.where;
-    return error;
+    error.where = entity_field(error.where);
+    return in_place(who, std::move(error));
 }
 
 const LiveEntity* Simulation::State::find(EntityIndex index) const {

@@ -2,6 +2,7 @@
 // What holds entities together: joints, and the pins of what changes its form.
 #include <algorithm>
 
+#include "scene/document_field.h"
 #include "scene/simulation_state.h"
 
 namespace embody::scene {
@@ -200,7 +201,8 @@ Result<BodyHandle> Simulation::State::end_of(EntityIndex index, const std::strin
 }
 
 Result<void> Simulation::State::add_joint(const SceneJoint& joint) {
-    const std::string who = "joint " + std::to_string(joint.index);
+    std::string who = "joint " + std::to_string(joint.index);
+    if (!joint.name.empty()) who += " (" + joint.name + ")";
     if (joints.contains(joint.index)) return Error{who, "is in the world already"};
     if (Result<void> made = make_bodies_of(joint); !made.ok()) return made;
     physics::JointDefinition definition = joint.definition;
@@ -212,7 +214,8 @@ Result<void> Simulation::State::add_joint(const SceneJoint& joint) {
     definition.body_b = b.value();
     definition.body_a = a.value();
     const Result<JointHandle> handle = world->create_joint(definition);
-    if (!handle.ok()) return Error{who + ": " + handle.error().where, handle.error().why, handle.error().remedy};
+    if (!handle.ok())
+        return Error{who + ": " + joint_field(handle.error().where), handle.error().why, handle.error().remedy};
     joints.emplace(joint.index, LiveJoint{joint, handle.value()});
     return {};
 }

@@ -180,7 +180,11 @@ Result<void> SceneThread::State::open() {
             if (!document) return document.error();
             params = {{"scene", scene::document_to_json(*document)}};
         }
-        if (auto loaded = session->execute("scene.load", params); !loaded) return loaded.error();
+        if (auto loaded = session->execute("scene.load", params); !loaded) {
+            Error refused = loaded.error();
+            if (params.contains("scene")) refused.where = options.open_scene + ": " + refused.where;
+            return refused;
+        }
     }
     tell_events();
     publish(true);

@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "scene/session.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "foundation/random.h"
 #include "scene/sample_documents.h"
 #include "scene/scene_file.h"
+#include "scene/session_state.h"
 
 namespace embody::scene {
 namespace {
@@ -435,6 +442,68 @@ TEST_F(SessionTest, SavesLoadsListsAndRecovers) {
     EXPECT_NE(error_of("scene.load", {{"name", "none"}}), "accepted");
     EXPECT_NE(error_of("scene.load", {{"scene", {{"embody_scene", 3}}}}), "accepted");
     EXPECT_EQ(document(), before);
+}
+
+// What physics refuses at the opening is told with file, entity and the field as the file spells it.
+TEST_F(SessionTest, WhatPhysicsRefusesIsToldByFileEntityAndField) {
+    const json ball = {{"index", 7}, {"name", "Ball"}, {"shape", {{"type", "sphere"}, {"radius", 0.1}}}};
+    const json box = {{"index", 9}, {"shape", {{"type", "box"}, {"half_extents", {1, 1, 1}}}}};
+    const json hinge = {{"type", "hinge"}, {"name", "Axle"}, {"entity_a", 9}, {"entity_b", 7}};
+    struct Case {
+        const char* pointer;
+        json value;
+        const char* says;
+    };
+    const Case cases[] = {
+        {"/entities/0/pose",
+         {{"position", {0, 1e12, 0}}},
+         "mine.json: entity 7 (Ball): pose.position[1]: must be between"},
+        {"/entities/1/pose", {{"position", {0, 0, 1e-320}}}, "mine.json: entity 9: pose.position[2]: is a denormal"},
+        {"/entities/0/linear_velocity", {1e9, 0, 0}, "entity 7 (Ball): linear_velocity[0]: must be"},
+        {"/entities/0/angular_velocity", {0, 0, 1e9}, "entity 7 (Ball): angular_velocity[2]: must be"},
+        {"/entities/0/force", {0, 1e20, 0}, "entity 7 (Ball): force[1]: must be"},
+        {"/entities/0/torque", {0, 1e20, 0}, "entity 7 (Ball): torque[1]: must be"},
+        {"/entities/0",
+         {{"index", 7}, {"name", "Ball"}, {"shape", {{"type", "plane"}}}, {"attributes", {{"kind", "rigid"}}}},
+         "mine.json: entity 7 (Ball): shape: a plane can only be static"},
+        {"/entities/0/shape", {{"type", "sphere"}, {"radius", 1e9}}, "mine.json: entities[0].shape.radius: must be"},
+        {"/entities/0/attributes",
+         {{"inertia", {1, 1, 9, 0, 0, 0}}, {"mass", 1}},
+         "mine.json: entities[0].attributes.inertia: no principal moment"},
+        {"/joints/0/anchor", {0, 0, 1e12}, "mine.json: joints[0].anchor[2]: must be between"},
+        {"/joints/0/anchor", {9e8, 9e8, 9e8}, "accepted"},
+        {"/joints/0/frame_a", {{"position", {0, 0, 1e12}}}, "mine.json: joint 1 (Axle): frame_a.position[2]: must be"},
+        {"/joints/0/limit", {{"lower", -9}, {"upper", 1}}, "mine.json: joint 1 (Axle): limit.lower: must be"},
+        {"/joints/0/motor", {{"speed", 1e9}, {"max_force", 1}}, "mine.json: joint 1 (Axle): motor.speed: must be"},
+        {"/settings", {{"gravity", {0, 1e9, 0}}}, "mine.json: settings.gravity[1]: must be"},
+    };
+    const json right = {{"embody_scene", 1}, {"entities", {ball, box}}, {"joints", {hinge}}};
+    for (const Case& wrong : cases) {
+        json scene = right;
+        scene[json::json_pointer(wrong.pointer)] = wrong.value;
+        const std::string told = error_of("scene.load", {{"text", scene.dump()}, {"file", "mine.json"}});
+        EXPECT_NE(told.find(wrong.says), std::string::npos) << wrong.pointer << " gave: " << told;
+        EXPECT_EQ(error_of("scene.load", {{"scene", scene}}) == "accepted", told == "accepted");
+    }
+
+    // A saved one by its file.
+    json scene = right;
+    scene["entities"][0]["pose"] = {{"position", {0, 1e12, 0}}};
+    fs::create_directories(folder_ / "saved");
+    const fs::path file = folder_ / "saved" / "wrong.json";
+    std::ofstream(file) << scene.dump();
+    EXPECT_EQ(error_of("scene.load", {{"name", "wrong"}}).find(file.string() + ": entity 7 (Ball): pose"), 0u);
+}
+
+// An anchor in range is far from an entity that is at the other end of the world.
+TEST_F(SessionTest, AnAnchorThatIsTooFarFromItsEntityIsToldAsAnAnchor) {
+    const json scene = {
+        {"embody_scene", 1},
+        {"entities",
+         {{{"index", 1}, {"shape", {{"type", "sphere"}, {"radius", 0.1}}}, {"pose", {{"position", {-9e8, 0, 0}}}}}}},
+        {"joints", {{{"type", "ball"}, {"entity_b", 1}, {"anchor", {9e8, 0, 0}}}}}};
+    const std::string told = error_of("scene.load", {{"scene", scene}});
+    EXPECT_NE(told.find("scene.joints[0].anchor: is more than 1e9 m away"), std::string::npos) << told;
 }
 
 TEST_F(SessionTest, ARefusedEditLeavesDocumentAndWorldAlone) {

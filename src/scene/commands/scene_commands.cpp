@@ -4,6 +4,7 @@
 
 #include "foundation/version.h"
 #include "scene/commands/commands.h"
+#include "scene/document_field.h"
 #include "scene/json/parts.h"
 #include "scene/json/text.h"
 #include "scene/scene_file.h"
@@ -51,13 +52,11 @@ Result<json> make_new(SessionState& state, const json& params) {
     return done(state.open(new_document(title), ""));
 }
 
-// What is wrong with it is told as in `where`, then its own field.
-Result<json> open_document(SessionState& state, const json& scene, const std::string& where, const char* between) {
-    Result<Document> document = document_from_json(scene);
-    if (document.ok()) return done(state.open(std::move(document).value(), ""));
-    Error refused = document.error();
-    refused.where = where + (refused.where.empty() ? "" : between + refused.where);
-    return refused;
+// What physics refuses is told as in `place`, such as a file; empty where there is none.
+Result<json> open_document(SessionState& state, Document document, const std::string& name, const std::string& place) {
+    if (Result<void> opened = state.open(std::move(document), name); !opened.ok())
+        return in_place(place, opened.error());
+    return json::object();
 }
 
 Result<json> load(SessionState& state, const json& params) {
@@ -72,12 +71,20 @@ Result<json> load(SessionState& state, const json& params) {
     if (int{by_name} + int{scene != nullptr} + int{by_text} != 1)
         return Error{"name", "say either a name, the scene itself, or the text of its file"};
 
-    // The document itself is on no disk.
-    if (scene) return open_document(state, *scene, "scene", ".");
+    // The document itself is on no disk: a field of it is a field of this command.
+    if (scene) {
+        Result<Document> document = document_from_json(*scene);
+        if (document.ok()) return open_document(state, std::move(document).value(), "", "");
+        Error refused = document.error();
+        refused.where = "scene" + (refused.where.empty() ? "" : "." + refused.where);
+        return refused;
+    }
     if (by_text) {
         const Result<json> read = parse_json(text, file_name);
         if (!read.ok()) return read.error();
-        return open_document(state, read.value(), file_name, ": ");
+        Result<Document> document = document_from_json(read.value());
+        if (!document.ok()) return in_place(file_name, document.error());
+        return open_document(state, std::move(document).value(), "", file_name);
     }
     const Result<std::filesystem::path> file = find_scene(state.options, name);
     if (!file.ok()) return file.error();
@@ -85,9 +92,9 @@ Result<json> load(SessionState& state, const json& params) {
     if (!document.ok()) return document.error();
     const bool is_recovered = name.starts_with("autosave/");
     const std::string plain = file.value().stem().string();
-    if (Result<void> opened = state.open(std::move(document).value(), plain); !opened.ok()) return opened.error();
-    if (is_recovered) state.history.mark_unsaved();
-    return json::object();
+    Result<json> opened = open_document(state, std::move(document).value(), plain, file.value().string());
+    if (opened.ok() && is_recovered) state.history.mark_unsaved();
+    return opened;
 }
 
 Result<json> save(SessionState& state, const json& params) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <nlohmann/json.hpp>
 
+#include "physics/inter/definitions/field_check.h"
+#include "scene/document_field.h"
 #include "scene/json/field_reader.h"
 #include "scene/json/parts.h"
 
@@ -72,6 +74,16 @@ void read_anchor(FieldReader& reader, SceneJoint& joint, const Document& documen
     const Entity* a = joint.entity_a ? document.find(*joint.entity_a) : nullptr;
     joint.definition.frame_a = a ? inverse(a->pose) * world : world;
     joint.definition.frame_b = inverse(document.find(joint.entity_b)->pose) * world;
+
+    // Checked here, since physics knows the frames alone.
+    if (const Result<void> in_range = check_vector("anchor", *anchor, largest_coordinate, "m"); !in_range)
+        return reader.fail(reader.path(document_field(in_range.error().where)), in_range.error().why);
+    const auto is_near = [](const Transform& frame) {
+        return check_vector("", frame.position, largest_coordinate).ok();
+    };
+    if (!is_near(joint.definition.frame_a) || !is_near(joint.definition.frame_b))
+        reader.fail(reader.path("anchor"), "is more than 1e9 m away from an entity that it holds",
+                    "move the anchor or the entities");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <nlohmann/json.hpp>
 
+#include "scene/document_field.h"
 #include "scene/json/field_reader.h"
 #include "scene/json/parts.h"
 
@@ -29,7 +30,7 @@ Result<physics::WorldSettings> settings_from_json(const json& value, const std::
     if (error) return *error;
     if (const Result<void> valid = physics::validate(settings); !valid.ok()) {
         Error refused = valid.error();
-        refused.where = reader.path(refused.where);
+        refused.where = reader.path(document_field(refused.where));
         return refused;
     }
     return settings;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "scene/document_field.h"
 #include "scene/json/field_reader.h"
 #include "scene/json/parts.h"
 
@@ -235,7 +236,7 @@ Result<ShapeDefinition> shape_from_json(const json& value, const std::string& wh
     // What a single field cannot show: four points without a volume, a triangle of no area …
     if (const Result<void> valid = physics::validate(shape); !valid.ok()) {
         Error refused = valid.error();
-        refused.where = where + (refused.where.empty() ? "" : "." + refused.where);
+        refused.where = where + (refused.where.empty() ? "" : "." + document_field(refused.where));
         return refused;
     }
     return shape;
