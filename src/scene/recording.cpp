@@ -118,7 +118,7 @@ Result<std::unique_ptr<Recorder>> Recorder::create(const std::filesystem::path& 
     State& state = *recorder->state_;
     state.path = file;
     state.options = options;
-    state.file = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    state.file = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (state.file < 0)
         return Error{file.string(), std::string("cannot be written: ") + std::strerror(errno),
                      "choose a file in a folder that exists and that you may write to"};

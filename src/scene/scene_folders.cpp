@@ -2,10 +2,13 @@
 #include "scene/scene_folders.h"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
+
+#include "foundation/state_hash.h"
 
 namespace embody::scene {
 
@@ -13,7 +16,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t longest_name = 100;
+/// Of a file without ".json", bytes: file systems take 255, and a draft's name is longer.
+constexpr std::size_t longest_stem = 200;
+/// What of a longer title goes into the name of its autosave.
+constexpr std::size_t kept_of_long_title = 150;
 const std::string autosave_prefix = "autosave/";
 const std::string demo_prefix = "demo/";
 
@@ -25,6 +31,68 @@ std::string utc_text(fs::file_time_type time) {
     gmtime_r(&seconds, &parts);
     char text[32];
     return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts)};
+}
+
+// Whether a file's name may hold the byte in every file system and shell.
+bool is_plain(unsigned char byte) {
+    return std::isalnum(byte) != 0 || byte >= 0x80 ||
+           std::string_view(" -_().").find(static_cast<char>(byte)) != std::string_view::npos;
+}
+
+// A name as a file's stem, the other way round of decoded(): what is not plain becomes "%" and two digits, and so does
+// a dot at the front, which would hide the file. Different names are different stems.
+std::string encoded(const std::string& name) {
+    static constexpr char digits[] = "0123456789ABCDEF";
+    std::string stem;
+    for (const char c : name) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (is_plain(byte) && !(c == '.' && stem.empty())) {
+            stem += c;
+        } else {
+            stem += {'%', digits[byte >> 4], digits[byte & 15]};
+        }
+    }
+    return stem;
+}
+
+std::string decoded(const std::string& stem) {
+    std::string name;
+    for (std::size_t i = 0; i < stem.size(); ++i) {
+        unsigned code = 0;
+        const char* begin = stem.data() + i + 1;
+        const bool is_code =
+            stem[i] == '%' && i + 2 < stem.size() && std::from_chars(begin, begin + 2, code, 16).ptr == begin + 2;
+        name += is_code ? static_cast<char>(code) : stem[i];
+        if (is_code) i += 2;
+    }
+    return name;
+}
+
+// A file that a person put there may have a stem that encoded() never makes, such as "50% off" or "a:b".
+bool is_stem(const std::string& name) {
+    return !name.empty() && name.size() <= 250 && name.front() != '.' && name.find('/') == std::string::npos &&
+           name.find('\0') == std::string::npos;
+}
+
+bool is_file(const fs::path& file) {
+    std::error_code ignored;
+    return fs::is_regular_file(file, ignored);
+}
+
+// Where a scene of that name lies or is to lie. A file that a person named otherwise is found by its own stem.
+fs::path file_in(const fs::path& folder, const std::string& name) {
+    fs::path file = folder / (encoded(name) + ".json");
+    const bool is_ours = encoded(decoded(name)) == name;  // as a stem it is that of a name, maybe of another one
+    if (is_ours || !is_stem(name) || is_file(file)) return file;
+    fs::path named_otherwise = folder / (name + ".json");
+    return is_file(named_otherwise) ? named_otherwise : file;
+}
+
+// The name by which file_in() finds the file.
+std::string name_in(const fs::path& file) {
+    const std::string stem = file.stem().string();
+    std::string name = decoded(stem);
+    return encoded(name) == stem ? name : stem;
 }
 
 // Stops reading when the title is known: the writer puts it at the top, and scenes can be large.
@@ -73,7 +141,7 @@ std::vector<ListedScene> list_folder(const fs::path& folder, const std::string& 
         std::error_code unreadable;
         if (entry->path().extension() != ".json" || !entry->is_regular_file(unreadable)) continue;
         const auto time = entry->last_write_time(unreadable);
-        scenes.push_back({prefix + entry->path().stem().string(), title_of(entry->path()), kind,
+        scenes.push_back({prefix + name_in(entry->path()), title_of(entry->path()), kind,
                           unreadable ? std::string() : utc_text(time)});
     }
     std::sort(scenes.begin(), scenes.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
@@ -82,34 +150,35 @@ std::vector<ListedScene> list_folder(const fs::path& folder, const std::string& 
 
 }  // namespace
 
-std::string file_name_of(const std::string& name) {
-    std::string out;
-    for (const char c : name) {
-        const auto byte = static_cast<unsigned char>(c);
-        const bool is_plain =
-            std::isalnum(byte) || byte >= 0x80 || c == ' ' || c == '-' || c == '_' || c == '(' || c == ')';
-        // A dot is fine but at the front, where it hides the file or climbs out of the folder.
-        const bool is_dot = c == '.' && !out.empty() && out.back() != '.';
-        out += is_plain || is_dot ? c : '_';
-    }
-    while (!out.empty() && (out.back() == ' ' || out.back() == '.')) out.pop_back();
-    out.erase(0, out.find_first_not_of(' ') == std::string::npos ? out.size() : out.find_first_not_of(' '));
-    if (out.size() > longest_name) {
-        out.resize(longest_name);
-        // No half of a UTF-8 character at the end.
-        while (!out.empty() && (static_cast<unsigned char>(out.back()) & 0xC0) == 0x80) out.pop_back();
-        if (!out.empty() && static_cast<unsigned char>(out.back()) >= 0x80) out.pop_back();
-    }
-    return out.empty() ? "Untitled" : out;
+std::string trimmed_name(const std::string& name) {
+    const std::size_t begin = name.find_first_not_of(' ');
+    if (begin == std::string::npos) return "Untitled";
+    return name.substr(begin, name.find_last_not_of(' ') + 1 - begin);
 }
 
-fs::path saved_file(const SessionOptions& options, const std::string& name) {
-    return options.saved_scenes / (file_name_of(name) + ".json");
+Result<fs::path> saved_file(const SessionOptions& options, const std::string& name) {
+    fs::path file = file_in(options.saved_scenes, name);
+    if (file.stem().string().size() <= longest_stem) return file;
+    return Error{
+        "name", "is longer than a file's name may be",
+        "shorten it: at most " + std::to_string(longest_stem) + " letters; signs such as / and : count as three"};
 }
 
 fs::path autosave_file(const SessionOptions& options, const std::string& name) {
-    return options.saved_scenes / "autosave" / (file_name_of(name) + ".json");
+    const fs::path folder = options.saved_scenes / "autosave";
+    fs::path file = file_in(folder, name);
+    const std::string stem = file.stem().string();
+    if (stem.size() <= longest_stem) return file;
+    // A title may be of any length: its beginning up to a whole character, and what tells it from others. encoded()
+    // never makes a "%~".
+    std::size_t kept = kept_of_long_title;
+    while ((static_cast<unsigned char>(stem[kept]) & 0xC0) == 0x80) --kept;
+    StateHash hash;
+    hash.add_bytes(stem.data(), stem.size());
+    return folder / (stem.substr(0, kept) + "%~" + std::to_string(hash.value()) + ".json");
 }
+
+std::string name_of_scene(const fs::path& file) { return name_in(file); }
 
 std::vector<ListedScene> list_scenes(const SessionOptions& options) {
     std::vector<ListedScene> scenes = list_folder(options.saved_scenes, "saved", "");
@@ -125,14 +194,12 @@ Result<fs::path> find_scene(const SessionOptions& options, const std::string& na
     if (name.starts_with(autosave_prefix)) {
         places = {autosave_file(options, after(autosave_prefix))};
     } else if (name.starts_with(demo_prefix)) {
-        places = {options.demo_scenes / (file_name_of(after(demo_prefix)) + ".json")};
+        places = {file_in(options.demo_scenes, after(demo_prefix))};
     } else {
-        places = {saved_file(options, name), options.demo_scenes / (file_name_of(name) + ".json")};
+        places = {file_in(options.saved_scenes, name), file_in(options.demo_scenes, name)};
     }
-    for (const fs::path& place : places) {
-        std::error_code problem;
-        if (fs::is_regular_file(place, problem)) return place;
-    }
+    for (const fs::path& place : places)
+        if (is_file(place)) return place;
     return Error{"name", "there is no scene \"" + name + "\"", "scene.list names them all"};
 }
 

@@ -18,15 +18,20 @@ struct ListedScene {
     std::string modified;  ///< UTC, e.g. "2026-11-20T13:00:00Z"
 };
 
-/// The name as a file's: what a file system or a shell could take amiss becomes "_", "Untitled" where nothing is left.
-std::string file_name_of(const std::string& name);
+/// Without spaces around it; "Untitled" where nothing is left.
+std::string trimmed_name(const std::string& name);
 
 /// Saved ones first, then what an autosave left that is newer than its saved scene, then demos; each by name.
 std::vector<ListedScene> list_scenes(const SessionOptions& options);
 /// A saved scene, else the demo of that name; "autosave/NAME" and "demo/NAME" name theirs alone.
 Result<std::filesystem::path> find_scene(const SessionOptions& options, const std::string& name);
 
-std::filesystem::path saved_file(const SessionOptions& options, const std::string& name);
+/// Where scenes of a name lie. Different names are different files: what a file system or a shell could take amiss is
+/// written as "%" and two hexadecimal digits ("a/b" in "a%2Fb.json"). Error: the name is too long.
+Result<std::filesystem::path> saved_file(const SessionOptions& options, const std::string& name);
+/// The same of its autosave, whose name may be a title of any length.
 std::filesystem::path autosave_file(const SessionOptions& options, const std::string& name);
+/// The name by which a file of one of the folders is found.
+std::string name_of_scene(const std::filesystem::path& file);
 
 }  // namespace embody::scene

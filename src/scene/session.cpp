@@ -9,6 +9,7 @@
 #include "scene/scene_file.h"
 #include "scene/scene_folders.h"
 #include "scene/session_state.h"
+#include "scene/whole_file.h"
 
 namespace embody::scene {
 
@@ -47,6 +48,9 @@ Session::Session() = default;
 Session::~Session() = default;
 
 Result<std::unique_ptr<Session>> Session::create(catalog::Catalog* catalog, const SessionOptions& options) {
+    // What killed programs left half written.
+    for (const std::filesystem::path& folder : {options.saved_scenes, options.saved_scenes / "autosave"})
+        remove_abandoned_drafts(folder);
     std::unique_ptr<Session> session(new Session);
     session->state_ = std::make_unique<State>(catalog, options);
     if (Result<void> opened = session->state_->open(new_document("Untitled"), ""); !opened.ok()) return opened.error();

@@ -161,6 +161,17 @@ TEST(SceneFileRefuses, NumbersThatNoComputerHoldsAndBrokenTextWithTheirField) {
         EXPECT_EQ(message(number).find("json.exception"), std::string::npos) << message(number);
 }
 
+TEST(SceneFileRefuses, AFieldTwice) {
+    const Folder folder;
+    const fs::path file = folder.path / "twice.json";
+    write(file, "{\"embody_scene\": 1,\n \"entities\": [{\"name\": \"a\", \"scale\": 1,\n  \"scale\": 2}]}");
+    const Result<Document> read = load_document(file);
+    ASSERT_FALSE(read.ok());
+    EXPECT_NE(read.error().message().find("twice.json, line 3, column 3: entities[0].scale: is written a second time"),
+              std::string::npos)
+        << read.error().message();
+}
+
 TEST(SceneFileRefuses, HostileFiles) {
     const Folder folder;
     const fs::path file = folder.path / "hostile.json";
@@ -272,6 +283,42 @@ TEST(SceneFileSaving, KeepsTheOldFileWhereTheNewOneCannotBeWritten) {
     EXPECT_TRUE(load_document(file).value() == samples::floor_and_box());
     // No drafts are left behind.
     EXPECT_EQ(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()), 2);
+}
+
+TEST(SceneFileSaving, FilesObeyTheUmaskAndKeepTheirMode) {
+    const Folder folder;
+    const auto mode_of = [](const fs::path& file) {
+        struct stat status {};
+        EXPECT_EQ(stat(file.c_str(), &status), 0) << file;
+        return status.st_mode & 07777;
+    };
+    const mode_t before = umask(0);
+    for (const mode_t mask : {0022, 0077, 0002, 0027}) {
+        umask(mask);
+        const fs::path file = folder.path / (std::to_string(mask) + ".json");
+        EXPECT_TRUE(save_document(samples::floor_and_box(), file).ok());
+        EXPECT_EQ(mode_of(file), 0666 & ~mask);
+    }
+    // What a person set stays, whatever the umask.
+    umask(0022);
+    const fs::path file = folder.path / "kept.json";
+    EXPECT_TRUE(save_document(samples::floor_and_box(), file).ok());
+    for (const mode_t mode : {0600, 0640, 0664, 0666}) {
+        chmod(file.c_str(), mode);
+        EXPECT_TRUE(save_document(samples::floor_and_box(), file).ok());
+        EXPECT_EQ(mode_of(file), mode);
+    }
+    umask(before);
+}
+
+TEST(SceneFileSaving, LeavesDevicesAndFoldersWhereTheyAre) {
+    const Folder folder;
+    const fs::path pipe = folder.path / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    const Result<void> saved = save_document(samples::floor_and_box(), pipe);
+    ASSERT_FALSE(saved.ok());
+    EXPECT_NE(saved.error().message().find("is a folder or a device"), std::string::npos) << saved.error().message();
+    EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
 TEST(SceneFileSaving, RefusesAFullDisk) {

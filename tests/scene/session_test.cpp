@@ -408,7 +408,7 @@ TEST_F(SessionTest, SavesLoadsListsAndRecovers) {
     add_box({0, 1, 0});
     const json before = document();
     const json saved = run("scene.save", {{"name", "../My: scene?"}});
-    EXPECT_EQ(saved["name"], "_._My_ scene_");
+    EXPECT_EQ(saved["name"], "../My: scene?");
     EXPECT_EQ(fs::path(saved["path"].get<std::string>()).parent_path(), folder_ / "saved");
     EXPECT_EQ(run("hello")["unsaved"], false);
     add_box({1, 1, 0});
@@ -428,9 +428,9 @@ TEST_F(SessionTest, SavesLoadsListsAndRecovers) {
     };
     EXPECT_EQ(kinds(), (std::vector<std::string>{"saved", "recovery"}));
     session_ = make();
-    run("scene.load", {{"name", "_._My_ scene_"}});
+    run("scene.load", {{"name", "../My: scene?"}});
     EXPECT_EQ(document(), before);
-    run("scene.load", {{"name", "autosave/_._My_ scene_"}});
+    run("scene.load", {{"name", "autosave/../My: scene?"}});
     EXPECT_EQ(document(), edited);
     EXPECT_EQ(run("hello")["unsaved"], true);
     run("scene.save");
@@ -442,6 +442,94 @@ TEST_F(SessionTest, SavesLoadsListsAndRecovers) {
     EXPECT_NE(error_of("scene.load", {{"name", "none"}}), "accepted");
     EXPECT_NE(error_of("scene.load", {{"scene", {{"embody_scene", 3}}}}), "accepted");
     EXPECT_EQ(document(), before);
+}
+
+TEST_F(SessionTest, DifferentNamesAreDifferentScenes) {
+    const std::vector<std::string> names = {"a/b", "a_b", "a:b", "a%2Fb", "A/B", "a\nb",
+                                            ".a",  "..",  "%",   "è/é",   "a.b", "a b"};
+    for (const std::string& name : names) {
+        run("scene.new", {{"name", "title of " + name}});
+        EXPECT_EQ(run("scene.save", {{"name", name}})["name"], name);
+    }
+    std::vector<std::string> listed;
+    const json scenes = run("scene.list")["scenes"];
+    for (const json& scene : scenes) listed.push_back(scene["name"]);
+    EXPECT_TRUE(std::is_permutation(names.begin(), names.end(), listed.begin(), listed.end())) << scenes.dump(2);
+    for (const std::string& name : names) {
+        run("scene.load", {{"name", name}});
+        EXPECT_EQ(document()["title"], "title of " + name);
+        EXPECT_EQ(run("hello")["name"], name);
+    }
+    // All of them are files of the one folder.
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "saved"), fs::directory_iterator()),
+              static_cast<std::ptrdiff_t>(names.size()));
+}
+
+TEST_F(SessionTest, OpensFilesThatOthersNamed) {
+    fs::create_directories(folder_ / "saved");
+    for (const std::string name : {"_._My_ scene_", "50% off", "50%", "a: b", "50%2f"}) {
+        Document placed = new_document(name);
+        ASSERT_TRUE(save_document(placed, folder_ / "saved" / (name + ".json")).ok());
+    }
+    const json scenes = run("scene.list")["scenes"];
+    ASSERT_EQ(scenes.size(), 5u);
+    for (const json& scene : scenes) {
+        run("scene.load", {{"name", scene["name"]}});
+        EXPECT_EQ(document()["title"], scene["title"]);
+        // It is saved where it was found.
+        run("scene.save");
+        EXPECT_EQ(run("scene.list")["scenes"].size(), 5u) << scene.dump();
+    }
+}
+
+TEST_F(SessionTest, NamesThatNoFileCanHaveAreRefusedAndTitlesOfAnyLengthAreKept) {
+    EXPECT_NE(error_of("scene.save", {{"name", std::string(201, 'a')}}).find("name: is longer than"),
+              std::string::npos);
+    EXPECT_NE(error_of("scene.save", {{"name", std::string(100, '/')}}).find("count as three"), std::string::npos);
+    EXPECT_EQ(run("scene.save", {{"name", std::string(200, 'a')}})["name"], std::string(200, 'a'));
+    EXPECT_EQ(run("scene.save", {{"name", "  "}})["name"], "Untitled");
+
+    // Two long titles that differ at their ends have an autosave each.
+    for (const char* end : {"1", "2"}) {
+        std::string title;
+        for (int i = 0; i < 500; ++i) title += "è/";
+        run("scene.new", {{"name", title + end}});
+        add_box({0, 1, 0});
+        ASSERT_TRUE(session_->autosave().ok());
+    }
+    std::set<std::string> titles;
+    const json scenes = run("scene.list")["scenes"];
+    for (const json& scene : scenes) {
+        if (scene["kind"] != "recovery") continue;
+        run("scene.load", {{"name", scene["name"]}});
+        titles.insert(document()["title"].get<std::string>());
+    }
+    EXPECT_EQ(titles.size(), 2u) << scenes.dump(2);
+}
+
+TEST_F(SessionTest, DraftsOfKilledSavesGoAtTheNextStart) {
+    run("scene.save", {{"name", "kept"}});
+    ASSERT_TRUE(session_->autosave().ok());
+    fs::create_directories(folder_ / "saved" / "autosave");
+    const fs::path drafts[] = {folder_ / "saved" / "kept.json.77-1.embody-draft",
+                               folder_ / "saved" / "autosave" / "kept.json.77-2.embody-draft",
+                               folder_ / "saved" / "kept.json.77-3.embody-draft"};
+    for (const fs::path& draft : drafts) std::ofstream(draft) << "half a sce";
+    const fs::path others[] = {folder_ / "saved" / "kept.json.backup", folder_ / "saved" / "notes.txt"};
+    for (const fs::path& other : others) std::ofstream(other) << "mine";
+
+    // The third one is being written by a running program.
+    const int writer = open(drafts[2].c_str(), O_WRONLY);
+    ASSERT_EQ(flock(writer, LOCK_EX | LOCK_NB), 0);
+    session_ = make();
+    EXPECT_FALSE(fs::exists(drafts[0]));
+    EXPECT_FALSE(fs::exists(drafts[1]));
+    EXPECT_TRUE(fs::exists(drafts[2])) << "is in use";
+    for (const fs::path& other : others) EXPECT_TRUE(fs::exists(other)) << other;
+    EXPECT_EQ(run("scene.list")["scenes"].size(), 1u);
+    close(writer);
+    session_ = make();
+    EXPECT_FALSE(fs::exists(drafts[2]));
 }
 
 // What physics refuses at the opening is told with file, entity and the field as the file spells it.

@@ -91,7 +91,7 @@ Result<json> load(SessionState& state, const json& params) {
     Result<Document> document = load_document(file.value());
     if (!document.ok()) return document.error();
     const bool is_recovered = name.starts_with("autosave/");
-    const std::string plain = file.value().stem().string();
+    const std::string plain = name_of_scene(file.value());
     Result<json> opened = open_document(state, std::move(document).value(), plain, file.value().string());
     if (opened.ok() && is_recovered) state.history.mark_unsaved();
     return opened;
@@ -103,9 +103,10 @@ Result<json> save(SessionState& state, const json& params) {
     std::string name = state.name.empty() ? state.document.title : state.name;
     reader.text("name", name);
     if (!reader.finish()) return *error;
-    name = file_name_of(name);
-    const std::filesystem::path file = saved_file(state.options, name);
-    if (Result<void> written = save_document(state.document, file); !written.ok()) return written.error();
+    name = trimmed_name(name);
+    const Result<std::filesystem::path> file = saved_file(state.options, name);
+    if (!file.ok()) return file.error();
+    if (Result<void> written = save_document(state.document, *file); !written.ok()) return written.error();
 
     // What the autosave kept is safe now.
     std::error_code ignored;
@@ -116,7 +117,7 @@ Result<json> save(SessionState& state, const json& params) {
     state.history.mark_saved();
     state.tell_document(json::array());
     state.autosaved_revision = state.revision;
-    return json{{"name", name}, {"path", file.string()}};
+    return json{{"name", name}, {"path", file->string()}};
 }
 
 Result<json> list(SessionState& state, const json& params) {
