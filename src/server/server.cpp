@@ -19,6 +19,7 @@
 #include <random>
 #include <thread>
 
+#include "foundation/printable.h"
 #include "server/access.h"
 #include "server/import_request.h"
 #include "server/routes.h"
@@ -453,7 +454,7 @@ void Server::run() {
             state_->shared.io.run();
             return;
         } catch (const std::exception& thrown) {
-            std::fprintf(stderr, "embody: a connection failed: %s\n", thrown.what());
+            std::fprintf(stderr, "embody: a connection failed: %s\n", printable(thrown.what()).c_str());
         }
     }
 }

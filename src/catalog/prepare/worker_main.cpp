@@ -12,6 +12,7 @@
 #include "catalog/prepare/confinement.h"
 #include "catalog/prepare/prepare.h"
 #include "catalog/prepare/worker_protocol.h"
+#include "foundation/printable.h"
 
 namespace embody::catalog {
 namespace {
@@ -71,7 +72,7 @@ bool answer(const ImportItem& item, const Result<PreparedModel>& prepared) {
 
 int serve(const ConfinementOptions& options) {
     if (const auto confined = confine_this_process(options); !confined) {
-        std::fprintf(stderr, "%s\n", confined.error().message().c_str());
+        std::fprintf(stderr, "%s\n", printable(confined.error().message()).c_str());
         return 3;
     }
     if (!write_all(frame(FrameKind::ready, {}))) return 1;
