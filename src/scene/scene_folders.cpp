@@ -157,6 +157,10 @@ std::string trimmed_name(const std::string& name) {
 }
 
 Result<fs::path> saved_file(const SessionOptions& options, const std::string& name) {
+    for (const std::string& prefix : {autosave_prefix, demo_prefix})
+        if (name.starts_with(prefix))
+            return Error{"name", "begins with \"" + prefix + "\", which is not among the saved scenes",
+                         "take another name"};
     fs::path file = file_in(options.saved_scenes, name);
     if (file.stem().string().size() <= longest_stem) return file;
     return Error{

@@ -27,7 +27,8 @@ std::vector<ListedScene> list_scenes(const SessionOptions& options);
 Result<std::filesystem::path> find_scene(const SessionOptions& options, const std::string& name);
 
 /// Where scenes of a name lie. Different names are different files: what a file system or a shell could take amiss is
-/// written as "%" and two hexadecimal digits ("a/b" in "a%2Fb.json"). Error: the name is too long.
+/// written as "%" and two hexadecimal digits ("a/b" in "a%2Fb.json"). Error: the name is too long, or begins as those
+/// of demos and autosaves do.
 Result<std::filesystem::path> saved_file(const SessionOptions& options, const std::string& name);
 /// The same of its autosave, whose name may be a title of any length.
 std::filesystem::path autosave_file(const SessionOptions& options, const std::string& name);

@@ -488,6 +488,8 @@ TEST_F(SessionTest, NamesThatNoFileCanHaveAreRefusedAndTitlesOfAnyLengthAreKept)
     EXPECT_NE(error_of("scene.save", {{"name", std::string(100, '/')}}).find("count as three"), std::string::npos);
     EXPECT_EQ(run("scene.save", {{"name", std::string(200, 'a')}})["name"], std::string(200, 'a'));
     EXPECT_EQ(run("scene.save", {{"name", "  "}})["name"], "Untitled");
+    for (const char* name : {"demo/stack", "autosave/stack"})
+        EXPECT_NE(error_of("scene.save", {{"name", name}}).find("name: begins with"), std::string::npos);
 
     // Two long titles that differ at their ends have an autosave each.
     for (const char* end : {"1", "2"}) {
