@@ -66,16 +66,25 @@ every_tenth_step() {
     done
 }
 
-# build_program PRESET TARGET…: configures once, builds what changed.
-build_program() {
-    local preset=$1
-    shift
-    local log="$root/build/$preset.log"
+# configure_program PRESET [with-tests]: only where the build folder is not yet as wanted. The tests ask for packages that only ./test
+# installs, so they are left out until it puts them in; then they stay, as every change writes the build files anew.
+configure_program() {
+    local preset=$1 tests=OFF folder="$root/build/$1" log="$root/build/$1.log"
+    [ "${2-}" != with-tests ] || tests=ON
     mkdir -p "$root/build"
-    if [ ! -f "$root/build/$preset/build.ninja" ]; then
-        say "Configuring ($preset) …"
-        (cd "$root" && cmake --preset "$preset") >"$log" 2>&1 || { tail -n 20 "$log" >&2; fail "configuring failed (log: build/$preset.log)."; }
+    # After a configuration that failed, its settings are newer than the build files.
+    if [ "$folder/build.ninja" -nt "$folder/CMakeCache.txt" ] &&
+        { [ $tests = OFF ] || grep -qx "EMBODY_TESTS:BOOL=ON" "$folder/CMakeCache.txt"; }; then
+        return
     fi
+    say "Configuring ($preset) …"
+    (cd "$root" && cmake --preset "$preset" -DEMBODY_TESTS=$tests) >"$log" 2>&1 || { tail -n 20 "$log" >&2; fail "configuring failed (log: build/$preset.log)."; }
+}
+
+# build_program PRESET TARGET…: builds what changed, of everything where no target is named.
+build_program() {
+    local preset=$1 log="$root/build/$1.log"
+    shift
     [ -x "$root/build/$preset/src/embody" ] || say "Building ($preset); the first time this takes some minutes …"
     # Ninja's own progress line where there is a terminal, every tenth step elsewhere.
     if [ -t 2 ]; then
