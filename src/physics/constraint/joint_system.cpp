@@ -84,10 +84,48 @@ void JointSystem::set(const JointedList& list, const View& view) {
     std::sort(carriers_.begin(), carriers_.end());
     carriers_.erase(std::unique(carriers_.begin(), carriers_.end()), carriers_.end());
     starts_.resize(most_halvings + 1);
+    find_spin_axes(view);
     if (is_known) return;
     analysed_bodies_ = bodies_.size();
     matrix_.analyse(bodies_.size() + places_.size(), edges_, places_.size());
     unknowns_.resize(bodies_.size() + places_.size());
+}
+
+// Bodies that joints hold on one axis of symmetry only.
+void JointSystem::find_spin_axes(const View& view) {
+    for (Body& body : bodies_) {
+        body.spin_axis = {};
+        body.own_spin = {};
+    }
+    const auto visit_ends = [&](auto visit) {
+        for (const Place& place : places_) {
+            const Joint& joint = view.joints[place.joint];
+            if (place.a >= 0) visit(bodies_[static_cast<std::size_t>(place.a)], joint, joint.local_a);
+            if (place.b >= 0) visit(bodies_[static_cast<std::size_t>(place.b)], joint, joint.local_b);
+        }
+    };
+    visit_ends([](Body& body, const Joint&, const Transform& frame) {
+        if (length_squared(frame.position) > length_squared(body.spin_axis)) body.spin_axis = frame.position;
+    });
+    for (Body& body : bodies_) body.spin_axis = symmetry_axis_along(body.spin_axis, view.constants[body.slot]);
+    visit_ends([](Body& body, const Joint& joint, const Transform& frame) {
+        const bool leaves_spin =
+            std::holds_alternative<BallJoint>(joint.kind) && is_on_axis(frame.position, body.spin_axis);
+        if (!leaves_spin) body.spin_axis = {};
+    });
+}
+
+// Before the motion of a substep: the spin that the joints do not feel, or else Euler's equations alone.
+void JointSystem::take_spin_aside(Body& body, double time, const View& view) {
+    BodyState& state = view.bodies[body.slot];
+    const BodyConstants& constants = view.constants[body.slot];
+    body.own_spin = own_spin_of(state, constants, body.spin_axis, time);
+    if (body.own_spin.rate == 0) {
+        split_gyroscopic(state, constants, time);
+        return;
+    }
+    state.angular_velocity -= rotate(state.rotation, body.spin_axis) * body.own_spin.rate;
+    state.hidden_momentum = {};
 }
 
 void JointSystem::begin_phase(SolvePhase phase, double substep, Motion motion, const View& view) {
@@ -100,12 +138,12 @@ void JointSystem::begin_phase(SolvePhase phase, double substep, Motion motion, c
     for (Body& body : bodies_) {
         const BodyState& state = view.bodies[body.slot];
         const BodyConstants& c = view.constants[body.slot];
-        body.has_gyroscopic_torque = phase == SolvePhase::position && !c.is_isotropic;
+        body.has_gyroscopic_torque = phase == SolvePhase::position && (!c.is_isotropic || body.own_spin.rate != 0);
         body.turning = Mat3::zero();
         body.inertia = c.is_isotropic ? c.inertia : rotate_tensor(state.rotation, c.inertia);
         body.free_velocity = body.last_velocity = state.linear_velocity;
         body.free_spin = body.last_spin = state.angular_velocity;
-        if (body.has_gyroscopic_torque) body.free_momentum = momentum_of(state, c);
+        if (body.has_gyroscopic_torque) body.free_momentum = momentum_of(state, c) + body.own_spin.momentum;
     }
     for (Place& place : places_) {
         Joint& joint = view.joints[place.joint];
@@ -184,7 +222,7 @@ double JointSystem::find_excess(const View& view) {
         const BodyState& state = view.bodies[body.slot];
         if (!has_drift) break;
         body.after = {state.center + state.linear_velocity * substep_,
-                      normalized(cayley(state.angular_velocity * substep_) * state.rotation)};
+                      normalized(cayley(state.angular_velocity * substep_) * state.rotation * body.own_spin.turn)};
     }
     const auto pose_after = [&](std::int32_t body, std::uint32_t slot) -> Transform {
         if (body >= 0) return bodies_[static_cast<std::size_t>(body)].after;
@@ -258,7 +296,7 @@ double JointSystem::find_residuals(const View& view) {
         if (is_linear_) {
             inertial += body.turning * spin;
         } else if (body.has_gyroscopic_torque) {
-            const Vec3 half_turn = spin * (substep_ / 2), momentum = body.inertia * spin;
+            const Vec3 half_turn = spin * (substep_ / 2), momentum = body.inertia * spin + body.own_spin.momentum;
             inertial = inverse_of_turning(half_turn) * (momentum + cross(half_turn, momentum) - body.free_momentum);
         }
         const Vec3 angular = body.impulse.angular() - inertial;
@@ -275,7 +313,7 @@ void JointSystem::add_body_blocks(const View& view) {
         if (body.has_gyroscopic_torque && !is_linear_) {
             // The derivative of what find_residuals() takes, y: dy = (1 − a×)⁻¹ ((1 + a×) I − h/2 (I ω + y)×) dω.
             const Vec3 spin = view.bodies[body.slot].angular_velocity;
-            const Vec3 half_turn = spin * (substep_ / 2), momentum = body.inertia * spin;
+            const Vec3 half_turn = spin * (substep_ / 2), momentum = body.inertia * spin + body.own_spin.momentum;
             const Mat3 inverse = inverse_of_turning(half_turn);
             const Vec3 y = inverse * (momentum + cross(half_turn, momentum) - body.free_momentum);
             angular = inverse * (body.inertia + skew(half_turn) * body.inertia - skew(momentum + y) * (substep_ / 2));
@@ -430,11 +468,20 @@ void JointSystem::advance(double time, int halvings, const View& view) {
 bool JointSystem::advance_in_one(double time, Motion motion, const View& view) {
     for (const Body& body : bodies_) kick(view.bodies[body.slot], view.constants[body.slot], time / 2);
     const double energy = kinetic_energy(view);
-    for (const Body& body : bodies_) split_gyroscopic(view.bodies[body.slot], view.constants[body.slot], time);
+    for (Body& body : bodies_) {
+        if (motion == Motion::any) {
+            take_spin_aside(body, time, view);
+        } else {
+            split_gyroscopic(view.bodies[body.slot], view.constants[body.slot], time);
+        }
+    }
 
     // Motion.
     begin_phase(SolvePhase::position, time, motion, view);
-    if (!iterate(view) && motion == Motion::any) return false;
+    if (!iterate(view) && motion == Motion::any) {
+        for (Body& body : bodies_) body.own_spin = {};
+        return false;
+    }
     end_position_phase(view);
     add_impulses_to_totals(view);
     drift_all(view);
@@ -466,11 +513,28 @@ void JointSystem::go_back(const Start& start, const View& view) {
     impulse_time_ = start.impulse_time;
 }
 
+// The body turns by its own spin and, with the axis, by the rest; its momentum stands still in the world.
+void JointSystem::drift_spinning(Body& body, const View& view) {
+    BodyState& state = view.bodies[body.slot];
+    const Vec3 momentum = body.inertia * state.angular_velocity + state.hidden_momentum;
+    state.center += state.linear_velocity * substep_;
+    state.rotation = normalized(cayley(state.angular_velocity * substep_) * state.rotation * body.own_spin.turn);
+    state.turn = state.rotation * conjugate(state.start_rotation);
+    refresh_inertia(state, view.constants[body.slot]);
+    state.angular_velocity = state.inverse_inertia * momentum;
+    state.hidden_momentum = {};
+    body.own_spin = {};
+}
+
 // With the other half of the joints' impulses.
 void JointSystem::drift_all(const View& view) {
-    for (const Body& body : bodies_) {
+    for (Body& body : bodies_) {
         BodyState& state = view.bodies[body.slot];
-        drift(state, view.constants[body.slot], substep_);
+        if (body.own_spin.rate != 0) {
+            drift_spinning(body, view);
+        } else {
+            drift(state, view.constants[body.slot], substep_);
+        }
         state.linear_velocity += body.second_half.linear();
         state.angular_velocity += body.second_half.angular();
     }

@@ -9,6 +9,7 @@
 
 #include "physics/constraint/block_lu.h"
 #include "physics/constraint/joint.h"
+#include "physics/constraint/own_spin.h"
 
 namespace embody::physics {
 
@@ -69,6 +70,8 @@ private:
     struct Body {
         std::uint32_t slot = 0;
         bool has_gyroscopic_torque = false;
+        Vec3 spin_axis;                 // see OwnSpin, body axes; zero: the body has none
+        OwnSpin own_spin;               // of this substep, taken off the angular velocity
         Mat3 inertia = Mat3::zero();    // world axes, when the phase began, kg m²
         Mat3 turning = Mat3::zero();    // Motion::small: how joints hold against turning, kg m²
         Vec3 free_velocity, free_spin;  // without the joints' impulses; the spin of isotropic bodies
@@ -103,6 +106,9 @@ private:
     bool iterate(const View& view);
     void add_impulses_to_totals(const View& view) const;
 
+    void find_spin_axes(const View& view);
+    void take_spin_aside(Body& body, double time, const View& view);
+    void drift_spinning(Body& body, const View& view);
     void add_turning(const Place& place, const Joint& joint);
     void absorb_changes(const View& view);
     double choose_holds(const View& view);
