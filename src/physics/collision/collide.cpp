@@ -17,6 +17,7 @@ namespace {
 void flip(Manifold& manifold) {
     manifold.normal = -manifold.normal;
     std::swap(manifold.piece_a, manifold.piece_b);
+    std::swap(manifold.a_is_round, manifold.b_is_round);
 }
 
 void collide_with_plane(const CollisionShape::Data& a, const Transform& pose_a, const CollisionShape::Data& plane,
@@ -154,6 +155,7 @@ void collide_pieces(const CollisionShape::Data& a, const Transform& pose_a, cons
 // a is a convex or a compound.
 void collide_data(const CollisionShape::Data& a, const Transform& pose_a, const CollisionShape::Data& b,
                   const Transform& pose_b, double margin, PairMemory& memory, std::vector<Manifold>& manifolds) {
+    const std::size_t before = manifolds.size();
     if (b.is_plane) {
         collide_with_plane(a, pose_a, b, pose_b, margin, manifolds);
     } else if (b.surface) {
@@ -161,6 +163,11 @@ void collide_data(const CollisionShape::Data& a, const Transform& pose_a, const 
             collide_surface(a.pieces[i], i, pose_a, {*b.surface, pose_b}, margin, manifolds);
     } else {
         collide_pieces(a, pose_a, b, pose_b, margin, memory, manifolds);
+    }
+    for (std::size_t i = before; i < manifolds.size(); ++i) {
+        Manifold& manifold = manifolds[i];
+        manifold.a_is_round = a.pieces[manifold.piece_a].convex.is_round();
+        manifold.b_is_round = !b.pieces.empty() && b.pieces[manifold.piece_b].convex.is_round();
     }
 }
 

@@ -201,6 +201,11 @@ double CollisionShape::radius_about(Vec3 center) const {
     return farthest;
 }
 
+bool CollisionShape::is_round() const {
+    return std::any_of(data_->pieces.begin(), data_->pieces.end(),
+                       [](const ConvexPiece& piece) { return piece.convex.is_round(); });
+}
+
 PlacedConvex place(const ConvexPiece& piece, const Transform& pose, Vec3 origin) {
     if (piece.is_alone) return {&piece.convex, turn_of(pose.rotation), pose.position - origin};
     // The origin is taken off first: far from the world's origin the small differences keep their digits.

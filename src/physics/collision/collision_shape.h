@@ -29,6 +29,9 @@ public:
     /// Largest distance of a surface point from `center` (in the shape's frame): bounds the motion by rotation.
     [[nodiscard]] double radius_about(Vec3 center) const;
 
+    /// Whether some piece of it rolls.
+    [[nodiscard]] bool is_round() const;
+
     struct Data;
     [[nodiscard]] const Data& data() const { return *data_; }
 

@@ -81,6 +81,9 @@ struct Convex {
     bool is_box = false;  ///< a polytope whose corners are those of `bounds`, centred
     double reach = 0;     ///< farthest surface point from the inner point, for whole pieces of shapes
     double inner = 0;     ///< radius of a ball around the inner point that lies inside, likewise
+
+    /// Of those that roll.
+    [[nodiscard]] bool is_round() const { return kind != ConvexKind::polytope; }
 };
 
 /// A convex seen from the frame in which a pair is compared (world axes, origin near the pair: far from the world's

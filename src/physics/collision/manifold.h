@@ -27,6 +27,8 @@ struct Manifold {
     /// No other corner of the two pieces is within the margin; a sphere meets one face or plane alone, and does so
     /// until it has moved by whole_way.
     bool is_whole = false;
+    /// Whether the piece is of those that roll: spheres, capsules, cylinders and cones.
+    bool a_is_round = false, b_is_round = false;
     std::array<ManifoldPoint, max_points> points;
 };
 

@@ -17,6 +17,10 @@ void set_arms(Contact& contact, ContactPoint& point, Vec3 arm_a, Vec3 arm_b, std
     contact.approach_speed = std::max(contact.approach_speed, static_cast<float>(speed));
 }
 
+// Where a contact lies between the two surfaces, as a share of the gap from a's to b's: midway, but on the surface of
+// what rolls on something flat, whose speed at the contact would else not be that of its radius where it has sunk in.
+double place_in_gap(bool a_is_round, bool b_is_round) { return a_is_round == b_is_round ? 0.5 : b_is_round ? 1 : 0; }
+
 }  // namespace
 
 Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold, std::span<const BodyState> bodies,
@@ -32,15 +36,19 @@ Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold,
     contact.tangent_1 = to_vec3f(any_perpendicular(manifold.normal));
     contact.local_normal = to_vec3f(rotate_inverse(seen.axes, manifold.normal));
     contact.count = static_cast<std::uint8_t>(manifold.count);
+    contact.a_is_round = manifold.a_is_round;
+    contact.b_is_round = manifold.b_is_round;
+    const double share = place_in_gap(manifold.a_is_round, manifold.b_is_round);
     for (int i = 0; i < manifold.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const ManifoldPoint& found = manifold.points[static_cast<std::size_t>(i)];
         point.separation = static_cast<float>(found.separation);
         point.feature = found.feature;
-        const Vec3 arm_a = found.position - bodies[a].center, arm_b = found.position - bodies[b].center;
+        const Vec3 gap = manifold.normal * found.separation, position = found.position + gap * (share - 0.5);
+        const Vec3 arm_a = position - bodies[a].center, arm_b = position - bodies[b].center;
         set_arms(contact, point, arm_a, arm_b, bodies);
-        const Vec3 half_gap = manifold.normal * (0.5 * found.separation);
-        point.place = to_vec3f(rotate_inverse(seen.axes, seen.b_is_larger ? arm_a - half_gap : arm_b + half_gap));
+        const Vec3 place = seen.b_is_larger ? arm_a - gap * share : arm_b + gap * (1 - share);
+        point.place = to_vec3f(rotate_inverse(seen.axes, place));
         point.place_separation = point.separation;
     }
     return contact;
@@ -195,8 +203,10 @@ void follow_bodies(Contact& contact, const FollowedPair& pair) {
     const Four3 turned = by_tilt * all(pair.turn_w) + cross(all(pair.turn), by_tilt), change = all(pair.shift) + turned;
     const Four3 normal = all(contact.local_normal);
     const Four opening = dot(normal, change);
-    const Four3 half_gap = (normal * (separation * sign) + (pair.has_ball ? normal * opening : change)) * all(0.5F);
-    const Four3 arm_smaller = in_axes(pair.axes, place + turned - half_gap);
+    const auto from_a = static_cast<float>(place_in_gap(contact.a_is_round, contact.b_is_round));
+    const Four3 gap = normal * (separation * sign) + (pair.has_ball ? normal * opening : change);
+    const Four3 to_contact = gap * all(contact.b_is_larger ? from_a : 1 - from_a);
+    const Four3 arm_smaller = in_axes(pair.axes, place + turned - to_contact);
     const Four3 arm_larger = arm_smaller + all(pair.apart) * sign;
     const Four3 &arm_a = contact.b_is_larger ? arm_smaller : arm_larger,
                 &arm_b = contact.b_is_larger ? arm_larger : arm_smaller;

@@ -27,8 +27,7 @@ Result<void> set_up_shape(const WorldState& world, const BodyDefinition& definit
 void set_up_sizes(BodySetup& setup) {
     if (!setup.record.shape || is_static_only(setup.record.shape->definition())) return;
     const ShapeDefinition& shape = setup.record.shape->definition();
-    setup.record.is_round = std::holds_alternative<SphereShape>(shape) || std::holds_alternative<CapsuleShape>(shape) ||
-                            std::holds_alternative<CylinderShape>(shape) || std::holds_alternative<ConeShape>(shape);
+    setup.record.is_round = setup.record.shape->is_round();
     setup.record.reach = setup.record.shape->radius_about(setup.constants.local_center);
     setup.record.is_ball = std::holds_alternative<SphereShape>(shape) && setup.constants.local_center == Vec3{};
     const Vec3 half = setup.record.shape->local_bounds().half_extents();

@@ -3,6 +3,7 @@
 #include <atomic>
 
 #include "physics/step/pair_watch.h"
+#include "physics/step/reachable_points.h"
 #include "physics/step/step.h"
 #include "physics/step/wake.h"
 
@@ -242,6 +243,9 @@ void compare_pair(const WorldState& world, PairRecord& record, const PairNow& no
         if (is_apart) record.margin = std::max(searched, record.memory.gap);
         return;
     }
+    if (a.is_round || b.is_round) {
+        record.margin = std::min(searched, leave_out_unreachable(world, pair, base_margin, worker.manifolds));
+    }
 
     const auto first = static_cast<std::ptrdiff_t>(worker.found.size());
     const bool has_material = is_known && !old.empty();
@@ -253,8 +257,6 @@ void compare_pair(const WorldState& world, PairRecord& record, const PairNow& no
         worker.found.push_back(make_contact(pair.a, pair.b, manifold, world.motion, now.pose.seen));
         Contact& contact = worker.found.back();
         has_material ? take_material(old.front(), contact) : set_material(contact, material);
-        contact.a_is_round = a.is_round;
-        contact.b_is_round = b.is_round;
     }
 
     // Both are sorted by key.
