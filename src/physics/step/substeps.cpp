@@ -8,6 +8,7 @@
 #include "physics/optimization/direct_islands.h"
 #include "physics/optimization/shock_propagation.h"
 #include "physics/optimization/solve_schedule.h"
+#include "physics/step/roll.h"
 #include "physics/step/share_awake.h"
 #include "physics/step/step.h"
 
@@ -195,6 +196,8 @@ SolveWays sort_islands(WorldState& world) {
             ways.jointed.push_back(island);
         } else if (island.joint_count > 0) {
             ways.one_by_one.push_back(island);
+        } else if (roll_alone(world, island)) {
+            note_outcomes(world, island);
         } else if (!solve_directly(world, island)) {
             ways.add(island, contact_plan(island.contact_count, world.settings.substeps));
         }

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/step/world_state.h"
+
+namespace embody::physics {
+
+/// Takes an island of one body through the step where that rolls on something flat that stands still and turns far in a
+/// step, or its axis turns: coins that lean, cones on their side, tops on their tip, fast wheels. The contact solver
+/// holds the place of contact fast for a step, and each step's new place would cost (Ω dt)² of the energy. False: the
+/// island is left to the others.
+bool roll_alone(WorldState& world, const Island& island);
+
+}  // namespace embody::physics
