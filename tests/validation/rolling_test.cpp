@@ -230,6 +230,31 @@ TEST(Rolling, LeaningDiscGoesRoundAtItsRate) {
     }
 }
 
+// Nothing slips under a coin that is spun on its edge: it nods to and fro and goes on.
+TEST(Rolling, SpunCoinGoesOnSpinning) {
+    for (const std::string ground : {"plane", "box"}) {
+        const double r = 0.012, half = 0.001, lean = 85 * pi / 180;
+        const auto world = make_world({});
+        add_ground(*world, ground, 0.5);
+        const Vec3 axis{std::sin(lean), std::cos(lean), 0};
+        const auto body = world
+                              ->create_body({.shape = world->create_shape(CylinderShape{r, half}).value(),
+                                             .position = {0, r * axis.x + half * axis.y, 0},
+                                             .rotation = from_two_vectors({0, 1, 0}, axis),
+                                             .angular_velocity = {0, 60, 0},
+                                             .material = friction(0.5),
+                                             .allow_sleep = false})
+                              .value();
+        const double start = energy(*world);
+        for (int i = 0; i < 600; ++i) {
+            world->step();
+            EXPECT_LE(energy(*world), start * (1 + 1e-6)) << ground << " step " << i;
+        }
+        EXPECT_GT(energy(*world), 0.98 * start) << ground;
+        EXPECT_GT(std::fabs(world->angular_velocity(body).y), 50) << ground;
+    }
+}
+
 // Rolling without slip on a slope trades height for motion and nothing else, wherever it goes.
 TEST(Rolling, CoinOnASlopeKeepsItsEnergy) {
     const double slope = 8 * pi / 180;

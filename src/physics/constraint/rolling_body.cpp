@@ -19,6 +19,7 @@ namespace embody::physics {
 namespace {
 
 constexpr double touch_gap = 2e-4;     // m: nearer to the ground than this a ring touches
+constexpr double side_gap = 5e-5;      // m: no farther apart are both ends of a line that touches
 constexpr double most_slip = 0.05;     // of the speed of turning, that is stopped at the start
 constexpr double slow_slip = 0.01;     // m/s: is stopped as well
 constexpr double most_approach = 0.2;  // m/s along the normal
@@ -52,6 +53,9 @@ private:
     [[nodiscard]] Lowest lowest(const RollingRing& ring, const Moving& at) const;
     [[nodiscard]] double gap(const RollingRing& ring, const Moving& at) const {
         return dot(at.center + lowest(ring, at).arm - ground_.point, ground_.normal);
+    }
+    [[nodiscard]] double allowed_slip(const Moving& at) const {
+        return slow_slip + (ground_.holds ? most_slip * length(at.spin) * body_.size : 0);
     }
     bool choose_rings(const Moving& at);
     [[nodiscard]] bool on_side() const { return ring_ != end_; }
@@ -90,16 +94,16 @@ Vec3 Roller::line(const Moving& at) const {
     return normalized(way - ground_.normal * dot(way, ground_.normal));
 }
 
-// The lowest ring, or the outermost two of those that touch.
+// The lowest ring, or the outermost two of those that touch where the body rolls along the line between them.
 bool Roller::choose_rings(const Moving& at) {
     std::array<double, RollingBody::max_rings> gaps{};
     const auto count = static_cast<std::size_t>(body_.ring_count);
     for (std::size_t i = 0; i < count; ++i) gaps[i] = gap(body_.rings[i], at);
-    const double least = *std::min_element(gaps.begin(), gaps.begin() + body_.ring_count);
-    if (!(std::fabs(least) <= touch_gap)) return false;
+    const auto least = std::min_element(gaps.begin(), gaps.begin() + body_.ring_count);
+    if (!(std::fabs(*least) <= touch_gap)) return false;
     double first = 1e300, last = -1e300;
     for (std::size_t i = 0; i < count; ++i) {
-        if (gaps[i] > least + touch_gap) continue;
+        if (gaps[i] > *least + side_gap) continue;
         const double place = dot(body_.rings[i].center, body_.axis);
         if (place < first) ring_ = &body_.rings[i];
         if (place > last) end_ = &body_.rings[i];
@@ -107,6 +111,9 @@ bool Roller::choose_rings(const Moving& at) {
         last = std::max(last, place);
     }
     if (ring_->radius == 0 && end_->radius > 0) std::swap(ring_, end_);
+    if (on_side() && !(length(cross(at.spin, line(at))) * body_.size <= allowed_slip(at))) {
+        ring_ = end_ = &body_.rings[static_cast<std::size_t>(least - gaps.begin())];
+    }
     const double along = dot(ground_.normal, rotate(at.rotation, body_.axis));
     return on_side() || ring_->radius == 0 || 1 - along * along > least_lean * least_lean;
 }
@@ -116,9 +123,7 @@ bool Roller::begin(const BodyState& state, Moving& at) {
     at = {state.center, state.rotation, state.angular_velocity};
     if (!choose_rings(at)) return false;
     const Vec3 arm = lowest(*ring_, at).arm, slip = velocity_at(state, arm);
-    const double turning = length(state.angular_velocity) * body_.size;
-    const double allowed = slow_slip + (ground_.holds ? most_slip * turning : 0);
-    if (length(slip) > allowed || std::fabs(dot(slip, ground_.normal)) > most_approach) return false;
+    if (length(slip) > allowed_slip(at) || std::fabs(dot(slip, ground_.normal)) > most_approach) return false;
     at.center -= ground_.normal * dot(at.center + arm - ground_.point, ground_.normal);
 
     // The angular momentum about the place that touches stays.
