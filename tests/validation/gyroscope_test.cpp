@@ -100,6 +100,49 @@ TEST(Gyroscope, LetGoAtRestItNodsAndKeepsItsSpin) {
     EXPECT_LT(outcome.gain, 1e-8);
 }
 
+// A flywheel on a hinge at the end of a light rod, which a ball joint holds.
+TEST(Gyroscope, FlywheelOnAHingeOfARodKeepsItsSpin) {
+    for (const bool rotor_is_a : {false, true}) {
+        const double length = 0.15, spin = 300, rod_mass = 0.01, mass = 1;
+        auto world = make_world({});
+        const auto shape = world->create_shape(CylinderShape{0.1, 0.01}).value();
+        const Vec3 axis{1, 0, 0};
+        const Quat along_x = from_two_vectors({0, 1, 0}, axis), hinge_in_rotor = from_two_vectors(axis, {0, 1, 0});
+        const double rate = (mass * length + rod_mass * length / 2) * gravity / (mass * 0.1 * 0.1 / 2 * spin);
+        const Vec3 turning{0, rate, 0};
+        const auto rotor = world
+                               ->create_body({.shape = shape,
+                                              .position = axis * length,
+                                              .rotation = along_x,
+                                              .linear_velocity = cross(turning, axis * length),
+                                              .angular_velocity = axis * spin + turning,
+                                              .mass = {.mass = mass},
+                                              .allow_sleep = false})
+                               .value();
+        const Mat3 small = Mat3::diagonal({1e-5, 1e-5, 1e-5});
+        const auto rod = world
+                             ->create_body({.position = axis * (length / 2),
+                                            .linear_velocity = cross(turning, axis * (length / 2)),
+                                            .angular_velocity = turning,
+                                            .mass = {.mass = rod_mass, .inertia = small},
+                                            .allow_sleep = false})
+                             .value();
+        const Transform at_end{axis * (length / 2), {}}, at_rotor{{}, hinge_in_rotor};
+        EXPECT_TRUE(world->create_joint({.joint = BallJoint{}, .body_b = rod, .frame_b = {axis * (-length / 2), {}}}));
+        EXPECT_TRUE(world->create_joint({.joint = HingeJoint{},
+                                         .body_a = rotor_is_a ? rotor : rod,
+                                         .body_b = rotor_is_a ? rod : rotor,
+                                         .frame_a = rotor_is_a ? at_rotor : at_end,
+                                         .frame_b = rotor_is_a ? at_end : at_rotor}));
+        Spinning top{std::move(world), rotor, axis, rate};
+        const Outcome outcome = turn(top, 60);
+        EXPECT_NEAR(outcome.spin, spin, 1e-4 * spin) << rotor_is_a;
+        EXPECT_NEAR(outcome.rate, rate, 0.005 * rate) << rotor_is_a;
+        EXPECT_LT(outcome.farthest, 0.005) << rotor_is_a;
+        EXPECT_LT(outcome.gain, 1e-8) << rotor_is_a;
+    }
+}
+
 ShapeDefinition random_rotor(Random& random) {
     const double r = random.between(0.03, 0.3), h = r * random.between(0.05, 1);
     HullShape prism;

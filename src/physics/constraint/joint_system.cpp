@@ -104,14 +104,20 @@ void JointSystem::find_spin_axes(const View& view) {
             if (place.b >= 0) visit(bodies_[static_cast<std::size_t>(place.b)], joint, joint.local_b);
         }
     };
-    visit_ends([](Body& body, const Joint&, const Transform& frame) {
-        if (length_squared(frame.position) > length_squared(body.spin_axis)) body.spin_axis = frame.position;
+    constexpr double hinge_weight = 1e6;  // a hinge's axis tells more than an anchor, which may be the centre of mass
+    const auto hinge_axis = [](const Transform& frame) { return rotate(frame.rotation, {1, 0, 0}); };
+    visit_ends([&](Body& body, const Joint& joint, const Transform& frame) {
+        const bool is_hinge = std::holds_alternative<HingeJoint>(joint.kind);
+        const Vec3 direction = is_hinge ? hinge_axis(frame) * hinge_weight : frame.position;
+        if (length_squared(direction) > length_squared(body.spin_axis)) body.spin_axis = direction;
     });
     for (Body& body : bodies_) body.spin_axis = symmetry_axis_along(body.spin_axis, view.constants[body.slot]);
-    visit_ends([](Body& body, const Joint& joint, const Transform& frame) {
-        const bool leaves_spin =
-            std::holds_alternative<BallJoint>(joint.kind) && is_on_axis(frame.position, body.spin_axis);
-        if (!leaves_spin) body.spin_axis = {};
+    visit_ends([&](Body& body, const Joint& joint, const Transform& frame) {
+        const auto* hinge = std::get_if<HingeJoint>(&joint.kind);
+        const bool turns_freely =
+            hinge && !hinge->limit && !hinge->motor && is_on_axis(hinge_axis(frame), body.spin_axis);
+        const bool leaves_spin = turns_freely || std::holds_alternative<BallJoint>(joint.kind);
+        if (!leaves_spin || !is_on_axis(frame.position, body.spin_axis)) body.spin_axis = {};
     });
 }
 
@@ -214,7 +220,8 @@ double JointSystem::choose_holds(const View& view) {
 }
 
 // What each row's speed is too much, as right sides; the largest one. In the position phase for where the drift would
-// take the bodies, and with the rows of the mean of both poses.
+// take the bodies (without spin of their own, which the joints do not see), and with the rows of the mean of both
+// poses.
 double JointSystem::find_excess(const View& view) {
     double largest = 0;
     const bool has_drift = phase_ == SolvePhase::position;
@@ -222,7 +229,7 @@ double JointSystem::find_excess(const View& view) {
         const BodyState& state = view.bodies[body.slot];
         if (!has_drift) break;
         body.after = {state.center + state.linear_velocity * substep_,
-                      normalized(cayley(state.angular_velocity * substep_) * state.rotation * body.own_spin.turn)};
+                      normalized(cayley(state.angular_velocity * substep_) * state.rotation)};
     }
     const auto pose_after = [&](std::int32_t body, std::uint32_t slot) -> Transform {
         if (body >= 0) return bodies_[static_cast<std::size_t>(body)].after;

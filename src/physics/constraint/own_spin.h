@@ -5,9 +5,10 @@
 
 namespace embody::physics {
 
-/// The spin of a body about its own axis of symmetry where every joint holds it on that axis: it changes nothing that
-/// the joints see, so they are solved for the rest of the motion, with the spin's angular momentum carried along by the
-/// axis (a gyrostat: a rotor in a carrier that does not spin). However fast it is, it is kept.
+/// The spin of a body about its own axis of symmetry where every joint holds it on that axis and leaves it free about
+/// it: it changes nothing that the joints see, so they are solved for the rest of the motion, with the spin's angular
+/// momentum carried along by the axis (a gyrostat: a rotor in a carrier that does not spin). However fast it is, it is
+/// kept.
 struct OwnSpin {
     double rate = 0;  ///< rad/s about the axis
     Vec3 momentum;    ///< world, when the substep began, kg m²/s
