@@ -18,11 +18,11 @@ namespace embody::physics {
 
 namespace {
 
-constexpr double touch_gap = 2e-4;     // m: nearer to the ground than this a ring touches
-constexpr double side_gap = 5e-5;      // m: no farther apart are both ends of a line that touches
-constexpr double most_slip = 0.05;     // of the speed of turning, that is stopped at the start
-constexpr double slow_slip = 0.01;     // m/s: is stopped as well
-constexpr double most_approach = 0.2;  // m/s along the normal
+constexpr double touch_gap = 2e-4;      // m: nearer to the ground than this a ring touches
+constexpr double side_gap = 5e-5;       // m: no farther apart are both ends of a line that touches
+constexpr double most_slip = 0.05;      // of the speed of turning, that is stopped at the start
+constexpr double slow_slip = 0.01;      // m/s: is stopped as well
+constexpr double most_approach = 0.05;  // m/s along the normal: slower than any impact
 constexpr double least_lean = 0.005;   // sine of the angle between axis and normal: flatter, the rim lies on the ground
 constexpr double least_turn = 1e-3;    // rad of the axis in a step: slower, the contact solver loses nothing
 constexpr double fast_turn = 0.5;      // rad of the body in a step: faster, the solver's small turns are none
