@@ -4,19 +4,47 @@
 // the mass, so that one threshold serves light and heavy bodies; tracked over several steps, because a slow body may
 // pass through rest. A whole island sleeps or none of it: a body asleep among moving ones would have to be woken at
 // once.
+//
+// Rest is a balance of forces, not slowness: a pendulum at its turning point and a ball that begins to roll are slow.
+// The net force is told by what it does: a body under the acceleration a leaves each place that it was slow at by at
+// least a T²/8 in the time T, so what stays within a sixtieth of the way that its threshold allows is in balance to
+// 8/60 v/T (0.008 m/s² by default).
 #include "physics/optimization/island_sleep.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "physics/dynamic/conserved.h"
 
 namespace embody::physics {
 
-void track_quietness(SleepRecord& record, const BodyState& state, const BodyConstants& constants, double time_step) {
+namespace {
+
+// Whether a surface point has moved farther than `way` since the quiet time began.
+bool has_moved_on(const SleepRecord& record, const BodyState& state, double reach, double way) {
+    const Quat turn = state.rotation * conjugate(record.quiet_rotation);
+    const double chord = 2 * length(Vec3{turn.x, turn.y, turn.z}) * reach;
+    return distance(state.center, record.quiet_center) + chord > way;
+}
+
+}  // namespace
+
+void track_quietness(SleepRecord& record, const BodyState& state, const BodyConstants& constants, double reach,
+                     const QuietRules& rules) {
+    constexpr double share_of_way = 1.0 / 60;
     const double energy_per_mass = kinetic_energy(state, constants) / constants.mass;
     const bool is_quiet = record.allowed && energy_per_mass <= record.threshold;
-    record.quiet_time = is_quiet ? record.quiet_time + time_step : 0;
     record.state = is_quiet ? SleepState::wants_to_sleep : SleepState::active;
+    const double way = share_of_way * std::sqrt(2 * record.threshold) * rules.time_to_sleep;
+    if (!is_quiet) {
+        record.quiet_time = 0;
+    } else if (record.quiet_time == 0 || has_moved_on(record, state, reach, way)) {
+        record.quiet_time = rules.time_step;
+        record.quiet_center = state.center;
+        record.quiet_rotation = state.rotation;
+    } else {
+        record.quiet_time += rules.time_step;
+    }
 }
 
 bool may_sleep(std::span<const std::uint32_t> bodies, std::span<const SleepRecord> records, double time_to_sleep) {

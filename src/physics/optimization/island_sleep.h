@@ -13,14 +13,24 @@ namespace embody::physics {
 /// A body's way to sleep.
 struct SleepRecord {
     SleepState state = SleepState::active;
-    double quiet_time = 0;  ///< s in which the body was below its threshold without a break
-    double threshold = 0;   ///< J/kg
+    double quiet_time = 0;  ///< s in which the body was below its threshold, and about in one place, without a break
+    Vec3 quiet_center;      ///< where it was when that began
+    Quat quiet_rotation;
+    double threshold = 0;  ///< J/kg
     bool allowed = true;
     std::uint32_t group = 0;  ///< of sleepers; only where asleep
 };
 
-/// Follows one body: below the threshold it becomes quiet, above it active again. `time_step` in s.
-void track_quietness(SleepRecord& record, const BodyState& state, const BodyConstants& constants, double time_step);
+/// How long a quiet body must stay how near to one place.
+struct QuietRules {
+    double time_step = 0;      ///< s
+    double time_to_sleep = 0;  ///< s
+};
+
+/// Follows one body: below the threshold it becomes quiet, above it active again. What is slow, but moves on, is not at
+/// rest: its quiet time begins anew. `reach` is its farthest surface point, m.
+void track_quietness(SleepRecord& record, const BodyState& state, const BodyConstants& constants, double reach,
+                     const QuietRules& rules);
 
 /// Whether all bodies of an island have been quiet for `time_to_sleep` (s) and may sleep.
 bool may_sleep(std::span<const std::uint32_t> bodies, std::span<const SleepRecord> records, double time_to_sleep);

@@ -49,10 +49,10 @@ void fall_asleep(WorldState& world, const Island& island, std::vector<bool>& lea
 }  // namespace
 
 void put_to_sleep(WorldState& world) {
-    const double dt = world.settings.time_step;
+    const QuietRules rules{world.settings.time_step, world.settings.time_to_sleep};
     for_each_awake(world, [&](std::uint32_t body) {
         if (world.motion[body].inverse_mass == 0) return;
-        track_quietness(world.sleep[body], world.motion[body], world.constants[body], dt);
+        track_quietness(world.sleep[body], world.motion[body], world.constants[body], world.record(body).reach, rules);
     });
     if (!world.settings.sleeping) return;
 

@@ -42,9 +42,10 @@ TEST(Sleep, ThresholdScalesWithTheMassAndIsTrackedOverTime) {
     slow.linear_velocity = {0.02, 0, 0};
     SleepRecord a, b;
     a.threshold = b.threshold = 0.5 * 0.03 * 0.03;
+    const QuietRules rules{1.0 / 60, 0.5};
     for (int i = 0; i < 40; ++i) {
-        track_quietness(a, slow, light, 1.0 / 60);
-        track_quietness(b, slow, heavy, 1.0 / 60);
+        track_quietness(a, slow, light, 0.1, rules);
+        track_quietness(b, slow, heavy, 0.1, rules);
     }
     EXPECT_EQ(a.state, SleepState::wants_to_sleep);
     EXPECT_EQ(b.state, SleepState::wants_to_sleep);
@@ -53,9 +54,24 @@ TEST(Sleep, ThresholdScalesWithTheMassAndIsTrackedOverTime) {
     const std::vector<std::uint32_t> island{0, 1};
     EXPECT_TRUE(may_sleep(island, records, 0.5));
     slow.linear_velocity = {0.04, 0, 0};
-    track_quietness(a, slow, light, 1.0 / 60);
+    track_quietness(a, slow, light, 0.1, rules);
     EXPECT_EQ(a.state, SleepState::active);
     EXPECT_EQ(a.quiet_time, 0);
+}
+
+TEST(Sleep, WhatMovesOnSlowlyIsNotQuietForLong) {
+    BodyConstants constants;
+    constants.mass = 1;
+    BodyState state;
+    state.linear_velocity = {0.02, 0, 0};
+    SleepRecord record;
+    record.threshold = 0.5 * 0.03 * 0.03;
+    for (int i = 0; i < 40; ++i) {
+        state.center.x += 0.02 / 60;
+        track_quietness(record, state, constants, 0.1, {1.0 / 60, 0.5});
+    }
+    EXPECT_EQ(record.state, SleepState::wants_to_sleep);
+    EXPECT_LT(record.quiet_time, 0.1);
 }
 
 }  // namespace
