@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "benches/race/report.h"
@@ -110,5 +111,8 @@ int main(int count, char** words) {
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? embody::race::exit_ok : embody::race::exit_usage;
     }
-    return embody::race::run(arguments);
+    const int code = embody::race::run(arguments);
+    if (std::fflush(stdout) == 0) return code;
+    std::perror("embody: standard output");
+    return embody::race::exit_failed;
 }

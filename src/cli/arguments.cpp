@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <memory>
+#include <sstream>
 
 #include "catalog/catalog.h"
 #include "cli/output.h"
@@ -59,8 +60,11 @@ public:
         try {
             app_.parse(count, words);
         } catch (const CLI::ParseError& error) {
-            // 0: help or version was asked for and printed.
-            const int code = app_.exit(error);
+            // 0: help or version was asked for. An error quotes the words, which may be names of files.
+            std::ostringstream output, errors;
+            const int code = app_.exit(error, output, errors);
+            write_text(stdout, printable_lines(output.str()));
+            write_text(stderr, printable_lines(errors.str()));
             return {std::nullopt, code == 0 ? exit_ok : exit_usage};
         }
         return {chosen_, exit_ok};

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/core.h>
-
 #include <nlohmann/json.hpp>
 
 #include "attributes/attribute_json.h"
@@ -50,14 +48,14 @@ std::string kinds_text(const AttributeDescription& description) {
 
 void print_row(const AttributeDescription& description) {
     const std::string range = description.choices.empty() ? range_text(description) : choices_text(description);
-    fmt::print("{} {} {} {}\n", padded(description.name, 24), padded(unit_text(description), 7),
+    print_text("{} {} {} {}\n", padded(description.name, 24), padded(unit_text(description), 7),
                padded(default_text(description), 14), range);
 }
 
 void print_description(const AttributeDescription& description) {
-    fmt::print("{}: {}\n  {}\n", description.name, description.label, description.help);
+    print_text("{}: {}\n  {}\n", description.name, description.label, description.help);
     const auto line = [](const char* what, const std::string& text) {
-        if (!text.empty()) fmt::print("  {} {}\n", padded(what, 10), text);
+        if (!text.empty()) print_text("  {} {}\n", padded(what, 10), text);
     };
     line("group", description.kind);
     line("unit", description.unit == "1" ? "1 (a pure number)" : description.unit);
@@ -72,11 +70,11 @@ void print_markdown() {
     for (const AttributeDescription& description : attributes::registry()) {
         if (description.kind != group) {
             group = description.kind;
-            fmt::print("\n### {}\n\n| name | unit | default | range or choices | kinds | what it is |\n", group);
+            print_text("\n### {}\n\n| name | unit | default | range or choices | kinds | what it is |\n", group);
             print_line("|---|---|---|---|---|---|");
         }
         const std::string range = description.choices.empty() ? range_text(description) : choices_text(description);
-        fmt::print("| `{}` | {} | {} | {} | {} | {}: {} |\n", description.name, unit_text(description),
+        print_text("| `{}` | {} | {} | {} | {} | {}: {} |\n", description.name, unit_text(description),
                    default_text(description), range, kinds_text(description), description.label, description.help);
     }
 }
@@ -98,9 +96,9 @@ int run_attributes(const AttributesArguments& arguments) {
         print_description(*description);
         return exit_ok;
     }
-    fmt::print("{} {} {} {}\n", padded("name", 24), padded("unit", 7), padded("default", 14), "range or choices");
+    print_text("{} {} {} {}\n", padded("name", 24), padded("unit", 7), padded("default", 14), "range or choices");
     for (const AttributeDescription& description : attributes::registry()) print_row(description);
-    print_line("\nMore of one: embody attributes NAME");
+    print_text("\nMore of one: embody attributes NAME\n");
     return exit_ok;
 }
 

@@ -43,7 +43,7 @@ std::string paper_number(double ms) { return ms > 0 ? fmt::format("{:.3f}", ms) 
 
 void print_row(const scenes::SceneBuilder& builder, const scenes::BenchResult& result) {
     const std::string end = !result.checked ? "not checked" : result.wrong.empty() ? "right" : "WRONG: " + result.wrong;
-    fmt::print("{} {:>6} {:>9.3f} {:>9.3f} {:>9.3f}   {:>7} {:>7} {:>7}   {}\n", padded(builder.name, 15),
+    print_text("{} {:>6} {:>9.3f} {:>9.3f} {:>9.3f}   {:>7} {:>7} {:>7}   {}\n", padded(builder.name, 15),
                result.bodies, result.max_ms, result.min_ms, result.average_ms, paper_number(builder.paper.max_ms),
                paper_number(builder.paper.min_ms), paper_number(builder.paper.average_ms), end);
 }
@@ -66,8 +66,8 @@ int run_bench(const BenchArguments& arguments) {
     if (!arguments.scene.empty() && scenes::find_scene_builder(arguments.scene) == nullptr)
         return report({"--scene " + arguments.scene, "there is no such scene", "embody scene lists them"});
     if (!arguments.json) {
-        fmt::print("Milliseconds a step at 60 Hz; the paper's on a Core 2 Quad Q9400 of 2009.\n");
-        fmt::print("{} {:>6} {:>9} {:>9} {:>9}   {:>7} {:>7} {:>7}   {}\n", padded("scene", 15), "bodies", "max", "min",
+        print_text("Milliseconds a step at 60 Hz; the paper's on a Core 2 Quad Q9400 of 2009.\n");
+        print_text("{} {:>6} {:>9} {:>9} {:>9}   {:>7} {:>7} {:>7}   {}\n", padded("scene", 15), "bodies", "max", "min",
                    "average", "paper:", "min", "average", "end state");
     }
     nlohmann::json rows = nlohmann::json::array();

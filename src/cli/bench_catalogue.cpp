@@ -165,16 +165,16 @@ int run_catalogue_bench(const BenchArguments& arguments) {
                     {"rows", table}});
         return exit_ok;
     }
-    fmt::print("{} models", count);
-    if (count > before) fmt::print("; {} variants added in {:.1f} s", count - before, filling / 1e3);
-    fmt::print("\n{} {:>6} {:>10} {:>10} {:>10}   worst\n", padded("milliseconds", 36), "count", "median", "95 %",
+    print_text("{} models", count);
+    if (count > before) print_text("; {} variants added in {:.1f} s", count - before, filling / 1e3);
+    print_text("\n{} {:>6} {:>10} {:>10} {:>10}   worst\n", padded("milliseconds", 36), "count", "median", "95 %",
                "worst");
     for (const nlohmann::json& row : table) {
-        fmt::print("{} {:>6} {:>10.2f} {:>10.2f} {:>10.2f}   {}\n", padded(row["what"].get<std::string>(), 36),
+        print_text("{} {:>6} {:>10.2f} {:>10.2f} {:>10.2f}   {}\n", padded(row["what"].get<std::string>(), 36),
                    row["count"].get<std::size_t>(), row["median_ms"].get<double>(), row["p95_ms"].get<double>(),
                    row["worst_ms"].get<double>(), row["worst"].get<std::string>());
     }
-    fmt::print("resident memory: {:.0f} MB at the start, {:.0f} MB at the end, {:.0f} MB at most\n", at_start,
+    print_text("resident memory: {:.0f} MB at the start, {:.0f} MB at the end, {:.0f} MB at most\n", at_start,
                resident_megabytes("VmRSS"), peak);
     return exit_ok;
 }

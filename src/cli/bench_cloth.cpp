@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/bench_cloth.h"
 
-#include <fmt/core.h>
-
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -13,8 +11,8 @@ namespace embody::cli {
 
 int run_cloth(const BenchArguments& arguments) {
     if (!arguments.json) {
-        fmt::print("Milliseconds a step at 60 Hz, nothing asleep, beside 200 boxes in stacks.\n");
-        fmt::print("nodes   edges  workers  falling  at rest    worst  deformables   end state\n");
+        print_text("Milliseconds a step at 60 Hz, nothing asleep, beside 200 boxes in stacks.\n");
+        print_text("nodes   edges  workers  falling  at rest    worst  deformables   end state\n");
     }
     nlohmann::json rows = nlohmann::json::array();
     bool is_right = true;
@@ -35,7 +33,7 @@ int run_cloth(const BenchArguments& arguments) {
                             {"deformables_ms", cost->cloth_ms},
                             {"end_state", cost->wrong.empty() ? "right" : cost->wrong}});
             if (arguments.json) continue;
-            fmt::print("{:>5} {:>7} {:>8} {:>8.2f} {:>8.2f} {:>8.2f} {:>12.2f}   {}\n", cost->nodes, cost->edges,
+            print_text("{:>5} {:>7} {:>8} {:>8.2f} {:>8.2f} {:>8.2f} {:>12.2f}   {}\n", cost->nodes, cost->edges,
                        workers, cost->fall_ms, cost->rest_ms, cost->worst_ms, cost->cloth_ms,
                        cost->wrong.empty() ? "right" : "WRONG: " + cost->wrong);
             std::fflush(stdout);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/bench_convergence.h"
 
-#include <fmt/core.h>
-
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -24,8 +22,8 @@ int run_convergence(const BenchArguments& arguments) {
     for (const Study& study : studies()) {
         if (!arguments.scene.empty() && study.name != arguments.scene) continue;
         if (!arguments.json) {
-            fmt::print("{}: {}; {} = {:.6g}\n", study.name, study.quantity, study.theory, study.expected);
-            fmt::print("{:>22} {:>12} {:>9}\n", study.resolution, "measured", "error %");
+            print_text("{}: {}; {} = {:.6g}\n", study.name, study.quantity, study.theory, study.expected);
+            print_text("{:>22} {:>12} {:>9}\n", study.resolution, "measured", "error %");
         }
         nlohmann::json rows = nlohmann::json::array();
         for (const int resolution : study.resolutions) {
@@ -35,7 +33,7 @@ int run_convergence(const BenchArguments& arguments) {
             is_finite = is_finite && std::isfinite(error);
             rows.push_back({{"resolution", resolution}, {"value", *value}, {"error", error}});
             if (arguments.json) continue;
-            fmt::print("{:>22} {:>12.6g} {:>9.3f}\n", resolution, *value, 100 * error);
+            print_text("{:>22} {:>12.6g} {:>9.3f}\n", resolution, *value, 100 * error);
             std::fflush(stdout);
         }
         all.push_back({{"study", study.name},

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/bench_decomposition.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -56,10 +54,9 @@ nlohmann::json to_json(const Row& row) {
 }
 
 void print_row(const Row& row) {
-    fmt::print("{} {:>9} {:>9.1f} {:>6} {:>9.1f} {:>9.1f} {:>8.1f} {:>9.1f} {:>8.3f}\n",
-               padded(row.model.name.substr(0, 23), 24), row.model.triangles, 1e3 * row.made.hull_concavity,
-               row.made.hulls.size(), 1e3 * row.made.concavity, 1e3 * row.measure.added, 1e3 * row.measure.added_95,
-               1e3 * row.measure.left_out, row.seconds);
+    print_text("{} {:>9} {:>9.1f} {:>6} {:>9.1f} {:>9.1f} {:>8.1f} {:>9.1f} {:>8.3f}\n", padded(row.model.name, 24),
+               row.model.triangles, 1e3 * row.made.hull_concavity, row.made.hulls.size(), 1e3 * row.made.concavity,
+               1e3 * row.measure.added, 1e3 * row.measure.added_95, 1e3 * row.measure.left_out, row.seconds);
     std::fflush(stdout);
 }
 
@@ -71,8 +68,8 @@ int run_decomposition(const BenchArguments& arguments) {
     const auto models = choose_bench_models(**catalog, words, models_a_word, arguments);
     if (!models) return report(models.error());
     if (!arguments.json) {
-        fmt::print("Lengths in mm, processor time in s. Added: from the hulls' union to the model; left out: back.\n");
-        fmt::print("{} {:>9} {:>9} {:>6} {:>9} {:>9} {:>8} {:>9} {:>8}\n", padded("model", 24), "triangles", "one hull",
+        print_text("Lengths in mm, processor time in s. Added: from the hulls' union to the model; left out: back.\n");
+        print_text("{} {:>9} {:>9} {:>6} {:>9} {:>9} {:>8} {:>9} {:>8}\n", padded("model", 24), "triangles", "one hull",
                    "hulls", "concavity", "added", "95 %", "left out", "time");
     }
     nlohmann::json rows = nlohmann::json::array();
@@ -103,7 +100,7 @@ int run_decomposition(const BenchArguments& arguments) {
                     {"mean_added_95_m", added_95 / n},
                     {"models_a_second", rate}});
     } else {
-        fmt::print("{} models: {:.1f} hulls, {:.1f} mm added, {:.1f} mm at 95 %, {:.1f} models a second\n", done,
+        print_text("{} models: {:.1f} hulls, {:.1f} mm added, {:.1f} mm at 95 %, {:.1f} models a second\n", done,
                    hulls / n, 1e3 * added / n, 1e3 * added_95 / n, rate);
     }
     return failed == 0 && done > 0 ? exit_ok : exit_failed;

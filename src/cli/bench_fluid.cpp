@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/bench_fluid.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <iterator>
@@ -25,10 +23,10 @@ int run_fluid(const BenchArguments& arguments) {
     nlohmann::json rows = nlohmann::json::array();
     bool right = true;
     if (!arguments.json) {
-        fmt::print(
+        print_text(
             "Water that sloshes, 20 boxes afloat, 180 beside it; 3 s at 60 Hz, of each step the fastest of {} runs.\n",
             runs);
-        fmt::print("particles  workers  fluid ms  step ms  worst ms  volume %  draft %  end state\n");
+        print_text("particles  workers  fluid ms  step ms  worst ms  volume %  draft %  end state\n");
     }
     for (const int count : particles) {
         std::vector<scenes::TankCost> costs;
@@ -57,7 +55,7 @@ int run_fluid(const BenchArguments& arguments) {
                             {"draft_error", cost.draft_error},
                             {"wrong", cost.wrong}});
             if (arguments.json) continue;
-            fmt::print("{:>9} {:>8} {:>9.2f} {:>8.2f} {:>9.2f} {:>9.2f} {:>8.1f}  {}\n", cost.particles, workers[i],
+            print_text("{:>9} {:>8} {:>9.2f} {:>8.2f} {:>9.2f} {:>9.2f} {:>8.1f}  {}\n", cost.particles, workers[i],
                        fluid, step, worst, 100 * cost.volume_error, 100 * cost.draft_error,
                        cost.wrong.empty() ? "right" : "WRONG: " + cost.wrong);
             std::fflush(stdout);

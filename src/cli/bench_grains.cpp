@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/bench_grains.h"
 
-#include <fmt/core.h>
-
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -30,7 +28,7 @@ struct Rows {
 };
 
 Result<void> measure_heaps(bool print, Rows& rows) {
-    if (print) fmt::print("asked deg  grains  mm    poured  drawn wall  overlap  rest s\n");
+    if (print) print_text("asked deg  grains  mm    poured  drawn wall  overlap  rest s\n");
     for (const double angle : angles) {
         for (const Size& size : sizes) {
             const scenes::HeapToPour definition{
@@ -48,7 +46,7 @@ Result<void> measure_heaps(bool print, Rows& rows) {
                                   {"overlap_diameters", heap->overlap},
                                   {"rest_s", heap->rest_seconds}});
             if (!print) continue;
-            fmt::print("{:>9} {:>7} {:>3} {:>9.1f} {:>11.1f} {:>8.3f} {:>7.1f}\n", angle, size.grains,
+            print_text("{:>9} {:>7} {:>3} {:>9.1f} {:>11.1f} {:>8.3f} {:>7.1f}\n", angle, size.grains,
                        1000 * size.diameter, heap->angle, *wall, heap->overlap, heap->rest_seconds);
             std::fflush(stdout);
         }
@@ -57,7 +55,7 @@ Result<void> measure_heaps(bool print, Rows& rows) {
 }
 
 Result<void> time_slabs(bool print, Rows& rows) {
-    if (print) fmt::print("\ngrains  workers  contacts  awake ms  asleep ms\n");
+    if (print) print_text("\ngrains  workers  contacts  awake ms  asleep ms\n");
     for (const int grains : slabs) {
         for (const int workers : {1, 2}) {
             const auto cost = scenes::time_slab({.grains = grains, .workers = workers});
@@ -68,7 +66,7 @@ Result<void> time_slabs(bool print, Rows& rows) {
                                   {"awake_ms", cost->awake_ms},
                                   {"asleep_ms", cost->asleep_ms}});
             if (print)
-                fmt::print("{:>6} {:>8} {:>9} {:>9.2f} {:>10.5f}\n", grains, workers, cost->contacts, cost->awake_ms,
+                print_text("{:>6} {:>8} {:>9} {:>9.2f} {:>10.5f}\n", grains, workers, cost->contacts, cost->awake_ms,
                            cost->asleep_ms);
         }
     }

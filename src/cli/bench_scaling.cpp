@@ -31,7 +31,7 @@ nlohmann::json to_json(scaling::Scene scene, const Cost& cost, std::optional<dou
 }
 
 void print_row(scaling::Scene scene, const Cost& cost, std::optional<double> growth) {
-    fmt::print("{} {:>7} {:>8} {:>12.5f} {:>10.2f} {:>10.2f} {:>7}   {}\n",
+    print_text("{} {:>7} {:>8} {:>12.5f} {:>10.2f} {:>10.2f} {:>7}   {}\n",
                padded(std::string(scaling::name_of(scene)), 14), cost.bodies, cost.contacts, cost.step_milliseconds,
                nanoseconds_a_body(cost), cost.memory_kilobytes, growth ? fmt::format("{:.2f}", *growth) : "",
                cost.wrong.empty() ? "right" : "WRONG: " + cost.wrong);
@@ -49,8 +49,8 @@ int run_scaling(const BenchArguments& arguments) {
     if (!arguments.scene.empty() && !is_scene(arguments.scene))
         return report({"--scene " + arguments.scene, "there is no such scene", "embody bench scaling runs all"});
     if (!arguments.json) {
-        fmt::print("CPU time of one thread; growth is the exponent from the row above, 1 is linear.\n");
-        fmt::print("{} {:>7} {:>8} {:>12} {:>10} {:>10} {:>7}   {}\n", padded("scene", 14), "bodies", "contacts",
+        print_text("CPU time of one thread; growth is the exponent from the row above, 1 is linear.\n");
+        print_text("{} {:>7} {:>8} {:>12} {:>10} {:>10} {:>7}   {}\n", padded("scene", 14), "bodies", "contacts",
                    "ms a step", "ns a body", "KB a body", "growth", "end state");
     }
     nlohmann::json rows = nlohmann::json::array();

@@ -45,16 +45,16 @@ void print_row(const AccuracyTest& test, double time_step, const Accuracy& accur
     const Published* best = test.published(time_step);
     const std::string published = best == nullptr ? "–" : fmt::format("{:.3g} {}", best->error, best->engine);
     const std::string ratio = best == nullptr ? "–" : fmt::format("{:.3g}", accuracy.error / best->error);
-    fmt::print("{} {:>5.0f} {:>12.4g} {} {} {} {:>9.4f}   {}\n", padded(test.name, 12), time_step * 1e3, accuracy.error,
+    print_text("{} {:>5.0f} {:>12.4g} {} {} {} {:>9.4f}   {}\n", padded(test.name, 12), time_step * 1e3, accuracy.error,
                padded(std::string(test.unit), 6), padded(published, 16), padded(ratio, 9), accuracy.step_milliseconds,
                verdict(accuracy, best));
     std::fflush(stdout);
 }
 
 void print_head() {
-    fmt::print(
+    print_text(
         "Errors of SimBenchmark's tests beside the least that was published of five engines; below 1 is better.\n");
-    fmt::print("{} {:>5} {:>12} {} {} {} {:>9}   {}\n", padded("test", 12), "dt ms", "error", padded("", 6),
+    print_text("{} {:>5} {:>12} {} {} {} {:>9}   {}\n", padded("test", 12), "dt ms", "error", padded("", 6),
                padded("best published", 16), padded("ratio", 9), "ms a step", "verdict");
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/bench_soft.h"
 
-#include <fmt/core.h>
-
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -13,8 +11,8 @@ namespace embody::cli {
 
 int run_soft(const BenchArguments& arguments) {
     if (!arguments.json) {
-        fmt::print("Milliseconds a step at 60 Hz, nothing asleep, beside 200 boxes in stacks.\n");
-        fmt::print("nodes   tetrahedra  workers  falling  at rest    worst  deformables  foam   end state\n");
+        print_text("Milliseconds a step at 60 Hz, nothing asleep, beside 200 boxes in stacks.\n");
+        print_text("nodes   tetrahedra  workers  falling  at rest    worst  deformables  foam   end state\n");
     }
     nlohmann::json rows = nlohmann::json::array();
     bool is_right = true;
@@ -36,7 +34,7 @@ int run_soft(const BenchArguments& arguments) {
                             {"foam_compression", cost->compression},
                             {"end_state", cost->wrong.empty() ? "right" : cost->wrong}});
             if (arguments.json) continue;
-            fmt::print("{:>5} {:>12} {:>8} {:>8.2f} {:>8.2f} {:>8.2f} {:>12.2f} {:>5.3f}   {}\n", cost->nodes,
+            print_text("{:>5} {:>12} {:>8} {:>8.2f} {:>8.2f} {:>8.2f} {:>12.2f} {:>5.3f}   {}\n", cost->nodes,
                        cost->tetrahedra, workers, cost->fall_ms, cost->rest_ms, cost->worst_ms, cost->solids_ms,
                        cost->compression, cost->wrong.empty() ? "right" : "WRONG: " + cost->wrong);
             std::fflush(stdout);

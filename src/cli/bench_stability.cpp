@@ -45,7 +45,7 @@ void print_row(const StructureBuilder& builder, const StructureResult& result) {
     const std::string stands = result.stands ? "yes" : fmt::format("{:.1f} s", result.fell_at);
     const std::string asleep = result.asleep_after ? fmt::format("{:.2f}", *result.asleep_after) : "never";
     const std::string_view misses = result.misses(builder.goal);
-    fmt::print("| {} | {:>6} | {:>6.0f} | {:>7} | {:>8.3f} | {:>8.3f} | {:>9.2g} | {:>7} | {:>7.3f} | {:<14} |\n",
+    print_text("| {} | {:>6} | {:>6.0f} | {:>7} | {:>8.3f} | {:>8.3f} | {:>9.2g} | {:>7} | {:>7.3f} | {:<14} |\n",
                padded(builder.name, 17), builder.pieces, builder.goal.seconds, stands, 1e3 * result.sag,
                1e3 * result.drift, result.energy, result.stands ? asleep : "", result.step_milliseconds,
                misses.empty() ? "" : misses);
@@ -53,13 +53,13 @@ void print_row(const StructureBuilder& builder, const StructureResult& result) {
 }
 
 void print_head() {
-    fmt::print(
+    print_text(
         "Without sleeping: the time it must stand, how far the pieces sank and went sideways, kinetic energy in\n"
         "the last second; with sleeping: when all slept. The last column says which goal is missed.\n\n");
-    fmt::print("| {} | {:>6} | {:>6} | {:>7} | {:>8} | {:>8} | {:>9} | {:>7} | {:>7} | {:<14} |\n",
+    print_text("| {} | {:>6} | {:>6} | {:>7} | {:>8} | {:>8} | {:>9} | {:>7} | {:>7} | {:<14} |\n",
                padded("structure", 17), "pieces", "s", "stands", "sag mm", "drift mm", "energy J", "asleep", "ms/step",
                "misses");
-    fmt::print("|---|---|---|---|---|---|---|---|---|---|\n");
+    print_text("|---|---|---|---|---|---|---|---|---|---|\n");
 }
 
 }  // namespace

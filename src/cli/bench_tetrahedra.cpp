@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/bench_tetrahedra.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -64,8 +62,8 @@ nlohmann::json to_json(const Row& row) {
 }
 
 void print_row(const Row& row) {
-    fmt::print("{} {:>9} {:>6} {:>5} {:>6.1f} {:>3} {:>3} {:>6.1f} {:>6.1f} {:>6.1f} {:>6.1f} {:>7.3f} {:>7.3f}  {}\n",
-               padded(row.model.name.substr(0, 23), 24), row.model.triangles, row.filling.mesh.tetrahedra.size(),
+    print_text("{} {:>9} {:>6} {:>5} {:>6.1f} {:>3} {:>3} {:>6.1f} {:>6.1f} {:>6.1f} {:>6.1f} {:>7.3f} {:>7.3f}  {}\n",
+               padded(row.model.name, 24), row.model.triangles, row.filling.mesh.tetrahedra.size(),
                row.filling.mesh.nodes.size(), 1e3 * row.filling.cell, row.filling.component_volumes.size(),
                row.filling.left_out_components, 100 * row.filling.volume_share, row.angles.least, row.angles.largest,
                row.least_weight, row.fill_seconds, row.embed_seconds, geometry::name(row.filling.method));
@@ -80,10 +78,10 @@ int run_tetrahedra(const BenchArguments& arguments) {
     const auto models = choose_bench_models(**catalog, words, models_a_word, arguments);
     if (!models) return report(models.error());
     if (!arguments.json) {
-        fmt::print(
+        print_text(
             "Cells in mm, volume in % of the estimated, angles in degrees, least weight of a drawn vertex, processor "
             "time in s.\n");
-        fmt::print("{} {:>9} {:>6} {:>5} {:>6} {:>3} {:>3} {:>6} {:>6} {:>6} {:>6} {:>7} {:>7}  volume from\n",
+        print_text("{} {:>9} {:>6} {:>5} {:>6} {:>3} {:>3} {:>6} {:>6} {:>6} {:>6} {:>7} {:>7}  volume from\n",
                    padded("model", 24), "triangles", "tetra", "nodes", "cell", "in", "out", "volume", "least", "most",
                    "weight", "fill", "embed");
     }
@@ -95,7 +93,7 @@ int run_tetrahedra(const BenchArguments& arguments) {
         if (!row) {
             // A sheet is one answer among others here.
             refused.push_back({{"model", model.key}, {"why", row.error().message()}});
-            if (!arguments.json) fmt::print("{} {}\n", padded(model.name.substr(0, 23), 24), row.error().message());
+            if (!arguments.json) print_text("{} {}\n", padded(model.name, 24), row.error().message());
             continue;
         }
         shares.push_back(row->filling.volume_share);
@@ -114,7 +112,7 @@ int run_tetrahedra(const BenchArguments& arguments) {
                     {"median_volume_share", median(shares)},
                     {"median_fill_seconds", median(seconds)}});
     } else {
-        fmt::print("{} models filled, {} not: median volume {:.1f} %, {:.2f} s\n", shares.size(), refused.size(),
+        print_text("{} models filled, {} not: median volume {:.1f} %, {:.2f} s\n", shares.size(), refused.size(),
                    100 * median(shares), median(seconds));
     }
     return shares.empty() ? exit_failed : exit_ok;

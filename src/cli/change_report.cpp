@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/change_report.h"
 
-#include <fmt/core.h>
-
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -39,27 +37,26 @@ nlohmann::json to_json(const ChangeReport& report, bool dry_run) {
 void print_refused(const ChangeReport& report) {
     for (std::size_t i = 0; i < report.refused.size() && i < most_listed; ++i) {
         const RefusedChange& one = report.refused[i];
-        fmt::print(stderr, "embody: {} ({}): {} {}\n", one.name, one.key, one.attribute, one.why);
+        print_error("embody: {} ({}): {} {}\n", one.name, one.key, one.attribute, one.why);
     }
-    if (report.refused.size() > most_listed)
-        fmt::print(stderr, "embody: and {} more\n", report.refused.size() - most_listed);
+    if (report.refused.size() > most_listed) print_error("embody: and {} more\n", report.refused.size() - most_listed);
 }
 
-void print_text(const ChangeReport& report, bool dry_run) {
+void print_report(const ChangeReport& report, bool dry_run) {
     if (dry_run) {
         for (std::size_t i = 0; i < report.models.size() && i < most_listed; ++i)
-            fmt::print("  {}  {}\n", padded(report.models[i].name, 36), report.models[i].key);
+            print_text("  {}  {}\n", padded(report.models[i].name, 36), report.models[i].key);
         if (report.models.size() > most_listed)
-            fmt::print("  and {} more; --json lists all\n", report.models.size() - most_listed);
+            print_text("  and {} more; --json lists all\n", report.models.size() - most_listed);
     }
     // "set many" and "set" are one to the reader.
     const std::string act = report.command.substr(0, report.command.find(' '));
-    fmt::print("{}{}: {} of {} models, {} values", dry_run ? "Would " : "", act, report.models.size(), report.chosen,
+    print_text("{}{}: {} of {} models, {} values", dry_run ? "Would " : "", act, report.models.size(), report.chosen,
                report.values);
-    if (report.unchanged > 0) fmt::print("; {} are so already", report.unchanged);
-    if (!report.refused.empty()) fmt::print("; {} refused", report.refused.size());
-    if (report.batch != 0) fmt::print("; batch {}, take it back with: embody undo {}", report.batch, report.batch);
-    fmt::print("\n");
+    if (report.unchanged > 0) print_text("; {} are so already", report.unchanged);
+    if (!report.refused.empty()) print_text("; {} refused", report.refused.size());
+    if (report.batch != 0) print_text("; batch {}, take it back with: embody undo {}", report.batch, report.batch);
+    print_text("\n");
 }
 
 }  // namespace
@@ -83,11 +80,10 @@ int print_changes(const Result<catalog::ChangeReport>& result, bool dry_run, boo
     // Without a batch nothing was done: either it was a question, or all were so already, or some refused.
     const bool stopped = !result->refused.empty() && result->models.empty();
     if (stopped) {
-        fmt::print(stderr, "embody: nothing was changed: {} of {} models refuse\n", result->refused.size(),
-                   result->chosen);
+        print_error("embody: nothing was changed: {} of {} models refuse\n", result->refused.size(), result->chosen);
         return exit_failed;
     }
-    if (!json) print_text(*result, dry_run);
+    if (!json) print_report(*result, dry_run);
     return result->refused.empty() ? exit_ok : exit_partly;
 }
 

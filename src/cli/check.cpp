@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/core.h>
-
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
 #include "cli/locations.h"
 #include "cli/output.h"
+#include "scene/document_field.h"
 #include "scene/entity_body.h"
 #include "scene/scene_file.h"
 #include "scene/simulation.h"
@@ -24,16 +23,12 @@ Result<Checked> check_scene(const std::filesystem::path& file, catalog::Catalog*
     auto document = scene::load_document(file);
     if (!document) return document.error();
     auto simulation = scene::Simulation::create(*document, catalog);
-    if (!simulation) {
-        Error error = simulation.error();
-        error.where = file.string() + ": " + error.where;
-        return error;
-    }
+    if (!simulation) return scene::in_place(file.string(), simulation.error());
     Checked checked{document->entities.size(), (*simulation)->notes(), {}};
     scene::EntityBodies bodies(catalog);
     for (std::size_t i = 0; i < document->entities.size(); ++i) {
         const auto found = bodies.contradictions(document->entities[i]);
-        if (!found) return found.error();
+        if (!found) return scene::in_place(file.string(), found.error());
         const std::string where = file.string() + ": entities[" + std::to_string(i) + "].attributes.";
         for (const attributes::Issue& issue : *found) {
             checked.contradictions.push_back(
@@ -44,12 +39,12 @@ Result<Checked> check_scene(const std::filesystem::path& file, catalog::Catalog*
 }
 
 void print_row(const nlohmann::json& row, std::size_t entities) {
-    if (row.contains("error")) return fmt::print("{}\n", row["error"].get<std::string>());
-    for (const auto& contradiction : row["contradictions"]) fmt::print("{}\n", contradiction.get<std::string>());
+    if (row.contains("error")) return print_text("{}\n", row["error"].get<std::string>());
+    for (const auto& contradiction : row["contradictions"]) print_text("{}\n", contradiction.get<std::string>());
     const std::string file = row["file"];
-    for (const auto& note : row["notes"]) fmt::print("{}: note: {}\n", file, note.get<std::string>());
-    if (row["right"]) return fmt::print("{}: right, {} entities\n", file, entities);
-    fmt::print("{}: can be simulated, but its attributes contradict each other\n", file);
+    for (const auto& note : row["notes"]) print_text("{}: note: {}\n", file, note.get<std::string>());
+    if (row["right"]) return print_text("{}: right, {} entities\n", file, entities);
+    print_text("{}: can be simulated, but its attributes contradict each other\n", file);
 }
 
 }  // namespace

@@ -72,10 +72,10 @@ nlohmann::json to_json(const Candidate& candidate) {
 void print(const Classification& what, const AttributeSet& set, std::optional<double> unit,
            const std::vector<std::string>& senses) {
     const auto line = [](const char* label, const std::string& text) {
-        if (!text.empty()) fmt::print("  {} {}\n", padded(label, 11), text);
+        if (!text.empty()) print_text("  {} {}\n", padded(label, 11), text);
     };
     const std::string above = what.category->parent.empty() ? "" : ", a kind of " + what.category->parent;
-    fmt::print("{}{}  (confidence {:.2f})\n", what.category->name, above, what.confidence);
+    print_text("{}{}  (confidence {:.2f})\n", what.category->name, above, what.confidence);
     line("because", what.source);
     line("reckoned", what.reckoning);
     line("meaning", what.synset);

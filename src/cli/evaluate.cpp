@@ -59,13 +59,13 @@ nlohmann::json mass_to_json(const MassEvaluation& evaluation) {
 }
 
 void print_figures(const std::string& group, const MassFigures& figures) {
-    fmt::print("{} {:>7}  {:.3f} [{:.2f} … {:.2f}]  {:+.2f}  {:.3f}  {:>6.1f} %  {:>9.1f} %\n", padded(group, 16),
+    print_text("{} {:>7}  {:.3f} [{:.2f} … {:.2f}]  {:+.2f}  {:.3f}  {:>6.1f} %  {:>9.1f} %\n", padded(group, 16),
                figures.objects, figures.alde, figures.alde_low, figures.alde_high, figures.bias, figures.mnre,
                100 * figures.within_factor_2, 100 * figures.coverage_80);
 }
 
 void print_mass(const MassEvaluation& evaluation, std::size_t worst) {
-    fmt::print("{} {:>7}  {}  {}  {}  {}  {}\n", padded("", 16), "objects", padded("ALDE  [95 %]", 19), " bias",
+    print_text("{} {:>7}  {}  {}  {}  {}  {}\n", padded("", 16), "objects", padded("ALDE  [95 %]", 19), " bias",
                "MnRE ", "within ×2", "in 80 % interval");
     print_figures("all", evaluation.all);
     for (const auto* groups : {&evaluation.by_source, &evaluation.by_level}) {
@@ -75,14 +75,14 @@ void print_mass(const MassEvaluation& evaluation, std::size_t worst) {
     if (!evaluation.without_mass.empty()) {
         std::string ids;
         for (const std::string& id : evaluation.without_mass) ids += " " + id;
-        fmt::print("\nWithout a mass, not counted:{}\n", ids);
+        print_text("\nWithout a mass, not counted:{}\n", ids);
     }
     if (worst == 0) return;
-    fmt::print("\nWorst:\n{:>10}  {:>10}  {}  {}\n", "real kg", "predicted", padded("taken for", 22), "name");
+    print_text("\nWorst:\n{:>10}  {:>10}  {}  {}\n", "real kg", "predicted", padded("taken for", 22), "name");
     for (std::size_t i = 0; i < std::min(worst, evaluation.predictions.size()); ++i) {
         const MassPrediction& prediction = evaluation.predictions[i];
-        fmt::print("{:>10.4g}  {:>10.4g}  {}  {} ({})\n", prediction.object.mass, prediction.mass,
-                   padded(prediction.category, 22), prediction.object.name.substr(0, 60), prediction.object.id);
+        print_text("{:>10.4g}  {:>10.4g}  {}  {} ({})\n", prediction.object.mass, prediction.mass,
+                   padded(prediction.category, 22), shortened(prediction.object.name, 60), prediction.object.id);
     }
 }
 
@@ -116,25 +116,25 @@ nlohmann::json catalogue_to_json(const CatalogueEvaluation& evaluation) {
 }
 
 void print_catalogue(const CatalogueEvaluation& evaluation) {
-    fmt::print("{} models; category better than default: {:.1f} %\n", evaluation.models,
+    print_text("{} models; category better than default: {:.1f} %\n", evaluation.models,
                100 * evaluation.above_default());
-    for (const auto& [level, models] : evaluation.by_level) fmt::print("  {} {:>6}\n", padded(level, 14), models);
-    for (const std::string& name : evaluation.unknown) fmt::print("  unknown: {}\n", name);
-    fmt::print("static or movable as {} catalogue entries say: {:.1f} %\n", evaluation.flagged,
+    for (const auto& [level, models] : evaluation.by_level) print_text("  {} {:>6}\n", padded(level, 14), models);
+    for (const std::string& name : evaluation.unknown) print_text("  unknown: {}\n", name);
+    print_text("static or movable as {} catalogue entries say: {:.1f} %\n", evaluation.flagged,
                100 * evaluation.movable_agreement());
     for (const auto& model : evaluation.disagreements) {
-        fmt::print("  {} {} taken for {}\n",
+        print_text("  {} {} taken for {}\n",
                    model.catalogue_says_movable ? "movable:" : "static: ", padded(model.name, 34), model.category);
     }
-    fmt::print(
+    print_text(
         "density sum over the parts, at usual walls, of {} models: {:.2f} of the mass at the median, "
         "within a factor 2 for {:.0f} %\n",
         evaluation.density_sums.size(), evaluation.median_density_sum(),
         100 * evaluation.density_sums_within_factor_2());
-    fmt::print("models whose attributes contradict each other: {}\n", evaluation.broken.size());
+    print_text("models whose attributes contradict each other: {}\n", evaluation.broken.size());
     for (const auto& model : evaluation.broken)
         for (const attributes::Issue& issue : model.issues)
-            fmt::print("  {}: {}: {}\n", model.key, issue.attribute, issue.why);
+            print_text("  {}: {}: {}\n", model.key, issue.attribute, issue.why);
 }
 
 int evaluate_masses(const EvaluateArguments& arguments, const attributes::Taxonomy& taxonomy) {
@@ -169,11 +169,11 @@ nlohmann::json kinds_to_json(const KindEvaluation& evaluation) {
 }
 
 void print_kinds(const KindEvaluation& evaluation) {
-    fmt::print("kind as {} labelled words say: {:.1f} %\n", evaluation.words, 100 * evaluation.accuracy());
+    print_text("kind as {} labelled words say: {:.1f} %\n", evaluation.words, 100 * evaluation.accuracy());
     for (const auto& [label, counts] : evaluation.by_label)
-        fmt::print("  {} {:>6} of {:>6}\n", padded(label, 14), counts.second, counts.first);
+        print_text("  {} {:>6} of {:>6}\n", padded(label, 14), counts.second, counts.first);
     for (const evaluation::KindMistake& mistake : evaluation.mistakes) {
-        fmt::print("  {} is {}, not {}: taken for {}\n", padded(mistake.label.word, 26), mistake.label.kinds.front(),
+        print_text("  {} is {}, not {}: taken for {}\n", padded(mistake.label.word, 26), mistake.label.kinds.front(),
                    mistake.kind, mistake.category);
     }
 }
@@ -208,9 +208,9 @@ nlohmann::json verdict_to_json(const BehaviourEvaluation::Verdict& verdict) {
 
 void print_verdict(const char* what, const BehaviourEvaluation::Verdict& verdict,
                    const std::function<std::string(const evaluation::Behaviour&)>& say) {
-    fmt::print("{}: {} of {}\n", what, verdict.judged - verdict.wrong.size(), verdict.judged);
+    print_text("{}: {} of {}\n", what, verdict.judged - verdict.wrong.size(), verdict.judged);
     for (const evaluation::Behaviour* model : verdict.wrong)
-        fmt::print("  {} {} {}\n", padded(model->name, 32), padded(model->category, 22), say(*model));
+        print_text("  {} {} {}\n", padded(model->name, 32), padded(model->category, 22), say(*model));
 }
 
 std::string compared_text(const evaluation::Compared& compared) {
@@ -229,8 +229,8 @@ void print_behaviour(const BehaviourEvaluation& evaluation) {
                   [](const Behaviour& m) { return compared_text(*m.slide) + " m"; });
     print_verdict("rebound follows from restitution", evaluation.rebounds(),
                   [](const Behaviour& m) { return compared_text(*m.rebound); });
-    fmt::print("could not be simulated: {}\n", evaluation.failures.size());
-    for (const auto& [key, error] : evaluation.failures) fmt::print("  {}: {}\n", key, error.message());
+    print_text("could not be simulated: {}\n", evaluation.failures.size());
+    for (const auto& [key, error] : evaluation.failures) print_text("  {}: {}\n", key, error.message());
 }
 
 int evaluate_behaviours(const EvaluateArguments& arguments) {

@@ -70,7 +70,7 @@ void print_batch(const ChangeRecord& record) {
     if (record.undoes != 0) what += " of batch " + std::to_string(record.undoes);
     if (!record.asked.empty()) what += ", " + record.asked;
     if (record.undone_by != 0) what += fmt::format(" (undone by batch {})", record.undone_by);
-    fmt::print("batch {}  {}  {}{}  {}\n", record.batch, time_text(record.made_at, "%Y-%m-%d %H:%M:%S UTC"),
+    print_text("batch {}  {}  {}{}  {}\n", record.batch, time_text(record.made_at, "%Y-%m-%d %H:%M:%S UTC"),
                record.author.person, record.author.session.empty() ? "" : " (" + record.author.session + ")", what);
 }
 
@@ -101,7 +101,7 @@ int run_history(const HistoryArguments& arguments) {
         if (record.batch != batch) print_batch(record);
         batch = record.batch;
         const std::string& name = record.model_name.empty() ? record.model_key : record.model_name;
-        fmt::print("  {}  {}  {} → {}\n", padded(name, 36), padded(record.attribute, 20), value_text(record.before),
+        print_text("  {}  {}  {} → {}\n", padded(name, 36), padded(record.attribute, 20), value_text(record.before),
                    value_text(record.after));
     }
     return exit_ok;

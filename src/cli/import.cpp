@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/core.h>
-
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
@@ -53,16 +51,16 @@ int run_import(const ImportArguments& arguments) {
     const auto result = (*catalog)->import(arguments.paths, options);
     bar.finish();
     if (!result) return report(result.error());
-    for (const catalog::ImportFailure& failure : result->failures) fmt::print(stderr, "embody: {}\n", text_of(failure));
+    for (const catalog::ImportFailure& failure : result->failures) print_error("embody: {}\n", text_of(failure));
     if (arguments.json) {
         print_json(to_json(*result));
     } else {
-        fmt::print("{} added, {} updated, {} unchanged, {} failed in {:.1f} s; {} models in {}\n", result->added,
+        print_text("{} added, {} updated, {} unchanged, {} failed in {:.1f} s; {} models in {}\n", result->added,
                    result->updated, result->unchanged, result->failures.size(), result->seconds,
                    (*catalog)->model_count(), arguments.database.string());
     }
     if (result->stopped) {
-        fmt::print(stderr, "embody: stopped; the same command goes on from here\n");
+        print_error("embody: stopped; the same command goes on from here\n");
         return exit_failed;
     }
     return result->failures.empty() ? exit_ok : exit_partly;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.h"
+#include "cli/output.h"
 
 namespace embody::cli {
 namespace {
@@ -27,5 +28,6 @@ struct Runner {
 
 int main(int count, char** words) {
     const embody::cli::Parsed parsed = embody::cli::parse_arguments(count, words);
-    return parsed.arguments ? std::visit(embody::cli::Runner{}, *parsed.arguments) : parsed.exit_code;
+    const int code = parsed.arguments ? std::visit(embody::cli::Runner{}, *parsed.arguments) : parsed.exit_code;
+    return embody::cli::finish_output(code);
 }

@@ -1,27 +1,49 @@
 // SPDX-License-Identifier: MIT
 #include "cli/output.h"
 
-#include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <cerrno>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "cli/arguments.h"
 
 namespace embody::cli {
 
+namespace {
+
+/// Why standard output did not take something first; 0: it took everything.
+int output_failure = 0;
+
+}  // namespace
+
+void write_text(std::FILE* stream, std::string_view text) {
+    const std::size_t written = std::fwrite(text.data(), 1, text.size(), stream);
+    if (written < text.size() && stream == stdout && output_failure == 0) output_failure = errno;
+}
+
+int finish_output(int exit_code) {
+    if (std::fflush(stdout) != 0 && output_failure == 0) output_failure = errno;
+    if (output_failure == 0) return exit_code;
+    if (output_failure != EPIPE)
+        report({"standard output", std::string("cannot be written: ") + std::strerror(output_failure),
+                "free some space, or write to another file"});
+    return exit_code == exit_ok ? int{exit_failed} : exit_code;
+}
+
 int report(const Error& error) {
-    fmt::print(stderr, "embody: {}\n", error.message());
+    print_error("embody: {}\n", error.message());
     return exit_failed;
 }
 
 void print_json(const nlohmann::json& value) {
-    fmt::print("{}\n", value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    // JSON takes the escapes that printable_lines() makes of what dump() leaves: those from U+007F on.
+    write_text(stdout, printable_lines(value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace)) + '\n');
 }
 
-void print_line(std::string_view line) { fmt::print("{}\n", line); }
+void print_line(std::string_view line) { print_text("{}\n", line); }
 
 std::size_t text_width(std::string_view text) {
     return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
@@ -29,16 +51,19 @@ std::size_t text_width(std::string_view text) {
     }));
 }
 
-std::string padded(std::string_view text, std::size_t width) {
-    std::string line(text);
-    // Cut whole code points from the end, and say so.
-    if (text_width(line) > width) {
-        while (!line.empty() && text_width(line) >= width) {
-            while (!line.empty() && (static_cast<unsigned char>(line.back()) & 0xC0) == 0x80) line.pop_back();
-            if (!line.empty()) line.pop_back();
-        }
-        line += "…";
+std::string shortened(std::string_view text, std::size_t width) {
+    std::string line = printable(text);
+    if (text_width(line) <= width) return line;
+    // Whole code points are cut from the end.
+    while (!line.empty() && text_width(line) >= width) {
+        while (!line.empty() && (static_cast<unsigned char>(line.back()) & 0xC0) == 0x80) line.pop_back();
+        if (!line.empty()) line.pop_back();
     }
+    return line + "…";
+}
+
+std::string padded(std::string_view text, std::size_t width) {
+    std::string line = shortened(text, width);
     line.append(width - text_width(line), ' ');
     return line;
 }
@@ -52,7 +77,7 @@ void ProgressBar::show(std::size_t done, std::size_t total, std::string_view now
         const std::size_t full = width * std::min(done, total) / total;
         std::string bar(full, '#');
         bar.append(width - full, '.');
-        fmt::print(stderr, "\r{} [{}] {}/{} {}", what_, bar, done, total, padded(now, 36));
+        print_error("\r{} [{}] {}/{} {}", what_, bar, done, total, padded(now, 36));
         std::fflush(stderr);
         drawn_ = true;
         return;
@@ -60,12 +85,12 @@ void ProgressBar::show(std::size_t done, std::size_t total, std::string_view now
     const std::size_t tenth = 10 * done / total;
     if (tenth == last_tenth_) return;
     last_tenth_ = tenth;
-    fmt::print(stderr, "{} {}/{}\n", what_, done, total);
+    print_error("{} {}/{}\n", what_, done, total);
 }
 
 void ProgressBar::finish() {
     if (!drawn_) return;
-    fmt::print(stderr, "\r{:100}\r", "");
+    print_error("\r{:100}\r", "");
     drawn_ = false;
 }
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/core.h>
-
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
@@ -15,7 +13,7 @@ int list_scenes(bool json) {
     nlohmann::json rows = nlohmann::json::array();
     for (const scenes::SceneBuilder& builder : scenes::scene_builders()) {
         rows.push_back({{"name", builder.name}, {"title", builder.title}, {"figure", builder.figure}});
-        if (!json) fmt::print("{} {} {}\n", padded(builder.name, 16), padded(builder.figure, 13), builder.title);
+        if (!json) print_text("{} {} {}\n", padded(builder.name, 16), padded(builder.figure, 13), builder.title);
     }
     if (json) print_json({{"scenes", std::move(rows)}});
     return exit_ok;

@@ -5,6 +5,7 @@
 
 #include "cli/locations.h"
 #include "scene/scene_file.h"
+#include "scene/scene_folders.h"
 #include "scenes/scene_builders.h"
 
 namespace embody::cli {
@@ -14,10 +15,9 @@ Result<scene::Document> find_scene(const std::string& file_or_name) {
     std::error_code ignored;
     if (fs::exists(file_or_name, ignored)) return scene::load_document(file_or_name);
     if (const scenes::SceneBuilder* builder = scenes::find_scene_builder(file_or_name)) return builder->build();
-    for (const fs::path& folder : {data_folder() / "scenes", saved_scenes_folder()}) {
-        const fs::path file = folder / (file_or_name + ".json");
-        if (fs::is_regular_file(file, ignored)) return scene::load_document(file);
-    }
+    const scene::SessionOptions folders{.saved_scenes = saved_scenes_folder(), .demo_scenes = data_folder() / "scenes"};
+    for (const std::string& name : {"demo/" + file_or_name, file_or_name})
+        if (const auto file = scene::find_scene(folders, name)) return scene::load_document(*file);
     return Error{file_or_name, "is neither a file nor the name of a scene", "embody scene lists the built-in ones"};
 }
 

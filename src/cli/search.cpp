@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/core.h>
-
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
@@ -33,14 +31,14 @@ int run_search(const SearchArguments& arguments) {
         print_line("No model matches.");
         return exit_ok;
     }
-    fmt::print("{:>6}  {}  {}  {}  {}\n", "id", padded("name", 30), padded("category", 18), padded("kind", 8),
+    print_text("{:>6}  {}  {}  {}  {}\n", "id", padded("name", 30), padded("category", 18), padded("kind", 8),
                "size (m)");
     for (const catalog::ModelSummary& model : page->models) {
-        fmt::print("{:>6}  {}  {}  {}  {:.2f} × {:.2f} × {:.2f}\n", model.id, padded(model.name, 30),
+        print_text("{:>6}  {}  {}  {}  {:.2f} × {:.2f} × {:.2f}\n", model.id, padded(model.name, 30),
                    padded(model.category, 18), padded(model.physical_kind, 8), model.size.x, model.size.y,
                    model.size.z);
     }
-    fmt::print("{} of {}\n", page->models.size(), page->total);
+    print_text("{} of {}\n", page->models.size(), page->total);
     return exit_ok;
 }
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/core.h>
 #include <spawn.h>
 
 #include <array>
@@ -21,7 +20,7 @@ void open_in_browser(const std::string& url) {
     std::array<char*, 3> words{program.data(), address.data(), nullptr};
     pid_t process = 0;
     if (posix_spawnp(&process, words[0], nullptr, nullptr, words.data(), environ) != 0)
-        fmt::print(stderr, "No program to open a browser was found; open the address above by hand.\n");
+        print_error("No program to open a browser was found; open the address above by hand.\n");
 }
 
 }  // namespace
@@ -45,11 +44,11 @@ int run_serve(const ServeArguments& arguments) {
         const Error no_scene = server.error();
         options.scene.open_scene.clear();
         server = server::Server::start(options);
-        if (server) fmt::print(stderr, "embody: starting with an empty scene: {}\n", no_scene.message());
+        if (server) print_error("embody: starting with an empty scene: {}\n", no_scene.message());
     }
     if (!server) return report(server.error());
-    fmt::print("Studio: {}\n", (*server)->url());
-    fmt::print("Stop with Ctrl+C.\n");
+    print_text("Studio: {}\n", (*server)->url());
+    print_text("Stop with Ctrl+C.\n");
     std::fflush(stdout);
     if (arguments.open_browser) open_in_browser((*server)->url());
     (*server)->run();

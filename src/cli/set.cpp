@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/core.h>
-
 #include "attributes/registry.h"
 #include "cli/change_report.h"
 #include "cli/commands.h"

@@ -20,14 +20,14 @@ using attributes::AttributeEntry;
 void print_model(const catalog::ModelSummary& model) {
     std::string tags;
     for (const std::string& tag : model.tags) tags += (tags.empty() ? "" : ", ") + tag;
-    fmt::print("{}  (id {}, key {})\n", model.name, model.id, model.key);
-    fmt::print("  from      {}, by {}, licence {}\n", model.source, model.author.empty() ? "unknown" : model.author,
+    print_text("{}  (id {}, key {})\n", model.name, model.id, model.key);
+    print_text("  from      {}, by {}, licence {}\n", model.source, model.author.empty() ? "unknown" : model.author,
                model.licence.empty() ? "unknown" : model.licence);
-    fmt::print("  category  {}{}{}\n", model.category, model.subcategory.empty() ? "" : " / ", model.subcategory);
-    fmt::print("  size      {:.3f} × {:.3f} × {:.3f} m\n", model.size.x, model.size.y, model.size.z);
-    fmt::print("  geometry  {} vertices, {} triangles, {} parts, quality {} of 3\n", model.vertices, model.triangles,
+    print_text("  category  {}{}{}\n", model.category, model.subcategory.empty() ? "" : " / ", model.subcategory);
+    print_text("  size      {:.3f} × {:.3f} × {:.3f} m\n", model.size.x, model.size.y, model.size.z);
+    print_text("  geometry  {} vertices, {} triangles, {} parts, quality {} of 3\n", model.vertices, model.triangles,
                model.parts, model.quality);
-    if (!tags.empty()) fmt::print("  tags      {}\n", tags);
+    if (!tags.empty()) print_text("  tags      {}\n", tags);
 }
 
 void print_entry(const AttributeEntry& entry) {
@@ -38,7 +38,7 @@ void print_entry(const AttributeEntry& entry) {
         value += " " + description->unit;
     if (entry.low && entry.high)
         value += fmt::format("  [{} … {}]", short_number(*entry.low), short_number(*entry.high));
-    fmt::print("  {} {}\n      {}: {}\n", padded(entry.name, 24), value, attributes::level_name(entry.level),
+    print_text("  {} {}\n      {}: {}\n", padded(entry.name, 24), value, attributes::level_name(entry.level),
                entry.source);
 }
 
@@ -54,7 +54,7 @@ Result<std::optional<catalog::ConvexParts>> collision_parts(const catalog::Catal
 }
 
 void print_parts(const catalog::ConvexParts& parts) {
-    fmt::print(
+    print_text(
         "  collides  as {} convex part{}; the deepest hollow that they fill is {:.1f} mm, of one hull {:.1f} mm\n",
         parts.hulls.size(), parts.hulls.size() == 1 ? "" : "s", 1e3 * parts.concavity, 1e3 * parts.hull_concavity);
 }
@@ -68,10 +68,10 @@ std::optional<Result<catalog::SoftMesh>> soft_mesh(const catalog::Catalog& catal
 
 void print_soft_mesh(const Result<catalog::SoftMesh>& soft) {
     if (!soft) {
-        fmt::print("  soft      no, simulated as rigid: {}\n", soft.error().why);
+        print_text("  soft      no, simulated as rigid: {}\n", soft.error().why);
         return;
     }
-    fmt::print("  soft      as {} tetrahedra of cells of {:.1f} mm, which hold {:.0f} % of its volume\n",
+    print_text("  soft      as {} tetrahedra of cells of {:.1f} mm, which hold {:.0f} % of its volume\n",
                soft->mesh.tetrahedra.size(), 1e3 * soft->cell, 100 * soft->volume_share);
 }
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/core.h>
-
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -11,6 +9,7 @@
 #include "cli/locations.h"
 #include "cli/output.h"
 #include "cli/scene_lookup.h"
+#include "scene/document_field.h"
 #include "scene/recording.h"
 #include "scene/simulation.h"
 
@@ -53,14 +52,14 @@ nlohmann::json to_json(const Summary& summary, const scene::Simulation& simulati
 
 void print(const Summary& summary, const scene::Simulation& simulation) {
     const physics::StepReport& report = simulation.world().last_report();
-    fmt::print("{} steps, {:.3f} s simulated in {:.3f} s ({:.1f} times real time), slowest step {:.3f} ms\n",
+    print_text("{} steps, {:.3f} s simulated in {:.3f} s ({:.1f} times real time), slowest step {:.3f} ms\n",
                summary.steps, summary.simulated, summary.wall,
                summary.wall > 0 ? summary.simulated / summary.wall : 0.0, summary.slowest_ms);
     const scene::Activity activity = simulation.activity();
-    fmt::print("{} of {} things active, {} want to sleep, {} asleep; {} contacts; {} actions carried out\n",
+    print_text("{} of {} things active, {} want to sleep, {} asleep; {} contacts; {} actions carried out\n",
                activity.active, activity.things, activity.wants_to_sleep, activity.asleep, report.contacts,
                summary.actions);
-    if (activity.points > 0) fmt::print("grains, drops and nodes of soft things: {}\n", activity.points);
+    if (activity.points > 0) print_text("grains, drops and nodes of soft things: {}\n", activity.points);
     const auto reached = [&](physics::StepLimit limit) {
         return (summary.limits & static_cast<std::uint32_t>(limit)) != 0;
     };
@@ -93,7 +92,7 @@ int run_simulate(const SimulateArguments& arguments) {
     auto catalog = open_catalog(arguments.database);
     if (!catalog) return report(catalog.error());
     auto simulation = scene::Simulation::create(*document, catalog->get());
-    if (!simulation) return report(simulation.error());
+    if (!simulation) return report(scene::in_place(arguments.scene, simulation.error()));
 
     // Ctrl+C ends the run; what was recorded until then is written in whole lines.
     watch_interrupts();
@@ -135,8 +134,7 @@ int run_simulate(const SimulateArguments& arguments) {
     else
         print(summary, **simulation);
     if (!interrupted()) return exit_ok;
-    fmt::print(stderr, "embody: stopped at {} s of {} s\n", short_number(summary.simulated),
-               short_number(arguments.seconds));
+    print_error("embody: stopped at {} s of {} s\n", short_number(summary.simulated), short_number(arguments.seconds));
     return exit_failed;
 }
 

@@ -55,6 +55,110 @@ class Help(unittest.TestCase):
         self.assertEqual(run("search", "--limit", "0").returncode, 2)
 
 
+NASTY = "red\x1b[31m\n\u009b2J\u202eexe.chair\x07"
+STEERING = [chr(c) for c in (*range(0x20), *range(0x7F, 0xA0), *range(0x202A, 0x202F), *range(0x2066, 0x206A)) if c != 0x0A]
+
+
+class Terminal(unittest.TestCase):
+    """No name of a file, a database or a scene steers the terminal, and no line is lost in silence."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.path = pathlib.Path(self.folder.name)
+        self.database = str(self.path / "models.sqlite")
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def assert_plain(self, result, *, json_expected=False):
+        for text in (result.stdout, result.stderr):
+            for sign in STEERING:
+                self.assertNotIn(sign, text, repr(text))
+        if json_expected:
+            return json.loads(result.stdout)
+        # A line end in a name would begin a line of its own.
+        for line in (result.stdout + result.stderr).splitlines():
+            self.assertFalse(line.startswith("\u009b"), line)
+        return None
+
+    def test_names_of_models_are_written_out(self):
+        folder = self.path / NASTY
+        folder.mkdir()
+        (folder / f"{NASTY}.obj").write_text(TETRAHEDRON)
+        (folder / f"broken {NASTY}.obj").write_text("v 1 2 3")
+        (folder / "стол è 椅子.obj").write_text(TETRAHEDRON.replace("1", "2"))
+        database = ("--database", self.database)
+        imported = run("import", *database, str(folder))
+        self.assert_plain(imported)
+        self.assertIn("\\x1b[31m", imported.stderr)
+        self.assert_plain(run("import", *database, "--json", "--again", str(folder)), json_expected=True)
+
+        found = self.assert_plain(run("search", *database, "--json", "exe"), json_expected=True)
+        model = found["models"][0]
+        self.assertIn("\x1b", model["name"], "JSON gives the name as it is")
+        listed = run("search", *database)
+        self.assert_plain(listed)
+        self.assertIn("стол", listed.stdout)
+        one = (*database, str(model["id"]))
+        for words in (("show", *one), ("set", *one, "mass=2"), ("set", *one, f"mass={NASTY}"), ("history", *database),
+                      ("set", *database, "--all", "--dry-run", "mass=3"), ("reset", *one), ("classify", NASTY),
+                      ("evaluate", "catalogue", *database), ("show", *database, NASTY), ("search", NASTY, NASTY, *database)):
+            self.assert_plain(run(*words))
+        self.assert_plain(run("show", *one, "--json"), json_expected=True)
+
+        # In a scene, and as the name of a scene.
+        scene = self.path / f"{NASTY}.json"
+        entity = {"index": 1, "name": NASTY, "model": model["key"], "attributes": {"kind": "fluid", "mass": 1e-3}}
+        scene.write_text(json.dumps({"embody_scene": 1, "title": NASTY, "entities": [entity]}))
+        for command in ("check", "simulate"):
+            result = run(command, *database, str(scene))
+            self.assert_plain(result)
+            self.assertIn("\\x1b[31m", result.stdout + result.stderr, command)
+        scene.write_text(json.dumps({"embody_scene": 1, NASTY: 3}))
+        self.assert_plain(run("check", *database, str(scene)))
+        self.assert_plain(run("simulate", *database, str(scene)))
+        self.assert_plain(run("--no\x1b[31m"))
+        self.assert_plain(run("check", "--no\x1b[31m", str(scene)))
+
+    def test_bytes_that_are_no_utf8_are_written_out(self):
+        name = os.fsencode(self.path) + b"/caf\xe9.json"
+        pathlib.Path(os.fsdecode(name)).write_text("{}")
+        result = subprocess.run([EMBODY, "check", "--database", self.database, name], capture_output=True, timeout=60)
+        self.assertIn(b"caf\\xe9.json", result.stdout + result.stderr)
+
+    def test_output_that_cannot_be_written_is_an_error(self):
+        if not os.path.exists("/dev/full"):
+            self.skipTest("no /dev/full here")
+        (self.path / "chair.obj").write_text(TETRAHEDRON)
+        scene = self.path / "scene.json"
+        ball = {"index": 1, "shape": {"type": "sphere", "radius": 0.2}}
+        scene.write_text(json.dumps({"embody_scene": 1, "entities": [ball]}))
+        database = ("--database", self.database)
+        self.assertEqual(run("import", *database, str(self.path)).returncode, 0)
+        for words in (("import", *database, str(self.path)), ("search", *database), ("search", *database, "--json"),
+                      ("show", *database, "chair"), ("set", *database, "chair", "mass=2"), ("history", *database),
+                      ("reset", *database, "chair"), ("undo", *database), ("check", *database, str(scene)),
+                      ("simulate", *database, str(scene), "--seconds", "0.1"), ("classify", "chair"), ("attributes",),
+                      ("attributes", "--markdown"), ("evaluate", "catalogue", *database), ("scene",), ("scene", "table1_g"),
+                      ("bench", "table1", "--scene", "table1_f", "--steps", "1"), ("--help",), ("--version",)):
+            with open("/dev/full", "w") as full:
+                result = subprocess.run([EMBODY, *words], stdout=full, stderr=subprocess.PIPE, text=True, timeout=240)
+            self.assertEqual(result.returncode, 1, words)
+            self.assertIn("standard output: cannot be written: No space left on device", result.stderr, words)
+        # Standard error has no place to be told at.
+        with open("/dev/full", "w") as full:
+            self.assertEqual(subprocess.run([EMBODY, "show", *database, "none"], stderr=full, timeout=60).returncode, 1)
+
+    def test_a_reader_that_leaves_is_no_news(self):
+        for restore in (True, False):
+            process = subprocess.Popen([EMBODY, "scene", "table1_g"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                       restore_signals=restore)
+            process.stdout.close()
+            self.assertEqual(process.stderr.read(), b"")
+            self.assertNotEqual(process.wait(timeout=60), 0)
+            process.stderr.close()
+
+
 class Classify(unittest.TestCase):
     def test_a_word_that_only_wordnet_knows_is_explained(self):
         result = run("classify", "tureen", "--category", "Kitchen", "--size", "0.3", "0.25", "0.2", "--json")
@@ -97,6 +201,39 @@ class Database(unittest.TestCase):
         result = run("search", "--database", self.database, "chair")
         self.assertNotIn("Traceback", result.stderr)
         self.assertTrue("import" in result.stderr or "No model" in result.stdout, result)
+
+    def test_a_read_only_database_is_searched_and_shown(self):
+        run("import", "--database", self.database, str(self.path / "models"))
+        user = None
+        if os.geteuid() == 0:
+            # The administrator may write everywhere, so somebody else has to try.
+            user = 65534
+            try:
+                subprocess.run([EMBODY, "--version"], user=user, check=True, stdout=subprocess.DEVNULL)
+            except (PermissionError, subprocess.CalledProcessError):
+                self.skipTest("nobody else may run the program here")
+        scene = self.path / "scene.json"
+        model = json.loads(run("search", "--database", self.database, "--json", "chair").stdout)["models"][0]
+        scene.write_text(json.dumps({"embody_scene": 1, "entities": [{"model": model["key"]}]}))
+        os.chmod(self.database, 0o444)
+        os.chmod(self.path, 0o555)
+
+        def ask(*words):
+            return subprocess.run([EMBODY, *words], user=user, capture_output=True, text=True, timeout=240,
+                                  env={**os.environ, "HOME": "/nonexistent"})
+
+        database = ("--database", self.database)
+        try:
+            for words in (("search", *database, "chair"), ("show", *database, "wooden chair"), ("history", *database),
+                          ("check", *database, str(scene)), ("simulate", *database, str(scene), "--seconds", "0.1")):
+                result = ask(*words)
+                self.assertEqual(result.returncode, 0, (words, result.stderr))
+            for words in (("set", *database, "wooden chair", "mass=2"), ("import", *database, str(self.path / "models"))):
+                result = ask(*words)
+                self.assertEqual(result.returncode, 1, words)
+                self.assertIn("models.sqlite: is read-only", result.stderr, words)
+        finally:
+            os.chmod(self.path, 0o755)
 
     def test_a_file_that_is_no_database_is_left_alone(self):
         alien = self.path / "notes.txt"
