@@ -108,10 +108,11 @@ class Terminal(unittest.TestCase):
 
         # In a scene, and as the name of a scene.
         scene = self.path / f"{NASTY}.json"
-        entity = {"index": 1, "name": NASTY, "model": model["key"], "attributes": {"kind": "fluid", "mass": 1e-3}}
+        entity = {"index": 1, "name": NASTY, "model": model["key"], "pose": {"position": [0, 1e12, 0]}}
         scene.write_text(json.dumps({"embody_scene": 1, "title": NASTY, "entities": [entity]}))
         for command in ("check", "simulate"):
             result = run(command, *database, str(scene))
+            self.assertEqual(result.returncode, 1, command)
             self.assert_plain(result)
             self.assertIn("\\x1b[31m", result.stdout + result.stderr, command)
         scene.write_text(json.dumps({"embody_scene": 1, NASTY: 3}))
