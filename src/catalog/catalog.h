@@ -53,8 +53,8 @@ struct CategoryCount {
 };
 
 struct ImportProgress {
-    std::size_t done = 0, total = 0, failed = 0, unchanged = 0;
-    std::string current;  ///< name of the model just finished
+    std::size_t done = 0, total = 0, failed = 0, unchanged = 0;  ///< total 0: files are still looked for
+    std::string current;  ///< name of the model just finished, or of the file that is read for changes
 };
 struct ImportFailure {
     std::string path;

@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
+
+#include "interchange/regular_file.h"
 
 namespace embody::interchange {
 namespace {
@@ -54,18 +55,13 @@ std::string FolderSource::find(std::string_view path) const {
 Result<std::vector<std::uint8_t>> FolderSource::read(std::string_view path) const {
     const std::string found = find(path);
     if (found.empty()) return Error{describe(path), "no such file in the model's folder"};
+    // A link may have come into its place since find(): what the links lead to now is opened by its own name.
     std::error_code problem;
-    const auto file = folder_ / found;
-    const std::uintmax_t size = std::filesystem::file_size(file, problem);
-    if (problem) return Error{file.string(), "cannot be read: " + problem.message()};
-    if (size > Archive::default_limit) return Error{file.string(), "is larger than 512 MiB"};
-
-    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
-        return Error{file.string(), "cannot be read"};
-    }
-    return bytes;
+    const auto file = std::filesystem::canonical(folder_ / found, problem);
+    if (problem || !lies_in(file, folder_)) return Error{describe(path), "is no longer in the model's folder"};
+    auto opened = RegularFile::open(file, Archive::default_limit);
+    if (!opened) return opened.error();
+    return opened->read_all();
 }
 
 std::string FolderSource::describe(std::string_view path) const {

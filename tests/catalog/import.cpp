@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -120,20 +121,78 @@ TEST_F(ImportTest, AgainPreparesWhatIsUnchanged) {
 
 TEST_F(ImportTest, StopsWhenAskedAndGoesOnNextTime) {
     for (int i = 0; i < 10; ++i) write_model("q" + std::to_string(i) + ".obj", std::string(10 + i, 'x'));
-    std::size_t calls = 0;
+    std::size_t most_done = 0;
     const auto stopped = import({models()}, {.progress = [&](const ImportProgress& progress) {
-                                    ++calls;
-                                    EXPECT_EQ(progress.total, 10u);
+                                    EXPECT_EQ(progress.total, progress.done == 0 ? progress.total : 10u);
+                                    EXPECT_LE(progress.done, most_done + 1);
+                                    most_done = progress.done;
                                     return progress.done < 4;
                                 }});
     ASSERT_TRUE(stopped);
     EXPECT_TRUE(stopped->stopped);
     EXPECT_EQ(stopped->added, 4u);
-    EXPECT_EQ(calls, 5u);  // one before the first model
+    EXPECT_EQ(most_done, 4u);
     const auto rest = import();
     EXPECT_EQ(rest->added, 6u);
     EXPECT_EQ(rest->unchanged, 4u);
     EXPECT_FALSE(rest->stopped);
+}
+
+TEST_F(ImportTest, ASparseFileOfATebibyteIsRefusedBeforeItIsRead) {
+    write_model("small.obj", "aaa");
+    for (const char* name : {"huge.obj", "huge.zip"}) {
+        write_model(name, "");
+        std::error_code problem;
+        std::filesystem::resize_file(models() / name, std::uintmax_t{1} << 40, problem);
+        if (problem) GTEST_SKIP() << "no files of 1 TiB here: " << problem.message();
+    }
+    const auto report = import();
+    ASSERT_TRUE(report);
+    EXPECT_EQ(report->added, 1u);
+    ASSERT_EQ(report->failures.size(), 2u);
+    for (const ImportFailure& failure : report->failures) {
+        const std::string limit = failure.path.ends_with(".obj") ? "512 MiB" : "16 GiB";
+        EXPECT_EQ(failure.error.why, "is larger than the limit of " + limit);
+        EXPECT_FALSE(failure.error.remedy.empty());
+    }
+}
+
+TEST_F(ImportTest, StopsWhileAFileIsReadForChanges) {
+    write_model("large.obj", "");
+    std::filesystem::resize_file(models() / "large.obj", std::uintmax_t{256} << 20);
+    std::string last;
+    const auto report = import({models()}, {.progress = [&](const ImportProgress& progress) {
+                                   last = progress.current;
+                                   return last.find("read to 3 %") == std::string::npos;
+                               }});
+    ASSERT_TRUE(report) << report.error().message();
+    EXPECT_TRUE(report->stopped);
+    EXPECT_EQ(last, "large.obj, read to 3 %");
+    EXPECT_EQ(stored_models(), 0);
+}
+
+TEST_F(ImportTest, LinksThatLeaveTheFolderAreNotFollowed) {
+    namespace fs = std::filesystem;
+    write_model("a.obj", "aaa");
+    write_model("hidden.bin", "inside but of no kind");
+    write_file(folder_ / "secret.obj", "secret");
+    write_file(folder_ / "outside" / "b.obj", "bbbb");
+    fs::create_symlink(folder_ / "secret.obj", models() / "leaves.obj");
+    fs::create_symlink(folder_ / "missing.zip", models() / "dangling.zip");
+    fs::create_symlink("/dev/zero", models() / "endless.obj");
+    fs::create_symlink(folder_ / "outside", models() / "elsewhere");
+    fs::create_symlink("a.obj", models() / "stays.obj");
+    fs::create_symlink("hidden.bin", models() / "disguised.obj");
+    ASSERT_EQ(mkfifo((models() / "pipe.obj").c_str(), 0600), 0);
+    const auto report = import();
+    ASSERT_TRUE(report);
+    EXPECT_EQ(report->added, 1u);
+    EXPECT_EQ(report->unchanged, 0u);
+    ASSERT_EQ(report->failures.size(), 1u);
+    EXPECT_EQ(report->failures[0].path, (models() / "leaves.obj").string());
+    EXPECT_EQ(report->failures[0].error.why, "is a symbolic link that leaves the imported folder");
+    // Named by a person, a link is followed.
+    EXPECT_EQ(import({models() / "leaves.obj"})->added, 1u);
 }
 
 TEST_F(ImportTest, AKillLosesNothingThatWasDone) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <string_view>
 #include <system_error>
 
@@ -88,7 +89,15 @@ bool is_left_out(const Collection& collection, const fs::path& place) {
 /// One walk's memory.
 struct Walk {
     const std::optional<Collection>& collection;
+    const std::function<bool()>& go_on;
     FoundModels found;
+    bool stopped = false;
+
+    /// Asked before each step that may take long.
+    bool is_stopped() {
+        stopped = stopped || (go_on && !go_on());
+        return stopped;
+    }
 
     bool is_of_collection(const fs::path& file) const {
         if (!collection) return false;
@@ -175,23 +184,54 @@ struct Walk {
         fail(file, "holds neither a furniture catalogue nor model files", {});
     }
 
-    /// All files below that are models or archives; of a collection, those that are its own.
-    void add_folder(const fs::path& folder) {
-        const auto is_wanted = [this](const fs::path& file) {
-            return collection ? is_of_collection(file) : interchange::is_model_file(file) || is_archive(file);
-        };
+    bool is_wanted(const fs::path& file) const {
+        return collection ? is_of_collection(file) : interchange::is_model_file(file) || is_archive(file);
+    }
+
+    /// Whether a file may be read for an import of `folder`; both canonical.
+    bool may_read(const fs::path& file, const fs::path& folder) const {
+        return lies_in(file, folder) || (collection && !place_in(*collection, file).empty());
+    }
+
+    /// What a link in `folder` leads to, where that is a wanted file which may be read.
+    std::optional<fs::path> target_of(const fs::path& link, const fs::path& folder) {
         std::error_code failure;
-        std::vector<fs::path> files;
+        const fs::path target = fs::canonical(link, failure);
+        if (failure || !fs::is_regular_file(target, failure)) return std::nullopt;
+        if (!may_read(target, folder)) {
+            fail(link, "is a symbolic link that leaves the imported folder",
+                 "import the file that it leads to by name, or copy it into the folder");
+            return std::nullopt;
+        }
+        return is_wanted(target) ? std::optional(target) : std::nullopt;
+    }
+
+    /// All files below that are models or archives; of a collection, those that are its own. Nothing twice.
+    std::set<fs::path> files_below(const fs::path& folder) {
+        std::error_code failure;
+        std::set<fs::path> files;
+        const std::size_t failures = found.failures.size();
         const auto options = fs::directory_options::skip_permission_denied;
-        for (fs::recursive_directory_iterator at(folder, options, failure), end; !failure && at != end;
+        for (fs::recursive_directory_iterator at(folder, options, failure), end; !failure && at != end && !is_stopped();
              at.increment(failure)) {
             std::error_code no_matter;
-            if (at->is_regular_file(no_matter) && is_wanted(at->path())) files.push_back(at->path());
+            if (!is_wanted(at->path())) continue;
+            if (at->is_symlink(no_matter)) {
+                if (const auto target = target_of(at->path(), folder)) files.insert(*target);
+            } else if (at->is_regular_file(no_matter)) {
+                files.insert(at->path());
+            }
         }
         if (failure) fail(folder, "cannot be read: " + failure.message());
-        if (files.empty() && !failure) fail(folder, "holds no model files", what_is_readable());
-        std::sort(files.begin(), files.end());
-        for (const fs::path& file : files) {
+        if (files.empty() && !stopped && found.failures.size() == failures) {
+            fail(folder, "holds no model files", what_is_readable());
+        }
+        return files;
+    }
+
+    void add_folder(const fs::path& folder) {
+        for (const fs::path& file : files_below(folder)) {
+            if (is_stopped()) return;
             interchange::is_model_file(file) ? add_file(file) : add_archive(file, false);
         }
     }
@@ -226,10 +266,13 @@ struct Walk {
 
 }  // namespace
 
-FoundModels find_models(const std::vector<fs::path>& paths, const std::optional<Collection>& collection) {
-    Walk walk{collection, {}};
+FoundModels find_models(const std::vector<fs::path>& paths, const std::optional<Collection>& collection,
+                        const std::function<bool()>& go_on) {
+    Walk walk{collection, go_on, {}};
     if (paths.empty() && collection) walk.add_collection();
-    for (const fs::path& path : paths) walk.add_path(path);
+    for (const fs::path& path : paths) {
+        if (!walk.is_stopped()) walk.add_path(path);
+    }
     return std::move(walk.found);
 }
 

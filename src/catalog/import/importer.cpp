@@ -5,14 +5,15 @@
 #include <array>
 #include <bit>
 #include <chrono>
-#include <fstream>
 #include <system_error>
 
 #include "catalog/describe_model.h"
+#include "catalog/import/file_fingerprint.h"
 #include "catalog/knowledge_json.h"
 #include "catalog/stored_parts.h"
 #include "database/transaction.h"
 #include "foundation/state_hash.h"
+#include "interchange/archive/archive.h"
 #include "interchange/compact/compact_geometry.h"
 
 namespace embody::catalog {
@@ -59,28 +60,6 @@ std::uint64_t hash_bytes(std::span<const std::uint8_t> bytes) {
     StateHash hash;
     hash.add_bytes(bytes.data(), bytes.size());
     return hash.value();
-}
-
-Result<std::uint64_t> hash_file(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    StateHash hash;
-    std::vector<char> block(1 << 16);
-    while (stream) {
-        stream.read(block.data(), static_cast<std::streamsize>(block.size()));
-        hash.add_bytes(block.data(), static_cast<std::size_t>(stream.gcount()));
-    }
-    if (!stream.eof()) return Error{file.string(), "cannot be read", "check that you may read it"};
-    return hash.value();
-}
-
-/// Size and time of change; a file with the same stamp is taken to have the same bytes.
-Result<std::string> stamp_file(const fs::path& file) {
-    std::error_code failure;
-    const auto size = fs::file_size(file, failure);
-    if (failure) return Error{file.string(), "cannot be read: " + failure.message(), {}};
-    const auto time = fs::last_write_time(file, failure);
-    if (failure) return Error{file.string(), "cannot be read: " + failure.message(), {}};
-    return std::to_string(size) + " bytes, " + std::to_string(time.time_since_epoch().count());
 }
 
 std::string hexadecimal(std::uint64_t number) {
@@ -151,16 +130,16 @@ Result<ImportReport> Importer::run(const std::vector<fs::path>& paths, const Imp
     again_ = options.again;
 
     // What is there, and what of it is to be done.
-    FoundModels found = find_models(paths, options.collection);
+    FoundModels found = find_models(paths, options.collection, [&] { return tell_progress(options, {}); });
     report_.failures = std::move(found.failures);
     progress_.total = found.models.size();
-    if (auto planned = plan(std::move(found.models)); !planned) return planned.error();
+    if (auto planned = plan(std::move(found.models), options); !planned) return planned.error();
     progress_.done = progress_.total - planned_.size();
     progress_.unchanged = report_.unchanged;
     progress_.failed = report_.failures.size();
 
     // Do it, and leave a tidy index behind.
-    if (!tell_progress(options, {})) {
+    if (report_.stopped || !tell_progress(options, {})) {
         report_.stopped = true;
     } else if (!planned_.empty()) {
         if (auto prepared = prepare_planned(planned_, options); !prepared) return prepared.error();
@@ -174,12 +153,16 @@ Result<ImportReport> Importer::run(const std::vector<fs::path>& paths, const Imp
     return std::move(report_);
 }
 
-Result<void> Importer::plan(std::vector<FoundModel> found) {
+Result<void> Importer::plan(std::vector<FoundModel> found, const ImportOptions& options) {
     // A file that cannot be read is one failure and no reason to stop.
     std::vector<std::pair<FoundModel, database::ImportSource>> readable;
     readable.reserve(found.size());
     for (FoundModel& model : found) {
-        auto source = read_source(model);
+        constexpr std::size_t asked_every = 256;
+        if (readable.size() % asked_every == 0 && !tell_progress(options, {})) report_.stopped = true;
+        if (report_.stopped) return {};
+        auto source = read_source(model, options);
+        if (source && report_.stopped) return {};
         if (source) {
             readable.emplace_back(std::move(model), std::move(*source));
         } else {
@@ -196,7 +179,7 @@ Result<void> Importer::plan(std::vector<FoundModel> found) {
     return transaction->commit();
 }
 
-Result<database::ImportSource> Importer::read_source(const FoundModel& model) {
+Result<database::ImportSource> Importer::read_source(const FoundModel& model, const ImportOptions& options) {
     database::ImportSource source;
     source.location = model.location;
     auto stamp = stamp_file(model.file);
@@ -212,14 +195,26 @@ Result<database::ImportSource> Importer::read_source(const FoundModel& model) {
     } else if (last_file_.file == model.file && last_file_.stamp == source.stamp) {
         source.file_hash = last_file_.hash;
     } else {
-        const auto hash = hash_file(model.file);
+        const auto hash = hash_content(model, options);
         if (!hash) return hash.error();
-        source.file_hash = *hash;
+        report_.stopped = !hash->has_value();
+        source.file_hash = hash->value_or(0);
     }
     last_file_ = {model.file, source.stamp, source.file_hash};
     source.prepare_hash = hash_preparation(model.item, source.file_hash);
     source.item_hash = hash_words(model.item);
     return source;
+}
+
+Result<std::optional<std::uint64_t>> Importer::hash_content(const FoundModel& model, const ImportOptions& options) {
+    const std::uint64_t limit =
+        model.item.archive.empty() ? interchange::Archive::default_limit : interchange::Archive::largest_file;
+    return hash_file(model.file, limit, [&](std::uint64_t done, std::uint64_t total) {
+        // Small files are read in no time; of large ones a person sees how far it is.
+        const std::uint64_t percent = total == 0 ? 100 : 100 * done / total;
+        const std::string far = done == 0 ? "" : ", read to " + std::to_string(percent) + " %";
+        return tell_progress(options, model.file.filename().string() + far);
+    });
 }
 
 Result<void> Importer::plan_model(FoundModel model, database::ImportSource source) {
@@ -332,7 +327,9 @@ Result<void> Importer::prepare_planned(const std::vector<Planned>& planned, cons
 
     // A file that cannot be prepared is one failure; a database that cannot be written ends the import.
     Result<void> stored;
+    std::size_t told = 0;
     auto prepared = prepare_(items, [&](std::size_t index, Result<PreparedModel> model) {
+        ++told;
         const std::size_t waiting = in_other_unit_.size();
         stored = take(planned[index], std::move(model));
         if (!stored) return false;
@@ -344,6 +341,8 @@ Result<void> Importer::prepare_planned(const std::vector<Planned>& planned, cons
         return false;
     });
     if (!stored) return stored;
+    // Stopped within a model.
+    if (prepared && told < items.size()) report_.stopped = true;
     return prepared;
 }
 

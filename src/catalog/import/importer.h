@@ -44,9 +44,10 @@ private:
         std::optional<database::ModelRow> model;  ///< the one that is there
     };
 
-    Result<void> plan(std::vector<FoundModel> found);
+    Result<void> plan(std::vector<FoundModel> found, const ImportOptions& options);
     Result<void> plan_model(FoundModel model, database::ImportSource source);
-    Result<database::ImportSource> read_source(const FoundModel& model);
+    Result<database::ImportSource> read_source(const FoundModel& model, const ImportOptions& options);
+    Result<std::optional<std::uint64_t>> hash_content(const FoundModel& model, const ImportOptions& options);
     Result<Identity> identify(const FoundModel& model, const database::ImportSource& source);
     Result<Identity> identify_by_content(const database::ImportSource& source);
     Result<void> keep(const ImportItem& item, const database::ModelRow& model, const database::ImportSource& source);

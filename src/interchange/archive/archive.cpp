@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "interchange/archive/archive.h"
 
+#include <unistd.h>
 #include <unzip.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdio>
 #include <map>
 #include <utility>
+
+#include "interchange/regular_file.h"
 
 namespace embody::interchange {
 namespace {
@@ -18,6 +22,14 @@ std::string in_lower_case(std::string_view text) {
     std::string lower(text);
     for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return lower;
+}
+
+/// minizip's way to open a file; what is opened already is in `file`.
+voidpf open_given(voidpf file, const void*, int) {
+    const int descriptor = static_cast<RegularFile*>(file)->release();
+    FILE* stream = descriptor < 0 ? nullptr : fdopen(descriptor, "rb");
+    if (stream == nullptr && descriptor >= 0) close(descriptor);
+    return stream;
 }
 
 }  // namespace
@@ -42,7 +54,13 @@ Archive::~Archive() = default;
 Result<Archive> Archive::open(const std::filesystem::path& file) {
     auto state = std::make_unique<State>();
     state->file = file;
-    state->zip = unzOpen64(file.c_str());
+    auto opened = RegularFile::open(file, largest_file);
+    if (!opened) return opened.error();
+    zlib_filefunc64_def functions{};
+    fill_fopen64_filefunc(&functions);
+    functions.zopen64_file = open_given;
+    functions.opaque = &*opened;
+    state->zip = unzOpen2_64(file.c_str(), &functions);
     if (state->zip == nullptr)
         return Error{file.string(), "cannot be opened as a zip archive", "is the file complete?"};
 

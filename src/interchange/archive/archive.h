@@ -21,7 +21,8 @@ struct ArchiveMember {
 /// ("../x", "C:\x") are not listed and cannot be read.
 class Archive {
 public:
-    /// Reads the list of members, nothing else. Refuses files that are no zip and lists of more than a million members.
+    /// Reads the list of members of the file at this canonical path, nothing else. Refuses files that are no zip or
+    /// larger than largest_file, and lists of more than a million members.
     static Result<Archive> open(const std::filesystem::path& file);
     Archive(Archive&&) noexcept;
     Archive& operator=(Archive&&) noexcept;
@@ -34,7 +35,8 @@ public:
     /// Unpacks one member. More than `limit` bytes, whatever the archive states: an error, and nothing is held.
     Result<std::vector<std::uint8_t>> read(std::string_view path, std::uint64_t limit = default_limit) const;
 
-    static constexpr std::uint64_t default_limit = std::uint64_t{512} << 20;
+    static constexpr std::uint64_t default_limit = std::uint64_t{512} << 20;  ///< bytes unpacked
+    static constexpr std::uint64_t largest_file = std::uint64_t{16} << 30;    ///< bytes packed
 
 private:
     struct State;
