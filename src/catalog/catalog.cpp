@@ -553,9 +553,16 @@ Result<ImportReport> Catalog::import(const std::vector<std::filesystem::path>& p
     ConfinedPoolOptions pool;
     pool.workers = options.workers;
     pool.worker_program = options.worker_program;
+    // The last news again and again, so that a person can stop within a model, too.
+    ImportOptions watched = options;
+    ImportProgress last;
+    if (options.progress) {
+        watched.progress = [&](const ImportProgress& progress) { return options.progress(last = progress); };
+        pool.go_on = [&] { return options.progress(last); };
+    }
     Importer importer(*state_->connection, *state_->taxonomy,
                       [&pool](const auto& items, const auto& done) { return prepare_confined(items, pool, done); });
-    return importer.run(paths, options);
+    return importer.run(paths, watched);
 }
 
 Result<void> Catalog::remove(std::int64_t id) { return state_->models.remove(id); }

@@ -5,6 +5,8 @@
 #include <cctype>
 #include <exception>
 #include <new>
+#include <string_view>
+#include <utility>
 
 #include "interchange/assimp/read_by_assimp.h"
 #include "interchange/vrml/read_vrml.h"
@@ -36,6 +38,14 @@ Result<void> can_read(const std::filesystem::path& file) {
     return {};
 }
 
+namespace {
+constexpr std::string_view out_of_memory_reason = "needs more memory than an import may use";
+}  // namespace
+
+Error out_of_memory(std::string where) { return {std::move(where), std::string(out_of_memory_reason), "simplify it"}; }
+
+bool is_out_of_memory(const Error& error) { return error.why == out_of_memory_reason; }
+
 Result<RawScene> read_model(const FileSource& source, const std::string& path) {
     const std::string where = source.describe(path);
     if (const auto able = can_read(path); !able) return Error{where, able.error().why, able.error().remedy};
@@ -44,7 +54,7 @@ Result<RawScene> read_model(const FileSource& source, const std::string& path) {
     try {
         return extension_of(path) == ".wrl" ? read_vrml(source, found) : read_by_assimp(source, found);
     } catch (const std::bad_alloc&) {
-        return Error{where, "needs more memory than an import may use"};
+        return out_of_memory(where);
     } catch (const std::exception& problem) {
         return Error{where, problem.what()};
     }

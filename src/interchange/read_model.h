@@ -19,6 +19,10 @@ bool is_model_file(const std::filesystem::path& file);
 /// Why files of this name cannot be read: another format, or one (VRML) that this build was made without.
 Result<void> can_read(const std::filesystem::path& file);
 
+/// Why a file could not be read where memory ran out: another try with more may succeed.
+Error out_of_memory(std::string where);
+bool is_out_of_memory(const Error& error);
+
 /// Reads a model file and what it refers to in its own folder and below. Every position is finite, every index in
 /// range, every mesh has triangles and every image is PNG or JPEG; else an error with file and reason. What can be left
 /// out (a texture that is missing or lies outside the folder, points and lines) is left out with a warning. glTF is in

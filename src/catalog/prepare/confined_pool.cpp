@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <memory>
+#include <numeric>
 #include <thread>
+#include <utility>
 
+#include "catalog/prepare/memory_budget.h"
 #include "catalog/prepare/prepare.h"
 #include "catalog/prepare/worker_process.h"
 
@@ -18,9 +20,12 @@ namespace {
 
 using Clock = WorkerProcess::Clock;
 
-constexpr auto start_time = std::chrono::seconds(20);  // for a worker to load, confine itself and say so
+constexpr auto start_time = std::chrono::minutes(2);  // for a worker to load, confine itself and say so
 constexpr int most_starts_in_vain = 3;
-constexpr int models_a_worker = 256;  // then a fresh one takes over, so that leaks of libraries do not add up
+// Then a fresh worker takes over, so that leaks of libraries do not add up, and long before its own limit
+// (ConfinementOptions::processor_seconds) ends it amid a model.
+constexpr int models_a_worker = 256;
+constexpr double most_processor_seconds = 1800;
 
 std::filesystem::path worker_beside_this_program() {
     std::error_code problem;
@@ -36,7 +41,11 @@ std::string in_words(double seconds) {
     return static_cast<double>(whole) == seconds ? std::to_string(whole) : std::to_string(seconds);
 }
 
-/// One import: a fixed number of places, each with a worker or none, and the items in order.
+/// Whether another try may end otherwise: what the file causes by itself is the same again.
+enum class Again : std::uint8_t { no, yes };
+
+/// One import: a number of places, each with a worker or none, and the items in order; then one place for those that
+/// are tried again.
 class Pool {
 public:
     using Done = std::function<bool(std::size_t, Result<PreparedModel>)>;
@@ -46,23 +55,25 @@ public:
         if (options_.worker_program.empty()) options_.worker_program = worker_beside_this_program();
         const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
         const std::size_t wanted = options_.workers > 0 ? static_cast<std::size_t>(options_.workers) : cores;
-        places_.resize(std::min(wanted, items_.size()));
+        shares_ = share_memory(options_.bytes > 0 ? options_.bytes : default_memory_budget(), wanted);
     }
 
     Result<void> run() {
-        while (!stopped_ && (next_ < items_.size() || is_busy())) {
-            for (Place& place : places_) {
-                if (place.worker == nullptr && next_ < items_.size()) start(place);
-            }
-            if (starts_in_vain_ >= most_starts_in_vain && !any_was_ready_) return start_error_;
-            // Workers that could start once and no longer can: what is left fails, by name.
-            if (starts_in_vain_ >= most_starts_in_vain && !is_busy()) {
-                finish_item(next_++, start_error_);
-                continue;
-            }
-            wait_and_serve();
-        }
-        return {};
+        queue_.resize(items_.size());
+        std::iota(queue_.begin(), queue_.end(), std::size_t{0});
+        places_.resize(std::min(shares_.workers, items_.size()));
+        bytes_per_worker_ = shares_.each;
+        if (auto ran = run_queue(); !ran) return ran;
+
+        // Once more, alone, with all of the memory.
+        queue_ = std::exchange(again_, {});
+        next_ = 0;
+        is_last_round_ = true;
+        starts_in_vain_ = 0;
+        places_.clear();
+        places_.resize(std::min<std::size_t>(1, queue_.size()));
+        bytes_per_worker_ = shares_.alone;
+        return run_queue();
     }
 
 private:
@@ -72,15 +83,32 @@ private:
         bool has_item = false;
         std::size_t item = 0;
         int served = 0;
+        double processor_seconds = 0;  ///< of the worker, when it was given the item
         Clock::time_point deadline;
     };
+
+    Result<void> run_queue() {
+        while (!stopped_ && (next_ < queue_.size() || is_busy())) {
+            for (Place& place : places_) {
+                if (place.worker == nullptr && next_ < queue_.size()) start(place);
+            }
+            if (starts_in_vain_ >= most_starts_in_vain && !any_was_ready_) return start_error_;
+            // Workers that could start once and no longer can: what is left fails, by name.
+            if (starts_in_vain_ >= most_starts_in_vain && !is_busy()) {
+                finish_item(queue_[next_++], start_error_);
+                continue;
+            }
+            wait_and_serve();
+        }
+        return {};
+    }
 
     [[nodiscard]] bool is_busy() const {
         return std::any_of(places_.begin(), places_.end(), [](const Place& p) { return p.has_item; });
     }
 
     void start(Place& place) {
-        auto worker = WorkerProcess::start(options_.worker_program, options_.bytes_per_worker);
+        auto worker = WorkerProcess::start(options_.worker_program, bytes_per_worker_);
         if (!worker) {
             ++starts_in_vain_;
             start_error_ = worker.error();
@@ -99,9 +127,10 @@ private:
             if (place.worker == nullptr) continue;
             waits.push_back({place.worker->output(), POLLIN, 0});
             if (place.worker->has_unsent()) waits.push_back({place.worker->input(), POLLOUT, 0});
-            due = std::min(due, place.deadline);
+            due = std::min({due, place.deadline, Clock::now() + seconds(processor_seconds_left(place))});
         }
-        if (waits.empty()) return;
+        if (options_.go_on && !options_.go_on()) stopped_ = true;
+        if (waits.empty() || stopped_) return;
         const auto left = std::chrono::ceil<std::chrono::milliseconds>(due - Clock::now()).count();
         poll(waits.data(), waits.size(), static_cast<int>(std::clamp<std::int64_t>(left, 0, 1000)));
 
@@ -112,18 +141,31 @@ private:
             const bool open = place.worker->receive_some();
             if (!take_messages(place)) continue;
             if (!open) {
-                lose(place, "the import worker " + place.worker->finish() + " while reading it");
+                lose(place, "the import worker " + place.worker->finish() + " while reading it", Again::yes);
+            } else if (place.has_item && processor_seconds_left(place) <= 0) {
+                const std::string limit = in_words(options_.processor_seconds_per_model);
+                lose(place, "needs more than " + limit + " s of processor time", Again::no);
             } else if (Clock::now() >= place.deadline && (place.has_item || !place.ready)) {
-                lose(place, "took longer than " + in_words(options_.seconds_per_model) + " s");
+                lose(place, "was not ready within " + in_words(options_.wall_seconds_per_model) + " s", Again::yes);
             }
         }
+    }
+
+    static Clock::duration seconds(double number) {
+        return std::chrono::ceil<Clock::duration>(std::chrono::duration<double>(number));
+    }
+
+    [[nodiscard]] double processor_seconds_left(const Place& place) const {
+        if (!place.has_item) return options_.processor_seconds_per_model;
+        const double used = place.worker->processor_seconds() - place.processor_seconds;
+        return options_.processor_seconds_per_model - used;
     }
 
     /// False where the place lost its worker or changed its item, so that what was seen before no longer counts.
     bool take_messages(Place& place) {
         auto message = place.worker->take_message();
         if (!message) {
-            lose(place, message.error().why);
+            lose(place, message.error().why, Again::no);
             return false;
         }
         if (!message->has_value()) return true;
@@ -132,10 +174,11 @@ private:
             starts_in_vain_ = 0;
             give_next(place);
         } else if (place.has_item &&
-                   ((*message)->kind == FrameKind::prepared || (*message)->kind == FrameKind::failed)) {
+                   ((*message)->kind == FrameKind::prepared || (*message)->kind == FrameKind::failed ||
+                    (*message)->kind == FrameKind::out_of_memory)) {
             take_answer(place, **message);
         } else {
-            lose(place, "the import worker spoke out of turn");
+            lose(place, "the import worker spoke out of turn", Again::no);
         }
         return false;
     }
@@ -155,17 +198,18 @@ private:
         place.has_item = false;
         ++place.served;
         // Work for the worker first, so that it is busy while `done` stores the model.
-        if (place.served >= models_a_worker) {
+        const bool larger_share = message.kind == FrameKind::out_of_memory && shares_.alone > bytes_per_worker_;
+        if (place.served >= models_a_worker || place.worker->processor_seconds() > most_processor_seconds) {
             place.worker.reset();
         } else {
             give_next(place);
         }
-        finish_item(answered, std::move(result));
+        finish_item(answered, std::move(result), larger_share ? Again::yes : Again::no);
     }
 
     void give_next(Place& place) {
-        while (next_ < items_.size()) {
-            const std::size_t number = next_++;
+        while (next_ < queue_.size()) {
+            const std::size_t number = queue_[next_++];
             std::vector<std::uint8_t> payload = to_bytes(items_[number]);
             // What the worker would refuse to read is refused here.
             if (const auto readable = item_from_bytes(payload); !readable) {
@@ -175,8 +219,8 @@ private:
             }
             place.item = number;
             place.has_item = true;
-            place.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                                std::chrono::duration<double>(options_.seconds_per_model));
+            place.processor_seconds = place.worker->processor_seconds();
+            place.deadline = Clock::now() + seconds(options_.wall_seconds_per_model);
             place.worker->queue(frame(FrameKind::item, payload));
             place.worker->send_some();
             return;
@@ -186,7 +230,7 @@ private:
     }
 
     /// Ends a place's worker; the item it had fails with `why`.
-    void lose(Place& place, const std::string& why) {
+    void lose(Place& place, const std::string& why, Again again) {
         if (!place.ready) {
             ++starts_in_vain_;
             start_error_ =
@@ -195,19 +239,26 @@ private:
         place.worker.reset();
         if (!place.has_item) return;
         place.has_item = false;
-        finish_item(place.item, Error{place_of(items_[place.item]), why});
+        finish_item(place.item, Error{place_of(items_[place.item]), why}, again);
     }
 
-    void finish_item(std::size_t item, Result<PreparedModel> result) {
-        if (!stopped_ && !done_(item, std::move(result))) stopped_ = true;
+    void finish_item(std::size_t item, Result<PreparedModel> result, Again again = Again::no) {
+        if (again == Again::yes && !is_last_round_) {
+            again_.push_back(item);
+        } else if (!stopped_ && !done_(item, std::move(result))) {
+            stopped_ = true;
+        }
     }
 
     const std::vector<ImportItem>& items_;
     ConfinedPoolOptions options_;
     const Done& done_;
+    MemoryShares shares_;
+    std::size_t bytes_per_worker_ = 0;
     std::vector<Place> places_;
-    std::size_t next_ = 0;
-    bool stopped_ = false, any_was_ready_ = false;
+    std::vector<std::size_t> queue_, again_;  // items of this round, and of the next
+    std::size_t next_ = 0;                    // in the queue
+    bool stopped_ = false, any_was_ready_ = false, is_last_round_ = false;
     int starts_in_vain_ = 0;
     Error start_error_;
 };
@@ -216,9 +267,12 @@ private:
 
 Result<void> prepare_confined(const std::vector<ImportItem>& items, const ConfinedPoolOptions& options,
                               const std::function<bool(std::size_t item, Result<PreparedModel> prepared)>& done) {
-    if (!std::isfinite(options.seconds_per_model) || options.seconds_per_model <= 0 ||
-        options.seconds_per_model > 1e6) {
-        return Error{"seconds_per_model", "must be greater than 0 s and at most 1e6 s"};
+    const auto is_in_range = [](double seconds, double most) { return seconds > 0 && seconds <= most; };
+    if (!is_in_range(options.processor_seconds_per_model, most_processor_seconds)) {
+        return Error{"processor_seconds_per_model", "must be greater than 0 s and at most 1800 s"};
+    }
+    if (!is_in_range(options.wall_seconds_per_model, 1e6)) {
+        return Error{"wall_seconds_per_model", "must be greater than 0 s and at most 1e6 s"};
     }
     return Pool(items, options, done).run();
 }

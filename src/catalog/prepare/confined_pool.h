@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "catalog/prepare/prepared_model.h"
@@ -11,15 +10,19 @@
 namespace embody::catalog {
 
 struct ConfinedPoolOptions {
-    int workers = 0;                                      ///< processes; 0: one a core
-    double seconds_per_model = 60;                        ///< longer: the worker is killed, the model reported
-    std::size_t bytes_per_worker = std::size_t{3} << 30;  ///< address space; more: the same
-    std::filesystem::path worker_program;                 ///< empty: embody-import-worker beside the running program
+    int workers = 0;                          ///< processes at most; 0: one a core
+    double processor_seconds_per_model = 60;  ///< more: the worker is killed, the model reported; at most 1800
+    double wall_seconds_per_model = 900;      ///< the same, for what waits instead of working
+    std::size_t bytes = 0;                    ///< address space of all workers together; 0: half of the memory
+    std::filesystem::path worker_program;     ///< empty: embody-import-worker beside the running program
+    std::function<bool()> go_on = {};         ///< asked about once a second; false stops; may be empty
 };
 
 /// Prepares `items` in worker processes of their own (limits on memory, time and system calls; no network), so that a
-/// crash, a hang or a memory bomb of one file costs that file only. `done` is called on the calling thread, once an
-/// item, in the order in which they finish; it returns false to stop early. Fails only if no worker can be started.
+/// crash, a hang or a memory bomb of one file costs that file only. What a crowded machine may have caused (a worker
+/// that died, or ran out of its share of the memory or of wall time) is tried once more at the end, by one worker with
+/// all of the memory. `done` is called on the calling thread, once an item, in the order in which they finish; it
+/// returns false to stop early. Fails only if no worker can be started.
 Result<void> prepare_confined(const std::vector<ImportItem>& items, const ConfinedPoolOptions& options,
                               const std::function<bool(std::size_t item, Result<PreparedModel> prepared)>& done);
 

@@ -13,6 +13,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <memory>
 #include <string>
 
@@ -39,6 +40,9 @@ Result<void> set_limits(const ConfinementOptions& options) {
     }
     return {};
 }
+
+/// Where the system runs out of memory nonetheless, it ends workers before anything else of the user's.
+void be_ended_first() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
 
 Result<void> end_with(long parent) {
     if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return failure("PR_SET_PDEATHSIG", errno);
@@ -146,6 +150,7 @@ Result<void> confine_this_process(const ConfinementOptions& options) {
     if (const auto bound = end_with(options.parent); !bound) return bound.error();
     // Whatever the parent had open and forgot to close: sockets, databases.
     if (close_range(3, ~0u, 0) != 0) return failure("close_range", errno);
+    be_ended_first();
     if (const auto limited = set_limits(options); !limited) return limited.error();
     return filter_system_calls();
 }

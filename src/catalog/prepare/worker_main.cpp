@@ -13,6 +13,7 @@
 #include "catalog/prepare/prepare.h"
 #include "catalog/prepare/worker_protocol.h"
 #include "foundation/printable.h"
+#include "interchange/read_model.h"
 
 namespace embody::catalog {
 namespace {
@@ -56,17 +57,20 @@ Result<PreparedModel> prepare_safely(Preparation& preparation, const ImportItem&
     try {
         return preparation.prepare(item);
     } catch (const std::bad_alloc&) {
-        return Error{item.path, "needs more memory than an import may use"};
+        return interchange::out_of_memory(item.path);
     } catch (const std::exception& problem) {
         return Error{item.path, problem.what()};
     }
 }
 
 bool answer(const ImportItem& item, const Result<PreparedModel>& prepared) {
-    std::vector<std::uint8_t> payload = prepared ? to_bytes(*prepared) : to_bytes(prepared.error());
-    if (payload.size() <= largest_payload) {
-        return write_all(frame(prepared ? FrameKind::prepared : FrameKind::failed, payload));
+    if (!prepared) {
+        const bool out_of_memory = interchange::is_out_of_memory(prepared.error());
+        return write_all(
+            frame(out_of_memory ? FrameKind::out_of_memory : FrameKind::failed, to_bytes(prepared.error())));
     }
+    const std::vector<std::uint8_t> payload = to_bytes(*prepared);
+    if (payload.size() <= largest_payload) return write_all(frame(FrameKind::prepared, payload));
     return write_all(frame(FrameKind::failed, to_bytes(Error{item.path, "is larger than 256 MiB when packed"})));
 }
 

@@ -11,6 +11,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <utility>
 
 namespace embody::catalog {
@@ -113,6 +114,14 @@ WorkerProcess::~WorkerProcess() {
     finish();
     if (to_worker_ >= 0) close(to_worker_);
     if (from_worker_ >= 0) close(from_worker_);
+}
+
+double WorkerProcess::processor_seconds() const {
+    clockid_t clock{};
+    timespec used{};
+    // A process that is gone has no clock; its end is seen at its output.
+    if (clock_getcpuclockid(process_, &clock) != 0 || clock_gettime(clock, &used) != 0) return 0;
+    return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
 }
 
 void WorkerProcess::queue(std::vector<std::uint8_t> frame) {

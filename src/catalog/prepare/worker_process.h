@@ -28,6 +28,8 @@ public:
 
     [[nodiscard]] int output() const { return from_worker_; }
     [[nodiscard]] int input() const { return to_worker_; }
+    /// Time that its threads ran on processors so far, s.
+    [[nodiscard]] double processor_seconds() const;
     [[nodiscard]] bool has_unsent() const { return sent_ < outgoing_.size(); }
 
     /// Queues a frame for the worker; send_some() sends it.

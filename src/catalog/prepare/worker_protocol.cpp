@@ -186,8 +186,8 @@ Result<FrameHeader> read_frame_header(std::span<const std::uint8_t> bytes) {
     const bool is_ours = in.number<std::uint32_t>() == magic && in.number<std::uint32_t>() == protocol_version;
     const auto kind = in.number<std::uint32_t>();
     const auto size = in.number<std::uint32_t>();
-    const bool known =
-        kind >= static_cast<std::uint32_t>(FrameKind::ready) && kind <= static_cast<std::uint32_t>(FrameKind::failed);
+    const bool known = kind >= static_cast<std::uint32_t>(FrameKind::ready) &&
+                       kind <= static_cast<std::uint32_t>(FrameKind::out_of_memory);
     if (!is_ours || !known || size > largest_payload || !in.is_complete()) return broken;
     return FrameHeader{static_cast<FrameKind>(kind), size};
 }

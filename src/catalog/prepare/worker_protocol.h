@@ -11,11 +11,11 @@ namespace embody::catalog {
 
 /// What passes between the importing program and a worker, each as one frame:
 ///   word "EMBW", version, kind, payload length (32 bit each), payload, its 64-bit hash.
-/// The program sends items; the worker says `ready` once it is confined, then answers each item with `prepared` or
-/// `failed`.
-enum class FrameKind : std::uint32_t { ready = 1, item = 2, prepared = 3, failed = 4 };
+/// The program sends items; the worker says `ready` once it is confined, then answers each item with `prepared`,
+/// `failed` or, an error as well, `out_of_memory`.
+enum class FrameKind : std::uint32_t { ready = 1, item = 2, prepared = 3, failed = 4, out_of_memory = 5 };
 
-inline constexpr std::uint32_t protocol_version = 3;
+inline constexpr std::uint32_t protocol_version = 4;
 inline constexpr std::size_t frame_header_size = 16;
 inline constexpr std::size_t frame_hash_size = 8;
 inline constexpr std::size_t largest_payload = std::size_t{256} << 20;  ///< bytes; more is refused on both ends

@@ -43,9 +43,10 @@ std::filesystem::path fake_worker(const ScratchFolder& scratch, const std::strin
     return program;
 }
 
-std::string reason_from(const std::filesystem::path& worker, double seconds = 20) {
-    const auto results =
-        prepare_all({{.path = "a.obj"}}, {.workers = 1, .seconds_per_model = seconds, .worker_program = worker});
+std::string reason_from(const std::filesystem::path& worker, ConfinedPoolOptions options = {}) {
+    options.workers = 1;
+    options.worker_program = worker;
+    const auto results = prepare_all({{.path = "a.obj"}}, options);
     if (results.empty() || results.at(0).ok()) return "prepared";
     EXPECT_EQ(results.at(0).error().where.find("a.obj"), 0u) << results.at(0).error().message();
     return results.at(0).error().why;
@@ -63,14 +64,75 @@ TEST(ConfinedPool, SaysSoWhenNoWorkerStarts) {
     EXPECT_TRUE(fails_to_start(scratch.write("no-program", "hello")));
     EXPECT_TRUE(fails_to_start("/bin/true"));
     EXPECT_TRUE(fails_to_start("/bin/echo"));
-    EXPECT_FALSE(prepare_confined({}, {.seconds_per_model = 0}, {}));
+    EXPECT_FALSE(prepare_confined({}, {.processor_seconds_per_model = 0}, {}));
+    EXPECT_FALSE(prepare_confined({}, {.processor_seconds_per_model = 4000}, {}));
+    EXPECT_FALSE(prepare_confined({}, {.wall_seconds_per_model = 0}, {}));
     EXPECT_TRUE(prepare_confined({}, {}, {}));
 }
 
 TEST(ConfinedPool, EndsAWorkerThatTakesTooLong) {
     const ScratchFolder scratch;
-    EXPECT_EQ(reason_from(fake_worker(scratch, "exec sleep 1000"), 0.5), "took longer than 0.500000 s");
-    EXPECT_EQ(reason_from(fake_worker(scratch, "exec sleep 1000"), 1), "took longer than 1 s");
+    EXPECT_EQ(reason_from(fake_worker(scratch, "exec sleep 1000"), {.wall_seconds_per_model = 0.5}),
+              "was not ready within 0.500000 s");
+    EXPECT_EQ(reason_from(fake_worker(scratch, "exec sleep 1000"), {.wall_seconds_per_model = 1}),
+              "was not ready within 1 s");
+    EXPECT_EQ(reason_from(fake_worker(scratch, "while :; do :; done"), {.processor_seconds_per_model = 1}),
+              "needs more than 1 s of processor time");
+}
+
+// What a fake worker answers to any item.
+std::string answers(const ScratchFolder& scratch, FrameKind kind, const std::string& why) {
+    const auto answer = scratch.write("answer " + why, as_text(frame(kind, to_bytes(Error{"a.obj", why}))));
+    return "cat '" + answer.string() + "'\nexec sleep 1000";
+}
+
+TEST(ConfinedPool, WaitingIsNotWorking) {
+    const ScratchFolder scratch;
+    const auto late = fake_worker(scratch, "sleep 2\n" + answers(scratch, FrameKind::failed, "late"));
+    EXPECT_EQ(reason_from(late, {.processor_seconds_per_model = 0.5}), "late");
+}
+
+/// A program that dies as `death` (shell) says the first time that it has an item, and then does as `rest` says.
+std::filesystem::path fake_worker_that_recovers(const ScratchFolder& scratch, const std::string& death,
+                                                const std::string& rest) {
+    const std::string mark = "'" + (scratch.path() / "tried").string() + "'";
+    return fake_worker(scratch, "test -e " + mark + " || { echo x > " + mark + "; " + death + "; }\n" + rest);
+}
+
+TEST(ConfinedPool, TriesOnceMoreWhatACrowdedMachineMayHaveCaused) {
+    for (const std::string death : {"kill -KILL $$", "kill -SEGV $$", "exec sleep 1000"}) {
+        const ScratchFolder scratch;
+        const auto worker = fake_worker_that_recovers(scratch, death, answers(scratch, FrameKind::failed, "answered"));
+        EXPECT_EQ(reason_from(worker, {.wall_seconds_per_model = 3}), "answered") << death;
+    }
+    // What the file causes by itself is not tried again.
+    const ScratchFolder scratch;
+    const auto worker =
+        fake_worker_that_recovers(scratch, "while :; do :; done", answers(scratch, FrameKind::failed, "answered"));
+    EXPECT_EQ(reason_from(worker, {.processor_seconds_per_model = 0.5}),
+              "needs more than 0.500000 s of processor time");
+}
+
+TEST(ConfinedPool, AModelThatNeedsMoreMemoryHasItAlone) {
+    const ScratchFolder scratch;
+    // A worker's second argument is its address space. Half of the budget, for two at a time, is too little.
+    const std::string more = answers(scratch, FrameKind::out_of_memory, "too little");
+    const auto worker = fake_worker(
+        scratch, "test $2 -gt 2000000000 || { " + more + "; }\n" + answers(scratch, FrameKind::failed, "enough"));
+    EXPECT_EQ(reason_from(worker, {.bytes = std::size_t{1} << 30}), "too little");
+    const auto results =
+        prepare_all({{.path = "a.obj"}}, {.workers = 2, .bytes = std::size_t{2} << 30, .worker_program = worker});
+    EXPECT_EQ(results.at(0).error().why, "enough");
+}
+
+TEST(ConfinedPool, StopsWithinAModel) {
+    const ScratchFolder scratch;
+    int asked = 0;
+    EXPECT_TRUE(prepare_confined(
+        {{.path = "a.obj"}},
+        {.workers = 1, .worker_program = fake_worker(scratch, "exec sleep 1000"), .go_on = [&] { return ++asked < 3; }},
+        [](std::size_t, const auto&) { return ADD_FAILURE() << "nothing was prepared", true; }));
+    EXPECT_EQ(asked, 3);
 }
 
 TEST(ConfinedPool, NamesTheSignalOfACrash) {
@@ -136,7 +198,7 @@ TEST(ConfinedPool, SurvivesMemoryAndArchiveBombs) {
     const auto cube = scratch.write("cube.obj", cube_obj());
     const auto results =
         prepare_all({{.path = many.string()}, {.archive = bomb.string(), .path = "bomb.obj"}, {.path = cube.string()}},
-                    {.workers = 1, .bytes_per_worker = std::size_t{400} << 20, .worker_program = real_worker});
+                    {.workers = 1, .bytes = std::size_t{400} << 20, .worker_program = real_worker});
     ASSERT_FALSE(results.at(0));
     EXPECT_FALSE(results.at(1));
     EXPECT_TRUE(results.at(2)) << results.at(2).error().message();
