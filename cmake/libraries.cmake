@@ -9,6 +9,8 @@ find_package(Qhull REQUIRED)
 find_package(assimp REQUIRED)
 find_package(meshoptimizer REQUIRED)
 find_package(PkgConfig REQUIRED)
+find_package(JPEG REQUIRED)
+find_package(PNG REQUIRED)
 pkg_check_modules(stb REQUIRED IMPORTED_TARGET stb)
 pkg_check_modules(minizip REQUIRED IMPORTED_TARGET minizip)
 pkg_check_modules(seccomp REQUIRED IMPORTED_TARGET libseccomp)
@@ -28,7 +30,7 @@ endif()
 
 # Groups by the layer that uses them.
 add_library(embody_model_readers INTERFACE)
-target_link_libraries(embody_model_readers INTERFACE assimp::assimp PkgConfig::minizip PkgConfig::stb
+target_link_libraries(embody_model_readers INTERFACE assimp::assimp PkgConfig::minizip JPEG::JPEG PNG::PNG PkgConfig::stb
                       nlohmann_json::nlohmann_json meshoptimizer::meshoptimizer)
 if(TARGET Coin::Coin)
   target_link_libraries(embody_model_readers INTERFACE Coin::Coin)

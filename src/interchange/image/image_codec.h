@@ -23,10 +23,11 @@ struct ImageHeader {
     bool has_alpha = false;  ///< the file stores an alpha channel; it may still be 1 everywhere
 };
 
-/// What the first bytes say; an error where they are no PNG, JPEG, BMP, TGA, GIF, PSD, PNM or SGI image.
+/// What the first bytes say; an error where they are no PNG, JPEG, BMP, TGA, GIF or SGI image.
 Result<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes);
 
-/// Decodes PNG, JPEG, BMP, TGA, GIF (first frame), PSD, PNM or SGI. Refuses more than 64 million pixels.
+/// Decodes PNG, JPEG, BMP, TGA, GIF (first frame) or SGI. Refuses more than 64 million pixels before it makes room for
+/// them.
 Result<Image> decode_image(std::span<const std::uint8_t> bytes);
 
 std::vector<std::uint8_t> encode_png(const Image& image);
