@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "interchange/assimp/read_by_assimp.h"
+#include "interchange/ply/read_ply.h"
 #include "interchange/vrml/read_vrml.h"
 
 namespace embody::interchange {
@@ -52,7 +53,10 @@ Result<RawScene> read_model(const FileSource& source, const std::string& path) {
     const std::string found = source.find(path);
     if (found.empty()) return Error{where, "no such file"};
     try {
-        return extension_of(path) == ".wrl" ? read_vrml(source, found) : read_by_assimp(source, found);
+        const std::string extension = extension_of(path);
+        if (extension == ".wrl") return read_vrml(source, found);
+        if (extension == ".ply") return read_ply(source, found);
+        return read_by_assimp(source, found);
     } catch (const std::bad_alloc&) {
         return out_of_memory(where);
     } catch (const std::exception& problem) {

@@ -7,11 +7,13 @@
 
 #include <assimp/BaseImporter.h>
 #include <algorithm>
+#include <array>
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <memory>
 #include <new>
 #include <sstream>
+#include <string_view>
 
 #include "interchange/assimp/assimp_materials.h"
 #include "interchange/assimp/read_by_assimp.h"
@@ -25,6 +27,9 @@ namespace {
 constexpr std::size_t most_triangles = 20'000'000;
 constexpr std::size_t most_nodes = 1'000'000;
 
+// Of read_model()'s formats those that have no reader of their own.
+constexpr std::array<std::string_view, 6> our_extensions{"obj", "stl", "dae", "gltf", "glb", "ac"};
+
 /// Removes every loader but those of the formats that we read, so that a file cannot pick another by its first bytes.
 void keep_our_formats(Assimp::Importer& importer) {
     for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
@@ -32,8 +37,7 @@ void keep_our_formats(Assimp::Importer& importer) {
         std::istringstream extensions(description == nullptr ? "" : description->mFileExtensions);
         bool ours = false;
         for (std::string extension; extensions >> extension;) {
-            const auto& known = model_extensions();
-            ours |= std::find(known.begin(), known.end(), "." + extension) != known.end();
+            ours |= std::ranges::find(our_extensions, extension) != our_extensions.end();
         }
         if (ours) continue;
         const std::unique_ptr<Assimp::BaseImporter> loader(importer.GetImporter(i));
