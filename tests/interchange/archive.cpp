@@ -7,6 +7,7 @@
 
 #include "interchange/file_source.h"
 #include "interchange/scratch_files.h"
+#include "interchange/utf8.h"
 
 namespace embody::interchange {
 namespace {
@@ -89,6 +90,36 @@ TEST(Archive, FindsMembersInAnyOrderAndCase) {
     EXPECT_EQ(archive->read("dir/one.obj")->size(), 1u);
     EXPECT_EQ(archive->read("three")->size(), 0u);
     EXPECT_TRUE(archive->find("four").empty());
+}
+
+TEST(Archive, NamesOfOldProgramsAreFoundAsTheyAreListed) {
+    const ScratchFolder scratch;
+    // "Möbel/Stühle.obj" by code page 437, as UTF-8, and bytes that are neither sensibly.
+    const std::vector<std::string> stored{
+        "M\x94"
+        "bel/St\x81hle.obj",
+        "Größe.obj", "\xff\xfe.obj"};
+    const auto archive =
+        Archive::open(scratch.write_zip("old.zip", {{stored[0], "1"}, {stored[1], "22"}, {stored[2], ""}}));
+    ASSERT_TRUE(archive) << archive.error().message();
+    ASSERT_EQ(archive->members().size(), 3u);
+    EXPECT_EQ(archive->members()[0].path, "Möbel/Stühle.obj");
+    EXPECT_EQ(archive->members()[1].path, "Größe.obj");
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::string& listed = archive->members()[i].path;
+        EXPECT_TRUE(is_utf8(listed)) << listed;
+        EXPECT_EQ(archive->find(listed), listed);
+        EXPECT_EQ(archive->find(stored[i]), listed);  // as another member of the same archive names it
+        EXPECT_TRUE(archive->read(listed));
+    }
+}
+
+TEST(Utf8, TellsWhatIsWellFormed) {
+    for (const char* good : {"", "abc", "\u00e4\u20ac", "\U0001F600", "\xf4\x8f\xbf\xbf"})
+        EXPECT_TRUE(is_utf8(good)) << good;
+    for (const char* bad :
+         {"\x80", "\xc0\xaf", "\xe0\x80\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x82", "a\xff"})
+        EXPECT_FALSE(is_utf8(bad)) << bad;
 }
 
 TEST(FolderSource, ReachesNothingOutside) {

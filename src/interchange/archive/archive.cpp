@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "interchange/regular_file.h"
+#include "interchange/utf8.h"
 
 namespace embody::interchange {
 namespace {
@@ -81,10 +82,10 @@ Result<Archive> Archive::open(const std::filesystem::path& file) {
             unzGetFilePos64(state->zip, &place) != UNZ_OK) {
             return Error{file.string(), "member " + std::to_string(i) + " of the archive is damaged"};
         }
-        // Folders and names that lead out of the archive are not members.
+        // Folders, names that lead out of the archive and those that did not fit in are not members.
         const std::string_view stored(name.data());
-        const std::string path = normalized_member_path(stored);
-        if (path.empty() || stored.back() == '/') continue;
+        const std::string path = normalized_member_path(utf8_or_cp437(stored));
+        if (path.empty() || stored.back() == '/' || member.size_filename >= name.size()) continue;
         if (!state->places.emplace(path, std::pair{place, member.uncompressed_size}).second) continue;
         state->by_lower_case.emplace(in_lower_case(path), path);
         state->members.push_back({path, member.uncompressed_size});
@@ -95,7 +96,7 @@ Result<Archive> Archive::open(const std::filesystem::path& file) {
 const std::vector<ArchiveMember>& Archive::members() const { return state_->members; }
 
 std::string Archive::find(std::string_view path) const {
-    std::string wanted = normalized_member_path(path);
+    const std::string wanted = normalized_member_path(utf8_or_cp437(path));
     if (state_->places.contains(wanted)) return wanted;
     const auto found = state_->by_lower_case.find(in_lower_case(wanted));
     return found == state_->by_lower_case.end() ? std::string() : found->second;

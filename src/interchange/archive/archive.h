@@ -13,7 +13,7 @@
 namespace embody::interchange {
 
 struct ArchiveMember {
-    std::string path;        ///< with '/', relative, without "." and ".."
+    std::string path;        ///< with '/', relative, without "." and ".."; UTF-8, whatever the archive stores
     std::uint64_t size = 0;  ///< unpacked, as the archive states it, bytes
 };
 
@@ -30,7 +30,8 @@ public:
 
     /// In the order of the archive's own list, folders left out.
     [[nodiscard]] const std::vector<ArchiveMember>& members() const;
-    /// The member's path as stored, found exactly or else without regard to case; empty where there is none.
+    /// The member's path, found exactly or else without regard to case; empty where there is none. `path` is UTF-8, or
+    /// the bytes that an old zip program stored: both are read as the members' names are.
     [[nodiscard]] std::string find(std::string_view path) const;
     /// Unpacks one member. More than `limit` bytes, whatever the archive states: an error, and nothing is held.
     Result<std::vector<std::uint8_t>> read(std::string_view path, std::uint64_t limit = default_limit) const;
