@@ -58,7 +58,8 @@ TEST(ReadPly, NamesWhereAHeaderIsWrong) {
     EXPECT_EQ(refusal(ascii("element vertex x\n", "")), "line 3: has no count of elements: x");
     EXPECT_EQ(refusal(ascii("element vertex 3\nproperty flout x\n", "")), "line 4: names no type of PLY: flout");
     EXPECT_EQ(refusal(ascii("element face 3\nproperty list float int a\n", "")), "line 4: counts a list in fractions");
-    EXPECT_EQ(refusal(ascii("nonsense\n", "")), "line 3: is not understood");
+    EXPECT_EQ(refusal(ascii("element vertex\n", "")), "line 3: is not understood");
+    EXPECT_EQ(refusal(ascii("element vertex 3\nproperty list x\n", "")), "line 4: names no type of PLY: list");
     EXPECT_EQ(refusal(ascii("element vertex 1\nproperty float x\n", "1\n")), "element vertex: has no x, y and z");
     EXPECT_EQ(refusal(ascii(face_header, "3 0 1 2\n")), "element face: comes before the vertices, or there are none");
 }
@@ -126,6 +127,7 @@ TEST(ReadPly, AllEncodingsAndLineEndsGiveTheSame) {
         "property uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int vertex_indices\n";
     std::vector<std::string> files{
         ascii(declarations, "0.5 0 0 255 0 0\n2.5 0 0 255 0 0\n+0.5 3e0 -4 255 0 0\n3 0 1 2")};
+    files.push_back("ply\nCreated by Blender3D 247\n" + files[0].substr(4));
     std::string windows = files[0];
     for (std::size_t at = 0; (at = windows.find('\n', at)) != std::string::npos; at += 2) windows.insert(at, 1, '\r');
     files.push_back(windows);

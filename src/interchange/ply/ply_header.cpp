@@ -126,6 +126,8 @@ private:
             return {};
         }
         const bool is_list = words.size() == 5 && words[1] == "list";
+        // Other words are comments without "comment", as Blender wrote them once.
+        if (words[0] != "property" && words[0] != "element") return {};
         if (words[0] != "property" || (words.size() != 3 && !is_list)) return fail("is not understood");
         if (header_.elements.empty()) return fail("declares a property before any element");
         PlyProperty property{std::string(words.back()), PlyType::float32, {}};
