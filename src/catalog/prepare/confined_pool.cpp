@@ -8,6 +8,7 @@
 #include <chrono>
 #include <memory>
 #include <numeric>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -30,6 +31,26 @@ constexpr double most_processor_seconds = 1800;
 std::filesystem::path worker_beside_this_program() {
     std::error_code problem;
     return std::filesystem::read_symlink("/proc/self/exe", problem).parent_path() / "embody-import-worker";
+}
+
+/// What the workers need to read: archives, and the folders of plain files. One folder that holds all of them where
+/// they are too many for a program's arguments.
+std::vector<std::string> places_of(const std::vector<ImportItem>& items) {
+    constexpr std::size_t most_places = 256;
+    std::set<std::string> places;
+    for (const ImportItem& item : items) {
+        const std::filesystem::path folder = std::filesystem::path(item.path).parent_path();
+        places.insert(!item.archive.empty() ? item.archive : folder.empty() ? "." : folder.string());
+    }
+    if (places.size() <= most_places) return {places.begin(), places.end()};
+    std::filesystem::path shared = *places.begin();
+    for (const std::filesystem::path place : places) {
+        const auto [end, other] = std::mismatch(shared.begin(), shared.end(), place.begin(), place.end());
+        std::filesystem::path common;
+        for (auto part = shared.begin(); part != end; ++part) common /= *part;
+        shared = common;
+    }
+    return {shared.empty() ? "." : shared.string()};
 }
 
 std::string place_of(const ImportItem& item) {
@@ -59,6 +80,7 @@ public:
     }
 
     Result<void> run() {
+        readable_ = places_of(items_);
         queue_.resize(items_.size());
         std::iota(queue_.begin(), queue_.end(), std::size_t{0});
         places_.resize(std::min(shares_.workers, items_.size()));
@@ -108,7 +130,7 @@ private:
     }
 
     void start(Place& place) {
-        auto worker = WorkerProcess::start(options_.worker_program, bytes_per_worker_);
+        auto worker = WorkerProcess::start(options_.worker_program, bytes_per_worker_, readable_);
         if (!worker) {
             ++starts_in_vain_;
             start_error_ = worker.error();
@@ -255,6 +277,7 @@ private:
     const Done& done_;
     MemoryShares shares_;
     std::size_t bytes_per_worker_ = 0;
+    std::vector<std::string> readable_;  // by the workers
     std::vector<Place> places_;
     std::vector<std::size_t> queue_, again_;  // items of this round, and of the next
     std::size_t next_ = 0;                    // in the queue

@@ -99,10 +99,11 @@ bool parse(std::string_view text, T& number) {
 
 int main(int count, char** arguments) {
     embody::catalog::ConfinementOptions options;
-    if (count != 3 || !embody::catalog::parse(arguments[1], options.parent) ||
+    if (count < 3 || !embody::catalog::parse(arguments[1], options.parent) ||
         !embody::catalog::parse(arguments[2], options.address_space)) {
         std::fprintf(stderr, "embody-import-worker is started by `embody import`, not by hand.\n");
         return 2;
     }
+    options.readable.assign(arguments + 3, arguments + count);
     return embody::catalog::serve(options);
 }

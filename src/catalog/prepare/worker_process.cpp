@@ -71,7 +71,8 @@ private:
 
 }  // namespace
 
-Result<WorkerProcess> WorkerProcess::start(const std::filesystem::path& program, std::size_t address_space) {
+Result<WorkerProcess> WorkerProcess::start(const std::filesystem::path& program, std::size_t address_space,
+                                           const std::vector<std::string>& readable) {
     // Sockets instead of a pipe towards the worker: writing to one whose reader died must be an error, not SIGPIPE.
     std::array<int, 2> in{}, out{};
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, in.data()) != 0)
@@ -89,8 +90,12 @@ Result<WorkerProcess> WorkerProcess::start(const std::filesystem::path& program,
     posix_spawn_file_actions_addopen(actions.get(), STDERR_FILENO, "/dev/null", O_WRONLY, 0);
     SpawnAttributes attributes;
 
-    std::string path = program.string(), parent = std::to_string(getpid()), space = std::to_string(address_space);
-    std::array<char*, 4> arguments{path.data(), parent.data(), space.data(), nullptr};
+    const std::string path = program.string();
+    std::vector<std::string> words{path, std::to_string(getpid()), std::to_string(address_space)};
+    words.insert(words.end(), readable.begin(), readable.end());
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
     // An empty environment: the worker needs none, and libraries take orders from there.
     std::array<char*, 1> environment{nullptr};
     pid_t process = -1;

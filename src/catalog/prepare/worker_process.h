@@ -21,7 +21,9 @@ class WorkerProcess {
 public:
     using Clock = std::chrono::steady_clock;
 
-    static Result<WorkerProcess> start(const std::filesystem::path& program, std::size_t address_space);
+    /// `address_space` in bytes; `readable`: see ConfinementOptions.
+    static Result<WorkerProcess> start(const std::filesystem::path& program, std::size_t address_space,
+                                       const std::vector<std::string>& readable);
     WorkerProcess(WorkerProcess&& other) noexcept;
     WorkerProcess& operator=(WorkerProcess&&) = delete;
     ~WorkerProcess();

@@ -7,22 +7,25 @@
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <thread>
 
+#include "interchange/scratch_files.h"
+
 namespace embody::catalog {
 namespace {
 
 /// Confines a child process and runs `attempt` in it; what it returns, or -signal.
 template <class Attempt>
-int confined(Attempt attempt, std::size_t address_space = std::size_t{1} << 40) {
-    const pid_t parent = getpid();
+int confined(Attempt attempt, ConfinementOptions options = {.address_space = std::size_t{1} << 40}) {
+    options.parent = getpid();
     const pid_t child = fork();
     if (child == 0) {
-        if (!confine_this_process({.address_space = address_space, .parent = parent})) _exit(99);
+        if (!confine_this_process(options)) _exit(99);
         _exit(attempt());
     }
     int status = 0;
@@ -99,6 +102,25 @@ TEST(Confinement, TakesAwaySignalsToOthersAndExecutableMemory) {
               0);
 }
 
+TEST(Confinement, ReadsOnlyWhatItIsGiven) {
+    if (syscall(SYS_landlock_create_ruleset, nullptr, 0, 1 /* LANDLOCK_CREATE_RULESET_VERSION */) < 0) {
+        GTEST_SKIP() << "this kernel has no Landlock";
+    }
+    const test::ScratchFolder scratch;
+    const auto inside = scratch.write("models/in/chair.obj", "v"), archive = scratch.write("some.zip", "PK");
+    const auto secret = scratch.write("secret.txt", "secret");
+    std::filesystem::create_symlink(secret, scratch.path() / "models/link.txt");
+    const auto opens = [](const std::filesystem::path& file) { return open(file.c_str(), O_RDONLY) >= 0; };
+    const int wrong = confined(
+        [&] {
+            const bool reads = opens(inside) && opens(archive) && opens(scratch.path() / "models");
+            const bool reaches = opens(secret) || opens(scratch.path() / "models/link.txt") || opens("/etc/passwd");
+            return (reads ? 0 : 1) + (reaches ? 2 : 0);
+        },
+        {.readable = {(scratch.path() / "models").string(), archive.string(), "/missing"}});
+    EXPECT_EQ(wrong, 0);
+}
+
 TEST(Confinement, LimitsMemory) {
     EXPECT_EQ(confined(
                   [] {
@@ -107,7 +129,7 @@ TEST(Confinement, LimitsMemory) {
                                  ? 0
                                  : 1;
                   },
-                  std::size_t{1} << 30),
+                  {.address_space = std::size_t{1} << 30}),
               0);
 }
 
