@@ -9,6 +9,7 @@
 #include <Inventor/SoInput.h>
 #include <Inventor/SoPath.h>
 #include <Inventor/SoPrimitiveVertex.h>
+#include <Inventor/VRMLnodes/SoVRMLAudioClip.h>
 #include <Inventor/VRMLnodes/SoVRMLBox.h>
 #include <Inventor/VRMLnodes/SoVRMLCone.h>
 #include <Inventor/VRMLnodes/SoVRMLCylinder.h>
@@ -26,10 +27,16 @@
 #include <Inventor/errors/SoReadError.h>
 #include <Inventor/fields/SoMField.h>
 #include <Inventor/misc/SoProto.h>
+#include <Inventor/nodes/SoBumpMap.h>
 #include <Inventor/nodes/SoFile.h>
 #include <Inventor/nodes/SoGroup.h>
+#include <Inventor/nodes/SoImage.h>
 #include <Inventor/nodes/SoSeparator.h>
 #include <Inventor/nodes/SoShape.h>
+#include <Inventor/nodes/SoTexture2.h>
+#include <Inventor/nodes/SoTexture3.h>
+#include <Inventor/nodes/SoTextureCubeMap.h>
+#include <Inventor/nodes/SoWWWInline.h>
 
 #include <algorithm>
 #include <cmath>
@@ -61,6 +68,25 @@ void leave_inline_out(const SbString&, void*, SoVRMLInline*) {}
 SoProto* leave_prototype_out(SoInput*, const SbString*, const int, void*) { return nullptr; }
 void* make_group() { return new SoGroup; }
 
+/// A texture that only knows its url: Coin's looks for the file while it is read, whatever setDelayFetchURL says.
+class UnfetchedTexture final : public SoVRMLImageTexture {
+public:
+    UnfetchedTexture() { url.enableNotify(FALSE); }
+    static void* make() { return new UnfetchedTexture; }
+
+private:
+    SbBool readInstance(SoInput* input, unsigned short flags) override {
+        return SoVRMLTexture::readInstance(input, flags);
+    }
+};
+
+/// A sound likewise.
+class UnfetchedSound final : public SoVRMLAudioClip {
+public:
+    UnfetchedSound() { url.enableNotify(FALSE); }
+    static void* make() { return new UnfetchedSound; }
+};
+
 /// Once a process; nothing of the file reaches for other files after this.
 void start_coin() {
     static const bool started = [] {
@@ -72,8 +98,14 @@ void start_coin() {
         SoVRMLInline::setReadAsSoFile(FALSE);
         SoVRMLInline::setFetchURLCallBack(leave_inline_out, nullptr);
         SoProto::setFetchExternProtoCallback(leave_prototype_out, nullptr);
-        SoVRMLImageTexture::setDelayFetchURL(TRUE);
-        SoType::overrideType(SoFile::getClassTypeId(), make_group);
+        SoType::overrideType(SoVRMLImageTexture::getClassTypeId(), UnfetchedTexture::make);
+        SoType::overrideType(SoVRMLAudioClip::getClassTypeId(), UnfetchedSound::make);
+        // Inventor's own nodes are read in VRML files, too; these open the files that they name while they are read.
+        for (const SoType& type : {SoFile::getClassTypeId(), SoWWWInline::getClassTypeId(), SoImage::getClassTypeId(),
+                                   SoTexture2::getClassTypeId(), SoTexture3::getClassTypeId(),
+                                   SoTextureCubeMap::getClassTypeId(), SoBumpMap::getClassTypeId()}) {
+            SoType::overrideType(type, make_group);
+        }
         return true;
     }();
     static_cast<void>(started);
