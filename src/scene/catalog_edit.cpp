@@ -114,7 +114,7 @@ Result<ChangeReport> change_models(SessionState& state, const catalog::Catalog::
     follow(state, report.value());
     Edit edit = state.start_edit(label_of(report.value()));
     edit.catalog = CatalogStep{report.value().batch, 0};
-    state.history.add(std::move(edit));
+    state.record(std::move(edit));
     state.tell_document(json::array());
     return report;
 }
@@ -135,7 +135,7 @@ Result<ChangeReport> undo_models(SessionState& state, std::int64_t batch) {
     } else {
         Edit edit = state.start_edit(label_of(report.value()));
         edit.catalog = CatalogStep{report.value().batch, 0};
-        state.history.add(std::move(edit));
+        state.record(std::move(edit));
     }
     state.tell_document(json::array());
     return report;

@@ -10,17 +10,18 @@ namespace embody::scene {
 
 namespace {
 
-template <class Entities>
-auto* find_entity(Entities& entities, EntityIndex index) {
-    const auto found = std::lower_bound(entities.begin(), entities.end(), index,
-                                        [](const Entity& entity, EntityIndex wanted) { return entity.index < wanted; });
-    return found != entities.end() && found->index == index ? &*found : nullptr;
+template <class Items>
+auto* find_item(Items& items, std::uint32_t index) {
+    const auto found = std::lower_bound(items.begin(), items.end(), index,
+                                        [](const auto& item, std::uint32_t wanted) { return item.index < wanted; });
+    return found != items.end() && found->index == index ? &*found : nullptr;
 }
 
 }  // namespace
 
-const Entity* Document::find(EntityIndex index) const { return find_entity(entities, index); }
-Entity* Document::find(EntityIndex index) { return find_entity(entities, index); }
+const Entity* Document::find(EntityIndex index) const { return find_item(entities, index); }
+Entity* Document::find(EntityIndex index) { return find_item(entities, index); }
+const SceneJoint* Document::find_joint(std::uint32_t index) const { return find_item(joints, index); }
 
 bool operator==(const Document& a, const Document& b) { return document_to_json(a) == document_to_json(b); }
 

@@ -22,6 +22,8 @@ namespace embody::scene {
 using EntityIndex = std::uint32_t;
 /// Higher ones are for what actions spawn in a running simulation.
 inline constexpr EntityIndex last_document_index = 0x7FFFFFFF;
+/// Of one document: more would fill the memory before they were simulated.
+inline constexpr std::size_t most_entities = 300'000;
 
 /// A model of the database, by its key.
 struct ModelReference {
@@ -83,6 +85,7 @@ struct Document {
 
     [[nodiscard]] const Entity* find(EntityIndex index) const;
     [[nodiscard]] Entity* find(EntityIndex index);
+    [[nodiscard]] const SceneJoint* find_joint(std::uint32_t index) const;
     /// One more than the highest index ever used here.
     EntityIndex next_index = 1;
 };

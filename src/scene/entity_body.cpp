@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "attributes/assemble.h"
+#include "attributes/attribute_json.h"
 #include "attributes/form.h"
 #include "attributes/registry.h"
 #include "attributes/resolver.h"
@@ -23,6 +24,9 @@ using attributes::AttributeSet;
 using attributes::ModelFacts;
 
 namespace {
+
+/// Of one document few are different, unless each has its own numbers: then there is no use in keeping more.
+constexpr std::size_t most_shared_sets = 4096;
 
 Error at_field(Error error, const std::string& field) {
     error.where = error.where.empty() ? field : field + ": " + error.where;
@@ -145,6 +149,20 @@ void put_enclosed(const physics::MeshShape& mesh, attributes::GeometryFacts& for
 std::string short_text(const physics::ShapeDefinition& shape) {
     if (physics::is_static_only(shape) || std::holds_alternative<physics::CompoundShape>(shape)) return {};
     return shape_to_json(shape).dump();
+}
+
+// All that an entity's attributes follow from; empty: too much to be compared.
+std::string attributes_key(const Entity& entity) {
+    std::string key;
+    if (const auto* model = std::get_if<ModelReference>(&entity.geometry)) {
+        key = model->key + '\n' + nlohmann::json(entity.scale).dump();
+    } else {
+        key = short_text(std::get<physics::ShapeDefinition>(entity.geometry));
+        if (key.empty()) return key;
+    }
+    key += '\n' + entity.category;
+    for (const auto& [name, value] : entity.attributes) key += '\n' + name + '\t' + attributes::to_json(value).dump();
+    return key;
 }
 
 // Hull and triangles of a model of the catalogue, scaled.
@@ -313,6 +331,19 @@ Result<AttributeSet> EntityBodies::attributes(const Entity& entity) {
     return set;
 }
 
+Result<SharedAttributes> EntityBodies::shared_attributes(const Entity& entity) {
+    const std::string key = attributes_key(entity);
+    if (const auto known = sets_.find(key); known != sets_.end() && !key.empty()) return known->second;
+    Result<AttributeSet> made = attributes(entity);
+    if (!made.ok()) return made.error();
+    SharedAttributes set = std::make_shared<const AttributeSet>(std::move(made).value());
+    if (key.empty()) return set;
+    // Who has one keeps it.
+    if (sets_.size() >= most_shared_sets) sets_.clear();
+    sets_.emplace(key, set);
+    return set;
+}
+
 bool EntityBodies::is_liquid(const Entity& entity) {
     if (const auto own = entity.attributes.find("kind"); own != entity.attributes.end())
         return own->second == attributes::AttributeValue(std::string("fluid"));
@@ -323,10 +354,11 @@ bool EntityBodies::is_liquid(const Entity& entity) {
 }
 
 Result<std::vector<attributes::Issue>> EntityBodies::contradictions(const Entity& entity) {
-    Result<AttributeSet> acting = attributes(entity);
-    if (!acting.ok()) return acting.error();
+    const Result<SharedAttributes> shared = shared_attributes(entity);
+    if (!shared.ok()) return shared.error();
+    const AttributeSet& acting = *shared.value();
     const bool is_changed = std::ranges::any_of(
-        acting.value().entries(), [](const AttributeEntry& entry) { return entry.level == AttributeLevel::manual; });
+        acting.entries(), [](const AttributeEntry& entry) { return entry.level == AttributeLevel::manual; });
     // What nobody set is as it was resolved; of primitives the physics knows the form itself.
     const auto* model = std::get_if<ModelReference>(&entity.geometry);
     std::vector<attributes::Issue> issues;
@@ -334,10 +366,10 @@ Result<std::vector<attributes::Issue>> EntityBodies::contradictions(const Entity
     if (model) {
         ModelFacts facts = find(model->key).value()->facts;
         facts.geometry = attributes::scaled(facts.geometry, entity.scale);
-        issues = attributes::check(acting.value(), facts);
+        issues = attributes::check(acting, facts);
     }
-    const AttributeEntry* material = acting.value().find("surface_material");
-    if (material && taxonomy() && attributes::is_manual(acting.value(), "surface_material")) {
+    const AttributeEntry* material = acting.find("surface_material");
+    if (material && taxonomy() && attributes::is_manual(acting, "surface_material")) {
         const auto known = attributes::known_value(*taxonomy(), material->name, material->value);
         if (!known) issues.push_back({material->name, known.error().why});
     }

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <unordered_map>
 
 #include "attributes/attribute.h"
 #include "attributes/check.h"
@@ -25,6 +26,8 @@ struct EntityForm {
     std::string note;        ///< what of its kind it is not simulated with, and why; empty: nothing
 };
 
+using SharedAttributes = std::shared_ptr<const attributes::AttributeSet>;
+
 /// Makes bodies of entities: the way from geometric and physical attributes to what the physics needs. Remembers the
 /// models it has looked up.
 class EntityBodies {
@@ -39,6 +42,8 @@ public:
     /// The attributes as they act: the model's or the primitive's, with the entity's own over them. Errors name the
     /// field of the entity.
     Result<attributes::AttributeSet> attributes(const Entity& entity);
+    /// The same; those that have the same have one set between them.
+    Result<SharedAttributes> shared_attributes(const Entity& entity);
     /// What of the attributes as they act contradicts each other: a person can set what cannot be.
     Result<std::vector<attributes::Issue>> contradictions(const Entity& entity);
     /// What they would be without the entity's own.
@@ -63,6 +68,7 @@ public:
     /// Forgets a model whose attributes were changed.
     void forget(const std::string& key) {
         models_.erase(key);
+        sets_.clear();
         soft_meshes_.erase(key);
         thin_forms_.erase(key);
     }
@@ -101,6 +107,7 @@ private:
 
     catalog::Catalog* catalog_;
     std::map<std::string, Model> models_;
+    std::unordered_map<std::string, SharedAttributes> sets_;           ///< by all that they follow from
     std::map<std::string, attributes::ModelFacts> primitives_;         ///< by their text
     attributes::ModelFacts last_primitive_;                            ///< of one without a short text
     std::pair<physics::MeshShape, attributes::ModelFacts> last_mesh_;  ///< that moves

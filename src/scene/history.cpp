@@ -2,12 +2,16 @@
 #include "scene/history.h"
 
 #include <algorithm>
+#include <map>
+#include <span>
 
 namespace embody::scene {
 
 namespace {
 
 constexpr std::size_t most_edits = 1000;
+/// So many that come or go in a row are put in place one by one.
+constexpr std::size_t few_entities = 4;
 
 // Puts an item in a list that is kept ascending by its number, or takes it out.
 template <class Item, class Number>
@@ -51,6 +55,45 @@ struct Applier {
     }
 };
 
+// Of changes that can become one: the kind, and whose it is.
+std::optional<std::pair<std::size_t, EntityIndex>> merge_key(const Change& change) {
+    if (const auto* moved = std::get_if<PoseChange>(&change)) return std::pair{change.index(), moved->index};
+    const auto* changed = std::get_if<EntityChange>(&change);
+    if (changed && changed->same_geometry) return std::pair{change.index(), changed->after->index};
+    return std::nullopt;
+}
+
+bool comes_or_goes(const Change& change) {
+    const auto* entity = std::get_if<EntityChange>(&change);
+    return entity && !(entity->before && entity->after);
+}
+
+// Entities that come and go in a row, in one walk over the list: each by itself would move all that follow it.
+void put_entities(std::vector<Entity>& entities, std::span<const Change> changes) {
+    std::map<EntityIndex, std::optional<Entity>> wanted;
+    for (const Change& item : changes) {
+        const auto& change = std::get<EntityChange>(item);
+        wanted[change.after ? change.after->index : change.before->index] = change.after;
+    }
+    std::vector<Entity> merged;
+    merged.reserve(entities.size() + wanted.size());
+    // From here on nothing can fail.
+    auto next = wanted.begin();
+    const auto take_wanted = [&] {
+        if (next->second) merged.push_back(std::move(*next->second));
+        ++next;
+    };
+    for (Entity& entity : entities) {
+        while (next != wanted.end() && next->first < entity.index) take_wanted();
+        if (next != wanted.end() && next->first == entity.index)
+            take_wanted();
+        else
+            merged.push_back(std::move(entity));
+    }
+    while (next != wanted.end()) take_wanted();
+    entities = std::move(merged);
+}
+
 Entity without_geometry(const Entity& entity) {
     Entity out;
     out.index = entity.index;
@@ -82,7 +125,18 @@ Heading heading_of(const Document& document) {
     return {document.title, document.description, document.settings, document.camera};
 }
 
-void apply_change(Document& document, const Change& change) { std::visit(Applier{document}, change); }
+void apply_changes(Document& document, const std::vector<Change>& changes) {
+    for (std::size_t i = 0; i < changes.size();) {
+        std::size_t end = i;
+        while (end < changes.size() && comes_or_goes(changes[end])) ++end;
+        if (end - i > few_entities) {
+            put_entities(document.entities, std::span(changes).subspan(i, end - i));
+            i = end;
+        } else {
+            std::visit(Applier{document}, changes[i++]);
+        }
+    }
+}
 
 Change reversed(const Change& change) {
     Change back = change;
@@ -90,27 +144,31 @@ Change reversed(const Change& change) {
     return back;
 }
 
+std::vector<Change> reversed(const std::vector<Change>& changes) {
+    std::vector<Change> back;
+    back.reserve(changes.size());
+    for (auto change = changes.rbegin(); change != changes.rend(); ++change) back.push_back(reversed(*change));
+    return back;
+}
+
 // A drag is many small edits of the same poses, or of the same entity: the first state and the last one count.
 bool History::merge(Edit& edit) {
     if (!merging_ || done_.empty() || edit.merge.empty() || done_.back().merge != edit.merge || is_saved())
         return false;
+    std::vector<Change>& done = done_.back().changes;
+    std::map<std::pair<std::size_t, EntityIndex>, std::size_t> places;
+    for (std::size_t i = 0; i < done.size(); ++i)
+        if (const auto key = merge_key(done[i])) places.emplace(*key, i);
     for (Change& change : edit.changes) {
-        const auto same =
-            std::find_if(done_.back().changes.begin(), done_.back().changes.end(), [&](const Change& old) {
-                const auto* was_moved = std::get_if<PoseChange>(&old);
-                const auto* moved = std::get_if<PoseChange>(&change);
-                if (was_moved && moved) return was_moved->index == moved->index;
-                const auto* was_changed = std::get_if<EntityChange>(&old);
-                const auto* changed = std::get_if<EntityChange>(&change);
-                return was_changed && changed && was_changed->same_geometry && changed->same_geometry &&
-                       was_changed->after->index == changed->after->index;
-            });
-        if (same == done_.back().changes.end()) {
-            done_.back().changes.push_back(std::move(change));
-        } else if (auto* moved = std::get_if<PoseChange>(&*same)) {
+        const auto key = merge_key(change);
+        const auto same = key ? places.find(*key) : places.end();
+        if (same == places.end()) {
+            if (key) places.emplace(*key, done.size());
+            done.push_back(std::move(change));
+        } else if (auto* moved = std::get_if<PoseChange>(&done[same->second])) {
             moved->after = std::get<PoseChange>(change).after;
         } else {
-            std::get<EntityChange>(*same).after = std::get<EntityChange>(change).after;
+            std::get<EntityChange>(done[same->second]).after = std::get<EntityChange>(change).after;
         }
     }
     done_.back().next_after = edit.next_after;
@@ -130,7 +188,7 @@ void History::add(Edit edit) {
             --document_edits_;
             if (saved_ >= 0) --saved_;
         }
-        done_.erase(done_.begin());
+        done_.pop_front();
     }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <optional>
 #include <string>
 #include <utility>
@@ -60,8 +61,10 @@ struct Edit {
 EntityChange change_of(const Entity& before, const Entity& after);
 Heading heading_of(const Document& document);
 
-/// Does the change to the document, or takes it back.
-void apply_change(Document& document, const Change& change);
+/// Does the changes to the document, in order.
+void apply_changes(Document& document, const std::vector<Change>& changes);
+/// The changes that take these back, the last one first.
+std::vector<Change> reversed(const std::vector<Change>& changes);
 /// The change that takes `change` back.
 Change reversed(const Change& change);
 
@@ -95,7 +98,7 @@ public:
 private:
     bool merge(Edit& edit);
 
-    std::vector<Edit> done_, undone_;
+    std::deque<Edit> done_, undone_;
     std::ptrdiff_t document_edits_ = 0;  ///< of those done: acts on the catalogue leave the document as it is
     std::ptrdiff_t saved_ = 0;           ///< their number when it was saved; -1: never again
     bool merging_ = false;               ///< the last thing that happened was an edit

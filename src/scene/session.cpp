@@ -125,8 +125,19 @@ Result<void> Session::autosave() {
     const std::string name = state.name.empty() ? state.document.title : state.name;
     if (Result<void> written = save_document(state.document, autosave_file(state.options, name)); !written.ok())
         return written;
-    state.autosaved_revision = state.revision;
+    state.mark_autosaved();
     return {};
+}
+
+Result<void> Session::rescue() {
+    SessionState& state = *state_;
+    std::unique_lock lock(state.rescue_mutex);
+    if (state.revision == state.autosaved_revision || state.history.is_saved()) return {};
+    Document document = state.document;
+    if (state.changes_in_hand) apply_changes(document, reversed(*state.changes_in_hand));
+    const std::string name = state.name.empty() ? document.title : state.name;
+    lock.unlock();
+    return save_document(document, autosave_file(state.options, name));
 }
 
 }  // namespace embody::scene

@@ -73,6 +73,9 @@ public:
     [[nodiscard]] nlohmann::json statistics() const;
     /// Writes the document beside the saved scenes if it changed since the last call; for a timer.
     Result<void> autosave();
+    /// The same from another thread, while a command or step is in hand that does not end: the document as it was
+    /// before, if it is not on disk.
+    Result<void> rescue();
 
 private:
     Session();

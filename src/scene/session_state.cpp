@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene/session_state.h"
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 
@@ -161,7 +162,10 @@ void SessionState::tell_message(const char* level, std::string text) {
 }
 
 void SessionState::tell_document(json changes) {
-    ++revision;
+    {
+        const std::lock_guard lock(rescue_mutex);
+        ++revision;
+    }
     const auto label = [](const Edit* edit) { return edit ? json(edit->label) : json(nullptr); };
     tell({{"event", "document"},
           {"revision", revision},
@@ -248,33 +252,67 @@ Result<void> SessionState::sync(const Change& change) {
     return simulation->set_velocity(pose.index, {}, {});
 }
 
+void SessionState::put_in_document(const std::vector<Change>& changes, bool is_in_hand) {
+    const std::lock_guard lock(rescue_mutex);
+    apply_changes(document, changes);
+    lookup.apply(changes);
+    changes_in_hand = is_in_hand ? &changes : nullptr;
+}
+
+// Entities that go in a row leave the simulation together; their number.
+std::size_t SessionState::sync_removals(std::span<const Change> changes) {
+    std::vector<EntityIndex> gone;
+    for (const Change& change : changes) {
+        const auto* entity = std::get_if<EntityChange>(&change);
+        if (!entity || entity->after) break;
+        gone.push_back(entity->before->index);
+    }
+    if (gone.empty()) return 0;
+    simulation_is_pristine = false;
+    simulation->remove_all(gone);
+    return gone.size();
+}
+
 // All changes or none.
 Result<void> SessionState::run_changes(const std::vector<Change>& changes) {
-    for (std::size_t i = 0; i < changes.size(); ++i) {
-        apply_change(document, changes[i]);
-        const Result<void> synced = sync(changes[i]);
-        if (synced.ok()) continue;
-        for (std::size_t back = i + 1; back-- > 0;) {
-            apply_change(document, reversed(changes[back]));
-            // The one that failed has changed nothing in the simulation.
-            if (back != i) (void)sync(reversed(changes[back])).ok();
+    put_in_document(changes, true);
+    std::size_t synced = 0;
+    Result<void> done;
+    try {
+        while (done.ok() && synced < changes.size()) {
+            const std::size_t gone = sync_removals(std::span(changes).subspan(synced));
+            if (gone == 0) done = sync(changes[synced]);
+            if (done.ok()) synced += std::max<std::size_t>(gone, 1);
         }
-        if (play_state == PlayState::stopped) (void)rebuild_simulation().ok();
-        return synced.error();
+    } catch (...) {
+        put_in_document(reversed(changes), false);
+        throw;
     }
-    return {};
+    if (done.ok()) {
+        const std::lock_guard lock(rescue_mutex);
+        changes_in_hand = nullptr;
+        return done;
+    }
+    put_in_document(reversed(changes), false);
+    // The one that failed has changed nothing in the simulation.
+    while (synced-- > 0) (void)sync(reversed(changes[synced])).ok();
+    if (play_state == PlayState::stopped) (void)rebuild_simulation().ok();
+    return done;
 }
 
 // Undo and redo lead to a document that was there before; no state of a run may stand in the way.
 Result<void> SessionState::insist_on_changes(const std::vector<Change>& changes) {
     Result<void> done = run_changes(changes);
     if (done.ok() || play_state == PlayState::stopped) return done;
-    for (const Change& change : changes) apply_change(document, change);
+    put_in_document(changes, true);
     Result<void> made = rebuild_simulation();
     if (!made.ok()) {
-        for (auto change = changes.rbegin(); change != changes.rend(); ++change)
-            apply_change(document, reversed(*change));
+        put_in_document(reversed(changes), false);
         return made;
+    }
+    {
+        const std::lock_guard lock(rescue_mutex);
+        changes_in_hand = nullptr;
     }
     tell_message("warning", "The running simulation could not follow and was reset: " + done.error().message());
     set_play_state(PlayState::stopped);
@@ -289,13 +327,18 @@ Edit SessionState::start_edit(std::string label) const {
     return edit;
 }
 
+void SessionState::record(Edit edit) {
+    const std::lock_guard lock(rescue_mutex);
+    document.next_index = edit.next_after;
+    history.add(std::move(edit));
+}
+
 Result<void> SessionState::commit(Edit edit) {
     if (edit.changes.empty()) return {};
     if (Result<void> done = run_changes(edit.changes); !done.ok()) return done;
-    document.next_index = edit.next_after;
     json changes = json::array();
     for (const Change& change : edit.changes) changes.push_back(change_json(change));
-    history.add(std::move(edit));
+    record(std::move(edit));
     tell_document(std::move(changes));
     return {};
 }
@@ -304,13 +347,14 @@ Result<std::string> SessionState::undo() {
     const Edit* edit = history.undoable();
     if (!edit) return std::string();
     if (edit->catalog) return undo_on_catalog(*this);
-    std::vector<Change> back;
-    for (auto change = edit->changes.rbegin(); change != edit->changes.rend(); ++change)
-        back.push_back(reversed(*change));
+    const std::vector<Change> back = reversed(edit->changes);
     if (Result<void> done = insist_on_changes(back); !done.ok()) return done.error();
-    document.next_index = edit->next_before;
     std::string label = edit->label;
-    history.move_back();
+    {
+        const std::lock_guard lock(rescue_mutex);
+        document.next_index = edit->next_before;
+        history.move_back();
+    }
     json changes = json::array();
     for (const Change& change : back) changes.push_back(change_json(change));
     tell_document(std::move(changes));
@@ -322,11 +366,14 @@ Result<std::string> SessionState::redo() {
     if (!edit) return std::string();
     if (edit->catalog) return redo_on_catalog(*this);
     if (Result<void> done = insist_on_changes(edit->changes); !done.ok()) return done.error();
-    document.next_index = edit->next_after;
     std::string label = edit->label;
     json changes = json::array();
     for (const Change& change : edit->changes) changes.push_back(change_json(change));
-    history.move_forward();
+    {
+        const std::lock_guard lock(rescue_mutex);
+        document.next_index = edit->next_after;
+        history.move_forward();
+    }
     tell_document(std::move(changes));
     return label;
 }
@@ -334,22 +381,31 @@ Result<std::string> SessionState::redo() {
 Result<void> SessionState::open(Document opened, std::string opened_name) {
     Result<std::unique_ptr<Simulation>> made = Simulation::create(opened, catalog, forms);
     if (!made.ok()) return made.error();
-    document = std::move(opened);
-    name = std::move(opened_name);
+    {
+        const std::lock_guard lock(rescue_mutex);
+        std::swap(document, opened);
+        lookup.assign(document);
+        name = std::move(opened_name);
+        history.clear();
+    }
     simulation = std::move(made).value();
     simulation_is_pristine = true;
     grab.reset();
     told_limits = 0;
     told_problems.clear();
     told_notes.clear();
-    history.clear();
     play_state = PlayState::stopped;
     step_times.clear();
     tell_document(json::array({{{"op", "reset"}, {"scene", document_to_json(document)}}}));
     tell(simulation_event());
     events.all_poses = true;
-    autosaved_revision = revision;
+    mark_autosaved();
     return {};
+}
+
+void SessionState::mark_autosaved() {
+    const std::lock_guard lock(rescue_mutex);
+    autosaved_revision = revision;
 }
 
 // Names

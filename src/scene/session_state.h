@@ -5,12 +5,15 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "scene/document_index.h"
 #include "scene/entity_body.h"
 #include "scene/grab.h"
 #include "scene/history.h"
@@ -31,8 +34,14 @@ struct SessionState {
     std::shared_ptr<FormCache> forms = std::make_shared<FormCache>();  ///< of all simulations of this session
     EntityBodies bodies;
 
+    /// Held while the document, its name, revisions and history change: another thread may look at them to rescue what
+    /// is not saved. Never for long.
+    std::mutex rescue_mutex;
+    const std::vector<Change>* changes_in_hand = nullptr;  ///< in the document but not in the simulation yet
+
     Document document;
-    std::string name;  ///< of the file; empty: not saved yet
+    DocumentIndex lookup;  ///< of the document
+    std::string name;      ///< of the file; empty: not saved yet
     std::uint64_t revision = 0;
     std::uint64_t autosaved_revision = 0;
     History history;
@@ -54,11 +63,16 @@ struct SessionState {
 
     /// Does the edit to document and simulation and tells clients. On failure all is as before.
     Result<void> commit(Edit edit);
+    /// Remembers an edit that has been done.
+    void record(Edit edit);
     /// The label of what was undone or redone; empty: nothing.
     Result<std::string> undo();
     Result<std::string> redo();
     /// An edit with the document's present next_index in it.
     [[nodiscard]] Edit start_edit(std::string label) const;
+
+    /// What is on disk is the document as it is now.
+    void mark_autosaved();
 
     /// Takes another document, without history. On failure the old one stays.
     Result<void> open(Document opened, std::string opened_name);
@@ -80,8 +94,10 @@ struct SessionState {
 
 private:
     Result<void> sync(const Change& change);
+    std::size_t sync_removals(std::span<const Change> changes);
     Result<void> sync_entity(const EntityChange& change);
     Result<void> sync_heading(const HeadingChange& change);
+    void put_in_document(const std::vector<Change>& changes, bool is_in_hand);
     Result<void> run_changes(const std::vector<Change>& changes);
     Result<void> insist_on_changes(const std::vector<Change>& changes);
     void tell_step();

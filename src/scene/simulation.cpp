@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <unordered_map>
 #include <utility>
 
 #include "attributes/surfaces.h"
@@ -33,11 +34,8 @@ std::string name_of(EntityIndex index, const LiveEntity& entity) {
 }
 
 // Those of different fluids that are in each other.
-void add_notes_of_liquids(const std::map<EntityIndex, LiveEntity>& live, std::vector<std::string>& notes) {
-    std::vector<std::pair<EntityIndex, const LiveEntity*>> liquids;
-    for (const auto& [index, entity] : live) {
-        if (entity.points && !entity.points->fluid().is_null()) liquids.emplace_back(index, &entity);
-    }
+void add_notes_of_liquids(const std::vector<std::pair<EntityIndex, const LiveEntity*>>& liquids,
+                          std::vector<std::string>& notes) {
     for (std::size_t a = 0; a < liquids.size(); ++a) {
         for (std::size_t b = a + 1; b < liquids.size(); ++b) {
             const MovingPoints &one = *liquids[a].second->points, &other = *liquids[b].second->points;
@@ -158,19 +156,21 @@ void Simulation::let_go() {
 std::vector<std::string> Simulation::notes() const {
     // Things of one name are told of together, where the first of them stands.
     std::vector<std::pair<std::string, int>> told;
-    for (const auto& [index, entity] : state_->live) {
+    std::unordered_map<std::string, std::size_t> places;
+    std::vector<std::pair<EntityIndex, const LiveEntity*>> liquids;
+    for (const EntityIndex index : state_->remarkable) {
+        const LiveEntity& entity = state_->live.at(index);
+        if (entity.points && !entity.points->fluid().is_null()) liquids.emplace_back(index, &entity);
         if (entity.form.note.empty()) continue;
         const std::string note = name_of(index, entity) + " " + entity.form.note;
-        const auto same = std::ranges::find(told, note, &std::pair<std::string, int>::first);
-        if (same == told.end())
-            told.emplace_back(note, 1);
-        else
-            ++same->second;
+        const auto [place, is_new] = places.emplace(note, told.size());
+        if (is_new) told.emplace_back(note, 0);
+        ++told[place->second].second;
     }
     std::vector<std::string> notes;
     for (const auto& [note, count] : told)
         notes.push_back(note + (count > 1 ? " (" + std::to_string(count) + " of this name)." : "."));
-    add_notes_of_liquids(state_->live, notes);
+    add_notes_of_liquids(liquids, notes);
     return notes;
 }
 
@@ -258,13 +258,13 @@ JointHandle Simulation::joint(std::uint32_t joint) const {
 Result<AttributeSet> Simulation::attributes(EntityIndex entity) const {
     const LiveEntity* found = state_->find(entity);
     if (!found) return not_in_world(entity);
-    return found->attributes;
+    return *found->attributes;
 }
 
 Result<void> Simulation::add(const Entity& entity) {
     if (Result<void> added = state_->add(entity); !added.ok()) return added;
     if (Result<void> held = state_->fasten_all(entity.index); !held.ok()) {
-        (void)state_->remove(entity.index).ok();
+        state_->remove_all({entity.index});
         return held;
     }
     state_->templates[entity.index] = entity;
@@ -293,8 +293,18 @@ Result<void> Simulation::renew_models(const std::set<std::string>& keys, bool ke
 }
 
 Result<void> Simulation::remove(EntityIndex entity) {
-    state_->templates.erase(entity);
-    return state_->remove(entity);
+    if (!contains(entity)) return not_in_world(entity);
+    remove_all({entity});
+    return {};
+}
+
+void Simulation::remove_all(const std::vector<EntityIndex>& entities) {
+    std::vector<EntityIndex> there;
+    for (const EntityIndex entity : entities) {
+        state_->templates.erase(entity);
+        if (state_->live.contains(entity)) there.push_back(entity);
+    }
+    state_->remove_all(there);
 }
 
 Result<void> Simulation::add_joint(const SceneJoint& joint) { return state_->add_joint(joint); }

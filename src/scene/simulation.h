@@ -106,6 +106,8 @@ public:
     /// tried; the error is the first.
     Result<void> renew_models(const std::set<std::string>& keys, bool keep_motion);
     Result<void> remove(EntityIndex entity);  ///< its joints go with it
+    /// Many at once; those that are not (any more) in the world are no error.
+    void remove_all(const std::vector<EntityIndex>& entities);
     /// Puts its frame there; points are carried along and are at rest then.
     Result<void> set_pose(EntityIndex entity, const Transform& pose);
     Result<void> set_velocity(EntityIndex entity, Vec3 linear, Vec3 angular);

@@ -40,9 +40,9 @@ Result<void> Simulation::State::change(EntityIndex index, const Effect& effect) 
         return entity.points ? entity.points->set_enabled(enable->enabled)
                              : world->set_enabled(entity.body, enable->enabled);
     }
-    Result<void> removed = remove(index);
-    if (removed.ok()) despawned.push_back(index);
-    return removed;
+    remove_all({index});
+    despawned.push_back(index);
+    return {};
 }
 
 Result<EntityIndex> Simulation::State::spawn(EntityIndex like, const Spawn& spawn) {
@@ -68,7 +68,7 @@ Result<EntityIndex> Simulation::State::spawn(EntityIndex like, const Spawn& spaw
 std::string Simulation::State::category(EntityIndex index) const {
     const LiveEntity* entity = find(index);
     if (!entity) return {};
-    return entity->definition.category.empty() ? entity->attributes.word("category", "") : entity->definition.category;
+    return entity->definition.category.empty() ? entity->attributes->word("category", "") : entity->definition.category;
 }
 
 Vec3 Simulation::State::center_of_mass(const LiveEntity& entity) const {

@@ -35,24 +35,24 @@ LiveEntity* Simulation::State::find(EntityIndex index) {
 Result<LiveEntity> Simulation::State::describe(const Entity& entity) {
     LiveEntity described;
     described.definition = entity;
-    Result<AttributeSet> set = bodies.attributes(entity);
+    Result<SharedAttributes> set = bodies.shared_attributes(entity);
     if (!set.ok()) return set.error();
     described.attributes = std::move(set).value();
+    const AttributeSet& attributes = *described.attributes;
     described.frame = entity.pose;
-    described.form =
-        bodies.form(entity, described.attributes, is_held_as_body(entity.index, described.attributes.word("kind", "")));
+    described.form = bodies.form(entity, attributes, is_held_as_body(entity.index, attributes.word("kind", "")));
     if (described.form.has_points && entity.torque != Vec3{})
         described.form.note = "is not turned by its torque, because it is not one rigid body";
-    if (!described.form.has_points) described.shape_key = EntityBodies::shape_key(entity, described.attributes);
+    if (!described.form.has_points) described.shape_key = EntityBodies::shape_key(entity, attributes);
     return described;
 }
 
 // With its shape; the body's definition lacks nothing then.
 Result<physics::BodyDefinition> Simulation::State::prepare_body(LiveEntity& entity) {
-    Result<physics::BodyDefinition> made = bodies.body(entity.definition, entity.attributes);
+    Result<physics::BodyDefinition> made = bodies.body(entity.definition, *entity.attributes);
     if (!made.ok()) return made.error();
     const auto shape =
-        shapes.take(entity.shape_key, [&] { return bodies.shape(entity.definition, entity.attributes); });
+        shapes.take(entity.shape_key, [&] { return bodies.shape(entity.definition, *entity.attributes); });
     if (!shape.ok()) return shape.error();
     made.value().shape = entity.shape = shape.value();
     return made;
@@ -71,7 +71,7 @@ Result<void> Simulation::State::put_body(LiveEntity& entity) {
 }
 
 Result<void> Simulation::State::put_points(LiveEntity& entity) {
-    const Result<PointsDefinition> definition = bodies.points(entity.definition, entity.attributes);
+    const Result<PointsDefinition> definition = bodies.points(entity.definition, *entity.attributes);
     if (!definition.ok()) return definition.error();
     Result<std::unique_ptr<MovingPoints>> points = make_points(*world, liquids, definition.value());
     if (!points.ok()) return points.error();
@@ -106,7 +106,9 @@ Result<void> Simulation::State::add(const Entity& entity) {
     Result<LiveEntity> described = describe(entity);
     if (!described.ok()) return of_entity(entity, described.error());
     if (const Result<void> placed = put(described.value()); !placed.ok()) return of_entity(entity, placed.error());
-    live.emplace(entity.index, std::move(described).value());
+    const LiveEntity& added = live.emplace(entity.index, std::move(described).value()).first->second;
+    holds.add_pins(entity.index, entity.pins);
+    list_remarkable(added);
     indices.insert(std::lower_bound(indices.begin(), indices.end(), entity.index), entity.index);
     return {};
 }
@@ -143,7 +145,7 @@ Result<void> Simulation::State::update_body(LiveEntity& before, LiveEntity& afte
 
 // The same points go on with other matter; what its pins hold to others stays held where it is.
 Result<void> Simulation::State::update_points(LiveEntity& before, LiveEntity& after) {
-    Result<PointsDefinition> definition = bodies.points(after.definition, after.attributes);
+    Result<PointsDefinition> definition = bodies.points(after.definition, *after.attributes);
     if (!definition.ok()) return definition.error();
     const bool same_pins = before.definition.pins == after.definition.pins;
     auto* deformable = std::get_if<physics::DeformableDefinition>(&definition.value());
@@ -161,7 +163,7 @@ Result<void> Simulation::State::update_points(LiveEntity& before, LiveEntity& af
 
 // Another kind, or other points: made anew where it is.
 Result<void> Simulation::State::replace(LiveEntity& before, LiveEntity& after, bool keep_motion) {
-    if (after.form.has_points && is_held_as_body(before.definition.index, after.attributes.word("kind", "")))
+    if (after.form.has_points && is_held_as_body(before.definition.index, after.attributes->word("kind", "")))
         return Error{"attributes.kind", "grains cannot be held by a joint or a pin", "remove that first"};
     const Entity document = after.definition;
     if (keep_motion) {
@@ -169,7 +171,7 @@ Result<void> Simulation::State::replace(LiveEntity& before, LiveEntity& after, b
         std::tie(after.definition.linear_velocity, after.definition.angular_velocity) = motion_of(before);
     }
     // Liquid fills only what is free and joins liquid that is there, so what it was is not there meanwhile.
-    const bool hides = before.definition.enabled && (!before.points || before.attributes.word("kind", "") == "fluid");
+    const bool hides = before.definition.enabled && (!before.points || before.attributes->word("kind", "") == "fluid");
     const auto show = [&](bool shown) {
         return before.points ? before.points->set_enabled(shown) : world->set_enabled(before.body, shown);
     };
@@ -203,22 +205,48 @@ Result<void> Simulation::State::update(const Entity& entity, bool keep_motion) {
     if (!updated.ok()) return of_entity(entity, updated.error());
     const bool is_new = !both_bodies && !same_points;
     const std::vector<Pin> pins_before = before->definition.pins;
+    holds.remove_pins(entity.index, pins_before);
     *before = std::move(after);
+    holds.add_pins(entity.index, entity.pins);
+    list_remarkable(*before);
     return fasten_to(*before, pins_before, is_new);
 }
 
-Result<void> Simulation::State::remove(EntityIndex index) {
-    const auto found = live.find(index);
-    if (found == live.end()) return Error{"index", "entity " + std::to_string(index) + " is not in the world"};
-    std::erase_if(joints, [index](const auto& item) {
-        const SceneJoint& joint = item.second.definition;
-        return joint.entity_b == index || joint.entity_a == index;
-    });
-    take_out(found->second);
-    live.erase(found);
-    indices.erase(std::lower_bound(indices.begin(), indices.end(), index));
-    std::erase_if(timed_forces, [index](const TimedForce& push) { return push.entity == index; });
-    return {};
+void Simulation::State::remove_all(const std::vector<EntityIndex>& gone) {
+    std::vector<BodyHandle> handles;
+    for (const EntityIndex index : gone) {
+        LiveEntity& entity = live.at(index);
+        // With the bodies the world takes their joints.
+        for (const std::uint32_t joint : std::set(holds.joints_of(index))) {
+            holds.remove_joint(joints.at(joint).definition);
+            joints.erase(joint);
+        }
+        entity.points.reset();
+        if (!entity.body.is_null()) handles.push_back(entity.body);
+    }
+    // They are in the world, which does not refuse.
+    (void)world->destroy_bodies(handles).ok();
+    for (const EntityIndex index : gone) {
+        const auto found = live.find(index);
+        if (!found->second.body.is_null()) shapes.give_back(found->second.shape_key, found->second.shape);
+        holds.remove_pins(index, found->second.definition.pins);
+        remarkable.erase(index);
+        live.erase(found);
+    }
+    const auto is_gone = [this](EntityIndex index) { return !live.contains(index); };
+    if (gone.size() == 1)
+        indices.erase(std::lower_bound(indices.begin(), indices.end(), gone.front()));
+    else
+        std::erase_if(indices, is_gone);
+    std::erase_if(timed_forces, [&](const TimedForce& push) { return is_gone(push.entity); });
+}
+
+void Simulation::State::list_remarkable(const LiveEntity& entity) {
+    const bool is_liquid = entity.points && !entity.points->fluid().is_null();
+    if (is_liquid || !entity.form.note.empty())
+        remarkable.insert(entity.definition.index);
+    else
+        remarkable.erase(entity.definition.index);
 }
 
 Result<void> Simulation::State::place(LiveEntity& entity, const Transform& pose) {

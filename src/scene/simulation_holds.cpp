@@ -30,8 +30,9 @@ std::vector<HeldNode> held_nodes(const Entity& entity, const physics::Deformable
     return held;
 }
 
-bool pins_to(const std::vector<Pin>& pins, EntityIndex index) {
-    return std::ranges::any_of(pins, [index](const Pin& pin) { return pin.to == index; });
+void add_targets(const std::vector<Pin>& pins, std::set<EntityIndex>& targets) {
+    for (const Pin& pin : pins)
+        if (pin.to) targets.insert(*pin.to);
 }
 
 bool is_thin(const std::string& kind) { return kind == "cloth" || kind == "rope"; }
@@ -64,14 +65,8 @@ void Simulation::State::find_bodies(const Document& document) {
 
 bool Simulation::State::is_held_as_body(EntityIndex index, const std::string& kind) const {
     if (to_be_held.contains(index)) return true;
-    const auto joins = [index](const auto& item) {
-        const SceneJoint& joint = item.second.definition;
-        return joint.entity_b == index || joint.entity_a == index;
-    };
-    const auto is_pinned_to_it = [&](const auto& item) {
-        return pins_to(item.second.definition.pins, index) && !may_tie(item.second.attributes.word("kind", ""), kind);
-    };
-    return std::ranges::any_of(joints, joins) || std::ranges::any_of(live, is_pinned_to_it);
+    const auto is_held = [&](EntityIndex other) { return !may_tie(live.at(other).attributes->word("kind", ""), kind); };
+    return !holds.joints_of(index).empty() || std::ranges::any_of(holds.pinned_to(index), is_held);
 }
 
 // Pins of soft things to this sheet or rope: the nodes of it that they catch are tied to the soft thing.
@@ -79,7 +74,8 @@ void Simulation::State::tie_pins(const LiveEntity& entity, std::vector<bool>& is
                                  std::vector<physics::Tie>& ties) const {
     std::vector<Vec3> positions;
     entity.points->read(positions);
-    for (const auto& [index, other] : live) {
+    for (const EntityIndex index : holds.pinned_to(entity.definition.index)) {
+        const LiveEntity& other = live.at(index);
         if (!other.points || !other.points->deformable() || is_thin(other)) continue;
         for (Pin pin : other.definition.pins) {
             if (pin.to != entity.definition.index) continue;
@@ -97,7 +93,7 @@ void Simulation::State::tie_pins(const LiveEntity& entity, std::vector<bool>& is
 Result<void> Simulation::State::fasten(const LiveEntity& entity) {
     const physics::DeformableDefinition* deformable = entity.points ? entity.points->deformable() : nullptr;
     if (!deformable) return {};
-    Holds holds;
+    Holds held_now;
     const bool is_rope = std::holds_alternative<physics::Rope>(deformable->matter);
     std::vector<bool> is_held(deformable->nodes.size(), false), is_clamped = is_held;
     for (const std::uint32_t node : deformable->pinned) is_held[node] = true;
@@ -113,7 +109,7 @@ Result<void> Simulation::State::fasten(const LiveEntity& entity) {
             const auto has = [&](std::uint32_t other) { return std::ranges::binary_search(nodes, other); };
             if (!is_rope || !pin.clamped || is_clamped[node] || (node > 0 && has(node - 1) && has(node + 1))) return;
             is_clamped[node] = true;
-            holds.clamps.push_back({node, rotate_inverse(holder, direction_at(positions, node))});
+            held_now.clamps.push_back({node, rotate_inverse(holder, direction_at(positions, node))});
         };
         if (!pin.to) {
             for (const std::uint32_t node : nodes) clamp(node, {});
@@ -127,7 +123,7 @@ Result<void> Simulation::State::fasten(const LiveEntity& entity) {
                 const auto tie = world->nearest_tie(node, other->points->handle(), positions[node]);
                 if (is_held[node] || !tie) continue;
                 is_held[node] = true;
-                holds.ties.push_back(*tie);
+                held_now.ties.push_back(*tie);
             }
             continue;
         }
@@ -138,34 +134,45 @@ Result<void> Simulation::State::fasten(const LiveEntity& entity) {
         for (const std::uint32_t node : nodes) {
             if (is_held[node]) continue;
             is_held[node] = true;
-            holds.attachments.push_back({node, other->body, inverse_transform_point(pose, positions[node])});
+            held_now.attachments.push_back({node, other->body, inverse_transform_point(pose, positions[node])});
             clamp(node, pose.rotation);
         }
     }
-    if (is_thin(entity)) tie_pins(entity, is_held, holds.ties);
-    return entity.points->attach(std::move(holds));
+    if (is_thin(entity)) tie_pins(entity, is_held, held_now.ties);
+    return entity.points->attach(std::move(held_now));
 }
 
 Result<void> Simulation::State::fasten_to(const LiveEntity& entity, const std::vector<Pin>& before, bool is_new) {
-    const bool has_other_pins = is_new || before != entity.definition.pins;
-    for (const auto& [index, other] : live) {
-        if (&other == &entity || !other.points) continue;
-        // Ties of a soft thing are those of what it is pinned to.
-        const bool is_tied_to_it = has_other_pins && !is_thin(entity) && is_thin(other) &&
-                                   (pins_to(before, index) || pins_to(entity.definition.pins, index));
-        if (!is_tied_to_it && !(is_new && pins_to(other.definition.pins, entity.definition.index))) continue;
-        if (Result<void> held = fasten(other); !held.ok()) return held;
+    const EntityIndex itself = entity.definition.index;
+    // Ties of a soft thing are those of what it is pinned to.
+    const bool has_other_ties = (is_new || before != entity.definition.pins) && !is_thin(entity);
+    const std::set<EntityIndex>& pinned_to_it = holds.pinned_to(itself);
+    std::set<EntityIndex> meant = is_new ? pinned_to_it : std::set<EntityIndex>{};
+    if (has_other_ties) add_targets(before, meant);
+    if (has_other_ties) add_targets(entity.definition.pins, meant);
+    for (const EntityIndex index : meant) {
+        const LiveEntity* other = find(index);
+        if (!other || index == itself || !other->points) continue;
+        if (!is_thin(*other) && !(is_new && pinned_to_it.contains(index))) continue;
+        if (Result<void> held = fasten(*other); !held.ok()) return held;
     }
     return {};
 }
 
 Result<void> Simulation::State::fasten_all(std::optional<EntityIndex> came) {
-    const LiveEntity* newcomer = came ? find(*came) : nullptr;
-    for (const auto& [index, entity] : live) {
-        const bool is_meant = !came || index == *came || pins_to(entity.definition.pins, *came) ||
-                              (newcomer && is_thin(entity) && pins_to(newcomer->definition.pins, index));
-        if (!is_meant) continue;
-        if (Result<void> held = fasten(entity); !held.ok()) return held;
+    if (!came) {
+        for (const auto& [index, entity] : live)
+            if (Result<void> held = fasten(entity); !held.ok()) return held;
+        return {};
+    }
+    const std::set<EntityIndex>& pinned_to_it = holds.pinned_to(*came);
+    std::set<EntityIndex> meant = pinned_to_it;
+    meant.insert(*came);
+    if (const LiveEntity* newcomer = find(*came)) add_targets(newcomer->definition.pins, meant);
+    for (const EntityIndex index : meant) {
+        const LiveEntity* entity = find(index);
+        if (!entity || (index != *came && !pinned_to_it.contains(index) && !is_thin(*entity))) continue;
+        if (Result<void> held = fasten(*entity); !held.ok()) return held;
     }
     return {};
 }
@@ -187,7 +194,7 @@ Result<void> Simulation::State::make_bodies_of(const SceneJoint& joint) {
 Result<void> Simulation::State::soften_ends(const SceneJoint& joint) {
     for (const EntityIndex index : {joint.entity_b, joint.entity_a.value_or(0)}) {
         const LiveEntity* end = find(index);
-        if (!end || end->form.note.empty() || is_held_as_body(index, end->attributes.word("kind", ""))) continue;
+        if (!end || end->form.note.empty() || is_held_as_body(index, end->attributes->word("kind", ""))) continue;
         if (Result<void> made = update(Entity(end->definition), true); !made.ok()) return made;
     }
     return {};
@@ -217,6 +224,7 @@ Result<void> Simulation::State::add_joint(const SceneJoint& joint) {
     if (!handle.ok())
         return Error{who + ": " + joint_field(handle.error().where), handle.error().why, handle.error().remedy};
     joints.emplace(joint.index, LiveJoint{joint, handle.value()});
+    holds.add_joint(joint);
     return {};
 }
 
@@ -225,6 +233,7 @@ Result<void> Simulation::State::remove_joint(std::uint32_t index) {
     if (found == joints.end()) return Error{"index", "joint " + std::to_string(index) + " is not in the world"};
     Result<void> removed = world->destroy_joint(found->second.joint);
     const SceneJoint definition = found->second.definition;
+    holds.remove_joint(definition);
     joints.erase(found);
     return removed.ok() ? soften_ends(definition) : removed;
 }

@@ -11,6 +11,7 @@
 
 #include "scene/action_runner.h"
 #include "scene/entity_body.h"
+#include "scene/hold_index.h"
 #include "scene/liquids.h"
 #include "scene/moving_points.h"
 #include "scene/shared_shapes.h"
@@ -21,7 +22,7 @@ namespace embody::scene {
 /// An entity in the world: one body, or points.
 struct LiveEntity {
     Entity definition;
-    attributes::AttributeSet attributes;
+    SharedAttributes attributes;
     EntityForm form;
     std::unique_ptr<MovingPoints> points;  ///< null: it is a body
     physics::BodyHandle body;              ///< null: it has points
@@ -59,6 +60,8 @@ struct Simulation::State {
     std::map<EntityIndex, LiveEntity> live;
     std::vector<EntityIndex> indices;
     std::map<std::uint32_t, LiveJoint> joints;
+    HoldIndex holds;                   ///< of pins and joints of all that live
+    std::set<EntityIndex> remarkable;  ///< entities with a note, and liquids
     std::set<EntityIndex> to_be_held;  ///< entities that joints or pins need as one body, before these are there
     std::vector<TimedForce> timed_forces;
     std::vector<EntityIndex> spawned, despawned;
@@ -72,7 +75,8 @@ struct Simulation::State {
     [[nodiscard]] const LiveEntity* find(EntityIndex index) const;
     Result<void> add(const Entity& entity);
     Result<void> update(const Entity& entity, bool keep_motion);
-    Result<void> remove(EntityIndex index);
+    /// All of them are in the world.
+    void remove_all(const std::vector<EntityIndex>& gone);
     Result<void> place(LiveEntity& entity, const Transform& pose);
     Result<void> set_velocity(LiveEntity& entity, Vec3 linear, Vec3 angular);
     [[nodiscard]] Transform pose_of(const LiveEntity& entity) const;
@@ -109,6 +113,7 @@ private:
     Result<void> put_body(LiveEntity& entity);
     Result<void> put_points(LiveEntity& entity);
     void take_out(LiveEntity& entity);
+    void list_remarkable(const LiveEntity& entity);
     [[nodiscard]] std::pair<Vec3, Vec3> motion_of(const LiveEntity& entity) const;
     Result<void> update_body(LiveEntity& before, LiveEntity& after, bool keep_motion);
     Result<void> update_points(LiveEntity& before, LiveEntity& after);

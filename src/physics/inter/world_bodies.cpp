@@ -28,6 +28,20 @@ void change_users(WorldState& world, ShapeHandle shape, int change) {
     if (ShapeRecord* record = world.shapes.find(shape)) record->users += static_cast<std::uint32_t>(change);
 }
 
+void remove_joints_of(WorldState& world, std::span<const std::uint32_t> bodies) {
+    std::vector<bool> is_meant;
+    bool any_removed = false;
+    for (std::uint32_t slot = 0; slot < world.joints.slot_count(); ++slot) {
+        if (!world.joints.used(slot)) continue;
+        if (is_meant.empty()) is_meant = marked(world, bodies);
+        const JointDefinition& joint = world.joints.at(slot).definition;
+        if (!is_meant[joint.body_b.index] && (joint.body_a.is_null() || !is_meant[joint.body_a.index])) continue;
+        world.joints.remove(world.joints.handle_at(slot));
+        any_removed = true;
+    }
+    if (any_removed) list_jointed_pairs(world);
+}
+
 // Joints keep their frames relative to the centre of mass, which a new definition may move.
 void set_up_joints_of(WorldState& world, BodyHandle body) {
     for (std::uint32_t slot = 0; slot < world.joints.slot_count(); ++slot) {
@@ -55,14 +69,7 @@ Result<void> World::destroy_bodies(std::span<const BodyHandle> bodies) {
     const auto slots = slots_of(*state_, bodies);
     if (!slots) return slots.error();
     lift_bodies(*state_, slots.value());
-    for (const JointHandle joint : joints()) {
-        const JointDefinition& definition = state_->joints.find(joint)->definition;
-        if (std::ranges::any_of(bodies,
-                                [&](BodyHandle b) { return definition.body_a == b || definition.body_b == b; })) {
-            state_->joints.remove(joint);
-        }
-    }
-    list_jointed_pairs(*state_);
+    remove_joints_of(*state_, slots.value());
     for (const BodyHandle body : bodies) {
         change_users(*state_, state_->record(body.index).definition.shape, -1);
         state_->motion[body.index] = {};

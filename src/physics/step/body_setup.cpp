@@ -2,6 +2,7 @@
 #include "physics/step/body_setup.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/dynamic/mass.h"
@@ -35,8 +36,8 @@ void set_up_sizes(BodySetup& setup) {
 }
 
 void remove_contacts_of(WorldState& world, std::span<const std::uint32_t> bodies) {
-    std::vector<bool> is_meant(world.bodies.slot_count());
-    for (const std::uint32_t body : bodies) is_meant[body] = true;
+    if (world.contacts.empty()) return;
+    const std::vector<bool> is_meant = marked(world, bodies);
     std::erase_if(world.contacts, [&](const Contact& c) { return is_meant[c.a] || is_meant[c.b]; });
 }
 
@@ -111,13 +112,15 @@ void place_body(WorldState& world, std::uint32_t body, BodySetup setup) {
 
 void lift_bodies(WorldState& world, std::span<const std::uint32_t> bodies) {
     world.awake_changed = true;
-    for (const std::uint32_t body : bodies) {
-        wake_around(world, body);
-        wake_group_of(world, body);
-    }
-    for (const std::uint32_t other : std::vector<std::uint32_t>(world.to_wake)) {
+    // Only those around these bodies: who was named before keeps until the next step.
+    std::vector<std::uint32_t> named_before = std::exchange(world.to_wake, {});
+    wake_around(world, bodies);
+    for (const std::uint32_t body : bodies) wake_group_of(world, body);
+    for (const std::uint32_t other : world.to_wake) {
         if (world.is_used(other)) wake_group_of(world, other);
     }
+    named_before.swap(world.to_wake);
+    for (const std::uint32_t other : named_before) wake_later(world, other);
     remove_contacts_of(world, bodies);
     world.contact_glances.clear();
     world.touch_memory.is_laid_out = false;

@@ -114,20 +114,31 @@ void wake_later(WorldState& world, std::uint32_t body) {
     });
 }
 
-void wake_around(WorldState& world, std::uint32_t body) {
-    wake_later(world, body);
-    if (world.record(body).shape) {
+std::vector<bool> marked(const WorldState& world, std::span<const std::uint32_t> bodies) {
+    std::vector<bool> is_meant(world.bodies.slot_count());
+    for (const std::uint32_t body : bodies) is_meant[body] = true;
+    return is_meant;
+}
+
+void wake_around(WorldState& world, std::uint32_t body) { wake_around(world, std::span(&body, 1)); }
+
+void wake_around(WorldState& world, std::span<const std::uint32_t> bodies) {
+    for (const std::uint32_t body : bodies) {
+        wake_later(world, body);
+        if (!world.record(body).shape) continue;
         const Bounds bounds = enlarged(world.record(body).shape->bounds(world.pose(body)), 0.01);
         world.broad_phase.query(bounds, [&](std::uint32_t other) {
             world.sleep[other].quiet_time = 0;
             if (world.is_asleep(other)) wake_later(world, other);
         });
     }
-    for (std::uint32_t i = 0; i < world.joints.slot_count(); ++i) {
+    // Of several bodies in one walk over the joints.
+    const std::vector<bool> is_one = bodies.size() > 1 ? marked(world, bodies) : std::vector<bool>{};
+    const auto is_meant = [&](std::uint32_t body) { return is_one.empty() ? body == bodies[0] : is_one[body]; };
+    for (std::uint32_t i = 0; i < world.joints.slot_count() && !bodies.empty(); ++i) {
         if (!world.joints.used(i)) continue;
         const JointDefinition& joint = world.joints.at(i).definition;
-        const bool is_partner = joint.body_b.index == body || (!joint.body_a.is_null() && joint.body_a.index == body);
-        if (!is_partner) continue;
+        if (!is_meant(joint.body_b.index) && (joint.body_a.is_null() || !is_meant(joint.body_a.index))) continue;
         wake_later(world, joint.body_b.index);
         if (!joint.body_a.is_null()) wake_later(world, joint.body_a.index);
     }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "physics/step/world_state.h"
 
 namespace embody::physics {
@@ -16,5 +19,9 @@ void wake_later(WorldState& world, std::uint32_t body);
 
 /// Asks for everything that touches the body, its jointed partners and itself to be awake in the next step.
 void wake_around(WorldState& world, std::uint32_t body);
+void wake_around(WorldState& world, std::span<const std::uint32_t> bodies);
+
+/// By slot, whether it is one of these.
+std::vector<bool> marked(const WorldState& world, std::span<const std::uint32_t> bodies);
 
 }  // namespace embody::physics

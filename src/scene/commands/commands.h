@@ -50,7 +50,5 @@ Result<nlohmann::json> model_attribute_rows(const catalog::Catalog& catalog, std
 
 /// Where `entity` comes to lie when it is dropped where the ray meets the scene. It is not in the simulation.
 Result<Transform> place_on_ray(SessionState& state, const Entity& entity, Vec3 origin, Vec3 direction);
-/// `wanted`, with a number behind it if an entity has that name.
-std::string free_name(const Document& document, const std::string& wanted);
 
 }  // namespace embody::scene

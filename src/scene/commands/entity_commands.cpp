@@ -2,8 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <string_view>
-#include <unordered_set>
+#include <set>
 
 #include "scene/commands/commands.h"
 #include "scene/json/parts.h"
@@ -12,17 +11,6 @@
 namespace embody::scene {
 
 using nlohmann::json;
-
-std::string free_name(const Document& document, const std::string& wanted) {
-    // Looked up often: many things of one kind have names that differ by their number only.
-    std::unordered_set<std::string_view> taken;
-    for (const Entity& entity : document.entities) taken.insert(entity.name);
-    if (!taken.contains(wanted)) return wanted;
-    for (int number = 2;; ++number) {
-        std::string name = wanted + " " + std::to_string(number);
-        if (!taken.contains(name)) return name;
-    }
-}
 
 namespace {
 
@@ -36,6 +24,12 @@ Result<std::string> usual_name(SessionState& state, const Entity& entity) {
     Result<catalog::ModelSummary> model = state.bodies.model(entity);
     if (!model.ok()) return model.error();
     return model.value().name;
+}
+
+Result<void> check_room(const Document& document, std::size_t count) {
+    if (document.next_index > last_document_index - count + 1) return Error{"entity", "no index is left"};
+    if (document.entities.size() + count <= most_entities) return {};
+    return Error{"entity", "a scene can have " + std::to_string(most_entities) + " entities", "delete some first"};
 }
 
 Result<json> add(SessionState& state, const json& params) {
@@ -58,12 +52,12 @@ Result<json> add(SessionState& state, const json& params) {
     // Its own index and name.
     Entity entity = std::move(read).value();
     if (entity.index != 0) return Error{"entity.index", "is given by the session", "leave it out"};
-    if (state.document.next_index > last_document_index) return Error{"entity", "no index is left"};
+    if (Result<void> room = check_room(state.document, 1); !room.ok()) return room.error();
     entity.index = state.document.next_index;
     if (entity.name.empty()) {
         Result<std::string> name = usual_name(state, entity);
         if (!name.ok()) return Error{"entity." + name.error().where, name.error().why, name.error().remedy};
-        entity.name = free_name(state.document, name.value());
+        entity.name = state.lookup.names.free_name(name.value());
     }
 
     // Where the pointer is.
@@ -92,14 +86,19 @@ Result<json> remove(SessionState& state, const json& params) {
     const auto goes = [&indices](EntityIndex index) {
         return std::binary_search(indices.begin(), indices.end(), index);
     };
-    for (const SceneJoint& joint : state.document.joints)
-        if (goes(joint.entity_b) || (joint.entity_a && goes(*joint.entity_a)))
-            edit.changes.emplace_back(JointChange{joint, std::nullopt});
-    for (const Entity& entity : state.document.entities) {
-        const auto loses = [&goes](const Pin& pin) { return pin.to && goes(*pin.to); };
-        if (goes(entity.index) || std::none_of(entity.pins.begin(), entity.pins.end(), loses)) continue;
+    std::set<std::uint32_t> joints;
+    std::set<EntityIndex> pinned;
+    for (const EntityIndex index : indices) {
+        joints.insert(state.lookup.holds.joints_of(index).begin(), state.lookup.holds.joints_of(index).end());
+        pinned.insert(state.lookup.holds.pinned_to(index).begin(), state.lookup.holds.pinned_to(index).end());
+    }
+    for (const std::uint32_t joint : joints)
+        edit.changes.emplace_back(JointChange{*state.document.find_joint(joint), std::nullopt});
+    for (const EntityIndex index : pinned) {
+        if (goes(index)) continue;
+        const Entity& entity = *state.document.find(index);
         Entity unpinned = entity;
-        std::erase_if(unpinned.pins, loses);
+        std::erase_if(unpinned.pins, [&goes](const Pin& pin) { return pin.to && goes(*pin.to); });
         edit.changes.emplace_back(change_of(entity, unpinned));
     }
     for (const EntityIndex index : indices)
@@ -114,7 +113,7 @@ Result<json> transform(SessionState& state, const json& params) {
     Edit edit = state.start_edit({});
     reader.text("merge", edit.merge);
     if (list) read_array(*list, "poses", error);
-    std::vector<EntityIndex> indices;
+    std::set<EntityIndex> moved;
     for (std::size_t i = 0; list && !error && i < list->size(); ++i) {
         FieldReader item((*list)[i], element_path("poses", i), error);
         PoseChange change;
@@ -125,13 +124,11 @@ Result<json> transform(SessionState& state, const json& params) {
         item.vector("position", change.after.position);
         item.rotation("rotation", change.after.rotation);
         if (!item.finish()) break;
-        if (std::find(indices.begin(), indices.end(), change.index) != indices.end())
-            return Error{item.path("index"), "is there twice"};
-        indices.push_back(change.index);
+        if (!moved.insert(change.index).second) return Error{item.path("index"), "is there twice"};
         edit.changes.emplace_back(change);
     }
     if (!reader.finish()) return *error;
-    edit.label = "Move " + state.called(indices);
+    edit.label = "Move " + state.called({moved.begin(), moved.end()});
     return done(state.commit(std::move(edit)));
 }
 
@@ -178,7 +175,8 @@ Result<json> duplicate(SessionState& state, const json& params) {
         offset = Vec3{all.is_empty() ? 1 : all.size().x + 0.1, 0, 0};
     }
     Edit edit = state.start_edit("Duplicate " + state.called(indices));
-    if (state.document.next_index > last_document_index - indices.size()) return Error{"indices", "no index is left"};
+    if (Result<void> room = check_room(state.document, indices.size()); !room.ok()) return room.error();
+    NamesInUse& names = state.lookup.names;
     json copies = json::array();
     std::map<EntityIndex, EntityIndex> copy_of;
     for (const EntityIndex index : indices) copy_of.emplace(index, edit.next_after++);
@@ -188,11 +186,14 @@ Result<json> duplicate(SessionState& state, const json& params) {
         // What is copied together holds on to each other as the originals do.
         for (Pin& pin : copy.pins)
             if (pin.to && copy_of.contains(*pin.to)) pin.to = copy_of.at(*pin.to);
-        copy.name = copy.name.empty() ? "" : free_name(state.document, copy.name);
+        if (!copy.name.empty()) copy.name = names.free_name(copy.name);
+        names.add(copy.name);
         copy.pose.position += *offset;
         copies.push_back(copy.index);
         edit.changes.emplace_back(EntityChange{std::nullopt, std::move(copy)});
     }
+    // The commit gives them their names for good.
+    for (const Change& change : edit.changes) names.remove(std::get<EntityChange>(change).after->name);
     if (Result<void> added = state.commit(std::move(edit)); !added.ok()) return added.error();
     return json{{"indices", std::move(copies)}};
 }

@@ -93,7 +93,10 @@ Result<json> load(SessionState& state, const json& params) {
     const bool is_recovered = name.starts_with("autosave/");
     const std::string plain = name_of_scene(file.value());
     Result<json> opened = open_document(state, std::move(document).value(), plain, file.value().string());
-    if (opened.ok() && is_recovered) state.history.mark_unsaved();
+    if (opened.ok() && is_recovered) {
+        const std::lock_guard lock(state.rescue_mutex);
+        state.history.mark_unsaved();
+    }
     return opened;
 }
 
@@ -113,10 +116,13 @@ Result<json> save(SessionState& state, const json& params) {
     std::filesystem::remove(autosave_file(state.options, state.name.empty() ? state.document.title : state.name),
                             ignored);
     std::filesystem::remove(autosave_file(state.options, name), ignored);
-    state.name = name;
-    state.history.mark_saved();
+    {
+        const std::lock_guard lock(state.rescue_mutex);
+        state.name = name;
+        state.history.mark_saved();
+    }
     state.tell_document(json::array());
-    state.autosaved_revision = state.revision;
+    state.mark_autosaved();
     return json{{"name", name}, {"path", file->string()}};
 }
 
