@@ -2,6 +2,7 @@
 #include <spawn.h>
 
 #include <array>
+#include <chrono>
 #include <cstdlib>
 
 #include "cli/commands.h"
@@ -11,6 +12,9 @@
 
 namespace embody::cli {
 namespace {
+
+/// What still works when the server is told to end has this time; within twice as long the process has ended.
+constexpr auto longest_end = std::chrono::milliseconds(1200);
 
 /// Asks the desktop to show the address; there may be none, and that is no error.
 void open_in_browser(const std::string& url) {
@@ -52,7 +56,12 @@ int run_serve(const ServeArguments& arguments) {
     std::fflush(stdout);
     if (arguments.open_browser) open_in_browser((*server)->url());
     (*server)->run();
-    return exit_ok;
+    const auto ended = (*server)->end_within(longest_end);
+    if (ended.ok() && *ended) return exit_ok;
+    // What does not end is left to the system: the scene is kept, and the database is whole at any moment.
+    const int code = ended ? int{exit_ok} : report(ended.error());
+    std::fflush(nullptr);
+    std::_Exit(code);
 }
 
 }  // namespace embody::cli

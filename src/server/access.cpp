@@ -40,16 +40,30 @@ std::string cookie_value(std::string_view cookies, std::string_view name) {
     return {};
 }
 
+/// Whether a page of another site made the browser ask: by Origin, which comes with WebSocket upgrades, POSTs and what
+/// a script fetches, or by Sec-Fetch-Site, which comes with pictures, too. Programs that are no browser send neither.
+bool is_foreign(const HttpRequest& request) {
+    if (!request.origin.empty() && request.origin != "http://" + request.host &&
+        request.origin != "https://" + request.host)
+        return true;
+    return !request.fetch_site.empty() && request.fetch_site != "same-origin" && request.fetch_site != "none";
+}
+
+/// The user clicked on a link: the answer takes the place of the other page.
+bool follows_link(const HttpRequest& request) {
+    return request.origin.empty() && request.fetch_mode == "navigate" && request.fetch_dest == "document";
+}
+
 }  // namespace
 
-Access check_access(const AccessRules& rules, const HttpRequest& request, bool changes_state) {
+Access check_access(const AccessRules& rules, const HttpRequest& request, bool is_page) {
     // A page of another site that resolves its own name to 127.0.0.1 still sends that name as Host.
     if (rules.loopback_only && !request.host.empty() && !names_loopback(request.host))
         return {false, "this server answers only to localhost and 127.0.0.1, not to \"" + request.host + "\""};
-    // Browsers always send Origin with WebSocket upgrades and POSTs; programs without a browser need not.
-    if (changes_state && !request.origin.empty() && request.origin != "http://" + request.host &&
-        request.origin != "https://" + request.host)
-        return {false, "pages of another site (" + request.origin + ") may not use this server"};
+    if (is_foreign(request) && !(is_page && follows_link(request))) {
+        const std::string site = request.origin.empty() ? request.fetch_site : request.origin;
+        return {false, "pages of another site (" + site + ") may not use this server"};
+    }
     if (rules.token.empty()) return {true, {}};
     if (equal_secrets(rules.token, query_parameter(request.target, "token")) ||
         equal_secrets(rules.token, cookie_value(request.cookie, token_cookie)))

@@ -20,8 +20,9 @@ struct Access {
     bool granted = false;
     std::string why;
 };
-/// `changes_state`: WebSocket upgrades and POSTs, which a foreign page must not be able to send.
-Access check_access(const AccessRules& rules, const HttpRequest& request, bool changes_state);
+/// `is_page`: the Studio itself, to which pages of other sites may link; all else is for its own page and for programs
+/// that are no browser.
+Access check_access(const AccessRules& rules, const HttpRequest& request, bool is_page);
 
 /// Name of the cookie that keeps the token after the first page load.
 inline constexpr const char* token_cookie = "embody_token";

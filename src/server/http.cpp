@@ -44,6 +44,23 @@ HttpResponse error_response(unsigned status, std::string_view where, std::string
     return response;
 }
 
+const std::map<std::string, std::string>& protective_headers() {
+    // The decoder of meshes (meshopt) is WebAssembly; textures of models are blobs that are fetched; the page's
+    // icon is in its address.
+    static const std::map<std::string, std::string> headers = {
+        {"Content-Security-Policy",
+         "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; "
+         "img-src 'self' blob: data:; connect-src 'self' blob:; base-uri 'none'; form-action 'none'; "
+         "frame-ancestors 'none'"},
+        {"Cross-Origin-Opener-Policy", "same-origin"},
+        {"Cross-Origin-Resource-Policy", "same-origin"},
+        {"Referrer-Policy", "no-referrer"},
+        {"X-Content-Type-Options", "nosniff"},
+        {"X-Frame-Options", "DENY"},
+    };
+    return headers;
+}
+
 std::string decoded_path(std::string_view target) {
     return percent_decoded(target.substr(0, target.find('?')), false).value_or("");
 }

@@ -12,7 +12,8 @@ struct HttpRequest {
     std::string method;                               ///< "GET", "HEAD", "POST"
     std::string target;                               ///< path and query as sent
     std::string host, origin, cookie, if_none_match;  ///< header values; empty where missing
-    std::string body;
+    /// Sec-Fetch-Site, -Mode and -Dest: which page made a browser ask, and for what; empty: no browser asks.
+    std::string fetch_site, fetch_mode, fetch_dest;
 };
 
 struct HttpResponse {
@@ -25,6 +26,10 @@ struct HttpResponse {
 /// {"error": {"where", "why", "remedy"}} with the status.
 HttpResponse error_response(unsigned status, std::string_view where, std::string_view why,
                             std::string_view remedy = {});
+
+/// What every answer carries, so that a browser runs nothing but the Studio's own files, shows it in no other page, and
+/// hands nothing to one.
+const std::map<std::string, std::string>& protective_headers();
 
 /// Path of a target, percent-decoded; empty where the encoding is broken or holds a NUL.
 std::string decoded_path(std::string_view target);

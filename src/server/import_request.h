@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <condition_variable>
-#include <deque>
+#include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <functional>
-#include <mutex>
-#include <thread>
-#include <utility>
+#include <memory>
+#include <string>
 
+#include "foundation/result.h"
 #include "server/http.h"
+#include "server/upload_store.h"
+#include "server/work_queue.h"
 
 namespace embody::server {
 
@@ -17,27 +19,23 @@ namespace embody::server {
 class ImportRequests {
 public:
     ImportRequests(std::filesystem::path database, std::filesystem::path taxonomy_folder);
-    /// Ends the import after the model in hand; the waiting ones are answered with an error.
-    ~ImportRequests();
 
     static bool is_import(const HttpRequest& request);
-    /// `respond` is called once, on the import thread.
-    void start(HttpRequest request, std::function<void(HttpResponse)> respond);
+    /// The name that the request gives its file, without any folder; the error is for who asked.
+    static Result<std::string> file_name(const HttpRequest& request);
+    /// `respond` is called once, on the import thread, unless the server stops before.
+    void start(std::shared_ptr<Upload> upload, std::function<void(HttpResponse)> respond);
+
+    /// The import in hand ends after the model that is being read; those that wait are not begun.
+    void request_stop();
+    bool wait_ended(std::chrono::steady_clock::time_point until) { return queue_.wait_ended(until); }
 
 private:
-    struct Job {
-        HttpRequest request;
-        std::function<void(HttpResponse)> respond;
-    };
-    void work();
-    [[nodiscard]] HttpResponse import(const HttpRequest& request) const;
+    [[nodiscard]] HttpResponse import(const Upload& upload) const;
 
     std::filesystem::path database_, taxonomy_folder_;
-    mutable std::mutex mutex_;
-    std::condition_variable changed_;
-    std::deque<Job> jobs_;
-    bool stop_ = false;
-    std::thread thread_;
+    std::atomic<bool> stop_ = false;
+    WorkQueue queue_{1};  ///< last: it ends before what its work uses
 };
 
 }  // namespace embody::server

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "foundation/version.h"
+#include "scene/scene_file.h"
 
 namespace embody::server {
 namespace {
@@ -36,6 +37,8 @@ const std::map<std::string, std::string>& content_types() {
     return types;
 }
 
+bool is_read(const HttpRequest& request) { return request.method == "GET" || request.method == "HEAD"; }
+
 /// "/models/17/geometry.glb" → 17 and "geometry.glb"; id 0 where it is something else.
 struct ModelPath {
     std::int64_t id = 0;
@@ -55,35 +58,64 @@ ModelPath split_model_path(const std::string& path) {
 
 }  // namespace
 
-Routes::Routes(std::unique_ptr<catalog::Catalog> catalog, fs::path studio_folder,
-               std::function<std::string()> scene_json, std::function<std::string()> scene_title)
-    : catalog_(std::move(catalog)),
+class Routes::Loan {
+public:
+    explicit Loan(const Routes& routes) : routes_(routes) {
+        const std::lock_guard lock(routes.mutex_);
+        catalog_ = std::move(routes.idle_catalogs_.back());
+        routes.idle_catalogs_.pop_back();
+    }
+    ~Loan() {
+        const std::lock_guard lock(routes_.mutex_);
+        routes_.idle_catalogs_.push_back(std::move(catalog_));
+    }
+    Loan(const Loan&) = delete;
+    Loan& operator=(const Loan&) = delete;
+    const catalog::Catalog* operator->() const { return catalog_.get(); }
+
+private:
+    const Routes& routes_;
+    std::unique_ptr<catalog::Catalog> catalog_;
+};
+
+Routes::Routes(std::vector<std::unique_ptr<catalog::Catalog>> catalogs, fs::path studio_folder,
+               std::function<std::string()> scene_title)
+    : idle_catalogs_(std::move(catalogs)),
       studio_folder_(std::move(studio_folder)),
-      scene_json_(std::move(scene_json)),
       scene_title_(std::move(scene_title)) {}
 
+bool Routes::is_page(const HttpRequest& request) {
+    const std::string path = decoded_path(request.target);
+    return is_read(request) && !path.starts_with("/api/") && !path.starts_with("/models/") && path != "/scene.json";
+}
+
+bool Routes::is_scene(const HttpRequest& request) {
+    return is_read(request) && decoded_path(request.target) == "/scene.json";
+}
+
 HttpResponse Routes::answer(const HttpRequest& request) const {
-    if (request.method != "GET" && request.method != "HEAD")
-        return error_response(405, request.target, "only GET is answered here");
+    if (!is_read(request)) return error_response(405, request.target, "only GET is answered here");
     const std::string path = decoded_path(request.target);
     if (path.empty() || path.front() != '/') return error_response(400, request.target, "is not a path");
-    if (path == "/api/health") {
-        HttpResponse response;
-        const nlohmann::json body = {{"name", "embody"},
-                                     {"version", version_text},
-                                     {"scene", scene_title_()},
-                                     {"models", catalog_->model_count()}};
-        response.body = body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-        return response;
-    }
-    if (path == "/scene.json") {
-        HttpResponse response;
-        response.body = scene_json_();
-        response.headers["Content-Disposition"] = "attachment; filename=\"scene.json\"";
-        return response;
-    }
+    if (path == "/api/health") return answer_health();
     if (path.starts_with("/models/")) return answer_model(request, path);
     return answer_file(path);
+}
+
+HttpResponse Routes::answer_scene(const scene::Document& document) const {
+    HttpResponse response;
+    response.body = scene::document_to_json(document).dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+    response.headers["Content-Disposition"] = "attachment; filename=\"scene.json\"";
+    return response;
+}
+
+HttpResponse Routes::answer_health() const {
+    const Loan catalog(*this);
+    const nlohmann::json body = {
+        {"name", "embody"}, {"version", version_text}, {"scene", scene_title_()}, {"models", catalog->model_count()}};
+    HttpResponse response;
+    response.body = body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return response;
 }
 
 HttpResponse Routes::answer_model(const HttpRequest& request, const std::string& path) const {
@@ -91,7 +123,8 @@ HttpResponse Routes::answer_model(const HttpRequest& request, const std::string&
     if (model.id == 0 || (model.part != "thumbnail.png" && model.part != "geometry.glb"))
         return error_response(404, path, "there is no such page", "see docs/protocol.md for the addresses");
     const bool thumbnail = model.part == "thumbnail.png";
-    auto bytes = thumbnail ? catalog_->thumbnail(model.id) : catalog_->geometry_glb(model.id);
+    const Loan catalog(*this);
+    auto bytes = thumbnail ? catalog->thumbnail(model.id) : catalog->geometry_glb(model.id);
     if (!bytes) return error_response(404, path, bytes.error().message());
     HttpResponse response;
     response.content_type = thumbnail ? "image/png" : "model/gltf-binary";

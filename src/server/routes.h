@@ -4,30 +4,45 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <vector>
 
 #include "catalog/catalog.h"
+#include "scene/document.h"
 #include "server/http.h"
 
 namespace embody::server {
 
 /// Answers of the HTTP face (docs/protocol.md) but imports, which take long and have a thread of their own.
+/// Thread-safe.
 class Routes {
 public:
-    /// `studio_folder`: the built front-end. `scene_json`, `scene_title`: of the open document.
-    Routes(std::unique_ptr<catalog::Catalog> catalog, std::filesystem::path studio_folder,
-           std::function<std::string()> scene_json, std::function<std::string()> scene_title);
+    /// `catalogs`: the same one, opened once for each thread that answers. `studio_folder`: the built front-end.
+    /// `scene_title`: of the open document, from any thread.
+    Routes(std::vector<std::unique_ptr<catalog::Catalog>> catalogs, std::filesystem::path studio_folder,
+           std::function<std::string()> scene_title);
+
+    /// Whether it asks for the Studio's own page and files, not for what is in the scene or the database.
+    static bool is_page(const HttpRequest& request);
+    /// Whether it asks for the open document, which answer() does not have.
+    static bool is_scene(const HttpRequest& request);
 
     /// Never fails: what is wrong becomes a response with its status.
     HttpResponse answer(const HttpRequest& request) const;
+    HttpResponse answer_scene(const scene::Document& document) const;
 
 private:
+    /// A catalogue for as long as this lives; there are as many as threads that ask.
+    class Loan;
+    HttpResponse answer_health() const;
     HttpResponse answer_model(const HttpRequest& request, const std::string& path) const;
     HttpResponse answer_file(const std::string& path) const;
 
-    std::unique_ptr<catalog::Catalog> catalog_;
+    mutable std::mutex mutex_;  ///< guards the list
+    mutable std::vector<std::unique_ptr<catalog::Catalog>> idle_catalogs_;
     std::filesystem::path studio_folder_;
-    std::function<std::string()> scene_json_, scene_title_;
+    std::function<std::string()> scene_title_;
 };
 
 }  // namespace embody::server

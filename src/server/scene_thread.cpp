@@ -25,6 +25,8 @@ constexpr auto statistics_period = std::chrono::milliseconds(250);
 constexpr auto autosave_period = std::chrono::seconds(20);
 /// What other programs change in the database is seen after this time at most.
 constexpr auto catalog_period = std::chrono::seconds(1);
+/// After commands the states are published so that this takes one part in so many of the time.
+constexpr int publish_share = 4;
 /// Work that takes longer tells how far it is, as often.
 constexpr auto progress_period = std::chrono::milliseconds(150);
 /// A machine that cannot keep up runs the scene slower instead of falling ever further behind.
@@ -37,12 +39,12 @@ json failed(const json& id, const Error& error) {
         {"id", id}, {"ok", false}, {"error", {{"where", error.where}, {"why", error.why}, {"remedy", error.remedy}}}};
 }
 
-/// A client's command, or that it has left, or the transport's wish for the document (then `scene` is set and the rest
-/// is not).
+/// A client's command, or that it has left, or a wish for the document (then `take_document` is set and the rest is
+/// not).
 struct Message {
     ClientId client = 0;
     std::string text;
-    std::shared_ptr<std::promise<std::string>> scene;
+    std::function<void(scene::Document)> take_document;
     bool left = false;
 };
 
@@ -54,16 +56,18 @@ struct SceneThread::State {
     std::unique_ptr<catalog::Catalog> catalog;
     std::unique_ptr<scene::Session> session;
 
-    mutable std::mutex mutex;  ///< guards messages, stop, board, title
+    mutable std::mutex mutex;  ///< guards messages, stop, ended, title
     std::condition_variable changed;
     std::deque<Message> messages;
-    bool stop = false;
+    bool stop = false, ended = false;
     StateBoard board;
     std::string title;
 
     std::thread thread;
     std::vector<scene::EntityState> scratch;
     Clock::time_point statistics_due{}, autosave_due{}, catalog_due{}, statistics_since{};
+    Clock::time_point next_publish{};
+    bool publish_is_due = false;       ///< something may have changed since
     ClientId served = 0;               ///< whose command is in hand
     Clock::time_point progress_due{};  ///< when it tells next how far it is
     double statistics_time = 0;        ///< simulated time at statistics_since
@@ -77,9 +81,11 @@ struct SceneThread::State {
     json execute(const json& request);
     bool tell_progress(std::size_t done, std::size_t total);
     [[nodiscard]] bool stop_is_asked();
+    [[nodiscard]] bool stop_is_requested() const;
     void follow_catalog();
     void tell_events();
     void publish(bool all_changed);
+    void publish_if_due();
     void tell_statistics(Clock::time_point now);
     void broadcast_message(const char* level, const std::string& text);
     void autosave();
@@ -89,11 +95,7 @@ struct SceneThread::State {
 SceneThread::SceneThread() : state_(std::make_unique<State>()) {}
 
 SceneThread::~SceneThread() {
-    {
-        const std::lock_guard lock(state_->mutex);
-        state_->stop = true;
-    }
-    state_->changed.notify_all();
+    request_stop();
     if (state_->thread.joinable()) state_->thread.join();
 }
 
@@ -102,10 +104,7 @@ Result<std::unique_ptr<SceneThread>> SceneThread::start(const SceneThreadOptions
     std::unique_ptr<SceneThread> made(new SceneThread);
     State& state = *made->state_;
     state.options = options;
-    state.options.session.stop_wanted = [&state] {
-        const std::lock_guard lock(state.mutex);
-        return state.stop;
-    };
+    state.options.session.stop_wanted = [&state] { return state.stop_is_requested(); };
     state.options.session.progress = [&state](std::size_t done, std::size_t total) {
         return state.tell_progress(done, total);
     };
@@ -118,6 +117,9 @@ Result<std::unique_ptr<SceneThread>> SceneThread::start(const SceneThreadOptions
         const bool ok = opening.ok();
         opened.set_value(std::move(opening));
         if (ok) state.run();
+        const std::lock_guard lock(state.mutex);
+        state.ended = true;
+        state.changed.notify_all();
     });
     if (Result<void> opening = result.get(); !opening) return opening.error();
     return made;
@@ -136,27 +138,35 @@ void SceneThread::forget(ClientId client) {
     state_->messages.push_back({client, {}, nullptr, true});
 }
 
-SceneThread::Frame SceneThread::frame_since(std::uint64_t seen) const {
-    const std::lock_guard lock(state_->mutex);
-    return {state_->board.frame_since(seen), state_->board.version()};
-}
+StateBoard::Frame SceneThread::frame_since(std::uint64_t seen) const { return state_->board.frame_since(seen); }
 
 std::string SceneThread::scene_title() const {
     const std::lock_guard lock(state_->mutex);
     return state_->title;
 }
 
-std::string SceneThread::scene_json() const {
-    auto wanted = std::make_shared<std::promise<std::string>>();
-    std::future<std::string> scene = wanted->get_future();
+void SceneThread::request_document(std::function<void(scene::Document)> take) {
     {
         const std::lock_guard lock(state_->mutex);
-        if (state_->stop) return "{}";
-        state_->messages.push_back({0, {}, std::move(wanted), false});
+        state_->messages.push_back({0, {}, std::move(take), false});
     }
     state_->changed.notify_all();
-    return scene.get();
 }
+
+void SceneThread::request_stop() {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->stop = true;
+    }
+    state_->changed.notify_all();
+}
+
+bool SceneThread::wait_ended(Clock::time_point until) {
+    std::unique_lock lock(state_->mutex);
+    return state_->changed.wait_until(lock, until, [this] { return state_->ended; });
+}
+
+Result<void> SceneThread::rescue() { return state_->session->rescue(); }
 
 Result<void> SceneThread::State::open_safely() {
     try {
@@ -203,11 +213,17 @@ void SceneThread::State::run() {
             if (session->playing())
                 changed.wait_until(lock, due, ready);
             else
-                changed.wait_until(lock, std::min(autosave_due, catalog_due), ready);
+                changed.wait_until(
+                    lock, std::min({autosave_due, catalog_due, publish_is_due ? next_publish : autosave_due}), ready);
             taken.swap(messages);
-            if (stop && taken.empty()) break;
+            if (stop) break;
         }
-        for (const Message& message : taken) handle(message);
+        for (const Message& message : taken) {
+            if (stop_is_requested()) break;
+            handle(message);
+        }
+        if (stop_is_requested()) break;
+        publish_if_due();
         if (session->playing())
             play_until(due);
         else
@@ -239,11 +255,17 @@ bool SceneThread::State::tell_progress(std::size_t done, std::size_t total) {
     return !stop_is_asked();
 }
 
+// By the server's end.
+bool SceneThread::State::stop_is_requested() const {
+    const std::lock_guard lock(mutex);
+    return stop;
+}
+
 // By the server's end, or by the client's next command.
 bool SceneThread::State::stop_is_asked() {
     const std::lock_guard lock(mutex);
     return stop || std::any_of(messages.begin(), messages.end(), [this](const Message& message) {
-               if (message.client != served || message.scene) return false;
+               if (message.client != served || message.take_document) return false;
                if (message.left || message.text.size() > 200) return message.left;
                const json request = json::parse(message.text, nullptr, false);
                return request.is_object() && request.value("command", json()) == "catalog.stop";
@@ -297,11 +319,7 @@ void SceneThread::State::tell_statistics(Clock::time_point now) {
 }
 
 void SceneThread::State::handle(const Message& message) {
-    if (message.scene) {
-        const json document = scene::document_to_json(session->document());
-        message.scene->set_value(document.dump(2, ' ', false, json::error_handler_t::replace));
-        return;
-    }
+    if (message.take_document) return message.take_document(session->document());
     if (message.left) return session->forget_client(message.client);
     const bool was_playing = session->playing();
     const std::uint64_t step_before = session->simulated_steps();
@@ -350,17 +368,27 @@ void SceneThread::State::tell_events() {
         document_changed = document_changed || event.value("event", "") == "document";
         listener.broadcast(dump(event));
     }
-    if (document_changed || events.all_poses || !session->playing()) publish(events.all_poses);
+    if (events.all_poses) return publish(true);
+    if (document_changed || !session->playing()) publish_is_due = true;
+    publish_if_due();
+}
+
+// The walk over all entities takes a share of the time, however many commands come one after the other.
+void SceneThread::State::publish_if_due() {
+    if (publish_is_due && Clock::now() >= next_publish) publish(false);
 }
 
 void SceneThread::State::publish(bool all_changed) {
+    const Clock::time_point began = Clock::now();
     session->read_states(scratch);
+    board.publish(scratch, session->simulated_time(), session->simulated_steps(), all_changed);
     {
         const std::lock_guard lock(mutex);
-        board.publish(scratch, session->simulated_time(), session->simulated_steps(), all_changed);
         title = session->document().title;
     }
     listener.states_changed();
+    publish_is_due = false;
+    next_publish = Clock::now() + publish_share * (Clock::now() - began);
 }
 
 }  // namespace embody::server

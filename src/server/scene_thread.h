@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -9,6 +10,7 @@
 
 #include "foundation/result.h"
 #include "scene/session.h"
+#include "server/state_frame.h"
 
 namespace embody::server {
 
@@ -29,7 +31,7 @@ struct SceneThreadListener {
 };
 
 /// Runs the session on a thread of its own: carries out commands in the order they came, steps in real time while
-/// playing, publishes states. Thread-safe.
+/// playing, publishes states. Thread-safe; no call waits for the command in hand but the destructor.
 class SceneThread {
 public:
     static Result<std::unique_ptr<SceneThread>> start(const SceneThreadOptions& options, SceneThreadListener listener);
@@ -42,18 +44,21 @@ public:
     /// A client has left: what it was called is forgotten.
     void forget(ClientId client);
 
-    /// Binary frame of what changed after version `seen`, and the version it brings the client to.
-    struct Frame {
-        std::string bytes;  ///< empty: nothing new
-        std::uint64_t version = 0;
-    };
-    [[nodiscard]] Frame frame_since(std::uint64_t seen) const;
+    [[nodiscard]] StateBoard::Frame frame_since(std::uint64_t seen) const;
 
-    /// The open document's title; does not wait for the command in hand.
+    /// The open document's title.
     [[nodiscard]] std::string scene_title() const;
 
-    /// The open document as a scene file.
-    [[nodiscard]] std::string scene_json() const;
+    /// Hands over a copy of the open document after the command in hand, on the scene thread; never where that ends
+    /// before.
+    void request_document(std::function<void(scene::Document)> take);
+
+    /// It autosaves after the command in hand, and ends.
+    void request_stop();
+    /// Whether it has ended by then.
+    bool wait_ended(std::chrono::steady_clock::time_point until);
+    /// For a command that does not end after request_stop(): autosaves the document as it was before.
+    Result<void> rescue();
 
 private:
     SceneThread();

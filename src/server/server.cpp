@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// The transport: the only file that sees Boost.Beast, which takes most of this layer's compile time. One network thread
-// runs the io_context; the scene has its own thread (scene_thread.h), and so has each import.
+// The transport: the only file that sees Boost.Beast, which takes most of this layer's compile time; that is why it is
+// longer than others. One network thread runs the io_context and never waits: the scene has its own thread
+// (scene_thread.h), so have imports, and what reads the database, the scene or files is done by work queues, which post
+// their answers back.
 #include "server/server.h"
 
 #include <atomic>
@@ -17,12 +19,17 @@
 #include <map>
 #include <optional>
 #include <random>
-#include <thread>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "foundation/printable.h"
 #include "server/access.h"
+#include "server/connection_book.h"
 #include "server/import_request.h"
 #include "server/routes.h"
+#include "server/upload_store.h"
+#include "server/work_queue.h"
 
 namespace embody::server {
 namespace {
@@ -33,28 +40,52 @@ namespace http = beast::http;
 namespace websocket = beast::websocket;
 using tcp = asio::ip::tcp;
 using beast::error_code;
+using Clock = std::chrono::steady_clock;
 
-constexpr std::uint64_t largest_upload = std::uint64_t{256} << 20;
+/// A connection that asks for nothing, or does not finish saying what, is closed.
+constexpr auto longest_silence = std::chrono::seconds(30);
+/// An upload of which nothing more comes, and one that takes too long altogether.
+constexpr auto longest_stall = std::chrono::seconds(20);
+constexpr auto longest_upload = std::chrono::minutes(10);
+constexpr auto longest_answer = std::chrono::minutes(2);  ///< until the client has read it
+/// A viewer that was not heard for two of these, though it was asked whether it is there, has gone.
+constexpr auto viewer_watch_period = std::chrono::seconds(150);
+
+/// Where no descriptor is left; and how often that is told.
+constexpr auto accept_pause = std::chrono::milliseconds(100);
+constexpr auto accept_failure_period = std::chrono::seconds(10);
+
+/// Each with the database open: a large model that is read keeps nobody else waiting.
+constexpr std::size_t route_threads = 2;
+
 constexpr std::uint64_t largest_other_body = 64 << 10;
-constexpr std::size_t largest_command = std::size_t{64} << 20;   ///< a whole scene may come as one
-constexpr std::size_t most_unsent_text = std::size_t{64} << 20;  ///< a client that reads nothing is let go
+constexpr std::size_t piece_bytes = 64 << 10;                   ///< of an upload, from the socket to the file
+constexpr std::size_t largest_command = std::size_t{64} << 20;  ///< a whole scene may come as one
+/// Of one client that waits behind the message being sent: a client that reads nothing is let go.
+constexpr std::size_t most_unsent_text = std::size_t{256} << 20;
 /// Of one client: commands that wait for their reply, and replies that it has not read. Its next commands stay in the
 /// socket until there is less, so that a flood fills no memory.
 constexpr std::size_t most_waiting_commands = 256;
 constexpr std::size_t most_waiting_bytes = largest_command;
 constexpr std::size_t most_unread_replies = std::size_t{1} << 20;
+/// Of all clients together: commands that wait or are being received. Who brings more is let go.
+constexpr std::size_t most_command_bytes = std::size_t{512} << 20;
 
 class WebSocketClient;
 
 /// What connections share; lives as long as the server, which outlives them.
 struct Shared {
+    ConnectionBook connections{limits_for_descriptors(raise_descriptor_limit())};
+    std::map<ClientId, std::shared_ptr<WebSocketClient>> clients;  ///< keeps those that are not being read
+    ClientId next_client = 1;
+    std::size_t command_bytes = 0;
     asio::io_context io;
     AccessRules access;
-    std::unique_ptr<Routes> routes;
-    std::unique_ptr<ImportRequests> imports;
     std::unique_ptr<SceneThread> scene;
-    std::map<ClientId, std::weak_ptr<WebSocketClient>> clients;
-    ClientId next_client = 1;
+    std::shared_ptr<UploadStore> uploads;
+    std::unique_ptr<Routes> routes;
+    std::unique_ptr<WorkQueue> route_queue, upload_queue;
+    std::unique_ptr<ImportRequests> imports;
 };
 
 std::string random_token() {
@@ -64,47 +95,76 @@ std::string random_token() {
     return token;
 }
 
+void report_failure(const std::exception& thrown) {
+    std::fprintf(stderr, "embody: a connection failed: %s\n", printable(thrown.what()).c_str());
+}
+
 // ---------------------------------------------------------------------------------------------------------------------------
 // A browser or script on the WebSocket.
 
+using SharedText = std::shared_ptr<const std::string>;
+
 class WebSocketClient : public std::enable_shared_from_this<WebSocketClient> {
 public:
-    WebSocketClient(tcp::socket&& socket, Shared& shared)
-        : stream_(std::move(socket)), shared_(shared), id_(shared.next_client++) {}
+    WebSocketClient(tcp::socket&& socket, Shared& shared, ConnectionBook::Place place)
+        : stream_(std::move(socket)),
+          shared_(shared),
+          place_(std::move(place)),
+          id_(shared.next_client++),
+          watch_(shared.io) {}
+    WebSocketClient(const WebSocketClient&) = delete;
+    WebSocketClient& operator=(const WebSocketClient&) = delete;
+    ~WebSocketClient() { shared_.command_bytes -= held_bytes_; }
 
-    void accept(const http::request<http::string_body>& request) {
+    void accept(const http::request<http::empty_body>& request) {
+        // Beast's own idle timeout would close a client that is not read for a while; watch() does not.
         websocket::stream_base::timeout timeout = websocket::stream_base::timeout::suggested(beast::role_type::server);
+        timeout.idle_timeout = websocket::stream_base::none();
+        timeout.keep_alive_pings = false;
         stream_.set_option(timeout);
+        stream_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
+            for (const auto& [name, value] : protective_headers()) response.set(name, value);
+        }));
+        stream_.control_callback([this](websocket::frame_type, beast::string_view) { was_heard_ = true; });
         stream_.read_message_max(largest_command);
         stream_.auto_fragment(false);
         stream_.async_accept(request, [self = shared_from_this()](error_code error) {
             if (error) return;
             self->shared_.clients[self->id_] = self;
-            self->read();
-            self->send_frame();
+            self->guarded([&] {
+                self->read();
+                self->send_frame();
+                self->watch();
+            });
         });
     }
 
-    void send_text(std::string text) {
-        unsent_ += text.size();
-        if (unsent_ > most_unsent_text) {
-            close();
-            return;
-        }
-        texts_.push_back(std::move(text));
-        write();
+    void send_text(SharedText text) {
+        guarded([&] {
+            // However large the first one is, it is on its way.
+            if (!texts_.empty() && unsent_ + text->size() > most_unsent_text) return close();
+            unsent_ += text->size();
+            texts_.push_back(std::move(text));
+            write();
+        });
     }
 
     /// Newest states, as soon as nothing else is being written.
     void send_frame() {
-        frame_wanted_ = true;
-        write();
+        guarded([&] {
+            frame_wanted_ = true;
+            write();
+        });
     }
 
     void send_reply(std::string text) {
-        if (--waiting_commands_ == 0) waiting_bytes_ = 0;
-        send_text(std::move(text));
-        read_on();
+        guarded([&] {
+            let_go_of(waiting_.front());
+            waiting_bytes_ -= waiting_.front();
+            waiting_.pop_front();
+            send_text(std::make_shared<const std::string>(std::move(text)));
+            read_on();
+        });
     }
 
     void close() {
@@ -114,11 +174,45 @@ public:
     }
 
 private:
+    /// What fails (memory) ends this client and nothing else.
+    template <class Work>
+    void guarded(const Work& work) {
+        try {
+            work();
+        } catch (const std::exception& thrown) {
+            report_failure(thrown);
+            close();
+        }
+    }
+
+    // Whoever calls this holds the client by another pointer than that of the list.
     void leave() {
+        watch_.cancel();
         if (shared_.clients.erase(id_) > 0) shared_.scene->forget(id_);
     }
+
+    // Asks now and then whether the client is there, but for one that is not being read: its answer would not be heard.
+    void watch() {
+        watch_.expires_after(viewer_watch_period);
+        watch_.async_wait([weak = weak_from_this()](error_code error) {
+            const auto self = weak.lock();
+            if (error || !self) return;
+            const bool was_heard = std::exchange(self->was_heard_, false) || self->read_pauses_;
+            self->silent_periods_ = was_heard ? 0 : self->silent_periods_ + 1;
+            if (self->silent_periods_ >= 2) return self->close();
+            self->guarded([&] {
+                self->ping();
+                self->watch();
+            });
+        });
+    }
+    void ping() {
+        if (std::exchange(is_pinging_, true)) return;
+        stream_.async_ping({}, [self = shared_from_this()](error_code) { self->is_pinging_ = false; });
+    }
+
     [[nodiscard]] bool has_enough_waiting() const {
-        return waiting_commands_ >= most_waiting_commands || waiting_bytes_ >= most_waiting_bytes ||
+        return waiting_.size() >= most_waiting_commands || waiting_bytes_ >= most_waiting_bytes ||
                unsent_ >= most_unread_replies;
     }
     void read_on() {
@@ -127,62 +221,79 @@ private:
 
     void read() {
         read_pauses_ = false;
-        stream_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t size) {
-            if (error) {
-                self->leave();
-                return;
-            }
-            self->shared_.scene->post(self->id_, beast::buffers_to_string(self->buffer_.data()));
-            self->buffer_.consume(self->buffer_.size());
-            ++self->waiting_commands_;
-            self->waiting_bytes_ += size;
-            self->read_pauses_ = self->has_enough_waiting();
-            if (!self->read_pauses_) self->read();
-        });
+        stream_.async_read_some(buffer_, largest_command,
+                                [self = shared_from_this()](error_code error, std::size_t size) {
+                                    if (error) return self->leave();
+                                    self->guarded([&] { self->take(size); });
+                                });
+    }
+
+    // A part of a message, or its last one.
+    void take(std::size_t size) {
+        was_heard_ = true;
+        held_bytes_ += size;
+        shared_.command_bytes += size;
+        if (shared_.command_bytes > most_command_bytes) return close();
+        if (!stream_.is_message_done()) return read();
+        waiting_.push_back(buffer_.size());
+        waiting_bytes_ += buffer_.size();
+        shared_.scene->post(id_, beast::buffers_to_string(buffer_.data()));
+        buffer_.consume(buffer_.size());
+        if (buffer_.capacity() > most_unread_replies) buffer_.shrink_to_fit();
+        read_pauses_ = has_enough_waiting();
+        if (!read_pauses_) read();
+    }
+
+    void let_go_of(std::size_t bytes) {
+        held_bytes_ -= bytes;
+        shared_.command_bytes -= bytes;
     }
 
     // One write at a time: texts in order, frames only when no text waits and always the newest states.
     void write() {
-        if (writing_) return;
+        if (outgoing_) return;
         if (!texts_.empty()) {
             outgoing_ = std::move(texts_.front());
             texts_.pop_front();
-            unsent_ -= outgoing_.size();
+            unsent_ -= outgoing_->size();
             stream_.text(true);
         } else if (frame_wanted_) {
             frame_wanted_ = false;
-            SceneThread::Frame frame = shared_.scene->frame_since(seen_);
+            StateBoard::Frame frame = shared_.scene->frame_since(seen_);
             seen_ = frame.version;
             if (frame.bytes.empty()) return;
-            outgoing_ = std::move(frame.bytes);
+            outgoing_ = std::make_shared<const std::string>(std::move(frame.bytes));
             stream_.binary(true);
         } else {
             return;
         }
-        writing_ = true;
-        stream_.async_write(asio::buffer(outgoing_), [self = shared_from_this()](error_code error, std::size_t) {
-            self->writing_ = false;
-            if (error) {
-                self->leave();
-                return;
-            }
-            self->write();
-            self->read_on();
+        stream_.async_write(asio::buffer(*outgoing_), [self = shared_from_this()](error_code error, std::size_t) {
+            self->outgoing_ = nullptr;
+            if (error) return self->leave();
+            self->guarded([&] {
+                self->write();
+                self->read_on();
+            });
         });
     }
 
     websocket::stream<beast::tcp_stream> stream_;
     Shared& shared_;
+    ConnectionBook::Place place_;
     ClientId id_;
     beast::flat_buffer buffer_;
-    std::deque<std::string> texts_;
-    std::size_t unsent_ = 0;
-    std::size_t waiting_commands_ = 0, waiting_bytes_ = 0;
+    std::deque<std::size_t> waiting_;  ///< sizes of the commands that have no reply yet
+    std::size_t waiting_bytes_ = 0;    ///< of these
+    std::size_t held_bytes_ = 0;       ///< with what is being received
     bool read_pauses_ = false;
-    std::string outgoing_;
-    bool writing_ = false;
+    std::deque<SharedText> texts_;
+    std::size_t unsent_ = 0;  ///< bytes of these
+    SharedText outgoing_;     ///< being written
     bool frame_wanted_ = false;
     std::uint64_t seen_ = 0;
+    asio::steady_timer watch_;
+    bool was_heard_ = true, is_pinging_ = false;
+    int silent_periods_ = 0;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------------
@@ -190,72 +301,167 @@ private:
 
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 public:
-    HttpConnection(tcp::socket&& socket, Shared& shared) : stream_(std::move(socket)), shared_(shared) {}
+    HttpConnection(tcp::socket&& socket, Shared& shared, ConnectionBook::Place place)
+        : stream_(std::move(socket)), shared_(shared), place_(std::move(place)) {}
 
     void read_header() {
-        parser_.emplace();
+        header_.emplace();
         // The whole header first: how large a body may be depends on what is asked.
-        parser_->body_limit(std::numeric_limits<std::uint64_t>::max());
-        stream_.expires_after(std::chrono::seconds(60));
-        http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
+        header_->body_limit(std::numeric_limits<std::uint64_t>::max());
+        stream_.expires_after(longest_silence);
+        may_be_given_up();
+        http::async_read_header(stream_, buffer_, *header_, [self = shared_from_this()](error_code error, std::size_t) {
             if (error) return self->close();
+            self->place_.be_busy();
             self->read_body();
         });
     }
 
 private:
     void read_body() {
-        const auto& header = parser_->get();
-        const HttpRequest request = describe(header);
+        const auto& header = header_->get();
+        request_ = describe(header);
+        is_head_ = header.method() == http::verb::head;
+        keep_alive_ = header.keep_alive();
+        version_ = header.version();
         const bool upgrade = websocket::is_upgrade(header);
-        const Access access = check_access(shared_.access, request, upgrade || request.method != "GET");
-        if (!access.granted) return respond(error_response(403, request.target, access.why), false);
-        if (upgrade) {
-            if (decoded_path(request.target) != "/ws")
-                return respond(error_response(404, request.target, "the WebSocket is at /ws"), false);
-            stream_.expires_never();
-            std::make_shared<WebSocketClient>(stream_.release_socket(), shared_)->accept(parser_->release());
-            return;
-        }
-        const std::uint64_t limit = ImportRequests::is_import(request) ? largest_upload : largest_other_body;
-        if (parser_->content_length().value_or(0) > limit)
-            return respond(error_response(413, request.target, "is larger than " + std::to_string(limit) + " bytes",
-                                          "import large files with: embody import FILE"),
-                           false);
-        parser_->body_limit(limit);
-        stream_.expires_after(std::chrono::minutes(10));
-        http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
+        const bool is_page = !upgrade && Routes::is_page(request_);
+        const Access access = check_access(shared_.access, request_, is_page);
+        if (!access.granted) return refuse(error_response(403, request_.target, access.why));
+        if (upgrade) return become_web_socket();
+        if (ImportRequests::is_import(request_)) return begin_upload();
+        body_.emplace(std::move(*header_));
+        body_->body_limit(largest_other_body);
+        stream_.expires_after(longest_silence);
+        http::async_read(stream_, buffer_, *body_, [self = shared_from_this()](error_code error, std::size_t) {
             if (error == http::error::body_limit)
-                return self->respond(error_response(413, "body", "is too large"), false);
+                return self->refuse(error_response(413, self->request_.target, "has too large a body"));
             if (error) return self->close();
             self->answer();
         });
     }
 
+    void become_web_socket() {
+        if (decoded_path(request_.target) != "/ws")
+            return refuse(error_response(404, request_.target, "the WebSocket is at /ws"));
+        if (!place_.become_viewer())
+            return refuse(error_response(503, request_.target, "too many viewers are connected",
+                                         "close some of them, and try again"));
+        stream_.expires_never();
+        std::make_shared<WebSocketClient>(stream_.release_socket(), shared_, std::move(place_))
+            ->accept(header_->release());
+    }
+
+    // Uploads -----------------------------------------------------------------------------------------------------
+
+    // Piece by piece to a file, which another thread writes.
+    void begin_upload() {
+        const Result<std::string> name = ImportRequests::file_name(request_);
+        if (!name) return refuse(error_response(400, name.error().where, name.error().why, name.error().remedy));
+        if (header_->content_length().value_or(0) > largest_upload)
+            return refuse(error_response(413, request_.target,
+                                         "is larger than " + std::to_string(largest_upload) + " bytes",
+                                         "import large files with: embody import FILE"));
+        upload_ends_ = Clock::now() + longest_upload;
+        shared_.upload_queue->post([self = shared_from_this(), name = name.value()] {
+            auto begun = self->shared_.uploads->begin(name);
+            asio::post(self->shared_.io, [self, begun = std::move(begun)] {
+                const Error& error = begun.ok() ? Error{} : begun.error();
+                if (!begun.ok()) return self->refuse(error_response(503, error.where, error.why, error.remedy));
+                self->upload_ = begun.value();
+                self->upload_body_.emplace(std::move(*self->header_));
+                self->upload_body_->body_limit(largest_upload);
+                self->piece_.resize(piece_bytes);
+                self->receive_piece();
+            });
+        });
+    }
+
+    void receive_piece() {
+        if (upload_body_->is_done()) return finish_upload();
+        auto& body = upload_body_->get().body();
+        body.data = piece_.data();
+        body.size = piece_.size();
+        body.more = true;
+        stream_.expires_at(std::min(Clock::now() + longest_stall, upload_ends_));
+        http::async_read_some(
+            stream_, buffer_, *upload_body_, [self = shared_from_this()](error_code error, std::size_t) {
+                if (error == http::error::need_buffer) error = {};
+                if (error == http::error::body_limit)
+                    return self->refuse(error_response(413, self->request_.target, "has too large a body"));
+                if (error) return self->close();
+                self->write_piece(self->piece_.size() - self->upload_body_->get().body().size);
+            });
+    }
+
+    void write_piece(std::size_t size) {
+        shared_.upload_queue->post([self = shared_from_this(), size] {
+            const Result<void> written = self->upload_->write({self->piece_.data(), size});
+            asio::post(self->shared_.io, [self, written] {
+                if (!written.ok()) return self->refuse_upload(written.error());
+                self->receive_piece();
+            });
+        });
+    }
+
+    void finish_upload() {
+        // Takes long: answered from its own thread, back through the network thread.
+        stream_.expires_never();
+        shared_.upload_queue->post([self = shared_from_this()] {
+            const Result<void> finished = self->upload_->finish();
+            asio::post(self->shared_.io, [self, finished] {
+                if (!finished.ok()) return self->refuse_upload(finished.error());
+                self->shared_.imports->start(std::move(self->upload_), self->respond_later());
+            });
+        });
+    }
+
+    void refuse_upload(const Error& error) { refuse(error_response(507, error.where, error.why, error.remedy)); }
+
+    /// To make room for others: it only waits.
+    void may_be_given_up() {
+        place_.be_idle([weak = weak_from_this()] {
+            if (const auto self = weak.lock()) self->stream_.close();
+        });
+    }
+
+    // Answers -----------------------------------------------------------------------------------------------------
+
     void answer() {
-        HttpRequest request = describe(parser_->get());
-        request.body = std::move(parser_->get().body());
-        const bool keep_alive = parser_->get().keep_alive();
-        if (ImportRequests::is_import(request)) {
-            // Takes long: answered from its own thread, back through the network thread.
-            stream_.expires_never();
-            shared_.imports->start(std::move(request), [self = shared_from_this(), keep_alive](HttpResponse response) {
-                asio::post(self->shared_.io, [self, keep_alive, response = std::move(response)]() mutable {
-                    self->respond(std::move(response), keep_alive);
-                });
+        // Until the answer is there the client may wait: for the command in hand, say.
+        stream_.expires_never();
+        if (Routes::is_scene(request_)) {
+            may_be_given_up();
+            shared_.scene->request_document([self = shared_from_this()](scene::Document document) {
+                self->compute(
+                    [self, document = std::move(document)] { return self->shared_.routes->answer_scene(document); });
             });
             return;
         }
-        HttpResponse response = shared_.routes->answer(request);
-        // The page's first load carries the token in its address; the rest of its requests bring it as a cookie.
-        if (!shared_.access.token.empty() && !query_parameter(request.target, "token").empty())
-            response.headers["Set-Cookie"] =
-                std::string(token_cookie) + "=" + shared_.access.token + "; HttpOnly; SameSite=Strict; Path=/";
-        respond(std::move(response), keep_alive);
+        compute([self = shared_from_this()] { return self->shared_.routes->answer(self->request_); });
     }
 
-    static HttpRequest describe(const http::request<http::string_body>& header) {
-        const auto text = [&](http::field field) { return std::string(header[field]); };
+    /// From any thread: what takes its time goes to the queue, its answer comes back.
+    void compute(std::function<HttpResponse()> make) {
+        shared_.route_queue->post([make = std::move(make), respond = respond_later()] {
+            try {
+                respond(make());
+            } catch (const std::exception& thrown) {
+                respond(error_response(500, "the server", std::string("failed: ") + printable(thrown.what()).c_str()));
+            }
+        });
+    }
+
+    /// For other threads.
+    std::function<void(HttpResponse)> respond_later() {
+        return [self = shared_from_this()](HttpResponse response) {
+            asio::post(self->shared_.io,
+                       [self, response = std::move(response)]() mutable { self->respond(std::move(response)); });
+        };
+    }
+
+    static HttpRequest describe(const http::request<http::empty_body>& header) {
+        const auto text = [&](auto field) { return std::string(header[field]); };
         HttpRequest request;
         request.method = std::string(header.method_string());
         request.target = std::string(header.target());
@@ -263,32 +469,53 @@ private:
         request.origin = text(http::field::origin);
         request.cookie = text(http::field::cookie);
         request.if_none_match = text(http::field::if_none_match);
+        request.fetch_site = text("Sec-Fetch-Site");
+        request.fetch_mode = text("Sec-Fetch-Mode");
+        request.fetch_dest = text("Sec-Fetch-Dest");
         return request;
     }
 
-    void respond(HttpResponse answer, bool keep_alive) {
-        const bool head = parser_->get().method() == http::verb::head;
-        response_.emplace(static_cast<http::status>(answer.status), parser_->get().version());
+    /// Removing a large file takes a moment.
+    void drop_upload() {
+        if (upload_) shared_.upload_queue->post([upload = std::exchange(upload_, nullptr)] {});
+    }
+
+    /// What the client still sends is not read.
+    void refuse(HttpResponse answer) {
+        drop_upload();
+        keep_alive_ = false;
+        respond(std::move(answer));
+    }
+
+    void respond(HttpResponse answer) {
+        place_.be_busy();
+        response_.emplace(static_cast<http::status>(answer.status), version_);
         response_->set(http::field::server, "embody");
         response_->set(http::field::content_type, answer.content_type);
-        response_->set("X-Content-Type-Options", "nosniff");
-        response_->set("Referrer-Policy", "no-referrer");
+        for (const auto& [name, value] : protective_headers()) response_->set(name, value);
         for (const auto& [name, value] : answer.headers) response_->set(name, value);
-        response_->keep_alive(keep_alive);
+        // The page's first load carries the token in its address; the rest of its requests bring it as a cookie.
+        if (!shared_.access.token.empty() && answer.status < 400 && !query_parameter(request_.target, "token").empty())
+            response_->set("Set-Cookie", std::string(token_cookie) + "=" + shared_.access.token +
+                                             "; HttpOnly; SameSite=Strict; Path=/");
+        response_->keep_alive(keep_alive_);
         response_->content_length(answer.body.size());
-        if (!head) response_->body() = std::move(answer.body);
-        stream_.expires_after(std::chrono::minutes(2));
-        http::async_write(stream_, *response_, [self = shared_from_this(), keep_alive](error_code error, std::size_t) {
-            if (error || !keep_alive) return self->close();
+        if (!is_head_) response_->body() = std::move(answer.body);
+        stream_.expires_after(longest_answer);
+        http::async_write(stream_, *response_, [self = shared_from_this()](error_code error, std::size_t) {
+            self->response_.reset();
+            if (error || !self->keep_alive_) return self->close();
             self->read_header();
         });
     }
 
     // What the client still sends is read for a moment: else the system would take back the answer that refuses it.
     void close() {
+        drop_upload();
         error_code ignored;
         stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
         stream_.expires_after(std::chrono::seconds(5));
+        may_be_given_up();
         read_rest();
     }
 
@@ -304,8 +531,17 @@ private:
 
     beast::tcp_stream stream_;
     Shared& shared_;
+    ConnectionBook::Place place_;
     beast::flat_buffer buffer_;
-    std::optional<http::request_parser<http::string_body>> parser_;
+    std::optional<http::request_parser<http::empty_body>> header_;
+    std::optional<http::request_parser<http::string_body>> body_;
+    std::optional<http::request_parser<http::buffer_body>> upload_body_;
+    HttpRequest request_;
+    bool is_head_ = false, keep_alive_ = false;
+    unsigned version_ = 11;
+    std::shared_ptr<Upload> upload_;
+    std::vector<char> piece_;  ///< of the upload, between socket and file
+    Clock::time_point upload_ends_;
     std::optional<http::response<http::string_body>> response_;
 };
 
@@ -318,39 +554,63 @@ struct Server::State {
     std::optional<tcp::acceptor> acceptor;
     std::optional<asio::signal_set> signals;
     asio::steady_timer accept_again{shared.io};
+    Clock::time_point accept_failure_told{};
     std::string address;
     std::atomic<bool> frame_posted{false};
 
     Result<void> listen(const ServerOptions& options);
+    Result<void> open_routes(const ServerOptions& options);
     void accept();
+    void accept_later(const error_code& error);
+    void welcome(tcp::socket socket);
+    [[nodiscard]] std::vector<std::shared_ptr<WebSocketClient>> clients() const;
     SceneThreadListener listener();
     void stop();
+    void request_end();
 };
 
 Server::Server() : state_(std::make_unique<State>()) {}
 
 Server::~Server() {
-    // The scene first: it posts to the io_context until it has ended.
+    state_->request_end();
+    // The scene first: it posts to the io_context until it has ended; then those that answer from its document.
     state_->shared.scene.reset();
     state_->shared.imports.reset();
+    state_->shared.route_queue.reset();
+    state_->shared.upload_queue.reset();
     state_->stop();
+    // Their sockets are the io_context's.
+    state_->shared.clients.clear();
 }
 
 Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options) {
     std::unique_ptr<Server> server(new Server);
     State& state = *server->state_;
-    auto catalog = catalog::Catalog::open(options.scene.database, options.scene.taxonomy_folder);
-    if (!catalog) return catalog.error();
+    if (auto opened = state.open_routes(options); !opened) return opened.error();
     if (auto listening = state.listen(options); !listening) return listening.error();
     auto scene = SceneThread::start(options.scene, state.listener());
     if (!scene) return scene.error();
     state.shared.scene = std::move(*scene);
-    state.shared.routes = std::make_unique<Routes>(
-        std::move(*catalog), options.studio_folder, [&shared = state.shared] { return shared.scene->scene_json(); },
-        [&shared = state.shared] { return shared.scene->scene_title(); });
     state.shared.imports = std::make_unique<ImportRequests>(options.scene.database, options.scene.taxonomy_folder);
     state.accept();
     return server;
+}
+
+Result<void> Server::State::open_routes(const ServerOptions& options) {
+    std::vector<std::unique_ptr<catalog::Catalog>> catalogs;
+    for (std::size_t i = 0; i < route_threads; ++i) {
+        auto catalog = catalog::Catalog::open(options.scene.database, options.scene.taxonomy_folder);
+        if (!catalog) return catalog.error();
+        catalogs.push_back(std::move(*catalog));
+    }
+    auto uploads = UploadStore::open(options.scene.database.string() + "-uploads");
+    if (!uploads) return uploads.error();
+    shared.uploads = std::move(*uploads);
+    shared.routes = std::make_unique<Routes>(std::move(catalogs), options.studio_folder,
+                                             [this] { return shared.scene->scene_title(); });
+    shared.route_queue = std::make_unique<WorkQueue>(route_threads);
+    shared.upload_queue = std::make_unique<WorkQueue>(1);
+    return {};
 }
 
 Result<void> Server::State::listen(const ServerOptions& options) {
@@ -378,40 +638,65 @@ Result<void> Server::State::listen(const ServerOptions& options) {
 void Server::State::accept() {
     acceptor->async_accept([this](error_code error, tcp::socket socket) {
         if (error == asio::error::operation_aborted) return;
-        if (error) {
-            // No descriptor is left, most likely: the next try is for when a connection has ended.
-            accept_again.expires_after(std::chrono::milliseconds(100));
-            accept_again.async_wait([this](error_code stopped) {
-                if (!stopped) accept();
-            });
-            return;
-        }
-        // Small frames must not wait for more to come.
-        error_code ignored;
-        socket.set_option(tcp::no_delay(true), ignored);
-        std::make_shared<HttpConnection>(std::move(socket), shared)->read_header();
+        if (error) return accept_later(error);
+        welcome(std::move(socket));
         accept();
     });
 }
 
+// No descriptor is left, most likely: the next try is for when a connection has ended.
+void Server::State::accept_later(const error_code& error) {
+    if (Clock::now() - accept_failure_told > accept_failure_period) {
+        accept_failure_told = Clock::now();
+        std::fprintf(stderr, "embody: a connection could not be accepted: %s\n", error.message().c_str());
+    }
+    accept_again.expires_after(accept_pause);
+    accept_again.async_wait([this](error_code stopped) {
+        if (!stopped) accept();
+    });
+}
+
+void Server::State::welcome(tcp::socket socket) {
+    error_code ignored;
+    const auto client = socket.remote_endpoint(ignored).address();
+    auto place = shared.connections.admit(client.to_string());
+    if (!place) {
+        // As much as the system takes at once: nobody waits for who is turned away.
+        static constexpr std::string_view answer =
+            "HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\nRetry-After: 10\r\nContent-Length: 0\r\n\r\n";
+        socket.non_blocking(true, ignored);
+        socket.write_some(asio::buffer(answer), ignored);
+        return;
+    }
+    // Small frames must not wait for more to come.
+    socket.set_option(tcp::no_delay(true), ignored);
+    try {
+        std::make_shared<HttpConnection>(std::move(socket), shared, std::move(*place))->read_header();
+    } catch (const std::exception& thrown) {
+        report_failure(thrown);
+    }
+}
+
+// Sending may drop a client, so nobody walks the map itself.
+std::vector<std::shared_ptr<WebSocketClient>> Server::State::clients() const {
+    std::vector<std::shared_ptr<WebSocketClient>> all;
+    for (const auto& [id, client] : shared.clients) all.push_back(client);
+    return all;
+}
+
 SceneThreadListener Server::State::listener() {
-    const auto client = [this](ClientId id) {
-        const auto found = shared.clients.find(id);
-        return found == shared.clients.end() ? nullptr : found->second.lock();
-    };
     SceneThreadListener listener;
-    listener.reply = [this, client](ClientId id, std::string text) {
-        asio::post(shared.io, [client, id, text = std::move(text)]() mutable {
-            if (const auto to = client(id)) to->send_reply(std::move(text));
+    listener.reply = [this](ClientId id, std::string text) {
+        asio::post(shared.io, [this, id, text = std::move(text)]() mutable {
+            const auto found = shared.clients.find(id);
+            if (found == shared.clients.end()) return;
+            const std::shared_ptr<WebSocketClient> client = found->second;
+            client->send_reply(std::move(text));
         });
     };
     listener.broadcast = [this](std::string text) {
-        asio::post(shared.io, [this, text = std::move(text)] {
-            // send_text may drop a client, so not while walking the map.
-            std::vector<std::shared_ptr<WebSocketClient>> all;
-            for (const auto& [id, weak] : shared.clients)
-                if (auto to = weak.lock()) all.push_back(std::move(to));
-            for (const auto& to : all) to->send_text(text);
+        asio::post(shared.io, [this, text = std::make_shared<const std::string>(std::move(text))] {
+            for (const auto& client : clients()) client->send_text(text);
         });
     };
     listener.states_changed = [this] {
@@ -419,10 +704,7 @@ SceneThreadListener Server::State::listener() {
         if (frame_posted.exchange(true)) return;
         asio::post(shared.io, [this] {
             frame_posted = false;
-            std::vector<std::shared_ptr<WebSocketClient>> all;
-            for (const auto& [id, weak] : shared.clients)
-                if (auto to = weak.lock()) all.push_back(std::move(to));
-            for (const auto& to : all) to->send_frame();
+            for (const auto& client : clients()) client->send_frame();
         });
     };
     return listener;
@@ -433,6 +715,13 @@ void Server::State::stop() {
     if (acceptor) acceptor->close(ignored);
     if (signals) signals->cancel(ignored);
     shared.io.stop();
+}
+
+void Server::State::request_end() {
+    if (shared.scene) shared.scene->request_stop();
+    if (shared.imports) shared.imports->request_stop();
+    if (shared.route_queue) shared.route_queue->request_stop();
+    if (shared.upload_queue) shared.upload_queue->request_stop();
 }
 
 std::string Server::url() const {
@@ -454,9 +743,23 @@ void Server::run() {
             state_->shared.io.run();
             return;
         } catch (const std::exception& thrown) {
-            std::fprintf(stderr, "embody: a connection failed: %s\n", printable(thrown.what()).c_str());
+            report_failure(thrown);
         }
     }
+}
+
+Result<bool> Server::end_within(std::chrono::milliseconds time) {
+    Shared& shared = state_->shared;
+    state_->request_end();
+    const Clock::time_point until = Clock::now() + time;
+    if (shared.scene->wait_ended(until) && shared.imports->wait_ended(until) && shared.route_queue->wait_ended(until) &&
+        shared.upload_queue->wait_ended(until))
+        return true;
+    shared.uploads->remove_all();
+    if (!shared.scene->wait_ended(Clock::now())) {
+        if (Result<void> kept = shared.scene->rescue(); !kept) return kept.error();
+    }
+    return false;
 }
 
 void Server::request_stop() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -32,6 +33,11 @@ public:
     void run();
     /// From any thread.
     void request_stop();
+    /// After run(): ends all that still works. True: everything has ended in this time, the scene autosaved; the server
+    /// can be destroyed. False: something does not end, a step of a huge scene, say, or the import of a model. Then the
+    /// scene was autosaved as it was before, uploads are removed, and the process should end without destroying the
+    /// server, which would wait. The error: the scene could not be kept.
+    Result<bool> end_within(std::chrono::milliseconds time);
 
 private:
     Server();

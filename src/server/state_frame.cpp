@@ -69,43 +69,56 @@ bool same(const scene::EntityState& a, const scene::EntityState& b) { return a.p
 
 void StateBoard::publish(const std::vector<scene::EntityState>& states, double time, std::uint64_t step,
                          bool all_changed) {
-    ++version_;
-    time_ = time;
-    step_ = step;
-    std::map<scene::EntityIndex, Row> next;
-    for (const scene::EntityState& state : states) next.emplace(state.entity, next_row(state, all_changed));
-    rows_ = std::move(next);
+    // Only this thread ever puts another table there.
+    const Table& before = *table_;
+    auto next = std::make_shared<Table>();
+    next->version = before.version + 1;
+    next->time = time;
+    next->step = step;
+    next->rows.reserve(states.size());
+    auto known = before.rows.begin();
+    for (const scene::EntityState& state : states) {
+        while (known != before.rows.end() && known->state.entity < state.entity) ++known;
+        const bool is_known = known != before.rows.end() && known->state.entity == state.entity && !all_changed;
+        next->rows.push_back(next_row(state, is_known ? &*known : nullptr, next->version));
+    }
+    const std::lock_guard lock(mutex_);
+    table_ = std::move(next);
 }
 
-StateBoard::Row StateBoard::next_row(const scene::EntityState& state, bool all_changed) {
-    const auto found = rows_.find(state.entity);
-    const Row* known = found == rows_.end() || all_changed ? nullptr : &found->second;
+StateBoard::Row StateBoard::next_row(const scene::EntityState& state, const Row* known, std::uint64_t version) {
     const bool has_points = state.points != nullptr;
-    const bool is_same = known != nullptr && same(known->state, state) && known->points.empty() != has_points;
-    Row row{state, is_same ? known->changed : version_, {}, version_};
+    const bool is_same = known != nullptr && same(known->state, state) && (known->points != nullptr) == has_points;
+    Row row{state, is_same ? known->changed : version, nullptr, version};
     row.state.points = nullptr;
-    if (state.points == nullptr) return row;
+    if (!has_points) return row;
 
     // What slept and still does has not moved; of the rest the bytes tell.
-    if (is_same && state.state == asleep && !known->points.empty()) {
+    if (is_same && state.state == asleep) {
         row.points = known->points;
         row.points_changed = known->points_changed;
         return row;
     }
     state.points->read(scratch_);
-    row.points = points_record(state.entity, scratch_, *state.points);
-    if (known != nullptr && known->points == row.points) row.points_changed = known->points_changed;
+    row.points = std::make_shared<std::string>(points_record(state.entity, scratch_, *state.points));
+    if (known != nullptr && known->points && *known->points == *row.points) row.points_changed = known->points_changed;
     return row;
 }
 
-std::string StateBoard::frame_since(std::uint64_t seen) const {
+std::shared_ptr<const StateBoard::Table> StateBoard::table() const {
+    const std::lock_guard lock(mutex_);
+    return table_;
+}
+
+StateBoard::Frame StateBoard::frame_since(std::uint64_t seen) const {
+    const std::shared_ptr<const Table> now = table();
     std::uint32_t count = 0, sets = 0;
     std::size_t bytes = header_bytes;
-    for (const auto& [entity, row] : rows_) {
+    for (const Row& row : now->rows) {
         if (row.changed > seen) ++count, bytes += record_bytes;
-        if (row.points_changed > seen && !row.points.empty()) ++sets, bytes += row.points.size();
+        if (row.points_changed > seen && row.points) ++sets, bytes += row.points->size();
     }
-    if (count == 0 && sets == 0) return {};
+    if (count == 0 && sets == 0) return {{}, now->version};
     std::string frame;
     frame.reserve(bytes);
     append(frame, frame_magic);
@@ -113,15 +126,15 @@ std::string StateBoard::frame_since(std::uint64_t seen) const {
     append(frame, std::uint16_t{0});
     append(frame, count);
     append(frame, sets);
-    append(frame, time_);
-    append(frame, step_);
-    for (const auto& [entity, row] : rows_) {
-        if (row.changed > seen) append_record(frame, row.state, !row.points.empty());
+    append(frame, now->time);
+    append(frame, now->step);
+    for (const Row& row : now->rows) {
+        if (row.changed > seen) append_record(frame, row.state, row.points != nullptr);
     }
-    for (const auto& [entity, row] : rows_) {
-        if (row.points_changed > seen) frame += row.points;
+    for (const Row& row : now->rows) {
+        if (row.points_changed > seen && row.points) frame += *row.points;
     }
-    return frame;
+    return {std::move(frame), now->version};
 }
 
 }  // namespace embody::server

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -11,30 +12,41 @@
 namespace embody::server {
 
 /// The newest state of every entity, each with the version in which it last changed. A client that has seen version v
-/// needs only what changed since: latest state wins, nothing is queued.
+/// needs only what changed since: latest state wins, nothing is queued. One thread publishes, others may read
+/// meanwhile: neither waits while the other works.
 class StateBoard {
 public:
-    /// Takes the present states; entities that are missing are dropped. `all_changed` marks every one as new.
+    /// Takes the present states, ascending by entity; those that are missing are dropped. `all_changed` marks every one
+    /// as new.
     void publish(const std::vector<scene::EntityState>& states, double time, std::uint64_t step, bool all_changed);
 
-    [[nodiscard]] std::uint64_t version() const { return version_; }
+    [[nodiscard]] std::uint64_t version() const { return table()->version; }
 
-    /// The binary frame (docs/protocol.md) of what changed after `seen`; empty where nothing did.
-    [[nodiscard]] std::string frame_since(std::uint64_t seen) const;
+    /// Binary frame (docs/protocol.md) of what changed after version `seen`, and the version that it leads to.
+    struct Frame {
+        std::string bytes;  ///< empty: nothing new
+        std::uint64_t version = 0;
+    };
+    [[nodiscard]] Frame frame_since(std::uint64_t seen) const;
 
 private:
     struct Row {
         scene::EntityState state;  ///< without its points
         std::uint64_t changed = 0;
-        std::string points;                ///< their record of the frame; empty: it has none
-        std::uint64_t points_changed = 0;  ///< and when they last moved
+        std::shared_ptr<const std::string> points;  ///< their record of the frame; null: it has none
+        std::uint64_t points_changed = 0;           ///< and when they last moved
     };
-    [[nodiscard]] Row next_row(const scene::EntityState& state, bool all_changed);
+    struct Table {
+        std::vector<Row> rows;  ///< ascending by entity
+        std::uint64_t version = 0;
+        double time = 0;
+        std::uint64_t step = 0;
+    };
+    [[nodiscard]] Row next_row(const scene::EntityState& state, const Row* known, std::uint64_t version);
+    [[nodiscard]] std::shared_ptr<const Table> table() const;
 
-    std::map<scene::EntityIndex, Row> rows_;
-    std::uint64_t version_ = 0;
-    double time_ = 0;
-    std::uint64_t step_ = 0;
+    mutable std::mutex mutex_;  ///< of the pointer; the table itself never changes
+    std::shared_ptr<const Table> table_ = std::make_shared<Table>();
     std::vector<Vec3> scratch_;
 };
 

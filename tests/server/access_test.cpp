@@ -18,11 +18,34 @@ HttpRequest request(const std::string& host, const std::string& origin = "") {
 const AccessRules loopback{true, 8420, ""};
 const AccessRules open_network{false, 8420, "0123456789abcdef"};
 
-TEST(AccessOnLoopback, ForeignPagesMayNotChangeState) {
-    EXPECT_FALSE(check_access(loopback, request("127.0.0.1:8420", "http://evil.example"), true).granted);
-    EXPECT_FALSE(check_access(loopback, request("127.0.0.1:8420", "null"), true).granted);
-    // Another port of this machine is another site.
-    EXPECT_FALSE(check_access(loopback, request("127.0.0.1:8420", "http://127.0.0.1:9999"), true).granted);
+HttpRequest from_site(const std::string& site, const std::string& mode, const std::string& dest) {
+    HttpRequest made = request("127.0.0.1:8420");
+    made.fetch_site = site;
+    made.fetch_mode = mode;
+    made.fetch_dest = dest;
+    return made;
+}
+
+TEST(AccessOnLoopback, ForeignPagesReachNothing) {
+    for (const bool is_page : {false, true}) {
+        EXPECT_FALSE(check_access(loopback, request("127.0.0.1:8420", "http://evil.example"), is_page).granted);
+        EXPECT_FALSE(check_access(loopback, request("127.0.0.1:8420", "null"), is_page).granted);
+        // Another port of this machine is another site.
+        EXPECT_FALSE(check_access(loopback, request("127.0.0.1:8420", "http://127.0.0.1:9999"), is_page).granted);
+        // Pictures, scripts and frames come without Origin.
+        for (const char* site : {"cross-site", "same-site"}) {
+            EXPECT_FALSE(check_access(loopback, from_site(site, "no-cors", "image"), is_page).granted);
+            EXPECT_FALSE(check_access(loopback, from_site(site, "no-cors", "script"), is_page).granted);
+            EXPECT_FALSE(check_access(loopback, from_site(site, "navigate", "iframe"), is_page).granted);
+        }
+    }
+    EXPECT_FALSE(check_access(loopback, from_site("cross-site", "navigate", "document"), false).granted);
+}
+
+TEST(AccessOnLoopback, ALinkOfAnotherPageOpensTheStudio) {
+    EXPECT_TRUE(check_access(loopback, from_site("cross-site", "navigate", "document"), true).granted);
+    EXPECT_TRUE(check_access(loopback, from_site("none", "navigate", "document"), false).granted);
+    EXPECT_TRUE(check_access(loopback, from_site("same-origin", "cors", "empty"), false).granted);
 }
 
 TEST(AccessOnLoopback, NamesThatWereReboundToThisMachineAreRefused) {
@@ -31,10 +54,10 @@ TEST(AccessOnLoopback, NamesThatWereReboundToThisMachineAreRefused) {
 }
 
 TEST(AccessOnLoopback, OwnPagesAndScriptsAreServed) {
-    EXPECT_TRUE(check_access(loopback, request("127.0.0.1:8420", "http://127.0.0.1:8420"), true).granted);
-    EXPECT_TRUE(check_access(loopback, request("localhost:8420", "http://localhost:8420"), true).granted);
-    EXPECT_TRUE(check_access(loopback, request("[::1]:8420", "http://[::1]:8420"), true).granted);
-    EXPECT_TRUE(check_access(loopback, request("127.0.0.1:8420"), true).granted);
+    EXPECT_TRUE(check_access(loopback, request("127.0.0.1:8420", "http://127.0.0.1:8420"), false).granted);
+    EXPECT_TRUE(check_access(loopback, request("localhost:8420", "http://localhost:8420"), false).granted);
+    EXPECT_TRUE(check_access(loopback, request("[::1]:8420", "http://[::1]:8420"), false).granted);
+    EXPECT_TRUE(check_access(loopback, request("127.0.0.1:8420"), false).granted);
 }
 
 TEST(AccessFromTheNetwork, NeedsTheToken) {

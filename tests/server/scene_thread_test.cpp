@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <future>
+
 #include "server/scene_thread_fixture.h"
 
 namespace embody::server {
@@ -66,6 +68,29 @@ TEST_F(SceneThreadTest, ATextOfASceneIsOpenedOrItsFileLineAndFieldAreTold) {
     EXPECT_EQ(error_of("scene.load", {{"text", "{}"}, {"name", "told"}}),
               "name: say either a name, the scene itself, or the text of its file");
     EXPECT_EQ(run("hello").at("scene").at("title"), "Told");
+}
+
+// The network thread asks for these; whatever the scene thread does meanwhile, it must not wait.
+TEST_F(SceneThreadTest, TheDocumentComesAfterTheCommandInHandAndNobodyWaitsForIt) {
+    thread_->post(1, R"({"id": 1, "command": "simulation.step", "params": {"count": 100000}})");
+    std::promise<scene::Document> taken;
+    thread_->request_document([&](scene::Document document) { taken.set_value(std::move(document)); });
+    // Both are here at once, though the steps take some seconds.
+    (void)thread_->frame_since(0);
+    EXPECT_EQ(thread_->scene_title(), "Untitled");
+    std::future<scene::Document> document = taken.get_future();
+    EXPECT_EQ(next_reply(1).at("ok"), true);
+    EXPECT_EQ(document.get().entities.size(), 1u);
+}
+
+TEST_F(SceneThreadTest, WhatIsNotSavedIsRescuedWhileACommandRuns) {
+    run("scene.settings", {{"title", "Rescued"}});
+    thread_->post(1, R"({"id": 1, "command": "simulation.step", "params": {"count": 100000}})");
+    const Result<void> rescued = thread_->rescue();
+    ASSERT_TRUE(rescued.ok()) << rescued.error().message();
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "saved" / "autosave" / "Rescued.json"));
+    thread_->request_stop();
+    EXPECT_TRUE(thread_->wait_ended(std::chrono::steady_clock::now() + std::chrono::seconds(60)));
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ scene::EntityState entity(scene::EntityIndex index, double x, std::uint8_t state
 TEST(StateFrame, HasTheLayoutOfTheProtocol) {
     StateBoard board;
     board.publish({entity(7, 1.5, 2)}, 0.25, 15, false);
-    const std::string frame = board.frame_since(0);
+    const std::string frame = board.frame_since(0).bytes;
     ASSERT_EQ(frame.size(), 32u + 36u);
     EXPECT_EQ(frame.substr(0, 4), "EMBF");
     EXPECT_EQ(read<std::uint16_t>(frame, 4), 2);
@@ -41,11 +41,11 @@ TEST(StateFrame, HasTheLayoutOfTheProtocol) {
 
 TEST(StateFrame, NothingNewIsNoFrame) {
     StateBoard board;
-    EXPECT_EQ(board.frame_since(0), "");
+    EXPECT_EQ(board.frame_since(0).bytes, "");
     board.publish({entity(1, 0, 0)}, 0, 0, false);
     const std::uint64_t seen = board.version();
     board.publish({entity(1, 0, 0)}, 0.1, 1, false);
-    EXPECT_EQ(board.frame_since(seen), "");
+    EXPECT_EQ(board.frame_since(seen).bytes, "");
 }
 
 TEST(StateFrame, ASlowClientGetsEveryChangeOfTheFramesItMissed) {
@@ -54,7 +54,7 @@ TEST(StateFrame, ASlowClientGetsEveryChangeOfTheFramesItMissed) {
     const std::uint64_t seen = board.version();
     board.publish({entity(1, 1, 0), entity(2, 0, 0), entity(3, 0, 0)}, 0.1, 1, false);
     board.publish({entity(1, 1, 0), entity(2, 5, 0), entity(3, 0, 0)}, 0.2, 2, false);
-    const std::string frame = board.frame_since(seen);
+    const std::string frame = board.frame_since(seen).bytes;
     ASSERT_EQ(read<std::uint32_t>(frame, 8), 2u);
     EXPECT_EQ(read<std::uint32_t>(frame, 32), 1u);
     EXPECT_EQ(read<std::uint32_t>(frame, 32 + 36), 2u);
@@ -65,7 +65,7 @@ TEST(StateFrame, AResetSendsEverything) {
     board.publish({entity(1, 0, 0), entity(2, 0, 0)}, 0, 0, false);
     const std::uint64_t seen = board.version();
     board.publish({entity(1, 0, 0), entity(2, 0, 0)}, 0, 0, true);
-    EXPECT_EQ(read<std::uint32_t>(board.frame_since(seen), 8), 2u);
+    EXPECT_EQ(read<std::uint32_t>(board.frame_since(seen).bytes, 8), 2u);
 }
 
 /// Points that stay where the test puts them.
@@ -99,7 +99,7 @@ TEST(PointSets, HaveTheLayoutOfTheProtocolAndLoseLessThanAStep) {
     points.at = {{-1, 0.5, 2}, {1, 0.75, 2}, {0.3, 0.6, 2}};
     StateBoard board;
     board.publish({pointed(9, points, 0)}, 0, 0, false);
-    const std::string frame = board.frame_since(0);
+    const std::string frame = board.frame_since(0).bytes;
     const std::size_t set = 32 + 36;
     ASSERT_EQ(frame.size(), set + 40 + 3 * 6 + 2);
     EXPECT_EQ(read<std::uint32_t>(frame, 12), 1u);
@@ -123,25 +123,25 @@ TEST(PointSets, AreSentWhereSomethingMovedAndToWhoComesLater) {
     board.publish({pointed(1, points, 0)}, 0, 0, false);
     std::uint64_t seen = board.version();
     board.publish({pointed(1, points, 0)}, 0.1, 1, false);
-    EXPECT_EQ(board.frame_since(seen), "");
+    EXPECT_EQ(board.frame_since(seen).bytes, "");
     points.at[1].x = 1.5;
     board.publish({pointed(1, points, 0)}, 0.2, 2, false);
-    const std::string moved = board.frame_since(seen);
+    const std::string moved = board.frame_since(seen).bytes;
     EXPECT_EQ(read<std::uint32_t>(moved, 8), 0u);
     EXPECT_EQ(read<std::uint32_t>(moved, 12), 1u);
 
     // Asleep: one last frame with the new state, then nothing.
     seen = board.version();
     board.publish({pointed(1, points, 2)}, 0.3, 3, false);
-    EXPECT_EQ(read<std::uint32_t>(board.frame_since(seen), 12), 0u);
+    EXPECT_EQ(read<std::uint32_t>(board.frame_since(seen).bytes, 12), 0u);
     seen = board.version();
     board.publish({pointed(1, points, 2)}, 0.4, 4, false);
-    EXPECT_EQ(board.frame_since(seen), "");
-    EXPECT_EQ(read<std::uint32_t>(board.frame_since(0), 12), 1u);
+    EXPECT_EQ(board.frame_since(seen).bytes, "");
+    EXPECT_EQ(read<std::uint32_t>(board.frame_since(0).bytes, 12), 1u);
 
     // One body again.
     board.publish({entity(1, 0, 2)}, 0.5, 5, false);
-    const std::string solid = board.frame_since(seen);
+    const std::string solid = board.frame_since(seen).bytes;
     EXPECT_EQ(read<std::uint32_t>(solid, 12), 0u);
     EXPECT_EQ(read<std::uint8_t>(solid, 32 + 33), 0);
 }
@@ -151,7 +151,7 @@ TEST(PointSets, OfFiveThousandGrainsTakeThirtyKilobytesAFrame) {
     points.at.resize(5000, {1, 2, 3});
     StateBoard board;
     board.publish({pointed(1, points, 0)}, 0, 0, false);
-    EXPECT_EQ(board.frame_since(0).size(), 32u + 36 + 40 + 30000);
+    EXPECT_EQ(board.frame_since(0).bytes.size(), 32u + 36 + 40 + 30000);
 }
 
 }  // namespace

@@ -6,52 +6,13 @@ import { createServer } from "node:http";
 import { createRequire } from "node:module";
 import { extname, join, normalize } from "node:path";
 import { fileURLToPath } from "node:url";
+import { boxGlb, PIXEL } from "./models.mjs";
 
 const studio = fileURLToPath(new URL("../../studio/", import.meta.url));
 const { WebSocketServer } = createRequire(join(studio, "package.json"))("ws");
 
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css" };
-const PIXEL = Buffer.from("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mPMaGj4DwAFhAKAjM1mJgAAAABJRU5ErkJggg==", "base64");
 const NOUNS = ["chair", "table", "lamp", "sofa", "shelf", "bed", "stool", "vase"];
-
-/** A glTF binary of a box of half a metre that stands on its origin. */
-function boxGlb() {
-  const corners = [];
-  for (const x of [-0.25, 0.25]) for (const y of [0, 0.5]) for (const z of [-0.25, 0.25]) corners.push(x, y, z);
-  const faces = [0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3];
-  const binary = Buffer.concat([Buffer.from(new Float32Array(corners).buffer), Buffer.from(new Uint16Array(faces).buffer)]);
-  const json = {
-    asset: { version: "2.0" },
-    scene: 0,
-    scenes: [{ nodes: [0] }],
-    nodes: [{ mesh: 0 }],
-    meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1, material: 0 }] }],
-    materials: [{ pbrMetallicRoughness: { baseColorFactor: [0.6, 0.35, 0.15, 1], metallicFactor: 0 } }],
-    accessors: [
-      { bufferView: 0, componentType: 5126, count: 8, type: "VEC3", min: [-0.25, 0, -0.25], max: [0.25, 0.5, 0.25] },
-      { bufferView: 1, componentType: 5123, count: faces.length, type: "SCALAR" },
-    ],
-    bufferViews: [
-      { buffer: 0, byteOffset: 0, byteLength: 96 },
-      { buffer: 0, byteOffset: 96, byteLength: faces.length * 2 },
-    ],
-    buffers: [{ byteLength: binary.length }],
-  };
-  let text = JSON.stringify(json);
-  text += " ".repeat((4 - (text.length % 4)) % 4);
-  const chunk = (type, data) => {
-    const head = Buffer.alloc(8);
-    head.writeUInt32LE(data.length, 0);
-    head.write(type, 4, "latin1");
-    return Buffer.concat([head, data]);
-  };
-  const chunks = Buffer.concat([chunk("JSON", Buffer.from(text)), chunk("BIN\0", binary)]);
-  const head = Buffer.alloc(12);
-  head.write("glTF", 0, "latin1");
-  head.writeUInt32LE(2, 4);
-  head.writeUInt32LE(12 + chunks.length, 8);
-  return Buffer.concat([head, chunks]);
-}
 
 export class MockServer {
   constructor({ models = 40, port = 0 } = {}) {

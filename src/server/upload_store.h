@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <span>
+#include <string>
+
+#include "foundation/result.h"
+
+namespace embody::server {
+
+/// Bytes of one uploaded file.
+inline constexpr std::uint64_t largest_upload = std::uint64_t{256} << 20;
+/// That are being received or wait for their import; others are refused meanwhile.
+inline constexpr std::size_t most_uploads = 8;
+
+class UploadStore;
+
+/// A file that a client sends, on disk under its own name; removed with the object. Used by one thread at a time.
+class Upload {
+public:
+    ~Upload();
+    Upload(const Upload&) = delete;
+    Upload& operator=(const Upload&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+    /// Appends; fails where the disk is full.
+    Result<void> write(std::span<const char> bytes);
+    /// All is there: it can be read.
+    Result<void> finish();
+
+private:
+    friend class UploadStore;
+    Upload(std::shared_ptr<UploadStore> store, std::filesystem::path file, int descriptor)
+        : store_(std::move(store)), file_(std::move(file)), descriptor_(descriptor) {}
+    std::shared_ptr<UploadStore> store_;
+    std::filesystem::path file_;  ///< alone in a folder
+    int descriptor_;
+};
+
+/// Where uploads lie until they are imported: a folder of this process below one folder of all, which it holds a lock
+/// on. What a process that was killed left there goes at the next start. Thread-safe.
+class UploadStore : public std::enable_shared_from_this<UploadStore> {
+public:
+    static Result<std::shared_ptr<UploadStore>> open(const std::filesystem::path& folder_of_all);
+    ~UploadStore();
+
+    /// `name`: the file's name, for importers go by its ending. Fails where too many are there already.
+    Result<std::shared_ptr<Upload>> begin(const std::string& name);
+    /// At the end of the program, whoever still uses them.
+    void remove_all();
+
+private:
+    friend class Upload;
+    UploadStore(std::filesystem::path folder, int lock) : folder_(std::move(folder)), lock_(lock) {}
+    void forget(const std::filesystem::path& upload_folder);
+
+    std::filesystem::path folder_;
+    int lock_;
+    std::mutex mutex_;
+    std::set<std::filesystem::path> uploads_;  ///< their folders
+    std::uint64_t next_ = 1;
+};
+
+}  // namespace embody::server

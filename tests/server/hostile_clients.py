@@ -1,0 +1,385 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""What others may do to a server without freezing it, filling its memory or losing what was promised: long commands,
+pages of other sites, floods of commands, idle connections, uploads that never end; and that SIGTERM ends it in time.
+
+Usage: hostile_clients.py EMBODY [part of a test's name …]
+"""
+import http.client
+import json
+import os
+import pathlib
+import resource
+import signal
+import socket
+import sys
+import tempfile
+import time
+
+from viewer import Server, Viewer
+
+# Nobody waits for ever: a server that is frozen fails by this, s.
+PATIENCE = 30
+# SIGTERM's promise, s (docs/protocol.md).
+LONGEST_END = 3
+
+BOX = {"index": 1, "shape": {"type": "box", "half_extents": [0.3, 0.2, 0.3]}, "pose": {"position": [0, 1, 0]}}
+
+
+def heap(entities: int) -> list:
+    """Boxes that move for long: a command of many steps takes its time with them."""
+    return [{"index": i + 1, "shape": {"type": "box", "half_extents": [0.1, 0.1, 0.1]}, "allow_sleep": False,
+             "pose": {"position": [0.21 * (i % 10), 0.3 + 0.21 * (i // 100), 0.21 * (i // 10 % 10)]}} for i in range(entities)]
+
+
+class Stage:
+    """A server on a scene of its own, in a folder that goes with it."""
+
+    def __init__(self, embody: str, entities=(BOX,)):
+        self.folder = tempfile.TemporaryDirectory()
+        scene = pathlib.Path(self.folder.name) / "scene.json"
+        floor = {"index": len(entities) + 1, "shape": {"type": "plane"}, "attributes": {"kind": "static"}}
+        scene.write_text(json.dumps({"embody_scene": 1, "title": "Stage", "entities": [*entities, floor]}))
+        self.database = pathlib.Path(self.folder.name) / "models.sqlite"
+        self.server = Server(embody, str(self.database), str(scene))
+        self.port = self.server.port
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self.server.process.poll() is None:
+            self.server.process.kill()
+        self.server.close()
+        self.folder.cleanup()
+
+    def get(self, path: str, method="GET", headers=None, patience=PATIENCE):
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=patience)
+        connection.request(method, path, headers=headers or {})
+        answer = connection.getresponse()
+        body = answer.read()
+        connection.close()
+        return answer, body
+
+    def saved_after_end(self) -> list:
+        """The autosaves of the server's home folder; ask before it is closed."""
+        return sorted(pathlib.Path(self.server.home.name).rglob("autosave/*.json"))
+
+    def end(self, wrong: list, what: str):
+        """SIGTERM, and how long it took to end."""
+        began = time.monotonic()
+        self.server.process.send_signal(signal.SIGTERM)
+        try:
+            code = self.server.process.wait(timeout=PATIENCE)
+        except Exception:
+            wrong.append(f"{what}: SIGTERM did not end the server within {PATIENCE} s")
+            return
+        took = time.monotonic() - began
+        print(f"  {what}: ended after {took:.2f} s")
+        if took > LONGEST_END:
+            wrong.append(f"{what}: SIGTERM took {took:.1f} s, promised are {LONGEST_END}")
+        if code != 0:
+            wrong.append(f"{what}: the server ended with {code}")
+
+
+def busy_viewer(stage: Stage, steps: int) -> Viewer:
+    """A client whose command is being carried out."""
+    viewer = Viewer(stage.port)
+    viewer.do("hello")
+    viewer.ask("simulation.step", count=steps)
+    time.sleep(0.3)
+    return viewer
+
+
+def test_nothing_waits_for_a_command(embody: str, wrong: list):
+    with Stage(embody, heap(1000)) as stage:
+        viewer = busy_viewer(stage, 100_000)
+        waiting = socket.create_connection(("127.0.0.1", stage.port))
+        waiting.sendall(f"GET /scene.json HTTP/1.1\r\nHost: 127.0.0.1:{stage.port}\r\n\r\n".encode())
+        time.sleep(0.3)
+        try:
+            answer, body = stage.get("/api/health", patience=10)
+            if answer.status != 200:
+                wrong.append(f"/api/health answers {answer.status} while a command runs")
+            Viewer(stage.port).close()
+        except TimeoutError:
+            wrong.append("HTTP is frozen while a command runs and somebody asks for /scene.json")
+        stage.end(wrong, "a command in hand, /scene.json asked for")
+        viewer.close()
+        waiting.close()
+
+
+def test_the_scene_is_answered_after_the_command(embody: str, wrong: list):
+    with Stage(embody, heap(200)) as stage:
+        viewer = busy_viewer(stage, 200)
+        answer, body = stage.get("/scene.json", patience=120)
+        if answer.status != 200 or len(json.loads(body)["entities"]) != 201:
+            wrong.append(f"/scene.json during a command: {answer.status}")
+        viewer.close()
+
+
+def test_pages_of_other_sites_are_refused(embody: str, wrong: list):
+    with Stage(embody) as stage:
+        own = f"http://127.0.0.1:{stage.port}"
+        image = {"Sec-Fetch-Mode": "no-cors", "Sec-Fetch-Dest": "image"}
+        link = {"Sec-Fetch-Mode": "navigate", "Sec-Fetch-Dest": "document"}
+        cases = [("/scene.json", {}, 200), ("/api/health", {}, 200), ("/scene.json", {"Sec-Fetch-Site": "same-origin"}, 200),
+                 ("/scene.json", {"Sec-Fetch-Site": "none", **link}, 200), ("/scene.json", {"Origin": own}, 200),
+                 ("/scene.json", {"Origin": "http://evil.example"}, 403), ("/scene.json", {"Origin": "null"}, 403),
+                 ("/scene.json", {"Host": "evil.example"}, 403)]
+        for path in ("/scene.json", "/api/health", "/models/1/geometry.glb", "/assets/x.js"):
+            for site in ("cross-site", "same-site"):
+                cases.append((path, {"Sec-Fetch-Site": site, **image}, 403))
+        cases.append(("/scene.json", {"Sec-Fetch-Site": "cross-site", **link}, 403))
+        for path, headers, status in cases:
+            answer, body = stage.get(path, headers=headers)
+            if answer.status != status:
+                wrong.append(f"{path} with {headers}: {answer.status} instead of {status}")
+            elif status == 403 and not json.loads(body)["error"]["why"]:
+                wrong.append(f"{path} with {headers} is refused without a reason")
+        answer, _ = stage.get("/", headers={"Sec-Fetch-Site": "cross-site", **link})
+        if answer.status == 403:
+            wrong.append("a link to the Studio on another page is refused")
+
+
+def test_answers_protect_the_page(embody: str, wrong: list):
+    promised = {"X-Content-Type-Options": "nosniff", "X-Frame-Options": "DENY", "Referrer-Policy": "no-referrer",
+                "Cross-Origin-Resource-Policy": "same-origin", "Cross-Origin-Opener-Policy": "same-origin"}
+    with Stage(embody) as stage:
+        for path in ("/", "/scene.json", "/api/health", "/nowhere"):
+            answer, _ = stage.get(path)
+            for name, value in promised.items():
+                if answer.headers.get(name) != value:
+                    wrong.append(f"{path}: {name} is {answer.headers.get(name)!r}")
+            policy = answer.headers.get("Content-Security-Policy", "")
+            for word in ("default-src 'none'", "frame-ancestors 'none'", "base-uri 'none'", "script-src 'self'"):
+                if word not in policy:
+                    wrong.append(f"{path}: Content-Security-Policy lacks {word}: {policy!r}")
+            if "unsafe-inline" in policy or "unsafe-eval'" in policy.replace("wasm-unsafe-eval'", ""):
+                wrong.append(f"{path}: Content-Security-Policy is not strict: {policy!r}")
+
+
+def test_a_flood_of_commands_gets_every_reply(embody: str, wrong: list):
+    # More than may wait, behind one that takes long, so that reading pauses.
+    count = 2000
+    with Stage(embody, heap(200)) as stage:
+        viewer = Viewer(stage.port)
+        viewer.do("hello")
+        first = viewer.ask("simulation.step", count=60)
+        last = [viewer.ask("entity.attributes", index=1) for _ in range(count)][-1]
+        expected = first
+        try:
+            while expected <= last:
+                message = viewer.read()
+                if isinstance(message, dict) and "id" in message:
+                    if message["id"] != expected or not message["ok"]:
+                        wrong.append(f"reply {message['id']} where {expected} was due")
+                        return
+                    expected += 1
+        except ConnectionError as error:
+            wrong.append(f"after {expected - first} of {count + 1} replies: {error}")
+        viewer.close()
+
+
+def idle_connections(port: int, wanted: int) -> list:
+    held = []
+    for _ in range(wanted):
+        connection = socket.socket()
+        connection.settimeout(5)
+        try:
+            connection.connect(("127.0.0.1", port))
+        except OSError:
+            connection.close()
+            break
+        held.append(connection)
+    return held
+
+
+def test_idle_connections_keep_nobody_out(embody: str, wrong: list):
+    with Stage(embody) as stage:
+        viewer = Viewer(stage.port)
+        viewer.do("hello")
+        viewer.do("entity.transform", poses=[{"index": 1, "position": [0, 2, 0]}])
+        held = idle_connections(stage.port, 1500)
+        # One in two says half a request and no more.
+        for connection in held[::2]:
+            try:
+                connection.sendall(b"GET / HTTP/1.1\r\nHost: ")
+            except OSError:
+                pass
+        began = time.monotonic()
+        try:
+            answer, _ = stage.get("/api/health", patience=10)
+            print(f"  {len(held)} idle connections; a new client is answered {answer.status} after {time.monotonic() - began:.2f} s")
+            if answer.status != 200:
+                wrong.append(f"a new client is answered {answer.status} while others are idle")
+            newcomer = Viewer(stage.port)
+            newcomer.do("hello")
+            newcomer.close()
+        except OSError as error:
+            wrong.append(f"{len(held)} idle connections keep a new client out: {error!r}")
+        saved = viewer.do("scene.save", name="kept")
+        if not pathlib.Path(saved["path"]).exists():
+            wrong.append("the scene was not saved")
+        viewer.close()
+        for connection in held:
+            connection.close()
+
+
+def test_too_many_viewers_are_told_so(embody: str, wrong: list):
+    with Stage(embody) as stage:
+        viewers, refused = [], None
+        for _ in range(600):
+            try:
+                viewers.append(Viewer(stage.port))
+            except (AssertionError, OSError) as error:
+                refused = error
+                break
+        print(f"  {len(viewers)} viewers are served, the next hears: {refused}")
+        if refused is None or "503" not in str(refused):
+            wrong.append(f"600 viewers: {refused!r} instead of 503")
+        viewers[0].do("hello")
+        answer, _ = stage.get("/api/health")
+        if answer.status != 200:
+            wrong.append(f"with all viewers there, HTTP answers {answer.status}")
+        for viewer in viewers:
+            viewer.close()
+
+
+def begin_upload(port: int, size: int, sent: int) -> socket.socket:
+    connection = socket.create_connection(("127.0.0.1", port))
+    connection.sendall(f"POST /import?name=big.stl HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: {size}\r\n\r\n".encode())
+    connection.settimeout(PATIENCE)
+    block = bytes(1 << 20)
+    try:
+        for _ in range(sent >> 20):
+            connection.sendall(block)
+    except OSError:
+        pass  # refused: the answer says why
+    return connection
+
+
+def drafts(stage: Stage) -> list:
+    return [file for file in pathlib.Path(stage.folder.name).rglob("*") if file.is_file() and file.name == "big.stl"]
+
+
+def test_uploads_fill_no_memory_and_are_counted(embody: str, wrong: list):
+    size = 255 << 20
+    with Stage(embody) as stage:
+        before = stage.server.memory()
+        unfinished = [begin_upload(stage.port, size, 40 << 20) for _ in range(12)]
+        time.sleep(1)
+        grown = stage.server.memory() - before
+        print(f"  12 unfinished uploads of 40 MiB: the server grew by {grown >> 20} MiB; {len(drafts(stage))} are kept")
+        if grown > 100 << 20:
+            wrong.append(f"unfinished uploads made the server grow by {grown >> 20} MiB")
+        if not 1 <= len(drafts(stage)) <= 8:
+            wrong.append(f"{len(drafts(stage))} uploads are kept at once, 8 are allowed")
+        refusals = 0
+        for connection in unfinished[8:]:
+            try:
+                refusals += b" 503 " in connection.recv(4096).split(b"\r\n")[0]
+            except OSError:
+                refusals += 1  # hung up while it was still sending
+        if refusals != 4:
+            wrong.append(f"{refusals} of 4 uploads too many were refused")
+        # Those that go away leave nothing.
+        for connection in unfinished:
+            connection.close()
+        until = time.monotonic() + PATIENCE
+        while drafts(stage) and time.monotonic() < until:
+            time.sleep(0.1)
+        if drafts(stage):
+            wrong.append(f"{len(drafts(stage))} uploads are left of clients that went away")
+        # And the next one finds a place.
+        answer, body = stage.get("/import?name=broken.stl", method="POST")
+        if answer.status != 422:
+            wrong.append(f"an upload after these is answered {answer.status}: {body[:200]!r}")
+
+
+def test_a_killed_server_leaves_no_uploads(embody: str, wrong: list):
+    with Stage(embody) as stage:
+        upload = begin_upload(stage.port, 255 << 20, 4 << 20)
+        until = time.monotonic() + PATIENCE
+        while not drafts(stage) and time.monotonic() < until:
+            time.sleep(0.1)
+        stage.server.process.kill()
+        stage.server.process.wait()
+        upload.close()
+        left = len(drafts(stage))
+        scene = pathlib.Path(stage.folder.name) / "scene.json"
+        with Server(embody, str(stage.database), str(scene)):
+            if drafts(stage):
+                wrong.append(f"{len(drafts(stage))} uploads of a killed server (of {left}) are there after the next start")
+        if left == 0:
+            wrong.append("the killed server kept no upload on disk: this test says nothing")
+
+
+def test_sigterm_ends_whatever_runs(embody: str, wrong: list):
+    with Stage(embody, heap(1000)) as stage:
+        viewer = Viewer(stage.port)
+        viewer.do("hello")
+        viewer.do("entity.transform", poses=[{"index": 1, "position": [0, 5, 0]}])
+        # A flood behind a long command: reading pauses, and nobody reads the replies.
+        viewer.ask("simulation.step", count=100_000)
+        for _ in range(600):
+            viewer.ask("entity.attributes", index=1)
+        stalled = [Viewer(stage.port, buffer=1 << 12) for _ in range(4)]
+        upload = begin_upload(stage.port, 255 << 20, 4 << 20)
+        stage.end(wrong, "a long command, paused reading, stalled viewers, an upload")
+        check_autosave(stage, 5, wrong)
+        for connection in (viewer, *stalled, upload):
+            connection.close()
+
+
+def check_autosave(stage: Stage, height: float, wrong: list):
+    saved = stage.saved_after_end()
+    if len(saved) != 1:
+        wrong.append(f"{len(saved)} autosaves after SIGTERM")
+        return
+    entity = next(e for e in json.loads(saved[0].read_text())["entities"] if e["index"] == 1)
+    if entity["pose"]["position"] != [0, height, 0]:
+        wrong.append(f"the autosave has the first entity at {entity['pose']['position']}")
+
+
+def test_sigterm_ends_a_step_that_takes_long(embody: str, wrong: list):
+    # One step of very many grains takes longer than the server may.
+    heaps = [{"index": i + 1, "shape": {"type": "box", "half_extents": [1, 1, 1]}, "pose": {"position": [0, 1.1 + 2.2 * i, 0]},
+              "attributes": {"kind": "granular", "grain_budget": 20_000}} for i in range(4)]
+    with Stage(embody, heaps) as stage:
+        viewer = Viewer(stage.port)
+        viewer.do("hello")
+        viewer.do("scene.settings", substeps=64)
+        viewer.do("scene.settings", title="Changed")
+        viewer.ask("simulation.step", count=10)
+        time.sleep(1)
+        stage.end(wrong, "a step of 80,000 grains")
+        saved = stage.saved_after_end()
+        if len(saved) != 1 or json.loads(saved[0].read_text())["title"] != "Changed":
+            wrong.append(f"the scene was not kept: {saved}")
+        viewer.close()
+
+
+def main() -> int:
+    # More connections than the server allows are opened here.
+    hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+    resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
+    embody, *wanted = sys.argv[1:]
+    failed = 0
+    for name, test in sorted(globals().items()):
+        if not name.startswith("test_") or (wanted and not any(word in name for word in wanted)):
+            continue
+        wrong = []
+        print(name.removeprefix("test_").replace("_", " "), flush=True)
+        try:
+            test(embody, wrong)
+        except Exception as error:
+            wrong.append(f"{type(error).__name__}: {error}")
+        for line in wrong:
+            print("  wrong:", line, flush=True)
+        failed += len(wrong) > 0
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
