@@ -2,7 +2,7 @@
 // Models made here, as tests need them.
 
 /** A picture of one point, PNG. */
-export const PIXEL = Buffer.from("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mPMaGj4DwAFhAKAjM1mJgAAAABJRU5ErkJggg==", "base64");
+export const PIXEL = Buffer.from("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR4nGPY0ODwHwAFxAJwjEci1QAAAABJRU5ErkJggg==", "base64");
 
 /** A glTF binary of a box of half a metre that stands on its origin; with a texture where that is asked for. */
 export function boxGlb({ textured = false } = {}) {
