@@ -447,7 +447,7 @@ private:
             try {
                 respond(make());
             } catch (const std::exception& thrown) {
-                respond(error_response(500, "the server", std::string("failed: ") + printable(thrown.what()).c_str()));
+                respond(error_response(500, "the server", std::string("failed: ") + thrown.what()));
             }
         });
     }
