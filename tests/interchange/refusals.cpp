@@ -93,6 +93,7 @@ struct Whole {
 std::vector<Whole> whole_files() {
     std::vector<Whole> files{
         {"cube.obj", cube_obj()},
+        {"text.ply", ply("ascii", "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")},
         {"text.stl", ascii_stl},
         {"binary.stl", binary_stl()},
         {"scene.dae", collada},

@@ -251,6 +251,7 @@ Result<RawScene> read_ply(const FileSource& source, const std::string& path) {
     const std::string where = source.describe(path);
     const auto bytes = source.read(path);
     if (!bytes) return bytes.error();
+    if (bytes->empty()) return Error{where, "is empty"};
     const std::string_view file(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     const auto header = read_ply_header(file);
     if (!header) return Error{where + ": " + header.error().where, header.error().why, header.error().remedy};

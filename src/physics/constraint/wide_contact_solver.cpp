@@ -345,7 +345,7 @@ void WideContactSolver::set_kept_shares() {
     for (std::size_t i = 0; i < groups_.size(); ++i) {
         ContactWork sum;
         for (std::uint32_t k = 0; k < groups_[i].bodies; ++k) sum += work_[row++];
-        kept_share_[i] = groups_[i].is_driven ? 1 : to_float(share_without_gain(sum));
+        kept_share_[i] = groups_[i].is_bounded ? to_float(share_without_gain(sum)) : 1;
     }
 }
 

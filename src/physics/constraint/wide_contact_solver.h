@@ -25,7 +25,7 @@ public:
     /// Movable bodies that touch each other, directly or through others, and nobody else.
     struct Group {
         std::uint32_t bodies = 0;  ///< how many
-        bool is_driven = false;    ///< bodies that move by themselves may give it energy
+        bool is_bounded = false;  ///< its contacts must not give it energy; not where bodies move it that obey no force
     };
     /// Bodies (slots) that contacts move, group after group, and kinematic ones in motion; all others stand still.
     struct Members {

@@ -69,8 +69,11 @@ Result<JointHandle> World::create_joint(const JointDefinition& definition) {
     auto joint = set_up_joint(*state_, definition);
     if (!joint) return joint.error();
     const JointHandle handle = state_->joints.insert({definition, std::move(joint).value()});
-    list_jointed_pairs(*state_);
-    wake_around(*state_, definition.body_b.index);
+    add_jointed_pair(*state_, definition);
+
+    // What other joints hold lies in the group of one of the two.
+    wake_touching(*state_, definition.body_b.index);
+    if (!definition.body_a.is_null()) wake_later(*state_, definition.body_a.index);
     return handle;
 }
 

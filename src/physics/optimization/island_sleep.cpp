@@ -38,7 +38,7 @@ void track_quietness(SleepRecord& record, const BodyState& state, const BodyCons
     const double way = share_of_way * std::sqrt(2 * record.threshold) * rules.time_to_sleep;
     if (!is_quiet) {
         record.quiet_time = 0;
-    } else if (record.quiet_time == 0 || has_moved_on(record, state, reach, way)) {
+    } else if (record.quiet_time == 0 || (!rules.may_move_on && has_moved_on(record, state, reach, way))) {
         record.quiet_time = rules.time_step;
         record.quiet_center = state.center;
         record.quiet_rotation = state.rotation;

@@ -25,6 +25,7 @@ struct SleepRecord {
 struct QuietRules {
     double time_step = 0;      ///< s
     double time_to_sleep = 0;  ///< s
+    bool may_move_on = false;  ///< slow is enough: for what lies on soft things, whose contacts creep
 };
 
 /// Follows one body: below the threshold it becomes quiet, above it active again. What is slow, but moves on, is not at

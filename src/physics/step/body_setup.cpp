@@ -163,11 +163,13 @@ Result<Joint> set_up_joint(const WorldState& world, const JointDefinition& defin
 void list_jointed_pairs(WorldState& world) {
     world.jointed_pairs.clear();
     for (std::uint32_t slot = 0; slot < world.joints.slot_count(); ++slot) {
-        if (!world.joints.used(slot)) continue;
-        const JointDefinition& joint = world.joints.at(slot).definition;
-        if (joint.bodies_collide || joint.body_a.is_null()) continue;
-        world.jointed_pairs.insert(std::minmax(joint.body_a.index, joint.body_b.index));
+        if (world.joints.used(slot)) add_jointed_pair(world, world.joints.at(slot).definition);
     }
+}
+
+void add_jointed_pair(WorldState& world, const JointDefinition& joint) {
+    if (joint.bodies_collide || joint.body_a.is_null()) return;
+    world.jointed_pairs.insert(std::minmax(joint.body_a.index, joint.body_b.index));
 }
 
 BodyDefinition current_definition(const WorldState& world, std::uint32_t body) {

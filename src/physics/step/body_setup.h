@@ -33,6 +33,8 @@ Result<Joint> set_up_joint(const WorldState& world, const JointDefinition& defin
 
 /// Rebuilds the list of pairs that joints keep from colliding.
 void list_jointed_pairs(WorldState& world);
+/// Adds the pair of a new joint.
+void add_jointed_pair(WorldState& world, const JointDefinition& joint);
 
 /// The definition as it stands now.
 BodyDefinition current_definition(const WorldState& world, std::uint32_t body);

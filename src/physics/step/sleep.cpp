@@ -49,10 +49,12 @@ void fall_asleep(WorldState& world, const Island& island, std::vector<bool>& lea
 }  // namespace
 
 void put_to_sleep(WorldState& world) {
-    const QuietRules rules{world.settings.time_step, world.settings.time_to_sleep};
+    const WorldSettings& settings = world.settings;
     for_each_awake(world, [&](std::uint32_t body) {
         if (world.motion[body].inverse_mass == 0) return;
-        track_quietness(world.sleep[body], world.motion[body], world.constants[body], world.record(body).reach, rules);
+        const BodyRecord& record = world.record(body);
+        const QuietRules rules{settings.time_step, settings.time_to_sleep, record.deformable_force != Vec3{}};
+        track_quietness(world.sleep[body], world.motion[body], world.constants[body], record.reach, rules);
     });
     if (!world.settings.sleeping) return;
 

@@ -83,12 +83,21 @@ bool is_pushed(const WorldState& world, const Island& island) {
     });
 }
 
+// Whether the inertia of some body turns with it in this step: then the contacts' frozen axes are not its own, and what
+// held the last step may push in this one.
+bool spins(const WorldState& world, const Island& island) {
+    const auto bodies = bodies_of(world, island);
+    return std::any_of(bodies.begin(), bodies.end(), [&](std::uint32_t body) {
+        return has_gyroscopic_torque(world.motion[body], world.constants[body], world.settings.time_step);
+    });
+}
+
 // Solves all given islands, of contacts only, through the step.
 void solve_wide(WorldState& world, const SolveWays::Wide& way) {
     std::vector<std::uint32_t> order, bodies;
     std::vector<WideContactSolver::Group> groups;
     for (const Island& island : way.islands) {
-        groups.push_back({island.body_count, is_pushed(world, island)});
+        groups.push_back({island.body_count, spins(world, island) && !is_pushed(world, island)});
         const auto contacts = contacts_of(world, island);
         order.insert(order.end(), contacts.begin(), contacts.end());
         const auto members = bodies_of(world, island);

@@ -122,16 +122,19 @@ std::vector<bool> marked(const WorldState& world, std::span<const std::uint32_t>
 
 void wake_around(WorldState& world, std::uint32_t body) { wake_around(world, std::span(&body, 1)); }
 
+void wake_touching(WorldState& world, std::uint32_t body) {
+    wake_later(world, body);
+    if (!world.record(body).shape) return;
+    const Bounds bounds = enlarged(world.record(body).shape->bounds(world.pose(body)), 0.01);
+    world.broad_phase.query(bounds, [&](std::uint32_t other) {
+        world.sleep[other].quiet_time = 0;
+        if (world.is_asleep(other)) wake_later(world, other);
+    });
+}
+
 void wake_around(WorldState& world, std::span<const std::uint32_t> bodies) {
-    for (const std::uint32_t body : bodies) {
-        wake_later(world, body);
-        if (!world.record(body).shape) continue;
-        const Bounds bounds = enlarged(world.record(body).shape->bounds(world.pose(body)), 0.01);
-        world.broad_phase.query(bounds, [&](std::uint32_t other) {
-            world.sleep[other].quiet_time = 0;
-            if (world.is_asleep(other)) wake_later(world, other);
-        });
-    }
+    for (const std::uint32_t body : bodies) wake_touching(world, body);
+
     // Of several bodies in one walk over the joints.
     const std::vector<bool> is_one = bodies.size() > 1 ? marked(world, bodies) : std::vector<bool>{};
     const auto is_meant = [&](std::uint32_t body) { return is_one.empty() ? body == bodies[0] : is_one[body]; };

@@ -17,6 +17,9 @@ void gather_awake(WorldState& world);
 /// Asks for the group of a body (by its slot) to be awake in the next step.
 void wake_later(WorldState& world, std::uint32_t body);
 
+/// Asks for everything that touches the body and itself to be awake in the next step.
+void wake_touching(WorldState& world, std::uint32_t body);
+
 /// Asks for everything that touches the body, its jointed partners and itself to be awake in the next step.
 void wake_around(WorldState& world, std::uint32_t body);
 void wake_around(WorldState& world, std::span<const std::uint32_t> bodies);

@@ -86,8 +86,9 @@ Result<Document> document_from_json(const json& value) {
     read_camera(reader, document);
 
     if (const auto list = value.find("entities"); list != value.end() && list->size() > most_entities)
-        return Error{"entities", "are " + std::to_string(list->size()) + ", more than the " +
-                                     std::to_string(most_entities) + " that a scene can have",
+        return Error{"entities",
+                     "are " + std::to_string(list->size()) + ", more than the " + std::to_string(most_entities) +
+                         " that a scene can have",
                      "split the scene"};
     // Entities first: joints name them.
     reader.whole("next_index", document.next_index, 1, last_document_index);
