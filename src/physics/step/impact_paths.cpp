@@ -95,8 +95,9 @@ ImpactPaths::Motion ImpactPaths::motion_at(std::uint32_t body, double time) cons
 }
 
 bool ImpactPaths::turns_far(std::uint32_t body) const {
+    const TouchBody& touch = world_.touch_memory.bodies[body];
     const Vec3 turn = world_.motion[body].angular_velocity * step_;
-    return length_squared(turn) * world_.touch_memory.bodies[body].size / 2 > patch_gap;
+    return !touch.is_ball && length_squared(turn) * touch.size / 2 > patch_gap;
 }
 
 namespace {
@@ -225,9 +226,12 @@ ImpactPaths::Prediction ImpactPaths::predict_exactly(Contact& contact) {
     }
     if (first < never) return {.time = first};
     const double farthest_turn = widest_followed_turn / step_;
-    const auto is_fast = [&](const Motion& m) { return length_squared(m.spin) > farthest_turn * farthest_turn; };
+    const auto is_fast = [&](std::uint32_t body, const Motion& m) {
+        return !world_.touch_memory.bodies[body].is_ball && length_squared(m.spin) > farthest_turn * farthest_turn;
+    };
     const bool is_clear = start == 0 && nearest > bend_of(contact, now.a, now.b).way;
-    return {.is_open = is_clear || keeps_apart(contact, start), .may_hide = is_fast(now.a) || is_fast(now.b)};
+    return {.is_open = is_clear || keeps_apart(contact, start),
+            .may_hide = is_fast(contact.a, now.a) || is_fast(contact.b, now.b)};
 }
 
 // Whether the surfaces part at `start` or are apart then, and stay so: told at the ends of the substeps.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "physics/optimization/islands.h"
 
+#include "physics/dynamic/equations_of_motion.h"
 #include "physics/step/step.h"
 
 namespace embody::physics {
@@ -18,7 +19,7 @@ bool is_active(const WorldState& world, const JointDefinition& joint) {
 }
 
 // Contacts that need no solver: the paths of the impact stage say that the surfaces keep apart, and nothing else holds
-// either body. Such bodies then fly free, exactly, instead of sharing the contact solver's approximate turns.
+// either body. What spins then flies free, exactly, instead of sharing the contact solver's approximate turns.
 void set_idle_contacts(WorldState& world) {
     const std::vector<std::uint8_t>& is_open = world.impact_memory.is_open;
     std::vector<std::uint8_t>& is_held = world.impact_memory.is_held;
@@ -32,9 +33,13 @@ void set_idle_contacts(WorldState& world) {
         if (!joint.a_is_world) is_held[joint.a] = 1;
     }
     const auto is_free = [&](std::uint32_t body) { return world.motion[body].inverse_mass == 0 || !is_held[body]; };
+    const auto spins = [&](std::uint32_t body) {
+        return has_gyroscopic_torque(world.motion[body], world.constants[body], world.settings.time_step);
+    };
     for (std::size_t i = 0; i < world.contacts.size(); ++i) {
         ContactGlance& contact = world.contact_glances[i];
-        contact.is_idle = is_open[i] && is_free(contact.a) && is_free(contact.b);
+        contact.is_idle =
+            is_open[i] && is_free(contact.a) && is_free(contact.b) && (spins(contact.a) || spins(contact.b));
         if (contact.is_idle) contact.touches = is_touching(world.contacts[i]);
     }
 }
