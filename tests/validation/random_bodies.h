@@ -55,7 +55,7 @@ inline ShapeDefinition random_shape(Random& random, double size) {
     }
 }
 
-/// Bounces by any restitution and rubs by any friction up to 1.2; the extremes are frequent.
+/// Any restitution, and any friction up to 1.2; the extremes are frequent.
 inline Material random_material(Random& random) {
     const double mu = random.below(4) == 0 ? 0 : random.between(0, 1.2);
     const double restitution = random.below(4) > 0 ? random.unit() : random.below(2) > 0 ? 1.0 : 0.0;

@@ -19,8 +19,8 @@ struct RollingRing {
 /// A body of revolution that rolls alone on something flat that stands still: on one of its rings, or on the line
 /// between two.
 struct RollingBody {
-    static constexpr int max_rings = 8;
-    Vec3 axis;  ///< body axes, unit
+    static constexpr int max_rings = 8;  ///< of four cylinders on one axle; what has more goes to the contact solver
+    Vec3 axis;                           ///< body axes, unit
     std::array<RollingRing, max_rings> rings;
     int ring_count = 0;
     double size = 0;  ///< farthest surface point from the centre of mass, m

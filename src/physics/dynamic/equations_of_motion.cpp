@@ -182,8 +182,9 @@ void fly(BodyState& state, const BodyConstants& constants, double time) {
 
     // In the body's axes; forwards and backwards alike, as the midpoint rule is symmetric in time. Its error goes with
     // the square of the turn.
-    constexpr double widest_turn = 0.1;  // rad
-    constexpr int most_parts = 16;
+    constexpr double widest_turn =
+        0.1;                        // rad in a part (validation.SpinningImpact: 1.2 % off at 50 rad/s without parts)
+    constexpr int most_parts = 16;  // of a substep: enough to 400 rad/s; beyond, energy is kept, phase is not
     Quat rotation = state.rotation;
     Vec3 omega = rotate_inverse(rotation, state.angular_velocity);
     const auto push = [&] {

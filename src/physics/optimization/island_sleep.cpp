@@ -31,7 +31,7 @@ bool has_moved_on(const SleepRecord& record, const BodyState& state, double reac
 
 void track_quietness(SleepRecord& record, const BodyState& state, const BodyConstants& constants, double reach,
                      const QuietRules& rules) {
-    constexpr double share_of_way = 1.0 / 60;
+    constexpr double share_of_way = 1.0 / 60;  // see above; validation.SleepOnlyInBalance fails without it
     const double energy_per_mass = kinetic_energy(state, constants) / constants.mass;
     const bool is_quiet = record.allowed && energy_per_mass <= record.threshold;
     record.state = is_quiet ? SleepState::wants_to_sleep : SleepState::active;

@@ -9,7 +9,8 @@ namespace embody::physics {
 
 namespace {
 
-// At most this part of a body's size is near.
+// At most this share of a round body's reach is near: beyond, the far points of its rim would move the anchor of
+// friction up to the axle (validation.Rolling: a wheel of 6 cm at 5 m/s jumps).
 constexpr double near_part = 0.1;
 
 // Velocity of the surface's place (not of its matter) at a point of the piece: turning about the axis of what rolls

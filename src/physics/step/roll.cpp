@@ -132,7 +132,7 @@ void note_load(WorldState& world, std::span<const std::uint32_t> contacts, const
 }  // namespace
 
 bool roll_alone(WorldState& world, const Island& island) {
-    constexpr std::uint32_t most_contacts = 8;
+    constexpr std::uint32_t most_contacts = 8;  // what rolls on still faces has two rims on two neighbouring triangles
     if (island.body_count != 1 || island.joint_count > 0 || island.contact_count > most_contacts) return false;
     const std::uint32_t body = world.islands.bodies[island.first_body];
     const BodyConstants& constants = world.constants[body];
