@@ -9,6 +9,8 @@
 #include <fstream>
 #include <vector>
 
+#include "database/temporary_folder.h"
+
 namespace embody::server {
 namespace {
 
@@ -16,14 +18,9 @@ namespace fs = std::filesystem;
 
 class UploadStoreTest : public testing::Test {
 protected:
-    UploadStoreTest() {
-        std::string name = (fs::temp_directory_path() / "embody-uploads-XXXXXX").string();
-        folder_ = mkdtemp(name.data());
-    }
-    ~UploadStoreTest() override { fs::remove_all(folder_); }
     [[nodiscard]] fs::path uploads() const { return folder_ / "models.sqlite-uploads"; }
 
-    fs::path folder_;
+    test::TemporaryFolder folder_;
 };
 
 TEST_F(UploadStoreTest, AFileIsThereUnderItsNameAndGoesWithItsObject) {

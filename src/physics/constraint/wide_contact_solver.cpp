@@ -324,6 +324,8 @@ void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::
 }
 
 void WideContactSolver::measure_work(std::size_t row, const Work& work) {
+    if (!groups_[group_of_row_[row]].is_bounded) return;
+
     // The kicks alone, as the kernels do them.
     float* free = free_[row].value;
     for (int i = 0; i < 6; ++i) {
@@ -344,8 +346,11 @@ void WideContactSolver::set_kept_shares() {
     std::size_t row = 1;
     for (std::size_t i = 0; i < groups_.size(); ++i) {
         ContactWork sum;
-        for (std::uint32_t k = 0; k < groups_[i].bodies; ++k) sum += work_[row++];
-        kept_share_[i] = groups_[i].is_bounded ? to_float(share_without_gain(sum)) : 1;
+        const std::size_t end = row + groups_[i].bodies;
+        for (; row < end; ++row) {
+            if (groups_[i].is_bounded) sum += work_[row];
+        }
+        kept_share_[i] = to_float(share_without_gain(sum));
     }
 }
 

@@ -101,13 +101,16 @@ BodyPaths::Motion BodyPaths::motion_about(std::uint32_t body, double time) const
 }
 
 const BodyState& BodyPaths::kept_state_at(std::uint32_t body, double time) {
-    for (const KeptState& kept : kept_) {
-        if (kept.body == body && kept.time == time) return kept.state;
+    std::size_t place = 0;
+    while (place < kept_.size() && (kept_[place].body != body || kept_[place].time != time)) ++place;
+    if (place == kept_.size()) {
+        place = next_kept_;
+        kept_[place] = {body, time, state_at(body, time)};
     }
-    KeptState& kept = kept_[next_kept_];
-    next_kept_ = (next_kept_ + 1) % kept_.size();
-    kept = {body, time, state_at(body, time)};
-    return kept.state;
+
+    // What was asked for last stays: two bodies are looked at side by side.
+    if (place == next_kept_) next_kept_ = (next_kept_ + 1) % kept_.size();
+    return kept_[place].state;
 }
 
 Transform BodyPaths::pose_at(std::uint32_t body, double time) {

@@ -21,7 +21,7 @@ public:
     /// The body at `time` (s since the step began): pose, velocities and inertia.
     [[nodiscard]] BodyState state_at(std::uint32_t body, double time) const;
     /// The same, kept until another impact bends the path: who looks at an impact asks for its two bodies again and
-    /// again. Not for several threads.
+    /// again. Holds until the second next call for another body or time. Not for several threads.
     const BodyState& kept_state_at(std::uint32_t body, double time);
     Transform pose_at(std::uint32_t body, double time);
     /// Sets the body's state at the step's start such that its path leads through `state` at `time`, with the same
