@@ -124,7 +124,9 @@ void wake_around(WorldState& world, std::uint32_t body) { wake_around(world, std
 
 void wake_touching(WorldState& world, std::uint32_t body) {
     wake_later(world, body);
-    if (!world.record(body).shape) return;
+    // What is awake sleeps no sooner than the body beside it: the search is for sleepers alone. Without them a scene of
+    // 100,000 bodies would be sorted again for each that is added.
+    if (!world.record(body).shape || world.sleepers.empty()) return;
     const Bounds bounds = enlarged(world.record(body).shape->bounds(world.pose(body)), 0.01);
     world.broad_phase.query(bounds, [&](std::uint32_t other) {
         world.sleep[other].quiet_time = 0;
