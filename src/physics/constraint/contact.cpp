@@ -245,12 +245,13 @@ double current_separation(const Contact& contact, const ContactPoint& point, std
     return point.separation + dot(contact.normal, move_b - move_a);
 }
 
-bool is_pressed(const Contact& contact) {
-    for (int i = 0; i < contact.count; ++i) {
-        if (contact.points[static_cast<std::size_t>(i)].impulse > 0) return true;
-    }
-    return false;
+double load_of(const Contact& contact) {
+    float sum = 0;
+    for (int i = 0; i < contact.count; ++i) sum += contact.points[static_cast<std::size_t>(i)].impulse;
+    return sum;
 }
+
+bool is_pressed(const Contact& contact) { return load_of(contact) > 0; }
 
 bool is_touching(const Contact& contact) {
     for (int i = 0; i < contact.count; ++i) {

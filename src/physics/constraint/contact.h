@@ -153,6 +153,8 @@ inline Vec3 friction_force(const Contact& contact, const PatchFriction& friction
     return friction.along_1 * Vec3(contact.tangent_1) + friction.along_2 * tangent_2(contact);
 }
 
+/// Along the normal at the end of the last substep that solved it, N s; impacts do not count.
+double load_of(const Contact& contact);
 /// Whether it carried a load at the end of the last substep that solved it; impacts do not count.
 bool is_pressed(const Contact& contact);
 

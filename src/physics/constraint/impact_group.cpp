@@ -3,14 +3,17 @@
 // Several micro-collisions (paper, eq. 3) at once. Sources: B. Mirtich, "Impulse-based dynamic simulation of rigid body
 // systems", 1996 (one after the other, the most negative normal velocity first); Ch. Glocker, F. Pfeiffer, "Multiple
 // impacts with friction in rigid multibody systems", 1995 (compression of all contacts, then expansion of all).
-//   compression  repeat: the site that approaches fastest runs eq. (3) until it no longer approaches
+//   compression  repeat: the site that approaches fastest runs eq. (3) until it no longer approaches; those of other
+//                pairs of bodies that are as fast do so together, which keeps a symmetric collision symmetric
 //   expansion    one site alone: eq. (3) on, until the normal work e² W_c is given back (Stronge)
 //                several: each gives back e of its normal impulse at once, so that a symmetric collision stays
 //                symmetric whatever the order was; without friction this is e² of the energy, too
+//   joints       impulses act on all jointed bodies at once: A of eq. (3) by their response (impact_joints.h)
 //   guard        the kinetic energy after <= before (eq. 5 and 6 hold by construction), else the expansion is scaled
 #include "physics/constraint/impact_group.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "physics/constraint/contact.h"
@@ -35,11 +38,45 @@ double normal_velocity(const ImpactWork& work, std::span<const BodyState> bodies
            dot(work.turn_a, a.angular_velocity);
 }
 
+bool is_jointed(const ImpactWork& work, std::uint32_t body) { return work.joints && work.joints->number_of(body) >= 0; }
+
 void apply(const ImpactWork& work, Vec3 impulse_in_frame, std::span<BodyState> bodies) {
     const ImpactSite& s = *work.site;
     const Vec3 impulse = work.frame * impulse_in_frame;
-    apply_impulse(bodies[s.b], impulse, s.arm_b);
-    apply_impulse(bodies[s.a], -impulse, s.arm_a);
+    if (!is_jointed(work, s.b)) apply_impulse(bodies[s.b], impulse, s.arm_b);
+    if (!is_jointed(work, s.a)) apply_impulse(bodies[s.a], -impulse, s.arm_a);
+    if (!work.joints) return;
+    const Vec6* response = work.response;
+    for (const std::uint32_t body : work.joints->bodies()) {
+        for (int axis = 0; axis < 3; ++axis, ++response) {
+            bodies[body].linear_velocity += response->linear() * impulse_in_frame[axis];
+            bodies[body].angular_velocity += response->angular() * impulse_in_frame[axis];
+        }
+    }
+}
+
+// The jointed bodies' responses, and A of eq. (3) by them: its columns are the changes of the site's velocity.
+void find_responses(ImpactWork& work, std::span<const BodyState> bodies) {
+    const ImpactSite& s = *work.site;
+    const std::size_t count = work.joints->bodies().size();
+    std::vector<Vec6> changes(count);
+    std::array<Vec3, 3> columns;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 direction = work.frame.column(axis);
+        const std::array<ImpactJoints::Push, 2> pushes{{{s.b, direction, s.arm_b}, {s.a, -direction, s.arm_a}}};
+        work.joints->respond(pushes, changes);
+        const auto change_at = [&](const ImpactJoints::Push& push) {
+            const int number = work.joints->number_of(push.body);
+            const BodyState& body = bodies[push.body];
+            const Vec6 change = number >= 0 ? changes[static_cast<std::size_t>(number)]
+                                            : make_vec6(push.impulse * body.inverse_mass,
+                                                        body.inverse_inertia * cross(push.arm, push.impulse));
+            return change.linear() + cross(change.angular(), push.arm);
+        };
+        columns[static_cast<std::size_t>(axis)] = transpose(work.frame) * (change_at(pushes[0]) - change_at(pushes[1]));
+        for (std::size_t i = 0; i < count; ++i) work.response[3 * i + static_cast<std::size_t>(axis)] = changes[i];
+    }
+    work.inverse_mass = {columns[0], columns[1], columns[2]};
 }
 
 void begin(ImpactSite& site, std::span<const BodyState> bodies, ImpactWork& work) {
@@ -59,6 +96,10 @@ void make_ready(ImpactWork& work, std::span<const BodyState> bodies) {
     work.frame.z = site.normal;
     work.frame.x = any_perpendicular(site.normal);
     work.frame.y = cross(work.frame.z, work.frame.x);
+    if (work.joints) {
+        find_responses(work, bodies);
+        return;
+    }
     const Mat3 in_world = inverse_mass_at(bodies[site.a], site.arm_a, bodies[site.b], site.arm_b);
     work.inverse_mass = transpose(work.frame) * in_world * work.frame;
 }
@@ -101,56 +142,112 @@ bool may_estimate(const ImpactWork& work, SlidePath path, std::size_t round) {
     return path == SlidePath::estimated || (work.site->coefficients.restitution <= 0 && round > 0);
 }
 
-// The site that approaches fastest, nullptr if none does. The earlier site wins unless a later one is faster by more
-// than rounding: a patch stands before its corners.
-ImpactWork* fastest_site(std::vector<ImpactWork>& works, std::span<const BodyState> bodies, double tolerance,
-                         double rounding) {
-    ImpactWork* worst = nullptr;
+bool is_same_pair(const ImpactWork& x, const ImpactWork& y) { return x.site->a == y.site->a && x.site->b == y.site->b; }
+
+// The sites that approach fastest, none if none does: one of each pair of bodies, the earlier one unless a later one is
+// faster by more than rounding (a patch stands before its corners). Those that are as fast go together, so that what is
+// symmetric stays so.
+void find_fastest(std::vector<ImpactWork>& works, std::span<const BodyState> bodies, double tolerance, double rounding,
+                  std::vector<ImpactWork*>& fastest) {
+    fastest.clear();
     double speed = -tolerance;
     for (ImpactWork& work : works) {
         const double velocity = normal_velocity(work, bodies);
-        if (velocity >= speed - rounding) continue;
-        worst = &work;
-        speed = velocity;
+        if (velocity >= speed + rounding || velocity >= -tolerance) continue;
+        const auto is_of_pair = [&](const ImpactWork* other) { return is_same_pair(*other, work); };
+        if (velocity < speed - rounding) {
+            fastest.clear();
+            speed = velocity;
+        } else if (fastest.empty() || std::any_of(fastest.begin(), fastest.end(), is_of_pair)) {
+            continue;
+        }
+        fastest.push_back(&work);
     }
-    return worst;
+}
+
+/// How the compression of a group is followed.
+struct CompressionRules {
+    SlidePath path;
+    double tolerance;  // m/s of approach that may be left
+    double fastest;    // of the approaches at the start, m/s
+};
+
+// Compresses one site as if it were alone: its state after it, and its normal work. The bodies stay as they are.
+void compress_alone(ImpactWork& work, std::span<const BodyState> bodies, const CompressionRules& rules,
+                    std::size_t round) {
+    make_ready(work, bodies);
+    const Vec3 before = work.state.impulse;
+    const ImpactCoefficients& coefficients = work.site->coefficients;
+    work.state.velocity = site_velocity(work, bodies);
+    const double approach = -work.state.velocity.z;
+    if (may_estimate(work, rules.path, round) &&
+        estimate_compression(work.inverse_mass, coefficients, round == 0 ? 0.9 : 0.5, work.state)) {
+        // Along a straight path.
+        work.state.normal_work = -0.5 * approach * (work.state.impulse.z - before.z);
+        return;
+    }
+    const double stop_speed = rules.fastest;
+    const bool is_fine = round == 0 && rules.path == SlidePath::followed;
+    compress(work.inverse_mass, coefficients, work.state,
+             is_fine ? ImpactPrecision{.step_share = 0.25, .end_share = 1e-6, .stop_speed = slide_rounding * stop_speed}
+                     : ImpactPrecision{.step_share = 0.5, .end_share = 1e-3, .stop_speed = 1e-3 * stop_speed});
+}
+
+// Compresses these sites at once: each as if it were alone, then all by the same share, so far that the first of them
+// no longer approaches.
+void compress_together(std::span<ImpactWork* const> sites, std::span<BodyState> bodies, const CompressionRules& rules,
+                       std::size_t round, std::vector<Vec3>& impulses) {
+    impulses.clear();
+    for (ImpactWork* work : sites) {
+        const Vec3 before = work->state.impulse;
+        compress_alone(*work, bodies, rules, round);
+        impulses.push_back(work->state.impulse - before);
+        work->state.impulse = before;
+        work->velocity = normal_velocity(*work, bodies);
+    }
+    for (std::size_t i = 0; i < sites.size(); ++i) apply(*sites[i], impulses[i], bodies);
+    double share = 1;
+    for (const ImpactWork* work : sites) {
+        const double change = normal_velocity(*work, bodies) - work->velocity;
+        if (change > 0) share = std::min(share, -work->velocity / change);
+    }
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+        ImpactWork& work = *sites[i];
+        if (share < 1) apply(work, impulses[i] * (share - 1), bodies);
+        work.state.impulse += impulses[i] * share;
+    }
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+        const double mean = (sites[i]->velocity + normal_velocity(*sites[i], bodies)) / 2;
+        sites[i]->compression_work -= mean * impulses[i].z * share;
+    }
 }
 
 // Compresses until no site approaches. Returns how many sites took part, or -1 where the rounds were not enough.
-int compress_all(std::vector<ImpactWork>& works, std::span<BodyState> bodies, SlidePath path) {
+int compress_all(ImpactGroupMemory& memory, std::span<BodyState> bodies, SlidePath path) {
+    std::vector<ImpactWork>& works = memory.works;
     double fastest = 0;
     for (const ImpactWork& work : works) {
         fastest = std::max(fastest, -dot(work.velocity_before, work.site->normal));
     }
     // Many sites need not come to the last digit: the substeps hold what is left.
     const bool is_rough = works.size() > 8 || path == SlidePath::estimated;
-    const double tolerance = (path == SlidePath::estimated ? 1e-2 : is_rough ? 1e-2 : 1e-4) * fastest + 1e-12;
-    const ImpactPrecision fine{.step_share = 0.25, .end_share = 1e-6, .stop_speed = slide_rounding * fastest};
-    const ImpactPrecision coarse{.step_share = 0.5, .end_share = 1e-3, .stop_speed = 1e-3 * fastest};
+    const CompressionRules rules{path, (is_rough ? 1e-2 : 1e-4) * fastest + 1e-12, fastest};
     const std::size_t most_rounds = 64 + 64 * works.size();
     for (std::size_t round = 0; round < most_rounds; ++round) {
-        ImpactWork* worst = fastest_site(works, bodies, tolerance, 1e-9 * fastest);
-        if (!worst) {
+        find_fastest(works, bodies, rules.tolerance, 1e-9 * fastest, memory.fastest);
+        if (memory.fastest.empty()) {
             return static_cast<int>(std::count_if(works.begin(), works.end(),
                                                   [](const ImpactWork& work) { return work.state.impulse.z > 0; }));
         }
-        make_ready(*worst, bodies);
-        const Vec3 before = worst->state.impulse;
-        const ImpactCoefficients& coefficients = worst->site->coefficients;
-        worst->state.velocity = site_velocity(*worst, bodies);
-        const double approach = -worst->state.velocity.z;
-        const bool is_done =
-            may_estimate(*worst, path, round) &&
-            estimate_compression(worst->inverse_mass, coefficients, round == 0 ? 0.9 : 0.5, worst->state);
-        if (is_done) {
-            // Along a straight path.
-            worst->compression_work += 0.5 * approach * (worst->state.impulse.z - before.z);
-        } else {
-            const bool is_fine = round == 0 && path == SlidePath::followed;
-            compress(worst->inverse_mass, coefficients, worst->state, is_fine ? fine : coarse);
-            worst->compression_work -= worst->state.normal_work;
+        if (memory.fastest.size() > 1) {
+            compress_together(memory.fastest, bodies, rules, round, memory.impulses);
+            continue;
         }
-        apply(*worst, worst->state.impulse - before, bodies);
+        ImpactWork& work = *memory.fastest.front();
+        const Vec3 before = work.state.impulse;
+        compress_alone(work, bodies, rules, round);
+        work.compression_work -= work.state.normal_work;
+        apply(work, work.state.impulse - before, bodies);
     }
     return -1;
 }
@@ -181,16 +278,50 @@ Vec3 expansion_friction(const ImpactWork& work, std::span<const BodyState> bodie
     return size > limit ? stop * (limit / size) : stop;
 }
 
+std::size_t place_in_pair(const std::vector<ImpactWork>& works, std::size_t index) {
+    return static_cast<std::size_t>(
+        std::count_if(works.begin(), works.begin() + static_cast<std::ptrdiff_t>(index),
+                      [&](const ImpactWork& other) { return is_same_pair(other, works[index]); }));
+}
+
+// Of bodies, among the sites that bounce.
+std::size_t count_bouncing_pairs(const std::vector<ImpactWork>& works) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < works.size(); ++i) {
+        const auto bounces = [&](const ImpactWork& other) {
+            return other.expansion.z > 0 && is_same_pair(other, works[i]);
+        };
+        const auto end = works.begin() + static_cast<std::ptrdiff_t>(i);
+        if (works[i].expansion.z > 0 && std::none_of(works.begin(), end, bounces)) ++count;
+    }
+    return count;
+}
+
 void expand_together(std::vector<ImpactWork>& works, std::span<BodyState> bodies) {
     for (ImpactWork& work : works) {
         work.expansion = {0, 0, work.site->coefficients.restitution * work.state.impulse.z};
         if (work.expansion.z > 0) apply(work, work.expansion, bodies);
     }
-    for (ImpactWork& work : works) {
-        if (work.expansion.z <= 0 || work.site->coefficients.friction_slide <= 0) continue;
-        const Vec3 friction = expansion_friction(work, bodies);
-        work.expansion += friction;
-        apply(work, friction, bodies);
+
+    // Site by site of a pair; those of several pairs at once, in as many equal parts.
+    const std::size_t pairs = count_bouncing_pairs(works);
+    for (std::size_t part = 0; part < pairs; ++part) {
+        for (std::size_t place = 0, found = 1; found > 0; ++place) {
+            found = 0;
+            for (std::size_t i = 0; i < works.size(); ++i) {
+                ImpactWork& work = works[i];
+                work.friction = {};
+                if (place_in_pair(works, i) != place) continue;
+                ++found;
+                if (work.expansion.z <= 0 || work.site->coefficients.friction_slide <= 0) continue;
+                work.friction = expansion_friction(work, bodies) / static_cast<double>(pairs);
+            }
+            for (ImpactWork& work : works) {
+                if (work.friction == Vec3{}) continue;
+                work.expansion += work.friction;
+                apply(work, work.friction, bodies);
+            }
+        }
     }
 }
 
@@ -255,6 +386,19 @@ bool expand(std::vector<ImpactWork>& works, std::span<BodyState> bodies, int tak
     return true;
 }
 
+// Where the answers of jointed bodies will be written.
+void list_responses(std::vector<ImpactWork>& works, ImpactGroupMemory& memory) {
+    const std::size_t size = 3 * memory.joints.bodies().size();
+    if (size == 0) return;
+    memory.responses.resize(size * works.size());
+    for (std::size_t i = 0; i < works.size(); ++i) {
+        const ImpactSite& site = *works[i].site;
+        if (memory.joints.number_of(site.a) < 0 && memory.joints.number_of(site.b) < 0) continue;
+        works[i].joints = &memory.joints;
+        works[i].response = &memory.responses[size * i];
+    }
+}
+
 }  // namespace
 
 ImpactReport solve_impact_group(std::span<ImpactSite> sites, std::span<BodyState> bodies, ImpactGroupMemory& memory,
@@ -262,13 +406,14 @@ ImpactReport solve_impact_group(std::span<ImpactSite> sites, std::span<BodyState
     std::vector<ImpactWork>& works = memory.works;
     works.resize(sites.size());
     for (std::size_t i = 0; i < sites.size(); ++i) begin(sites[i], bodies, works[i]);
+    list_responses(works, memory);
 
     // Compression and expansion; what that drives together again is stopped without a bounce.
     ImpactReport report;
-    const int taking_part = compress_all(works, bodies, path);
+    const int taking_part = compress_all(memory, bodies, path);
     report.converged = taking_part >= 0;
     const bool expanded = expand(works, bodies, taking_part, path);
-    if (expanded && works.size() > 1 && report.converged) report.converged = compress_all(works, bodies, path) >= 0;
+    if (expanded && works.size() > 1 && report.converged) report.converged = compress_all(memory, bodies, path) >= 0;
 
     for (ImpactWork& work : works) {
         if (work.is_ready) work.site->impulse = work.frame * work.state.impulse;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "physics/constraint/frictional_impact.h"
+#include "physics/constraint/impact_joints.h"
 #include "physics/dynamic/body_state.h"
 
 namespace embody::physics {
@@ -33,22 +34,31 @@ enum class SlidePath {
 /// A site at work: its frame and what has happened to it.
 struct ImpactWork {
     ImpactSite* site = nullptr;
-    Vec3 velocity_before;   ///< of b relative to a, world
-    Vec3 turn_a, turn_b;    ///< arm × normal
-    bool is_ready = false;  ///< the next two are known
-    Mat3 frame;             ///< columns t1, t2, n
-    Mat3 inverse_mass;      ///< A of eq. (3) in the frame
+    Vec3 velocity_before;            ///< of b relative to a, world
+    Vec3 turn_a, turn_b;             ///< arm × normal
+    ImpactJoints* joints = nullptr;  ///< that pass its impulses on; null where neither body is jointed
+    Vec6* response = nullptr;        ///< of the jointed bodies' velocities to 1 N s along each axis of the frame
+    bool is_ready = false;           ///< the next two are known
+    Mat3 frame;                      ///< columns t1, t2, n
+    Mat3 inverse_mass;               ///< A of eq. (3) in the frame
     ImpactState state;
     double compression_work = 0;
+    double velocity = 0;          ///< along the normal, before a round that several sites share, m/s
+    Vec3 friction;                ///< in the expansion, in the frame
     Vec3 compression, expansion;  ///< impulses in the frame
 };
 
 /// Kept from group to group, so that a steady step allocates nothing.
 struct ImpactGroupMemory {
     std::vector<ImpactWork> works;
+    std::vector<Vec6> responses;
+    std::vector<ImpactWork*> fastest;
+    std::vector<Vec3> impulses;
+    ImpactJoints joints;  ///< set before: what passes the impulses on
 };
 
-/// Solves the collision of all sites together and changes the bodies' velocities.
+/// Solves the collision of all sites together and changes the velocities of their bodies, and of those that joints
+/// connect with them (memory.joints).
 ImpactReport solve_impact_group(std::span<ImpactSite> sites, std::span<BodyState> bodies, ImpactGroupMemory& memory,
                                 SlidePath path = SlidePath::followed);
 

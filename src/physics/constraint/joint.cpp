@@ -298,6 +298,11 @@ bool has_motor(const Joint& joint) {
     return motor && *motor;
 }
 
+bool has_limit(const Joint& joint) {
+    const auto* limit = limit_of(joint);
+    return limit && *limit;
+}
+
 double row_response(const Joint& joint, const JointRow& row, std::span<const BodyState> bodies) {
     return row_product(row, row, body_a(joint, bodies), bodies[joint.b]);
 }

@@ -90,6 +90,7 @@ void set_rows(Joint& joint, const JointGeometry& geometry);
 /// What a unit impulse along the row does to its speed, 1/kg.
 double row_response(const Joint& joint, const JointRow& row, std::span<const BodyState> bodies);
 bool has_motor(const Joint& joint);
+bool has_limit(const Joint& joint);
 /// Speed along the row, m/s or rad/s.
 double row_speed(const Joint& joint, const JointRow& row, std::span<const BodyState> bodies);
 /// What may be left of an error after a substep: joints are mended at no more than a few m/s.

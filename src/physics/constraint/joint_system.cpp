@@ -207,7 +207,8 @@ double JointSystem::find_excess(const View& view) {
         for (std::size_t row = 0; row < static_cast<std::size_t>(joint.row_count); ++row) {
             right_side[row] = has_drift && !is_linear_ ? 0 : row_speed(joint, joint.rows[row], view.bodies);
             if (has_drift) {
-                const double rest = rest_of_error(place.before.errors[row], substep_);
+                const double error = place.before.errors[row];
+                const double rest = errors_ == Errors::kept ? error : rest_of_error(error, substep_);
                 right_side[row] += (place.after.errors[row] - rest) / substep_;
             }
             largest = std::max(largest, std::fabs(right_side[row]));
@@ -405,9 +406,11 @@ bool JointSystem::iterate(const View& view) {
     return error <= good_enough;
 }
 
-void JointSystem::advance(double time, const View& view) {
+void JointSystem::advance(double time, const View& view, Errors errors) {
+    errors_ = errors;
     prepare_all(view);
     advance(time, most_halvings, view);
+    errors_ = Errors::mended;
 }
 
 std::vector<std::pair<std::uint32_t, BodyState>> JointSystem::carriers(const View& view) const {

@@ -38,13 +38,16 @@ public:
     /// but loses some energy and leaves errors to be mended.
     enum class Motion { any, small };
 
+    /// What becomes of the joints' errors in a motion. Kept: the way back leads to where it began.
+    enum class Errors { mended, kept };
+
     /// Takes the list over. Bodies keep their slots and joints their places until the next call.
     void set(const JointedList& list, const View& view);
 
     /// Moves what nothing but joints and forces acts on through `time`, s: halves of the kick, the joints' impulses and
-    /// the drift. A motion that is too fast for one go is taken in parts. Bodies outside the list that joints hold on
-    /// to go along by their own velocities.
-    void advance(double time, const View& view);
+    /// the drift; back, if the time is negative. A motion that is too fast for one go is taken in parts. Bodies outside
+    /// the list that joints hold on to go along by their own velocities.
+    void advance(double time, const View& view, Errors errors = Errors::mended);
     /// Those bodies as they are now.
     [[nodiscard]] std::vector<std::pair<std::uint32_t, BodyState>> carriers(const View& view) const;
 
@@ -133,6 +136,7 @@ private:
     SolvePhase phase_ = SolvePhase::position;
     double substep_ = 0;  // s
     bool is_first_ = true, is_linear_ = false, has_factors_ = false;
+    Errors errors_ = Errors::mended;
     double impulse_time_ = 0;  // s: the last impulses of the position phase, both halves, were for so long
     bool has_motor_ = false;
     std::vector<Start> starts_;  // by the number of halvings left

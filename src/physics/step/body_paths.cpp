@@ -126,6 +126,21 @@ void BodyPaths::lead_through(std::uint32_t body, BodyState state, double time) {
         if (rest > 0) fly(state, world_.constants[body], -rest);
         for (std::size_t k = 0; k < whole; ++k) fly(state, world_.constants[body], -substep_);
     }
+    begin_anew(body, state);
+}
+
+void BodyPaths::bend(std::uint32_t body, Vec3 linear, Vec3 angular, double time) {
+    BodyState state = world_.motion[body];
+    state.center -= linear * time;
+    state.rotation = turn_evenly(state.rotation, angular, -time, substep_);
+    state.turn = state.rotation * conjugate(state.start_rotation);
+    state.linear_velocity += linear;
+    state.angular_velocity += angular;
+    refresh_inertia(state, world_.constants[body]);
+    begin_anew(body, state);
+}
+
+void BodyPaths::begin_anew(std::uint32_t body, const BodyState& state) {
     world_.motion[body] = state;
     for (KeptState& kept : kept_) {
         if (kept.body == body) kept.body = not_remembered;

@@ -27,6 +27,11 @@ public:
     /// Sets the body's state at the step's start such that its path leads through `state` at `time`, with the same
     /// energy.
     void lead_through(std::uint32_t body, BodyState state, double time);
+    /// The same for what joints hold, which flies on no free path: its velocities change by these, m/s and rad/s, at
+    /// the step's start already, from where they lead to the same place at `time`.
+    void bend(std::uint32_t body, Vec3 linear, Vec3 angular, double time);
+    /// Sets the body's state at the step's start.
+    void begin_anew(std::uint32_t body, const BodyState& state);
 
     /// How the body's matter has moved since its contacts were found.
     struct Motion {

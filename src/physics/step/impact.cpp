@@ -8,15 +8,18 @@
 // and the motion goes on from there. To keep one step for all bodies, the body is put on the path that leads through
 // the place of impact with the new velocity:  x ← x − t Δv,  v ← v + Δv  at the start of the step. A ball with
 // restitution 1 so keeps its energy exactly, whatever the time step. What spins goes the same way by its free rotation
-// (BodyPaths), forth to the impact and back.
+// (BodyPaths), forth to the impact and back, and what is jointed as its joints let it. Impacts of the same instant on
+// the same bodies are one.
 //
 // What hits a heap without a bounce is kept cheap: its time is that of straight paths, its region found anew only where
 // the bodies have moved on, and the sliding estimated. Many contacts at once stop it, in an order that no model knows.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
 #include "physics/dynamic/equations_of_motion.h"
+#include "physics/step/impact_assembly.h"
 #include "physics/step/impact_regions.h"
 #include "physics/step/step.h"
 
@@ -24,9 +27,10 @@ namespace embody::physics {
 
 namespace {
 
-constexpr double heap_slack = 0.02;  // of a step: in a heap, impacts this near in time may change places
-constexpr int most_bounces = 3;      // of one contact in a step; later impacts do not bounce (Zeno's ball)
-constexpr int most_impacts = 5;      // of one contact in a step; then the contact solver stops it
+constexpr double heap_slack = 0.02;    // of a step: in a heap, impacts this near in time may change places
+constexpr int most_bounces = 3;        // of one contact in a step; later impacts do not bounce (Zeno's ball)
+constexpr double same_instant = 1e-6;  // of a step: impacts this near in time are as simultaneous as mirror images
+constexpr int most_impacts = 5;        // of one contact in a step; then the contact solver stops it
 
 class ImpactStage {
 public:
@@ -42,14 +46,24 @@ public:
 
 private:
     void push(double time, std::uint32_t contact);
+    void push(const ImpactEvent& event);
     void predict(std::uint32_t contact);
     void note(std::uint32_t contact, ImpactPaths::Prediction next);
     void predict_all();
     void predict_again();
     void list_contacts();
+    bool count_impact(std::uint32_t contact);
+    bool add_region(std::uint32_t contact, const Manifold& manifold, double time);
+    void add_simultaneous(double time);
     void take(const ImpactEvent& event);
     void list_bodies();
-    void solve(std::uint32_t contact, double time, SlidePath path);
+    void gather(double time);
+    void go_to(double time);
+    void solve(double time, SlidePath path);
+    void open_jointed_contacts();
+    [[nodiscard]] bool keeps_apart_bent(const Contact& contact) const;
+    void note_joint_impulses();
+    void go_back(double time);
     void note_impulse(Contact& contact, Vec3 position, Vec3 impulse, double time);
 
     WorldState& world_;
@@ -60,8 +74,10 @@ private:
     const double step_;
 };
 
-void ImpactStage::push(double time, std::uint32_t contact) {
-    memory_.events.push_back({time, contact, memory_.version[contact]});
+void ImpactStage::push(double time, std::uint32_t contact) { push({time, contact, memory_.version[contact]}); }
+
+void ImpactStage::push(const ImpactEvent& event) {
+    memory_.events.push_back(event);
     std::push_heap(memory_.events.begin(), memory_.events.end(), std::greater<>());
 }
 
@@ -158,7 +174,6 @@ void ImpactStage::note_impulse(Contact& contact, Vec3 position, Vec3 impulse, do
 
 // The movable bodies of the sites, each once.
 void ImpactStage::list_bodies() {
-    memory_.bodies.clear();
     for (const ImpactSite& site : memory_.sites) {
         for (const std::uint32_t body : {site.a, site.b}) {
             const auto is_it = [body](const ImpactMemory::Moved& moved) { return moved.body == body; };
@@ -168,19 +183,47 @@ void ImpactStage::list_bodies() {
     }
 }
 
-// Solves the collision of the sites, which `contact` began.
-void ImpactStage::solve(std::uint32_t contact, double time, SlidePath path) {
-    regions_.add_loaded_neighbours(contact, time);
+// All that takes part: what collides, what joints connect with it, and what carries either.
+void ImpactStage::gather(double time) {
+    memory_.bodies.clear();
     list_bodies();
+    gather_jointed(world_);
+    memory_.neighbours.clear();
+    for (const ImpactMemory::Moved& moved : memory_.bodies) memory_.neighbours.push_back(moved.body);
+    regions_.add_loaded_neighbours(memory_.neighbours, time);
+    list_bodies();
+}
 
-    // To the place of the impact, the collision, and back to the start of the step on the new path.
+// The bodies at the place of the impact. Joints have kept what they hold from falling on its way there.
+void ImpactStage::go_to(double time) {
+    for (ImpactMemory::Moved& moved : memory_.bodies) moved.start = world_.motion[moved.body];
+    ImpactJoints& joints = memory_.group.joints;
+    const auto bounces = [](const ImpactSite& site) { return site.coefficients.restitution > 0; };
+    memory_.is_flown = !memory_.jointed.empty() && can_fly_jointed(world_) &&
+                       std::any_of(memory_.sites.begin(), memory_.sites.end(), bounces);
+    if (memory_.is_flown) fly_jointed(world_, time);
     for (ImpactMemory::Moved& moved : memory_.bodies) {
-        BodyState& state = world_.motion[moved.body];
-        moved.start = state;
-        state = bodies_.kept_state_at(moved.body, time);
-        moved.linear_velocity = state.linear_velocity;
-        moved.angular_velocity = state.angular_velocity;
+        const bool is_there =
+            memory_.is_flown && std::binary_search(memory_.jointed.begin(), memory_.jointed.end(), moved.body);
+        if (!is_there) world_.motion[moved.body] = bodies_.state_at(moved.body, time);
     }
+    joints.clear();
+    if (!memory_.jointed.empty()) {
+        const ImpactJoints::View view{world_.motion, world_.constants, world_.active_joints};
+        joints.set({memory_.jointed, memory_.jointed_joints}, view);
+        joints.project(view);
+    }
+    for (ImpactMemory::Moved& moved : memory_.bodies) {
+        moved.linear_velocity = world_.motion[moved.body].linear_velocity;
+        moved.angular_velocity = world_.motion[moved.body].angular_velocity;
+    }
+}
+
+// Solves the collision of the sites.
+void ImpactStage::solve(double time, SlidePath path) {
+    // To the place of the impact, the collision, and back to the start of the step on the new path.
+    gather(time);
+    go_to(time);
     const ImpactReport report = solve_impact_group(memory_.sites, world_.motion, memory_.group, path);
     if (!report.converged) {
         world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
@@ -192,17 +235,99 @@ void ImpactStage::solve(std::uint32_t contact, double time, SlidePath path) {
         const Vec3 center = b.inverse_mass > 0 ? b.center : bodies_.kept_state_at(site.b, time).center;
         note_impulse(world_.contacts[memory_.site_contact[i]], site.arm_b + center, site.impulse, time);
     }
+    note_joint_impulses();
+    go_back(time);
+}
+
+void ImpactStage::note_joint_impulses() {
+    if (memory_.jointed.empty()) return;
+    memory_.pushes.clear();
+    for (const ImpactSite& site : memory_.sites) {
+        if (site.impulse == Vec3{}) continue;
+        memory_.pushes.push_back({site.a, -site.impulse, site.arm_a});
+        memory_.pushes.push_back({site.b, site.impulse, site.arm_b});
+    }
+    memory_.group.joints.add_to_totals(memory_.pushes, {world_.motion, world_.constants, world_.active_joints});
+}
+
+void ImpactStage::go_back(double time) {
     for (ImpactMemory::Moved& moved : memory_.bodies) {
-        BodyState& state = world_.motion[moved.body];
+        const BodyState& state = world_.motion[moved.body];
         moved.has_changed =
             state.linear_velocity != moved.linear_velocity || state.angular_velocity != moved.angular_velocity;
-        if (moved.has_changed) {
-            bodies_.lead_through(moved.body, state, time);
-            memory_.last_time[moved.body] = time;
-        } else {
-            state = moved.start;
-        }
     }
+    const ImpactJoints& joints = memory_.group.joints;
+    const auto is_changed = [&](const ImpactMemory::Moved& m) {
+        return m.has_changed && joints.number_of(m.body) >= 0;
+    };
+    const bool joints_answer = std::any_of(memory_.bodies.begin(), memory_.bodies.end(), is_changed);
+    if (memory_.is_flown && joints_answer) fly_jointed(world_, -time);
+    for (const ImpactMemory::Moved& moved : memory_.bodies) {
+        const BodyState state = world_.motion[moved.body];
+        world_.motion[moved.body] = moved.start;
+        if (!moved.has_changed) continue;
+        if (joints.number_of(moved.body) < 0) {
+            bodies_.lead_through(moved.body, state, time);
+        } else if (memory_.is_flown) {
+            bodies_.begin_anew(moved.body, state);
+        } else {
+            bodies_.bend(moved.body, state.linear_velocity - moved.linear_velocity,
+                         state.angular_velocity - moved.angular_velocity, time);
+        }
+        memory_.last_time[moved.body] = time;
+    }
+}
+
+// Whether the contact may bounce once more.
+bool ImpactStage::count_impact(std::uint32_t contact) {
+    return memory_.impacts[contact]++ < most_bounces && paths_.bounces(world_.contacts[contact]);
+}
+
+// The sites of the contact, whose region is `manifold`, and of those that come down with it. Whether it bounces.
+bool ImpactStage::add_region(std::uint32_t contact, const Manifold& manifold, double time) {
+    const bool may_bounce = count_impact(contact);
+    regions_.add_manifold_sites(world_.contacts[contact], manifold, time, may_bounce);
+    memory_.site_contact.resize(memory_.sites.size(), contact);
+    if (!may_bounce) return false;
+    regions_.add_sites_beside(contact, manifold, time, [this](std::uint32_t other) { return count_impact(other); });
+    paths_.note_bounce(world_.contacts[contact]);
+    return true;
+}
+
+// Impacts of the same instant on the same bodies are one collision: one after the other, the first would turn what is
+// symmetric. Balls that touch in a row still pass it on one by one: the next ones begin to approach by it.
+void ImpactStage::add_simultaneous(double time) {
+    std::vector<ImpactEvent>& rest = memory_.simultaneous;
+    rest.clear();
+    while (!memory_.events.empty() && memory_.events.front().time <= time + same_instant * step_) {
+        if (memory_.events.front().version == memory_.version[memory_.events.front().contact]) {
+            rest.push_back(memory_.events.front());
+        }
+        std::pop_heap(memory_.events.begin(), memory_.events.end(), std::greater<>());
+        memory_.events.pop_back();
+    }
+    const auto joins = [&](const ImpactEvent& event) {
+        const Contact& contact = world_.contacts[event.contact];
+        const auto& known = memory_.site_contact;
+        const auto meets = [&](const ImpactSite& site) {
+            const auto is_shared = [&](std::uint32_t body) {
+                return world_.motion[body].inverse_mass > 0 && (body == site.a || body == site.b);
+            };
+            return is_shared(contact.a) || is_shared(contact.b);
+        };
+        if (!paths_.bounces(contact) || std::find(known.begin(), known.end(), event.contact) != known.end())
+            return false;
+        if (std::none_of(memory_.sites.begin(), memory_.sites.end(), meets)) return false;
+        double own_time = event.time;
+        Manifold manifold;
+        if (!regions_.refine(world_.contacts[event.contact], own_time, manifold)) return false;
+        if (own_time > time + same_instant * step_) return false;
+        add_region(event.contact, manifold, time);
+        return true;
+    };
+    for (auto found = rest.begin(); (found = std::find_if(rest.begin(), rest.end(), joins)) != rest.end();)
+        rest.erase(found);
+    for (const ImpactEvent& event : rest) push(event);
 }
 
 // The next impact, if its place and time are right; else it comes back with better ones.
@@ -229,19 +354,15 @@ void ImpactStage::take(const ImpactEvent& event) {
     }
     list_contacts();
     memory_.sites.clear();
-    const auto count_impact = [&](std::uint32_t index) {
-        return memory_.impacts[index]++ < most_bounces && paths_.bounces(world_.contacts[index]);
-    };
-    const bool may_bounce = count_impact(event.contact);
+    memory_.site_contact.clear();
     if (as_found) {
+        count_impact(event.contact);
         regions_.add_point_sites(contact, time);
-    } else {
-        regions_.add_manifold_sites(contact, manifold, time, may_bounce);
+        memory_.site_contact.assign(memory_.sites.size(), event.contact);
+    } else if (add_region(event.contact, manifold, time)) {
+        add_simultaneous(time);
     }
-    memory_.site_contact.assign(memory_.sites.size(), event.contact);
-    if (may_bounce && !as_found) regions_.add_sites_beside(event.contact, manifold, time, count_impact);
-    if (may_bounce) paths_.note_bounce(contact);
-    solve(event.contact, time, in_heap ? SlidePath::estimated : SlidePath::followed);
+    solve(time, in_heap ? SlidePath::estimated : SlidePath::followed);
     predict_again();
 }
 
@@ -260,13 +381,45 @@ void ImpactStage::predict_again() {
     }
 }
 
+// Joints bend the paths of what they hold. Their contacts are open if they carried nothing and the surfaces keep apart
+// on paths that are bent as in the last step, and still if that is wrong by a tenth.
+void ImpactStage::open_jointed_contacts() {
+    if (world_.active_joints.empty()) return;
+    for (std::uint32_t i = 0; i < world_.contacts.size(); ++i) {
+        const Contact& contact = world_.contacts[i];
+        if (!memory_.is_jointed[contact.a] && !memory_.is_jointed[contact.b]) continue;
+        memory_.is_open[i] = !contact.was_loaded && keeps_apart_bent(contact) ? 1 : 0;
+    }
+}
+
+bool ImpactStage::keeps_apart_bent(const Contact& contact) const {
+    constexpr double wrong_share = 0.1;
+    using HeldAcceleration = ImpactMemory::HeldAcceleration;
+    const auto held = [&](std::uint32_t body) {
+        const bool is_held = memory_.is_jointed[body] && body < memory_.held_accelerations.size();
+        return is_held ? memory_.held_accelerations[body] : HeldAcceleration{};
+    };
+    const HeldAcceleration a = held(contact.a), b = held(contact.b);
+    const double closing = dot(contact.normal, Vec3(a.linear) - Vec3(b.linear)) +
+                           wrong_share * (length(Vec3(a.linear)) + length(Vec3(b.linear))) + a.turning + b.turning;
+    const double start = paths_.earliest_time(contact), time = step_ - start;
+    for (int k = 0; k < contact.count; ++k) {
+        const ContactPoint& point = contact.points[static_cast<std::size_t>(k)];
+        const ImpactPaths::Gap first = paths_.gap_at(contact, point, start),
+                               last = paths_.gap_at(contact, point, step_);
+        const bool begins_apart = first.size > ImpactPaths::touch_gap || first.rate > closing * time;
+        if (!begins_apart || last.size <= closing * time * time / 2) return false;
+    }
+    return true;
+}
+
 void ImpactStage::run() {
     const std::size_t count = world_.contacts.size();
     memory_.version.assign(count, 0);
     memory_.is_open.assign(count, 0);
     memory_.impacts.assign(count, 0);
     memory_.events.clear();
-    memory_.has_lists = false;
+    memory_.has_lists = memory_.has_joint_lists = false;
     predict_all();
     std::size_t left = 64 + 32 * count;
     while (!memory_.events.empty()) {
@@ -276,10 +429,11 @@ void ImpactStage::run() {
         if (event.version != memory_.version[event.contact]) continue;
         if (left-- == 0) {
             world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
-            return;
+            break;
         }
         take(event);
     }
+    open_jointed_contacts();
 }
 
 }  // namespace

@@ -49,12 +49,25 @@ struct ImpactMemory {
     std::vector<std::uint32_t> first_of_body, of_body;
     bool has_lists = false;
 
-    std::vector<std::uint8_t> is_held;  ///< by body: something else than free flight moves it
+    // The active joints of each body, once an impact has asked for them: by body, then joint by joint.
+    std::vector<std::uint32_t> first_joint_of_body, joint_of_body;
+    bool has_joint_lists = false;
+
+    std::vector<std::uint8_t> is_held;        ///< by body: something else than free flight moves it
+    std::vector<std::uint8_t> is_jointed;     ///< by body, with joints that have no limit and motor; empty without any
+    std::vector<std::uint32_t> jointed_with;  ///< by body: another one that joints connect with it, or itself
+    /// What joints and contacts accelerated a jointed body by in the last step.
+    struct HeldAcceleration {
+        Vec3f linear;       ///< of the centre of mass, m/s²
+        float turning = 0;  ///< of the surface by its turning, m/s²
+    };
+    std::vector<HeldAcceleration> held_accelerations;  ///< by body; empty without joints
 
     std::size_t heap_bounces = 0;  ///< of bodies that others carry
 
     // Of the present impact.
-    std::vector<ImpactEvent> events;  ///< a heap, the earliest on top
+    std::vector<ImpactEvent> events;        ///< a heap, the earliest on top
+    std::vector<ImpactEvent> simultaneous;  ///< of the same instant
     std::vector<ImpactSite> sites;
     std::vector<std::uint32_t> site_contact;  ///< contact of each site
     std::vector<Manifold> manifolds;
@@ -65,6 +78,14 @@ struct ImpactMemory {
         Vec3 linear_velocity, angular_velocity;  ///< before the impact, at its time
     };
     std::vector<Moved> bodies;
+    std::vector<std::uint32_t> neighbours;      ///< those that collide, and their jointed ones
+    std::vector<std::uint32_t> jointed;         ///< those of them that joints connect, ascending
+    std::vector<std::uint32_t> jointed_joints;  ///< indices of these joints, ascending
+    std::vector<ImpactJoints::Push> pushes;
+    bool is_flown = false;            ///< the jointed ones fly to the impact and back as the substeps will move them
+    JointSystem flight;               ///< of these
+    std::vector<Joint> flown_joints;  ///< copies of their joints
+    std::vector<std::uint32_t> flown_list;  ///< indices of these
     ImpactGroupMemory group;
 };
 

@@ -169,14 +169,15 @@ ImpactPaths::Prediction ImpactPaths::predict_straight(Contact& contact) {
     const Motion a = motion_at(contact.a, 0), b = motion_at(contact.b, 0);
     const Bend bend = bend_of(contact, a, b);
     const double start = earliest_time(contact);
-    Prediction first{.is_open = start == 0};
+    Prediction first{.is_open = true};
     for (int i = 0; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const Gap now = gap_between(contact, point, a, b);
         const double end = now.size + now.rate * step_;
         const bool may_meet = now.size <= touch_gap || std::min(now.size, end) < bend.way;
         if (may_meet && now.rate - bend.speed < -slowest) first.is_certain = false;
-        if (may_meet) first.is_open = false;
+        const bool parts = start > 0 && now.rate > bend.speed && end > bend.way;
+        if (may_meet && !parts) first.is_open = false;
         mark_open(point, now.rate < -slowest && now.size > 0 && end > 0, step_);
         if (now.rate < -slowest && end <= 0) first.time = std::min(first.time, std::max(start, now.size / -now.rate));
     }

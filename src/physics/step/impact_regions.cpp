@@ -11,6 +11,7 @@ namespace {
 
 constexpr double patch_gap = ImpactPaths::patch_gap;
 constexpr double near_share = 0.05;  // of a body's size
+constexpr double elastic = 0.7;      // restitution from which on at least half of the energy comes back
 
 ImpactCoefficients coefficients_of(const Material& material, double restitution) {
     return {material.friction_dynamic, material.friction_static, restitution};
@@ -203,17 +204,22 @@ void ImpactRegions::add_point_sites(const Contact& contact, double time) {
     add_points_below(contact, nearest + patch_gap, time);
 }
 
+// Whether the two bodies pass an impact on by one of their own, which gives back most of the energy.
+bool ImpactRegions::passes_on(const Contact& contact) const {
+    return paths_.bounces(contact) && paths_.material_of(contact).restitution >= elastic;
+}
+
 // Loaded contacts of the colliding bodies take part, without a bounce. Others that collide at the same time have their
-// own events: one after the other, as the balls of Newton's cradle do it, keeps the energy of elastic bodies.
-void ImpactRegions::add_loaded_neighbours(std::uint32_t contact, double time) {
-    const Contact& first = world_.contacts[contact];
-    for (const std::uint32_t body : {first.a, first.b}) {
+// own events, and so have elastic ones: one after the other, as the balls of Newton's cradle do it, keeps their energy.
+void ImpactRegions::add_loaded_neighbours(std::span<const std::uint32_t> bodies, double time) {
+    for (const std::uint32_t body : bodies) {
         if (world_.motion[body].inverse_mass == 0) continue;
         for (std::uint32_t k = memory_.first_of_body[body]; k < memory_.first_of_body[body + 1]; ++k) {
             const std::uint32_t other = memory_.of_body[k];
             if (!world_.contact_glances[other].was_loaded) continue;
             const auto& known = memory_.site_contact;
             if (std::find(known.begin(), known.end(), other) != known.end()) continue;
+            if (passes_on(world_.contacts[other])) continue;
             add_points_below(world_.contacts[other], patch_gap, time);
             memory_.site_contact.resize(memory_.sites.size(), other);
         }

@@ -46,8 +46,8 @@ public:
             memory_.site_contact.resize(memory_.sites.size(), *found);
         }
     }
-    /// Needs the lists of each body's contacts.
-    void add_loaded_neighbours(std::uint32_t contact, double time);
+    /// Of these bodies. Needs the lists of each body's contacts.
+    void add_loaded_neighbours(std::span<const std::uint32_t> bodies, double time);
 
 private:
     /// Of those that collide_at() found, the contact's; nullptr if it has none.
@@ -57,6 +57,7 @@ private:
     /// Of the same two bodies, the contact of this region.
     [[nodiscard]] std::optional<std::uint32_t> find_contact(std::uint32_t beside, const Manifold& manifold) const;
     double closing_speed(const Contact& contact, const Manifold& manifold, double time, double gap);
+    [[nodiscard]] bool passes_on(const Contact& contact) const;
     void add_points_below(const Contact& contact, double highest, double time);
     [[nodiscard]] double straight_gap(const Contact& contact, const ContactPoint& point, double time) const;
     void collide_at(const Contact& contact, double time);

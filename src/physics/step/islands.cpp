@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "physics/optimization/islands.h"
 
+#include <numeric>
+
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/step/step.h"
 
@@ -18,15 +20,16 @@ bool is_active(const WorldState& world, const JointDefinition& joint) {
     return is_there(joint.body_a.index) && (moves(joint.body_a.index) || moves(joint.body_b.index));
 }
 
-// Contacts that need no solver: the paths of the impact stage say that the surfaces keep apart, and nothing else holds
-// either body. What spins then flies free, exactly, instead of sharing the contact solver's approximate turns.
+// Contacts that need no solver: the paths of the impact stage say that the surfaces keep apart. What spins then flies
+// free, exactly, instead of sharing the contact solver's approximate turns, if nothing else holds either body; and
+// joints without contacts keep their energy, which those that take turns with contacts do not.
 void set_idle_contacts(WorldState& world) {
-    const std::vector<std::uint8_t>& is_open = world.impact_memory.is_open;
+    const ImpactMemory& memory = world.impact_memory;
     std::vector<std::uint8_t>& is_held = world.impact_memory.is_held;
     is_held.assign(world.motion.size(), 0);
     for (std::size_t i = 0; i < world.contacts.size(); ++i) {
         const ContactGlance& contact = world.contact_glances[i];
-        if (!is_open[i]) is_held[contact.a] = is_held[contact.b] = 1;
+        if (!memory.is_open[i]) is_held[contact.a] = is_held[contact.b] = 1;
     }
     for (const Joint& joint : world.active_joints) {
         is_held[joint.b] = 1;
@@ -36,17 +39,53 @@ void set_idle_contacts(WorldState& world) {
     const auto spins = [&](std::uint32_t body) {
         return has_gyroscopic_torque(world.motion[body], world.constants[body], world.settings.time_step);
     };
+    const auto is_jointed = [&](std::uint32_t body) { return !memory.is_jointed.empty() && memory.is_jointed[body]; };
     for (std::size_t i = 0; i < world.contacts.size(); ++i) {
         ContactGlance& contact = world.contact_glances[i];
-        contact.is_idle =
-            is_open[i] && is_free(contact.a) && is_free(contact.b) && (spins(contact.a) || spins(contact.b));
+        const bool a_is_jointed = is_jointed(contact.a), b_is_jointed = is_jointed(contact.b);
+        contact.is_idle = memory.is_open[i] && (a_is_jointed || is_free(contact.a)) &&
+                          (b_is_jointed || is_free(contact.b)) &&
+                          (a_is_jointed || b_is_jointed || spins(contact.a) || spins(contact.b));
         if (contact.is_idle) contact.touches = is_touching(world.contacts[i]);
+    }
+}
+
+// Union-find with path halving.
+std::uint32_t root_of(std::vector<std::uint32_t>& parents, std::uint32_t body) {
+    while (parents[body] != body) body = parents[body] = parents[parents[body]];
+    return body;
+}
+
+// The bodies that active joints hold, but where one that is connected with them has a limit or a motor: that may stop
+// them within a step, so that nothing is known of their paths.
+void mark_jointed(WorldState& world) {
+    std::vector<std::uint8_t>& is_jointed = world.impact_memory.is_jointed;
+    is_jointed.clear();
+    if (world.active_joints.empty()) return;
+    is_jointed.resize(world.motion.size());
+    std::vector<std::uint32_t>& parents = world.impact_memory.jointed_with;
+    parents.resize(world.motion.size());
+    std::iota(parents.begin(), parents.end(), 0U);
+    const auto moves = [&](std::uint32_t body) { return world.motion[body].inverse_mass > 0; };
+    for (const Joint& joint : world.active_joints) {
+        if (moves(joint.b)) is_jointed[joint.b] = 1;
+        if (joint.a_is_world || !moves(joint.a)) continue;
+        is_jointed[joint.a] = 1;
+        if (moves(joint.b)) parents[root_of(parents, joint.a)] = root_of(parents, joint.b);
+    }
+    for (const Joint& joint : world.active_joints) {
+        if (!has_motor(joint) && !has_limit(joint)) continue;
+        if (moves(joint.b)) is_jointed[root_of(parents, joint.b)] = 0;
+        if (!joint.a_is_world && moves(joint.a)) is_jointed[root_of(parents, joint.a)] = 0;
+    }
+    for (std::uint32_t body = 0; body < is_jointed.size(); ++body) {
+        is_jointed[body] = is_jointed[body] && is_jointed[root_of(parents, body)] ? 1 : 0;
     }
 }
 
 }  // namespace
 
-void find_islands(WorldState& world) {
+void list_active_joints(WorldState& world) {
     // Joints between sleepers stay where they are.
     world.active_joints.clear();
     world.active_joint_slots.clear();
@@ -58,7 +97,10 @@ void find_islands(WorldState& world) {
         world.active_joints.push_back(record.constraint);
         world.active_joint_slots.push_back(slot);
     }
+    mark_jointed(world);
+}
 
+void find_islands(WorldState& world) {
     set_idle_contacts(world);
 
     // Kinematic bodies are awake, but no island holds them.

@@ -28,6 +28,7 @@ void advance(WorldState& world, bool is_long) {
 
     run(world, StepStage::find_pairs, find_pairs);  // broad phase
     run(world, StepStage::touch, find_contacts);    // narrow phase → contact regions, warm start
+    run(world, StepStage::islands, list_active_joints);
     run(world, StepStage::impact, solve_impacts);   // new, fast contacts by eq. (3)
     run(world, StepStage::islands, find_islands);   // contact graph → islands, levels, solve order
     run(world, StepStage::substeps, run_substeps);  // kick → solve → drift → kick → solve, shock propagation

@@ -14,6 +14,7 @@ void advance_fluids(WorldState& world);
 void find_pairs(WorldState& world);
 void find_contacts(WorldState& world);
 void solve_impacts(WorldState& world);
+void list_active_joints(WorldState& world);
 void find_islands(WorldState& world);
 void run_substeps(WorldState& world);
 void stop_tunnelling(WorldState& world);

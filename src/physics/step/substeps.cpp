@@ -429,6 +429,42 @@ void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, dou
     for (const Island& island : islands) note_outcomes(world, island);
 }
 
+// How joints and contacts accelerate what joints hold.
+class HeldAccelerations {
+public:
+    explicit HeldAccelerations(WorldState& world) : world_(world) {
+        if (world.active_joints.empty()) return;
+        for (const Island& island : world.islands.list) {
+            if (island.joint_count == 0) continue;
+            for (const std::uint32_t body : bodies_of(world, island)) {
+                starts_.push_back({body, world.motion[body].linear_velocity, world.motion[body].angular_velocity});
+            }
+        }
+    }
+    void note() const {
+        std::vector<ImpactMemory::HeldAcceleration>& accelerations = world_.impact_memory.held_accelerations;
+        accelerations.clear();
+        if (starts_.empty()) return;
+        accelerations.resize(world_.motion.size());
+        const double time = world_.settings.time_step;
+        for (const Start& start : starts_) {
+            const BodyState& now = world_.motion[start.body];
+            const Vec3 change = (now.linear_velocity - start.linear_velocity) / time;
+            const double turning = length(now.angular_velocity - start.angular_velocity) / time;
+            accelerations[start.body] = {to_vec3f(change - world_.constants[start.body].acceleration),
+                                         static_cast<float>(turning * world_.record(start.body).reach)};
+        }
+    }
+
+private:
+    struct Start {
+        std::uint32_t body;
+        Vec3 linear_velocity, angular_velocity;
+    };
+    WorldState& world_;
+    std::vector<Start> starts_;
+};
+
 void propagate_shocks(WorldState& world, const SolveWays& ways) {
     const auto propagate = [&](const Island& island, const ContactPlan& plan) {
         propagate_shock(island, world.islands, world.contacts, plan.softness(world.settings.time_step), world.motion);
@@ -449,6 +485,7 @@ void propagate_shocks(WorldState& world, const SolveWays& ways) {
 
 void run_substeps(WorldState& world) {
     const double h = world.settings.time_step / world.settings.substeps;
+    const HeldAccelerations held_accelerations(world);
     const SolveWays ways = sort_islands(world);
 
     // The last one moves the kinematic bodies, which the others take from where the step found them.
@@ -457,6 +494,7 @@ void run_substeps(WorldState& world) {
     solve_free(world, ways.free, h);
     solve_one_by_one(world, ways.one_by_one, h);
     if (world.settings.shock_propagation) propagate_shocks(world, ways);
+    held_accelerations.note();
     limit_speeds(world);
     freeze_lost_bodies(world);
     for (std::size_t i = 0; i < world.active_joints.size(); ++i) {

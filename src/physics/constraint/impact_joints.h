@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "physics/constraint/joint_system.h"
+
+namespace embody::physics {
+
+/// How joints pass an impact on, in the same instant: an impulse f on jointed bodies changes their velocities by the Δv
+/// of
+///
+///   M Δv − Jᵀ λ = f,   J Δv = 0      λ: impulses of the joints
+///
+/// which keeps momentum and all joints, and whose inverse is symmetric, so that the energy of a collision is told by
+/// its impulse alone. Motors and springs take no part: their forces are finite. One factorisation serves all impulses.
+class ImpactJoints {
+public:
+    using View = JointSystem::View;
+
+    /// An impulse on a body, N s, at `arm` from its centre of mass, m.
+    struct Push {
+        std::uint32_t body = 0;
+        Vec3 impulse, arm;
+    };
+
+    /// No body is jointed.
+    void clear();
+    /// These bodies and joints, at the places where they are; a joint whose other body is not of the list holds on to
+    /// that body as it moves now. Bodies ascend.
+    void set(const JointedList& list, const View& view);
+
+    [[nodiscard]] std::span<const std::uint32_t> bodies() const { return bodies_; }
+    /// The body's place in bodies(), or −1.
+    [[nodiscard]] int number_of(std::uint32_t body) const;
+
+    /// Takes from the velocities what the joints forbid.
+    void project(const View& view);
+    /// How the velocities of bodies() change if these pushes come at once, in their order. Pushes on others are left
+    /// out.
+    void respond(std::span<const Push> pushes, std::span<Vec6> changes);
+    /// Adds the joints' answer to the pushes to their totals of the step.
+    void add_to_totals(std::span<const Push> pushes, const View& view);
+
+private:
+    struct Place {
+        std::uint32_t joint = 0;      // index
+        std::int32_t a = -1, b = -1;  // numbers of the bodies; −1: does not answer
+        std::uint32_t edge_a = 0, edge_b = 0;
+        JointRows rows;
+        Vec3 arm_b;  // from b's centre of mass to the joint
+    };
+    void analyse();
+    void factor(const View& view);
+    void put_joint(std::size_t number, const View& view);
+    void solve(std::span<const Push> pushes);
+
+    std::vector<std::uint32_t> bodies_;
+    std::vector<Place> places_;
+    BlockLu matrix_;
+    std::vector<BlockPattern::Edge> edges_, last_edges_;  // now, and as last analysed
+    std::size_t analysed_bodies_ = 0;
+    std::vector<Vec6> unknowns_;  // changes of the bodies' velocities, impulses of the joints
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "physics/step/impact_assembly.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace embody::physics {
+
+namespace {
+
+constexpr std::size_t most_flown_bodies = 8;
+
+bool is_movable(const WorldState& world, std::uint32_t body) { return world.motion[body].inverse_mass > 0; }
+
+// The active joints of each movable body.
+void list_joints_of_bodies(WorldState& world) {
+    ImpactMemory& memory = world.impact_memory;
+    if (memory.has_joint_lists) return;
+    memory.has_joint_lists = true;
+    std::vector<std::uint32_t>& first = memory.first_joint_of_body;
+    first.assign(world.motion.size() + 2, 0);
+    const auto for_each_end = [&](auto visit) {
+        for (std::uint32_t i = 0; i < world.active_joints.size(); ++i) {
+            const Joint& joint = world.active_joints[i];
+            if (!joint.a_is_world && is_movable(world, joint.a)) visit(joint.a, i);
+            if (is_movable(world, joint.b)) visit(joint.b, i);
+        }
+    };
+    for_each_end([&](std::uint32_t body, std::uint32_t) { ++first[body + 2]; });
+    for (std::size_t i = 2; i < first.size(); ++i) first[i] += first[i - 1];
+
+    // While the list is filled, an entry moves on to where the next body's begins.
+    memory.joint_of_body.resize(first.back());
+    for_each_end([&](std::uint32_t body, std::uint32_t joint) { memory.joint_of_body[first[body + 1]++] = joint; });
+}
+
+std::span<const std::uint32_t> joints_of(const ImpactMemory& memory, std::uint32_t body) {
+    const std::uint32_t first = memory.first_joint_of_body[body], last = memory.first_joint_of_body[body + 1];
+    return std::span(memory.joint_of_body).subspan(first, last - first);
+}
+
+void sort_once(std::vector<std::uint32_t>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+}  // namespace
+
+bool can_fly_jointed(const WorldState& world) {
+    const ImpactMemory& memory = world.impact_memory;
+    if (memory.jointed.size() > most_flown_bodies) return false;
+    const auto has_way_back = [&](std::uint32_t body) { return memory.is_jointed[body] != 0; };
+    return std::all_of(memory.jointed.begin(), memory.jointed.end(), has_way_back);
+}
+
+void fly_jointed(WorldState& world, double time) {
+    ImpactMemory& memory = world.impact_memory;
+    memory.flown_joints.clear();
+    memory.flown_list.clear();
+    for (const std::uint32_t index : memory.jointed_joints) {
+        memory.flown_list.push_back(static_cast<std::uint32_t>(memory.flown_joints.size()));
+        memory.flown_joints.push_back(world.active_joints[index]);
+    }
+    const JointSystem::View view{world.motion, world.constants, memory.flown_joints};
+    JointSystem& system = memory.flight;
+    system.set({memory.jointed, memory.flown_list}, view);
+    const auto carriers = system.carriers(view);
+
+    // Whole substeps from the step's start on, then the rest; back the other way round.
+    const double substep = world.settings.time_step / world.settings.substeps, way = std::fabs(time);
+    const int whole = std::min(static_cast<int>(way / substep), world.settings.substeps);
+    const double rest = way - whole * substep;
+    const auto fly = [&](double part) {
+        if (part > 0) system.advance(std::copysign(part, time), view, JointSystem::Errors::kept);
+    };
+    if (time < 0) fly(rest);
+    for (int k = 0; k < whole; ++k) fly(substep);
+    if (time > 0) fly(rest);
+    for (const auto& [body, state] : carriers) world.motion[body] = state;
+}
+
+void gather_jointed(WorldState& world) {
+    ImpactMemory& memory = world.impact_memory;
+    memory.jointed.clear();
+    memory.jointed_joints.clear();
+    if (world.active_joints.empty()) return;
+    list_joints_of_bodies(world);
+
+    // Breadth first from what collides.
+    std::vector<std::uint32_t>& found = memory.jointed;
+    const auto is_found = [&](std::uint32_t body) {
+        return std::find(found.begin(), found.end(), body) != found.end();
+    };
+    for (const ImpactMemory::Moved& moved : memory.bodies) {
+        if (!joints_of(memory, moved.body).empty()) found.push_back(moved.body);
+    }
+    for (std::size_t i = 0; i < found.size() && found.size() < most_jointed_bodies; ++i) {
+        for (const std::uint32_t index : joints_of(memory, found[i])) {
+            const Joint& joint = world.active_joints[index];
+            const std::uint32_t other = joint.b == found[i] && !joint.a_is_world ? joint.a : joint.b;
+            if (is_movable(world, other) && found.size() < most_jointed_bodies && !is_found(other))
+                found.push_back(other);
+        }
+    }
+
+    // Their joints, but those to bodies too far away.
+    for (const std::uint32_t body : found) {
+        for (const std::uint32_t index : joints_of(memory, body)) {
+            const Joint& joint = world.active_joints[index];
+            const auto takes_part = [&](std::uint32_t end) { return !is_movable(world, end) || is_found(end); };
+            if (takes_part(joint.b) && (joint.a_is_world || takes_part(joint.a)))
+                memory.jointed_joints.push_back(index);
+        }
+    }
+    sort_once(memory.jointed_joints);
+    for (const std::uint32_t body : found) {
+        const auto is_it = [body](const ImpactMemory::Moved& moved) { return moved.body == body; };
+        if (std::none_of(memory.bodies.begin(), memory.bodies.end(), is_it))
+            memory.bodies.push_back({body, false, {}, {}, {}});
+    }
+    sort_once(found);
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: MIT
+// Joints pass a blow on in the same instant. References: two hinged rods struck at the end (T. Kane, D. Levinson,
+// "Dynamics: theory and applications", 1985, § 5: impulsive motion), by their generalised coordinates; random trees of
+// joints, by a dense solve of M Δv − Jᵀ λ = f, J Δv = 0 written for this test; Newton's cradle on hinges.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "validation/random_bodies.h"
+#include "validation/reference.h"
+
+namespace embody::physics {
+namespace {
+
+const Quat about_z = from_two_vectors({1, 0, 0}, {0, 0, 1});  // of a hinge's frame, whose axis is X
+
+Material bouncing(double restitution, double mu = 0) {
+    return {.friction_static = mu,
+            .friction_dynamic = mu,
+            .restitution = restitution,
+            .friction_combine = CombineRule::geometric_mean,
+            .restitution_combine = CombineRule::multiply};
+}
+
+// Two rods of 1 kg and 1 m hang straight, hinged to the world and to each other; a ball strikes the lower end from the
+// side after `delay` of the step. With q₁, q₂ the angles, M = m l² (4/3, 1/2; 1/2, 1/3), and the end moves with
+// l (q₁' + q₂'): an impulse P there gives q' = M⁻¹ (l P, l P).
+struct Struck {
+    double upper = 0, lower = 0, ball = 0;  // rad/s, rad/s, m/s
+};
+
+Struck strike_theory(double ball_mass, double speed, double restitution) {
+    const double a = 4.0 / 3, b = 0.5, c = 1.0 / 3, determinant = a * c - b * b;
+    const double upper = (c - b) / determinant, lower = (a - b) / determinant;
+    const double impulse = (1 + restitution) * speed / (1 / ball_mass + upper + lower);
+    return {upper * impulse, lower * impulse, speed - impulse / ball_mass};
+}
+
+Struck strike(double ball_mass, double speed, double restitution, double delay) {
+    auto world = make_world({.gravity = {}});
+    const double half = 0.02, radius = 0.05;
+    const auto rod = world->create_shape(BoxShape{{half, 0.5, half}}).value();
+    const auto ball = world->create_shape(SphereShape{radius}).value();
+
+    // A rod of no thickness: its moment of inertia about the ends is m l²/3.
+    const double inertia = 1.0 / 12;
+    const auto add_rod = [&](double height) {
+        return world
+            ->create_body({.shape = rod,
+                           .position = {0, height, 0},
+                           .mass = {.mass = 1, .inertia = Mat3::diagonal({inertia, 1e-3, inertia})},
+                           .material = bouncing(1),
+                           .allow_sleep = false})
+            .value();
+    };
+    const auto upper = add_rod(-0.5), lower = add_rod(-1.5);
+    const Transform top{{0, 0.5, 0}, about_z}, bottom{{0, -0.5, 0}, about_z};
+    EXPECT_TRUE(
+        world->create_joint({.joint = HingeJoint{}, .body_b = upper, .frame_a = {{}, about_z}, .frame_b = top}));
+    EXPECT_TRUE(world->create_joint(
+        {.joint = HingeJoint{}, .body_a = upper, .body_b = lower, .frame_a = bottom, .frame_b = top}));
+    const double gap = delay * speed;
+    const auto striker = world
+                             ->create_body({.shape = ball,
+                                            .position = {-half - radius - gap, -2, 0},
+                                            .linear_velocity = {speed, 0, 0},
+                                            .mass = {.mass = ball_mass},
+                                            .material = bouncing(restitution),
+                                            .allow_sleep = false})
+                             .value();
+    world->step();
+    return {world->angular_velocity(upper).z, world->angular_velocity(lower).z, world->linear_velocity(striker).x};
+}
+
+TEST(JointedImpact, TwoHingedRodsAreStruckAsKaneSays) {
+    for (const double mass : {0.05, 1.0, 20.0}) {
+        for (const double restitution : {0.0, 0.5, 1.0}) {
+            for (int phase = 0; phase < 16; ++phase) {
+                const double speed = 0.5;
+                const Struck expected = strike_theory(mass, speed, restitution);
+                const Struck found = strike(mass, speed, restitution, phase / 16.0 / 60);
+                const double tolerance = 2e-3 * (std::fabs(expected.upper) + expected.lower);
+                EXPECT_NEAR(found.upper, expected.upper, tolerance) << mass << " e " << restitution << " at " << phase;
+                EXPECT_NEAR(found.lower, expected.lower, tolerance) << mass << " e " << restitution << " at " << phase;
+                EXPECT_NEAR(found.ball, expected.ball, 2e-3 * speed) << mass << " e " << restitution << " at " << phase;
+            }
+        }
+    }
+}
+
+// A tree of 2 to 8 bodies without shapes, but for a ball that is fixed off the centre of mass of one of them.
+struct Tree {
+    struct Link {
+        std::size_t a = 0, b = 0;  // bodies
+        Transform frame;           // world
+        int kind = 0;              // fixed, ball, hinge, slider
+        bool holds_world = false;  // instead of a
+    };
+    std::vector<BodyDefinition> bodies;
+    std::vector<Link> links;
+    std::size_t struck = 0;
+    Vec3 ball;  // its centre, world
+};
+
+Tree random_tree(Random& random) {
+    Tree tree;
+    const int count = 2 + static_cast<int>(random.below(7));
+    for (int i = 0; i < count; ++i) {
+        // Moments of a box that is not thinner than a tenth of its length.
+        const double mass = std::pow(10, random.between(-1, 1));
+        const Vec3 box{random.between(0.1, 1), random.between(0.1, 1), random.between(0.1, 1)};
+        const Vec3 square{box.x * box.x, box.y * box.y, box.z * box.z};
+        const Vec3 inertia = Vec3{square.y + square.z, square.z + square.x, square.x + square.y} * (mass / 12);
+        tree.bodies.push_back({.position = random_vector(random, 1),
+                               .rotation = random_rotation(random),
+                               .mass = {.mass = mass, .center_of_mass = Vec3{}, .inertia = Mat3::diagonal(inertia)},
+                               .allow_sleep = false});
+        const auto b = static_cast<std::size_t>(i);
+        if (i == 0 && random.below(2) == 0) continue;
+        const Transform frame{tree.bodies[b].position + random_vector(random, 0.5), random_rotation(random)};
+        const std::size_t a = i == 0 ? 0 : random.below(static_cast<std::uint32_t>(i));
+        tree.links.push_back({a, b, frame, static_cast<int>(random.below(4)), i == 0});
+    }
+    tree.struck = random.below(static_cast<std::uint32_t>(count));
+    tree.ball = tree.bodies[tree.struck].position + random_vector(random, 0.5);
+    return tree;
+}
+
+std::variant<FixedJoint, BallJoint, HingeJoint, SliderJoint> joint_of_kind(int kind) {
+    if (kind == 0) return FixedJoint{};
+    if (kind == 1) return BallJoint{};
+    if (kind == 2) return HingeJoint{};
+    return SliderJoint{};
+}
+
+// Changes of (v, ω) of all bodies by the impulse at the point, by elimination of the whole system: rows of M, then the
+// rows of the joints.
+std::vector<double> dense_response(const Tree& tree, Vec3 point, Vec3 impulse) {
+    std::vector<std::vector<double>> rows;
+    const std::size_t bodies = 6 * tree.bodies.size();
+    const auto add_row = [&](const Tree::Link& link, Vec3 linear, Vec3 about_a, Vec3 about_b) {
+        std::vector<double> row(bodies, 0.0);
+        for (int i = 0; i < 3; ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            row[6 * link.b + at] += linear[i];
+            row[6 * link.b + 3 + at] += about_b[i];
+            if (link.holds_world) continue;
+            row[6 * link.a + at] -= linear[i];
+            row[6 * link.a + 3 + at] -= about_a[i];
+        }
+        rows.push_back(row);
+    };
+    for (const Tree::Link& link : tree.links) {
+        const Vec3 place = link.frame.position;
+        const Vec3 arm_a = place - tree.bodies[link.a].position, arm_b = place - tree.bodies[link.b].position;
+        const Mat3 axes = to_matrix(link.frame.rotation);
+        for (int i = 0; i < 3; ++i) {
+            const Vec3 axis = axes.column(i);
+            if (link.kind != 3 || i > 0) add_row(link, axis, cross(arm_a, axis), cross(arm_b, axis));
+            if (link.kind == 0 || link.kind == 3 || (link.kind == 2 && i > 0)) add_row(link, {}, axis, axis);
+        }
+    }
+    const std::size_t size = bodies + rows.size();
+    std::vector<std::vector<double>> m(size, std::vector<double>(size + 1, 0.0));
+    for (std::size_t k = 0; k < tree.bodies.size(); ++k) {
+        const BodyDefinition& body = tree.bodies[k];
+        const Mat3 inertia = rotate_tensor(body.rotation, *body.mass.inertia);
+        for (int i = 0; i < 3; ++i) {
+            const auto at = 6 * k + static_cast<std::size_t>(i);
+            m[at][at] = *body.mass.mass;
+            for (int j = 0; j < 3; ++j) m[at + 3][6 * k + 3 + static_cast<std::size_t>(j)] = inertia(i, j);
+        }
+    }
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        for (std::size_t i = 0; i < bodies; ++i) m[bodies + k][i] = m[i][bodies + k] = rows[k][i];
+    }
+    const Vec3 moment = cross(point - tree.bodies[tree.struck].position, impulse);
+    for (int i = 0; i < 3; ++i) {
+        m[6 * tree.struck + static_cast<std::size_t>(i)][size] = impulse[i];
+        m[6 * tree.struck + 3 + static_cast<std::size_t>(i)][size] = moment[i];
+    }
+
+    // Gauss and Jordan with the largest pivot of each column.
+    for (std::size_t p = 0; p < size; ++p) {
+        std::size_t best = p;
+        for (std::size_t r = p + 1; r < size; ++r) {
+            if (std::fabs(m[r][p]) > std::fabs(m[best][p])) best = r;
+        }
+        std::swap(m[p], m[best]);
+        for (std::size_t r = 0; r < size; ++r) {
+            if (r == p || m[r][p] == 0) continue;
+            const double factor = m[r][p] / m[p][p];
+            for (std::size_t c = p; c <= size; ++c) m[r][c] -= factor * m[p][c];
+        }
+    }
+    std::vector<double> solution(bodies);
+    for (std::size_t i = 0; i < bodies; ++i) solution[i] = m[i][size] / m[i][i];
+    return solution;
+}
+
+TEST(JointedImpact, RandomTreesAnswerAsTheWholeSystemOfEquationsSays) {
+    Random random(19);
+    for (int trial = 0; trial < 200; ++trial) {
+        const Tree tree = random_tree(random);
+        auto world = make_world({.gravity = {}, .time_step = 1e-4});
+        const double radius = 0.05, speed = 1, striker_mass = std::pow(10, random.between(-1, 1));
+        const double restitution = random.unit();
+        const auto ball = world->create_shape(SphereShape{radius}).value();
+        std::vector<BodyHandle> handles;
+        for (std::size_t i = 0; i < tree.bodies.size(); ++i) {
+            BodyDefinition definition = tree.bodies[i];
+            if (i == tree.struck) {
+                CompoundShape shell;
+                const Transform pose{definition.position, definition.rotation};
+                shell.children.push_back({SphereShape{radius}, {inverse_transform_point(pose, tree.ball), {}}});
+                definition.shape = world->create_shape(shell).value();
+                definition.material = bouncing(1);
+            }
+            handles.push_back(world->create_body(definition).value());
+        }
+        for (const Tree::Link& link : tree.links) {
+            const auto frame_in = [&](std::size_t body) {
+                return inverse(Transform{tree.bodies[body].position, tree.bodies[body].rotation}) * link.frame;
+            };
+            ASSERT_TRUE(world->create_joint({.joint = joint_of_kind(link.kind),
+                                             .body_a = link.holds_world ? BodyHandle{} : handles[link.a],
+                                             .body_b = handles[link.b],
+                                             .frame_a = link.holds_world ? link.frame : frame_in(link.a),
+                                             .frame_b = frame_in(link.b)}));
+        }
+        const Vec3 direction = random_direction(random);
+        const auto striker = world
+                                 ->create_body({.shape = ball,
+                                                .position = tree.ball - direction * (2 * radius + 0.3e-4 * speed),
+                                                .linear_velocity = direction * speed,
+                                                .mass = {.mass = striker_mass},
+                                                .material = bouncing(restitution),
+                                                .allow_sleep = false})
+                                 .value();
+        world->step();
+
+        const Vec3 point = tree.ball - direction * radius;
+        const std::vector<double> unit = dense_response(tree, point, direction);
+        const auto velocity_of = [&](const std::vector<double>& v, std::size_t body) {
+            return Vec3{v[6 * body], v[6 * body + 1], v[6 * body + 2]};
+        };
+        const auto spin_of = [&](const std::vector<double>& v, std::size_t body) {
+            return Vec3{v[6 * body + 3], v[6 * body + 4], v[6 * body + 5]};
+        };
+        const Vec3 arm = point - tree.bodies[tree.struck].position;
+        const double yielding = dot(direction, velocity_of(unit, tree.struck) + cross(spin_of(unit, tree.struck), arm));
+        const double impulse = (1 + restitution) * speed / (1 / striker_mass + yielding);
+        EXPECT_NEAR(dot(world->linear_velocity(striker), direction), speed - impulse / striker_mass, 1e-3 * speed)
+            << trial;
+        for (std::size_t i = 0; i < handles.size(); ++i) {
+            const double scale = 2e-3 * (speed + length(spin_of(unit, i)) * impulse);
+            EXPECT_LT(length(world->linear_velocity(handles[i]) - velocity_of(unit, i) * impulse), scale)
+                << trial << " body " << i;
+            EXPECT_LT(length(world->angular_velocity(handles[i]) - spin_of(unit, i) * impulse), scale)
+                << trial << " body " << i;
+        }
+    }
+}
+
+// Five balls on hinges, the first one lifted.
+double cradle_energy_after(double seconds, double angle, double length, double radius) {
+    auto world = make_world({});
+    const auto shape = world->create_shape(SphereShape{radius}).value();
+    const int balls = 5;
+    for (int i = 0; i < balls; ++i) {
+        const double x = 2 * radius * i, lift = i == 0 ? -angle : 0;
+        const auto ball = world
+                              ->create_body({.shape = shape,
+                                             .position = {x + length * std::sin(lift), -length * std::cos(lift), 0},
+                                             .rotation = from_axis_angle({0, 0, 1}, lift),
+                                             .mass = {.mass = 1},
+                                             .material = bouncing(1),
+                                             .allow_sleep = false})
+                              .value();
+        EXPECT_TRUE(world->create_joint({.joint = HingeJoint{},
+                                         .body_b = ball,
+                                         .frame_a = {{x, 0, 0}, about_z},
+                                         .frame_b = {{0, length, 0}, about_z}}));
+    }
+    const double rest = -balls * gravity * length, start = energy(*world) - rest;
+    double most = 0;
+    const int steps = static_cast<int>(std::lround(seconds * 60));
+    for (int i = 0; i < steps; ++i) {
+        world->step();
+        most = std::max(most, energy(*world) - rest);
+    }
+    EXPECT_LT(most, start * (1 + 1e-6)) << angle;
+    return (energy(*world) - rest) / start;
+}
+
+TEST(JointedImpact, NewtonsCradleOnHingesKeepsItsEnergy) {
+    for (const double angle : {10.0, 20.0, 40.0}) {
+        EXPECT_GT(cradle_energy_after(8, angle * pi / 180, 0.5, 0.05), 0.98) << angle;
+        EXPECT_GT(cradle_energy_after(8, angle * pi / 180, 0.15, 0.01), 0.98) << angle;
+    }
+}
+
+}  // namespace
+}  // namespace embody::physics
