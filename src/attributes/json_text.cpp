@@ -214,6 +214,11 @@ bool nests_too_deep(std::string_view text) {
 }
 
 Result<json> parse_json(const std::string& text, const std::string& where) {
+    // The parser takes a NUL for the end of the text and does not look at what follows.
+    if (const std::size_t nul = text.find('\0'); nul != std::string::npos) {
+        return Error{where + ", " + line_and_column(text, nul + 1), "is not JSON: has a byte 0",
+                     "mend the text there, or save it again with the program that made it"};
+    }
     if (nests_too_deep(text))
         return Error{where, "lists and objects nest more than " + std::to_string(deepest_nesting) + " deep"};
     json parsed = json::parse(text, nullptr, false);

@@ -27,6 +27,16 @@ TEST(JsonText, NestingIsCountedOutsideOfTextsOnly) {
     EXPECT_NE(message_of(std::string(100, '[')).find("nest more than 64 deep"), std::string::npos);
 }
 
+TEST(JsonText, WhatFollowsAByteZeroIsNotPassedOver) {
+    // The parser takes it for the end of the text; the search for repeated fields walked on, out of its own lists.
+    using namespace std::string_literals;
+    for (const std::string& text : {"{}\0]"s, "1\0\""s, "{\"a\": 1}\0\"\\"s, "[]\n\0"s, "\0"s, "[\"a\0b\"]"s})
+        EXPECT_NE(message_of(text).find("has a byte 0"), std::string::npos) << message_of(text);
+    EXPECT_EQ(message_of("{\n}\0]"s).rfind("file.json, line 2, column 2: is not JSON", 0), 0u)
+        << message_of("{\n}\0]"s);
+    EXPECT_EQ(message_of(R"(["a\u0000b"])"), "accepted");
+}
+
 TEST(JsonText, AFieldThatIsWrittenTwiceIsRefusedByNameAndPlace) {
     struct Case {
         const char* text;
