@@ -121,6 +121,18 @@ TEST(ImageCodec, RefusesPnmPsdAndWhatIsNoImage) {
     }
 }
 
+TEST(ImageCodec, RefusesABmpWithoutPixels) {
+    // stb calls it an image of no width or height, of which nothing can be made.
+    for (const auto& [width, height] : {std::pair{0, 3}, {3, 0}, {0, 0}}) {
+        Bytes bmp = bytes_of(std::string("BM\x5a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0", 18) + std::string(8, '\0') +
+                             std::string("\1\0\x18\0", 4) + std::string(60, '\0'));
+        bmp[18] = static_cast<std::uint8_t>(width);
+        bmp[22] = static_cast<std::uint8_t>(height);
+        EXPECT_FALSE(read_image_header(bmp)) << width << " × " << height;
+        EXPECT_FALSE(decode_image(bmp)) << width << " × " << height;
+    }
+}
+
 TEST(ImageCodec, RefusesImagesThatBreakOff) {
     const Bytes png = encode_png({2, 2, Bytes(16, 100)});
     for (std::size_t size = 0; size + 16 < png.size(); ++size)

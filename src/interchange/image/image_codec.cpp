@@ -61,8 +61,11 @@ Result<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes) {
     if (const auto sgi = read_sgi_header(bytes)) return *sgi;
     ImageHeader header;
     int channels = 0;
-    if (!fits_int(bytes.size()) || stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &header.width,
-                                                         &header.height, &channels) == 0) {
+    // A BMP without pixels is one to stb.
+    if (!fits_int(bytes.size()) ||
+        stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &header.width, &header.height, &channels) ==
+            0 ||
+        header.width < 1 || header.height < 1) {
         return Error{"image", "is no PNG, JPEG, BMP, TGA, GIF or SGI image", "save it as PNG or JPEG"};
     }
     header.has_alpha = channels == 2 || channels == 4;
