@@ -307,7 +307,7 @@ Error error_from_bytes(std::span<const std::uint8_t> payload) {
     ByteReader in(payload);
     Error error;
     for (std::string* text : {&error.where, &error.why, &error.remedy}) *text = in.text(longest_text);
-    return in.is_complete() ? error : broken;
+    return in.is_complete() && !error.why.empty() ? error : broken;
 }
 
 }  // namespace embody::catalog

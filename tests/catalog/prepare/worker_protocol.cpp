@@ -107,6 +107,11 @@ TEST(WorkerProtocol, RefusesModelsThatCannotBe) {
     EXPECT_TRUE(refuses([](PreparedModel& m) { m.thumbnail.resize(5 << 20); }));
 }
 
+TEST(WorkerProtocol, ARefusalWithoutAReasonIsNone) {
+    EXPECT_EQ(error_from_bytes(to_bytes(Error{"chair.obj", ""})).where, "import worker");
+    EXPECT_FALSE(error_from_bytes(to_bytes(Error{"chair.obj", ""})).why.empty());
+}
+
 TEST(WorkerProtocol, SurvivesRandomPayloads) {
     std::mt19937 random(5);
     const auto whole = to_bytes(a_model());
