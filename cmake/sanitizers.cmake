@@ -1,6 +1,8 @@
-# EMBODY_SANITIZE: empty, "address,undefined" or "thread"; EMBODY_COVERAGE: gcov counters.
+# EMBODY_SANITIZE: empty, "address,undefined" or "thread"; EMBODY_COVERAGE: gcov counters; EMBODY_FUZZ_COVERAGE: a call at every branch,
+# which only fuzz targets answer (tests/fuzz/coverage.cpp).
 set(EMBODY_SANITIZE "" CACHE STRING "Sanitizers, comma separated")
 option(EMBODY_COVERAGE "Count executed lines" OFF)
+option(EMBODY_FUZZ_COVERAGE "Tell fuzz targets which branches run" OFF)
 if(EMBODY_SANITIZE)
   add_compile_options(-fsanitize=${EMBODY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${EMBODY_SANITIZE})
@@ -8,4 +10,7 @@ endif()
 if(EMBODY_COVERAGE)
   add_compile_options(--coverage)
   add_link_options(--coverage)
+endif()
+if(EMBODY_FUZZ_COVERAGE)
+  add_compile_options(-fsanitize-coverage=trace-pc)
 endif()
