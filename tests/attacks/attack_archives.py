@@ -25,7 +25,7 @@ def bombs(chance: random.Random):
 
 def overlapping(chance: random.Random):
     """Members that share their bytes, and one that lies in the list itself."""
-    many = chance.choice([2, 50, 2000])
+    many = chance.choice([2, 20, 200])
     return build([GOOD] + [Member(f"o{i}.obj".encode(), samples.obj(), offset=chance.choice([0, 7, -1 & 0xFFFFFFFF, 10 ** 6])) for i in range(many)])
 
 

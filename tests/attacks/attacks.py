@@ -3,7 +3,7 @@
 """Hostile files by the thousand, generated: models, archives, names, links, scenes, databases, and workers that were taken over.
 
 Usage: attacks.py EMBODY [--size N] [--seed S] [--keep FOLDER] [part of a test's name …]
-`--size 1` is the short form, of about 700 files; each class has so many times more. What is asked of all: no crash of the program, the documented exit
+`--size 1` is the short form, of about 420 files; each class has so many times more. What is asked of all: no crash of the program, the documented exit
 code, each refusal with file and reason, nothing written outside of the database, nothing read outside of the folder, an end within the
 limits, memory within the budget, and a database that passes integrity_check.
 """
@@ -176,7 +176,7 @@ def test_models(embody: str, size: int, chance: random.Random, wrong: list):
     with Yard() as yard:
         number = 0
         for make in attack_models.CLASSES:
-            for _ in range(14 * size):
+            for _ in range(6 * size):
                 extension, content = make(chance)
                 number += 1
                 yard.put(f"{make.__name__}-{number:05}{extension}", content)
@@ -216,7 +216,7 @@ def test_archives(embody: str, size: int, chance: random.Random, wrong: list):
     with Yard() as yard:
         number = 0
         for make, extension in attack_archives.CLASSES.items():
-            for _ in range(8 * size):
+            for _ in range(3 * size):
                 number += 1
                 yard.put(f"{make.__name__}-{number:05}{extension}", make(chance))
             yard.put_good()

@@ -12,6 +12,8 @@ import pathlib
 import resource
 import signal
 import socket
+import sqlite3
+import struct
 import sys
 import tempfile
 import time
@@ -259,8 +261,8 @@ def begin_upload(port: int, size: int, sent: int) -> socket.socket:
     return connection
 
 
-def drafts(stage: Stage) -> list:
-    return [file for file in pathlib.Path(stage.folder.name).rglob("*") if file.is_file() and file.name == "big.stl"]
+def drafts(stage: Stage, name: str = "big.stl") -> list:
+    return [file for file in pathlib.Path(stage.folder.name).rglob("*") if file.is_file() and file.name == name]
 
 
 def test_uploads_fill_no_memory_and_are_counted(embody: str, wrong: list):
@@ -340,6 +342,52 @@ def check_autosave(stage: Stage, height: float, wrong: list):
     entity = next(e for e in json.loads(saved[0].read_text())["entities"] if e["index"] == 1)
     if entity["pose"]["position"] != [0, height, 0]:
         wrong.append(f"the autosave has the first entity at {entity['pose']['position']}")
+
+
+def children(process: int) -> list:
+    return [int(child) for task in pathlib.Path(f"/proc/{process}/task").iterdir() for child in (task / "children").read_text().split()]
+
+
+def folded_sheet(side: int) -> bytes:
+    """A binary STL of side² × 2 triangles, which takes some seconds to prepare."""
+    def corner(x, y):
+        return struct.pack("<3f", x, (x * y) % 7, y)
+    triangles = [bytes(12) + corner(x, y) + corner(x, y + 1) + corner(x + 1, y + flip) + bytes(2) for x in range(side) for y in range(side) for flip in (0, 1)]
+    return bytes(80) + struct.pack("<I", len(triangles)) + b"".join(triangles)
+
+
+def test_sigterm_ends_an_import(embody: str, wrong: list):
+    with Stage(embody) as stage:
+        viewer = Viewer(stage.port)
+        viewer.do("hello")
+        viewer.do("entity.transform", poses=[{"index": 1, "position": [0, 4, 0]}])
+        content = folded_sheet(300)
+        upload = socket.create_connection(("127.0.0.1", stage.port))
+        upload.sendall(f"POST /import?name=sheet.stl HTTP/1.1\r\nHost: 127.0.0.1:{stage.port}\r\nContent-Length: {len(content)}\r\n\r\n".encode() + content)
+        until = time.monotonic() + PATIENCE
+        while not (workers := children(stage.server.process.pid)) and time.monotonic() < until:
+            time.sleep(0.01)
+        time.sleep(0.3)
+        upload.settimeout(0.01)
+        try:
+            wrong.append(f"the import is over before SIGTERM, and this test says nothing: {upload.recv(200)!r}")
+        except TimeoutError:
+            pass
+        stage.end(wrong, "an import in hand")
+        check_autosave(stage, 4, wrong)
+        left = [worker for worker in workers if pathlib.Path(f"/proc/{worker}").exists()]
+        if not workers or left:
+            wrong.append(f"of {len(workers)} workers {len(left)} outlive the server")
+        connection = sqlite3.connect(stage.database)
+        whole = connection.execute("PRAGMA integrity_check").fetchall()
+        models = connection.execute("SELECT count(*) FROM model WHERE key NOT LIKE 'primitive:%'").fetchone()[0]
+        connection.close()
+        if whole != [("ok",)] or models != 0:
+            wrong.append(f"the database after it: {whole}, {models} models")
+        if drafts(stage, "sheet.stl"):
+            wrong.append("the upload is still there")
+        viewer.close()
+        upload.close()
 
 
 def test_sigterm_ends_a_step_that_takes_long(embody: str, wrong: list):
