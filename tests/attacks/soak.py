@@ -27,8 +27,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "server"))
 from viewer import Server, Viewer
 
-# An answer that does not come by then will not come, s.
-STALL = 60
+# An answer that does not come by then will not come, s; one to an import may take as long as its model may (docs/import.md).
+STALL, LONGEST_IMPORT = 60, 1000
 # From the second fifth of the time to the last: what fills caches comes before, a leak goes on. B, files.
 MORE_MEMORY, MORE_FILES = 96 << 20, 24
 
@@ -103,8 +103,8 @@ class Soak:
             time.sleep(chance.uniform(0, 0.2))
         viewer.close()
 
-    def request(self, method: str, path: str, body: bytes | None = None) -> tuple:
-        connection = http.client.HTTPConnection("127.0.0.1", self.server.port, timeout=STALL)
+    def request(self, method: str, path: str, body: bytes | None = None, patience: float = STALL) -> tuple:
+        connection = http.client.HTTPConnection("127.0.0.1", self.server.port, timeout=patience)
         connection.request(method, path, body)
         answer = connection.getresponse()
         content = answer.read()
@@ -128,7 +128,7 @@ class Soak:
             if chance.random() < 0.5:
                 extension, content = chance.choice([attack_models.obj_numbers, attack_models.ply_lists, attack_models.stl_sizes, attack_models.glb_lengths])(chance)
                 name, right = "bad" + extension, None
-            status, _ = self.timed("POST /import", lambda: self.request("POST", f"/import?name={name}", content))
+            status, _ = self.timed("POST /import", lambda: self.request("POST", f"/import?name={name}", content, LONGEST_IMPORT))
             if status not in ((200, 422, 503) if right is None else (right,)):
                 self.fail(f"the upload of {name} is answered {status}")
             time.sleep(chance.uniform(0, 0.5))
@@ -147,7 +147,7 @@ class Soak:
                 extension, content = chance.choice([attack_models.obj_paths, attack_models.ply_headers, attack_models.textured, attack_models.gltf_fields])(chance)
                 (models / f"bad{number}{extension}").write_bytes(content)
             words = [self.options.embody, "import", "--json", "--workers", "1", "--database", str(self.database), str(models)]
-            done = self.timed("embody import", lambda: subprocess.run(words, capture_output=True, timeout=600))
+            done = self.timed("embody import", lambda: subprocess.run(words, capture_output=True, timeout=10 * LONGEST_IMPORT))
             if done.returncode not in (0, 3):
                 self.fail(f"embody import ended with {done.returncode}: {done.stderr[-300:]!r}")
             elif any("good" in failure["path"] for failure in json.loads(done.stdout)["failures"]):
