@@ -58,13 +58,11 @@ void apply(const ImpactWork& work, Vec3 impulse_in_frame, std::span<BodyState> b
 // The jointed bodies' responses, and A of eq. (3) by them: its columns are the changes of the site's velocity.
 void find_responses(ImpactWork& work, std::span<const BodyState> bodies) {
     const ImpactSite& s = *work.site;
-    const std::size_t count = work.joints->bodies().size();
-    std::vector<Vec6> changes(count);
     std::array<Vec3, 3> columns;
     for (int axis = 0; axis < 3; ++axis) {
         const Vec3 direction = work.frame.column(axis);
         const std::array<ImpactJoints::Push, 2> pushes{{{s.b, direction, s.arm_b}, {s.a, -direction, s.arm_a}}};
-        work.joints->respond(pushes, changes);
+        const std::span<const Vec6> changes = work.joints->respond(pushes);
         const auto change_at = [&](const ImpactJoints::Push& push) {
             const int number = work.joints->number_of(push.body);
             const BodyState& body = bodies[push.body];
@@ -74,7 +72,8 @@ void find_responses(ImpactWork& work, std::span<const BodyState> bodies) {
             return change.linear() + cross(change.angular(), push.arm);
         };
         columns[static_cast<std::size_t>(axis)] = transpose(work.frame) * (change_at(pushes[0]) - change_at(pushes[1]));
-        for (std::size_t i = 0; i < count; ++i) work.response[3 * i + static_cast<std::size_t>(axis)] = changes[i];
+        for (std::size_t i = 0; i < changes.size(); ++i)
+            work.response[3 * i + static_cast<std::size_t>(axis)] = changes[i];
     }
     work.inverse_mass = {columns[0], columns[1], columns[2]};
 }

@@ -115,7 +115,7 @@ void ImpactJoints::project(const View& view) {
     }
 }
 
-void ImpactJoints::solve(std::span<const Push> pushes) {
+std::span<const Vec6> ImpactJoints::respond(std::span<const Push> pushes) {
     std::fill(unknowns_.begin(), unknowns_.end(), Vec6{});
     for (const Push& push : pushes) {
         const int number = number_of(push.body);
@@ -124,15 +124,11 @@ void ImpactJoints::solve(std::span<const Push> pushes) {
         sum = make_vec6(sum.linear() + push.impulse, sum.angular() + cross(push.arm, push.impulse));
     }
     matrix_.solve(unknowns_);
-}
-
-void ImpactJoints::respond(std::span<const Push> pushes, std::span<Vec6> changes) {
-    solve(pushes);
-    std::copy_n(unknowns_.begin(), bodies_.size(), changes.begin());
+    return std::span(unknowns_).first(bodies_.size());
 }
 
 void ImpactJoints::add_to_totals(std::span<const Push> pushes, const View& view) {
-    solve(pushes);
+    respond(pushes);
     for (std::size_t i = 0; i < places_.size(); ++i) {
         const Place& place = places_[i];
         Vec3 linear, angular;

@@ -38,9 +38,9 @@ public:
 
     /// Takes from the velocities what the joints forbid.
     void project(const View& view);
-    /// How the velocities of bodies() change if these pushes come at once, in their order. Pushes on others are left
-    /// out.
-    void respond(std::span<const Push> pushes, std::span<Vec6> changes);
+    /// How the velocities of bodies() change if these pushes come at once, in their order; until the next call. Pushes
+    /// on others are left out.
+    std::span<const Vec6> respond(std::span<const Push> pushes);
     /// Adds the joints' answer to the pushes to their totals of the step.
     void add_to_totals(std::span<const Push> pushes, const View& view);
 
@@ -55,7 +55,6 @@ private:
     void analyse();
     void factor(const View& view);
     void put_joint(std::size_t number, const View& view);
-    void solve(std::span<const Push> pushes);
 
     std::vector<std::uint32_t> bodies_;
     std::vector<Place> places_;
