@@ -210,7 +210,8 @@ private:
             ->capture_default_str()
             ->check(between(1e-3, 1e5));
         c.app->add_flag("--contacts", c.into->contacts, "Record contacts with impulses");
-        c.app->add_flag("--energy", c.into->energy, "Record energy and momenta");
+        c.app->add_flag("--energy", c.into->energy,
+                        "Say at the end what changed the bodies' energy, and record energy and momenta");
         add_json(c);
     }
     void add_check() {

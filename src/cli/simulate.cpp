@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -16,6 +17,29 @@
 namespace embody::cli {
 namespace {
 
+/// Of the rigid bodies, over all steps (docs/physics/energy.md).
+struct EnergySummary {
+    std::optional<physics::Conserved> start;
+    physics::Conserved end;
+    std::array<double, static_cast<std::size_t>(physics::StepCause::count)> work{};  ///< J, by cause
+    double unexplained = 0;                                                          ///< J
+    double between_steps = 0;                        ///< given and taken by actions and commands, J
+    double largest_gain = 0, largest_gain_time = 0;  ///< of what one step does not explain, J and s
+
+    void add(const physics::StepReport& report) {
+        if (!report.account) return;
+        const physics::StepAccount& account = *report.account;
+        if (start) between_steps += account.before.energy() - end.energy();
+        if (!start) start = account.before;
+        end = account.after;
+        for (std::size_t i = 0; i < work.size(); ++i) work[i] += account.entries[i].work;
+        unexplained += account.unexplained_energy;
+        if (account.unexplained_energy <= largest_gain) return;
+        largest_gain = account.unexplained_energy;
+        largest_gain_time = report.time;
+    }
+};
+
 /// What a person wants to know at the end.
 struct Summary {
     std::uint64_t steps = 0;
@@ -24,30 +48,73 @@ struct Summary {
     std::uint32_t limits = 0;
     bool paused = false;
     std::size_t actions = 0;
+    EnergySummary energy;
     std::vector<std::string> notes;  ///< what was not simulated as its kind says, at the start
 };
+
+nlohmann::json to_json(const EnergySummary& energy) {
+    const auto sums = [](const physics::Conserved& conserved) {
+        return nlohmann::json{{"kinetic", conserved.kinetic_energy}, {"potential", conserved.potential_energy}};
+    };
+    nlohmann::json work;
+    for (std::size_t i = 0; i < energy.work.size(); ++i) {
+        work[physics::name_of(static_cast<physics::StepCause>(i))] = energy.work[i];
+    }
+    return {{"start", sums(energy.start.value_or(physics::Conserved{}))},
+            {"end", sums(energy.end)},
+            {"work", work},
+            {"between_steps", energy.between_steps},
+            {"unexplained", energy.unexplained},
+            {"largest_unexplained_gain", {{"joules", energy.largest_gain}, {"time", energy.largest_gain_time}}}};
+}
 
 nlohmann::json to_json(const Summary& summary, const scene::Simulation& simulation) {
     const physics::StepReport& report = simulation.world().last_report();
     const physics::Conserved sums = simulation.world().conserved();
     const scene::Activity activity = simulation.activity();
-    return {{"steps", summary.steps},
-            {"simulated_seconds", summary.simulated},
-            {"wall_seconds", summary.wall},
-            {"average_ms", summary.steps > 0 ? 1000 * summary.wall / static_cast<double>(summary.steps) : 0},
-            {"slowest_ms", summary.slowest_ms},
-            {"things", activity.things},
-            {"active", activity.active},
-            {"wants_to_sleep", activity.wants_to_sleep},
-            {"asleep", activity.asleep},
-            {"points", activity.points},
-            {"contacts", report.contacts},
-            {"actions", summary.actions},
-            {"paused", summary.paused},
-            {"energy", sums.kinetic_energy + sums.potential_energy},
-            {"limits", summary.limits},
-            {"notes", summary.notes},
-            {"state_hash", std::to_string(simulation.world().state_hash())}};
+    nlohmann::json json{
+        {"steps", summary.steps},
+        {"simulated_seconds", summary.simulated},
+        {"wall_seconds", summary.wall},
+        {"average_ms", summary.steps > 0 ? 1000 * summary.wall / static_cast<double>(summary.steps) : 0},
+        {"slowest_ms", summary.slowest_ms},
+        {"things", activity.things},
+        {"active", activity.active},
+        {"wants_to_sleep", activity.wants_to_sleep},
+        {"asleep", activity.asleep},
+        {"points", activity.points},
+        {"contacts", report.contacts},
+        {"actions", summary.actions},
+        {"paused", summary.paused},
+        {"energy", sums.kinetic_energy + sums.potential_energy},
+        {"limits", summary.limits},
+        {"notes", summary.notes},
+        {"state_hash", std::to_string(simulation.world().state_hash())}};
+    if (summary.energy.start) json["energy_account"] = to_json(summary.energy);
+    return json;
+}
+
+void print(const EnergySummary& energy) {
+    if (!energy.start) return;
+    const auto told = [](const physics::Conserved& sums) {
+        return short_number(sums.energy()) + " J (kinetic " + short_number(sums.kinetic_energy) + ", potential " +
+               short_number(sums.potential_energy) + ")";
+    };
+    print_line("energy of the rigid bodies: " + told(*energy.start) + " at the start, " + told(energy.end) +
+               " at the end");
+    std::string work;
+    for (std::size_t i = 0; i < energy.work.size(); ++i) {
+        if (energy.work[i] == 0) continue;
+        work += (work.empty() ? "work, J: " : ", ") +
+                std::string(physics::name_of(static_cast<physics::StepCause>(i))) + " " + short_number(energy.work[i]);
+    }
+    if (!work.empty()) print_line(work);
+    if (energy.between_steps != 0) {
+        print_line("given by actions between steps: " + short_number(energy.between_steps) + " J");
+    }
+    print_line("unexplained: " + short_number(energy.unexplained) + " J; largest gain in a step " +
+               short_number(energy.largest_gain) + " J" +
+               (energy.largest_gain > 0 ? " at " + short_number(energy.largest_gain_time) + " s" : std::string()));
 }
 
 void print(const Summary& summary, const scene::Simulation& simulation) {
@@ -59,6 +126,7 @@ void print(const Summary& summary, const scene::Simulation& simulation) {
     print_text("{} of {} things active, {} want to sleep, {} asleep; {} contacts; {} actions carried out\n",
                activity.active, activity.things, activity.wants_to_sleep, activity.asleep, report.contacts,
                summary.actions);
+    print(summary.energy);
     if (activity.points > 0) print_text("grains, drops and nodes of soft things: {}\n", activity.points);
     const auto reached = [&](physics::StepLimit limit) {
         return (summary.limits & static_cast<std::uint32_t>(limit)) != 0;
@@ -109,6 +177,7 @@ int run_simulate(const SimulateArguments& arguments) {
     summary.notes = (*simulation)->notes();
     const auto steps =
         static_cast<std::uint64_t>(std::llround(arguments.seconds / (*simulation)->world().settings().time_step));
+    (*simulation)->world().keep_account(arguments.energy);
     ProgressBar bar("Simulating");
     const auto start = std::chrono::steady_clock::now();
     while (summary.steps < steps && !summary.paused && !interrupted()) {
@@ -117,6 +186,7 @@ int run_simulate(const SimulateArguments& arguments) {
         summary.slowest_ms = std::max(summary.slowest_ms, step.milliseconds);
         summary.limits |= step.limits;
         summary.simulated = step.time;
+        summary.energy.add(step);
         summary.actions += (*simulation)->fired().size();
         summary.paused = (*simulation)->pause_requested();
         if (recorder) {

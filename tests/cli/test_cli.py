@@ -473,6 +473,16 @@ class Scenes(unittest.TestCase):
         self.assertTrue(math.isclose(last["entities"][0]["linear_velocity"][1], -19.62, abs_tol=1e-3))
         self.assertIn("energy", last)
         self.assertGreaterEqual(len(lines), 20)
+        account = json.loads(result.stdout)["energy_account"]
+        fallen = account["end"]["kinetic"] - account["start"]["kinetic"]
+        self.assertTrue(math.isclose(account["work"]["gravity"], fallen, rel_tol=1e-9))
+        self.assertLess(abs(account["unexplained"]), 1e-9 * fallen)
+        self.assertLess(account["largest_unexplained_gain"]["joules"], 1e-9 * fallen)
+        told = run("simulate", str(file), "--seconds", "2", "--energy")
+        self.assertIn("energy of the rigid bodies:", told.stdout)
+        self.assertIn("work, J: gravity", told.stdout)
+        self.assertIn("unexplained:", told.stdout)
+        self.assertNotIn("energy_account", run("simulate", str(file), "--seconds", "0.1", "--json").stdout)
 
     def test_a_recording_that_cannot_be_written_is_said(self):
         listed = json.loads(run("scene", "--json").stdout)

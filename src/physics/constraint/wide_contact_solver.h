@@ -45,6 +45,11 @@ public:
     void solve(int passes, const ContactSoftness& softness, std::span<BodyState> bodies,
                std::span<const BodyConstants> constants, std::span<Contact> contacts, std::span<ContactGlance> glances,
                TaskPool& pool);
+    /// Of what the contacts did to a movable body, how much it kept in the last solve(), see contact_work.h: impulses
+    /// are handed out as they were before.
+    [[nodiscard]] double kept_share(std::uint32_t body) const {
+        return static_cast<double>(kept_share_[group_of_row_[static_cast<std::size_t>(row_of(body))]]);
+    }
 
 private:
     struct alignas(32) Row {

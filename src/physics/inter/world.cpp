@@ -131,6 +131,10 @@ const StepReport& World::step() {
     return state_->report;
 }
 
+void World::keep_account(bool is_wanted) {
+    if (is_wanted != (state_->ledger != nullptr)) state_->ledger = is_wanted ? std::make_unique<Ledger>() : nullptr;
+}
+
 const StepReport& World::last_report() const { return state_->report; }
 std::span<const ContactEvent> World::contact_events() const { return state_->contact_events; }
 std::span<const RopeBreakEvent> World::rope_break_events() const { return state_->rope_break_events; }

@@ -164,6 +164,9 @@ public:
     /// Advances by settings().time_step.
     const StepReport& step();
     [[nodiscard]] const StepReport& last_report() const;
+    /// Whether each report says what changed the energy and momenta of the rigid bodies (docs/physics/energy.md).
+    /// Changes no state; off, it costs nothing.
+    void keep_account(bool is_wanted);
 
     // What happened in the last step; valid until the next call that changes the world.
     [[nodiscard]] std::span<const ContactEvent> contact_events() const;

@@ -228,6 +228,7 @@ void ImpactStage::solve(double time, SlidePath path) {
     if (!report.converged) {
         world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
     }
+    if (world_.ledger) world_.ledger->note_impact(memory_.sites, report.energy_change, world_);
     for (std::size_t i = 0; i < memory_.sites.size(); ++i) {
         const ImpactSite& site = memory_.sites[i];
         if (site.impulse == Vec3{}) continue;

@@ -26,15 +26,24 @@ void advance(WorldState& world, bool is_long) {
     std::optional<TaskPool::StayAwake> stay_awake;
     if (is_long) stay_awake.emplace(*world.workers);
 
+    const auto account = [&](void (Ledger::*note)(const WorldState&)) {
+        if (world.ledger) (world.ledger.get()->*note)(world);
+    };
     run(world, StepStage::find_pairs, find_pairs);  // broad phase
     run(world, StepStage::touch, find_contacts);    // narrow phase → contact regions, warm start
     run(world, StepStage::islands, list_active_joints);
-    run(world, StepStage::impact, solve_impacts);   // new, fast contacts by eq. (3)
+    account(&Ledger::begin_impacts);
+    run(world, StepStage::impact, solve_impacts);  // new, fast contacts by eq. (3)
+    account(&Ledger::close_impacts);
     run(world, StepStage::islands, find_islands);   // contact graph → islands, levels, solve order
     run(world, StepStage::substeps, run_substeps);  // kick → solve → drift → kick → solve, shock propagation
-    run(world, StepStage::continuous, stop_tunnelling);       // bodies that would pass through others
+    account(&Ledger::close_limits);
+    run(world, StepStage::continuous, stop_tunnelling);  // bodies that would pass through others
+    account(&Ledger::close_continuous);
     run(world, StepStage::deformables, advance_deformables);  // nodes and elements, and what they push
-    run(world, StepStage::sleep, put_to_sleep);               // quiet islands leave the awake set
+    account(&Ledger::close_deformables);
+    run(world, StepStage::sleep, put_to_sleep);  // quiet islands leave the awake set
+    account(&Ledger::close_sleep);
 }
 
 }  // namespace
@@ -45,11 +54,14 @@ void step(WorldState& world) {
     const bool is_long = world.report.milliseconds > long_step;
     world.rope_break_events.clear();
     world.report = {.step = world.report.step + 1, .time = world.report.time + world.settings.time_step};
+    if (world.ledger) world.ledger->begin(world);
     run(world, StepStage::wake, wake_bodies);       // apply commands, wake touched islands
     run(world, StepStage::fluids, advance_fluids);  // particles, and forces of their pressure on bodies
+    if (world.ledger) world.ledger->close_wake(world);
     if (!world.awake.empty() || !world.contacts.empty() || world.deformables.count() > 0) advance(world, is_long);
     run(world, StepStage::fluids, settle_fluids);  // liquids follow bodies to where these came to
     write_report(world);                           // events, counts
+    if (world.ledger) world.report.account = world.ledger->finish();
     world.report.milliseconds = milliseconds_since(start);
 }
 

@@ -116,6 +116,8 @@ void solve_wide(WorldState& world, const SolveWays::Wide& way) {
     }
     solver.solve(way.plan.passes, softness, world.motion, world.constants, world.contacts, world.contact_glances,
                  *world.workers);
+    if (!world.ledger) return;
+    for (const std::uint32_t body : bodies) world.ledger->note_kept_share(body, solver.kept_share(body));
 }
 
 // What the report asks of each contact; the wide solver notes its own.
@@ -187,7 +189,10 @@ void solve_jointed(WorldState& world, const std::vector<Island>& islands, double
     for (const Island& island : islands) {
         JointSystem& system = *joint_system(world, island);
         const std::vector<std::pair<std::uint32_t, BodyState>> carriers = system.carriers(view);
-        for (int k = 0; k < world.settings.substeps; ++k) system.advance(h, view);
+        for (int k = 0; k < world.settings.substeps; ++k) {
+            system.advance(h, view);
+            if (world.ledger) world.ledger->close_island(world, island, h);
+        }
         for (const auto& [body, state] : carriers) world.motion[body] = state;
     }
 }
@@ -207,6 +212,7 @@ SolveWays sort_islands(WorldState& world) {
             ways.one_by_one.push_back(island);
         } else if (roll_alone(world, island)) {
             note_outcomes(world, island);
+            if (world.ledger) world.ledger->note_rolled(world.islands.bodies[island.first_body]);
         } else if (!solve_directly(world, island)) {
             ways.add(island, contact_plan(island.contact_count, world.settings.substeps));
         }
@@ -376,7 +382,13 @@ private:
         double energy, mending;  // J
     };
     void keep(const Bound& bound, double most) const {
-        if (bound.system->bound_energy(most, view_) > far_off) return;
+        const double share = bound.system->bound_energy(most, view_);
+        if (world_.ledger && share < 1) {
+            for (const std::uint32_t body : bodies_of(world_, bound.island)) {
+                world_.ledger->note_scaled(world_, body, share);
+            }
+        }
+        if (share > far_off) return;
         for (const std::uint32_t index : contacts_of(world_, bound.island)) {
             Contact& contact = world_.contacts[index];
             for (ContactPoint& point : contact.points) point.impulse = 0;
@@ -425,6 +437,9 @@ void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, dou
         solve_islands(world, islands, SolvePhase::velocity, h, k * h);
         energy_bounds.keep();
         for_each_contact(world, islands, [](Contact& contact) { add_to_totals(contact); });
+        for (const Island& island : islands) {
+            if (world.ledger) world.ledger->close_island(world, island, h);
+        }
     }
     for (const Island& island : islands) note_outcomes(world, island);
 }
@@ -495,6 +510,7 @@ void run_substeps(WorldState& world) {
     solve_one_by_one(world, ways.one_by_one, h);
     if (world.settings.shock_propagation) propagate_shocks(world, ways);
     held_accelerations.note();
+    if (world.ledger) world.ledger->close_substeps(world);
     limit_speeds(world);
     freeze_lost_bodies(world);
     for (std::size_t i = 0; i < world.active_joints.size(); ++i) {

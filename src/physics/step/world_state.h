@@ -27,6 +27,7 @@
 #include "physics/step/deformable_record.h"
 #include "physics/step/fluids.h"
 #include "physics/step/impact_memory.h"
+#include "physics/step/ledger.h"
 #include "physics/step/touch_memory.h"
 
 namespace embody::physics {
@@ -144,6 +145,7 @@ struct WorldState {
     std::vector<RopeBreakEvent> rope_break_events;  // deformables
     std::vector<SleepEvent> sleep_events;           // wake, sleep
     StepReport report;                              // all
+    std::unique_ptr<Ledger> ledger;                 // face; all: what changed energy and momenta; null: not asked for
 
     [[nodiscard]] bool is_used(std::uint32_t body) const { return bodies.used(body); }
     [[nodiscard]] const BodyRecord& record(std::uint32_t body) const { return bodies.at(body); }

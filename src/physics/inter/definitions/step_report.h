@@ -3,8 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
-#include "math/vec3.h"
+#include "physics/inter/definitions/step_account.h"
 
 namespace embody::physics {
 
@@ -51,14 +52,7 @@ struct StepReport {
     std::uint32_t limits = 0;   ///< bits of StepLimit
     double milliseconds = 0;    ///< wall time of the step
     std::array<double, static_cast<std::size_t>(StepStage::count)> stage_milliseconds{};
-};
-
-/// Sums over all enabled dynamic bodies, deformables and fluids.
-struct Conserved {
-    double kinetic_energy = 0;    ///< J
-    double potential_energy = 0;  ///< J in the world's gravity, zero at the origin's height
-    Vec3 linear_momentum;         ///< kg m/s
-    Vec3 angular_momentum;        ///< about the world's origin, kg m²/s
+    std::optional<StepAccount> account;  ///< of the rigid bodies, where World::keep_account() asks for it
 };
 
 }  // namespace embody::physics
