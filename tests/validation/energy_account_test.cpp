@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The account of every step of random scenes (docs/physics/energy.md): nothing gains what no cause explains, impacts,
 // contacts and joints without motors do no positive work, momentum is kept. Each run does a few scenes;
-//     EMBODY_ACCOUNT_SCENES=1000 test_validation --gtest_filter=RandomAccounts.*
+//     EMBODY_ACCOUNT_SCENES=100 test_validation --gtest_filter=RandomAccounts.*
 // so many of each family (ctest --preset laws).
 #include <gtest/gtest.h>
 
