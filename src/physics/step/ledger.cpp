@@ -138,12 +138,25 @@ void Ledger::add_displaced(const WorldState& world, std::uint32_t body) {
     add(StepCause::coupling, dot(forces.coupling, way), {}, {});
 }
 
+// What a joint passed on in the impacts. That is no work, but an impulse where it leads to the ground.
+void Ledger::note_blow(const WorldState& world, const Joint& joint) {
+    joint_totals_.push_back({joint.total_linear, joint.total_angular});
+    const bool ends_at_a = joint.a_is_world || world.motion[joint.a].inverse_mass == 0;
+    const BodyState& b = world.motion[joint.b];
+    if (!ends_at_a && b.inverse_mass > 0) return;
+    const double sign = ends_at_a ? 1 : -1;
+    const Vec3 place = b.center + rotate(b.rotation, joint.local_b.position);
+    add(StepCause::joints, 0, sign * joint.total_linear,
+        sign * (cross(place, joint.total_linear) + joint.total_angular));
+}
+
 void Ledger::close_impacts(const WorldState& world) {
     contact_totals_.assign(world.contacts.size(), {});
-    joint_totals_.clear();
     for (std::uint32_t i = 0; i < world.contacts.size(); ++i) {
         if (world.contacts[i].had_impact) remember_totals(world, i);
     }
+    joint_totals_.clear();
+    for (const Joint& joint : world.active_joints) note_blow(world, joint);
     if (world.contacts.empty()) return;
     for (const std::uint32_t body : world.awake) {
         if (!is_counted(world, body)) continue;
@@ -307,7 +320,6 @@ void Ledger::set_spins(const WorldState& world, const Island& island) {
 // ends is taken.
 void Ledger::add_joint(const WorldState& world, std::uint32_t index) {
     const Joint& joint = world.active_joints[index];
-    if (joint_totals_.size() <= index) joint_totals_.resize(world.active_joints.size());
     const Vec3 force = joint.total_linear - joint_totals_[index].linear;
     const Vec3 torque = joint.total_angular - joint_totals_[index].angular;
     joint_totals_[index] = {joint.total_linear, joint.total_angular};

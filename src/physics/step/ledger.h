@@ -79,6 +79,7 @@ private:
     template <class Visit>
     void for_each_push(const WorldState& world, const Island& island, Visit visit) const;
     void add_push(const WorldState& world, const Push& push, StepCause cause);
+    void note_blow(const WorldState& world, const Joint& joint);
     void add_joint(const WorldState& world, std::uint32_t index);
     void add(StepCause cause, double work, Vec3 linear, Vec3 angular);
     void measure(const WorldState& world, StepCause cause);
