@@ -138,8 +138,8 @@ void TriangleSurface::measure_bends(std::uint32_t triangle, const Neighbours& ne
         // Towards the outside the neighbour's normal leans away over a convex edge, back over a concave one.
         const Vec3 other = normal(neighbours[e]), outward = normalized(cross(at[e == 2 ? 0 : e + 1] - at[e], own));
         const double sine = dot(other, outward), cosine = dot(other, own);
-        const bool bends_away = sine > flat_sine || (cosine < 0 && sine > 0);
-        bend = bends_away ? static_cast<float>(sine / (1 + cosine)) : 0;
+        const bool is_folded = sine <= 0 && cosine < -1 + 1e-12;
+        bend = is_folded ? -1e6F : static_cast<float>(sine / (1 + cosine));
     }
 }
 

@@ -31,8 +31,16 @@ public:
     /// Unit; zero for a triangle without area.
     [[nodiscard]] Vec3 normal(std::uint32_t triangle) const;
     /// Over the edges from each corner to the next one: the tangent of half the angle by which the surface bends away
-    /// there. 0 where it is flat (within flat_sine) or concave, infinite where it ends.
-    [[nodiscard]] const std::array<float, 3>& half_bends(std::uint32_t triangle) const { return half_bends_[triangle]; }
+    /// there, negative where it bends towards the front (concave), infinite where it ends.
+    [[nodiscard]] const std::array<float, 3>& signed_half_bends(std::uint32_t triangle) const {
+        return half_bends_[triangle];
+    }
+    /// The same, 0 where it is flat (within flat_sine) or concave.
+    [[nodiscard]] std::array<float, 3> half_bends(std::uint32_t triangle) const {
+        const auto& bends = half_bends_[triangle];
+        const auto away = [](float bend) { return bend > flat_half_bend ? bend : 0; };
+        return {away(bends[0]), away(bends[1]), away(bends[2])};
+    }
     /// Of all that is kept, bytes.
     [[nodiscard]] std::size_t memory_bytes() const;
 
@@ -45,6 +53,7 @@ public:
 private:
     struct Tree;
     static constexpr std::uint32_t no_neighbour = 0xFFFFFFFFu;
+    static constexpr float flat_half_bend = 0.5e-3F;  // tangent of half an angle whose sine is flat_sine
     using Neighbours = std::array<std::uint32_t, 3>;
     [[nodiscard]] std::vector<Neighbours> find_neighbours() const;
     [[nodiscard]] Neighbours neighbours_in_field(std::uint32_t triangle) const;

@@ -71,11 +71,6 @@ bool lies_on_face(const WorldState& world, std::uint32_t ground, std::uint32_t p
     return has_aligned_face(place(shape.pieces[piece], pose, pose.position), up, same_normal);
 }
 
-struct DeepestPoint {
-    std::uint32_t contact = 0;  // index
-    std::size_t point = 0;
-};
-
 // What still ground the island's contacts all lie on; none if they differ or resist rolling.
 std::optional<DeepestPoint> deepest_on_flat_ground(const WorldState& world, std::span<const std::uint32_t> contacts,
                                                    std::uint32_t body) {
@@ -107,7 +102,8 @@ std::optional<DeepestPoint> deepest_on_flat_ground(const WorldState& world, std:
     return deepest;
 }
 
-// All of the ground's impulse at the deepest point, in the sweeps' measure.
+}  // namespace
+
 void note_load(WorldState& world, std::span<const std::uint32_t> contacts, const DeepestPoint& deepest, Vec3 impulse) {
     const ContactPlan plan = contact_plan(contacts.size(), world.settings.substeps);
     const auto part = static_cast<float>(1.0 / plan.substeps);
@@ -128,8 +124,6 @@ void note_load(WorldState& world, std::span<const std::uint32_t> contacts, const
     contact.friction_total.along_2 += friction.along_2;
     contact.sticks = true;
 }
-
-}  // namespace
 
 bool roll_alone(WorldState& world, const Island& island) {
     constexpr std::uint32_t most_contacts = 8;  // what rolls on still faces has two rims on two neighbouring triangles

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <optional>
 
+#include "physics/step/roll_balls.h"
+
 namespace embody::physics {
 
 namespace {
@@ -31,6 +33,7 @@ void advance(WorldState& world, bool is_long) {
     };
     run(world, StepStage::find_pairs, find_pairs);  // broad phase
     run(world, StepStage::touch, find_contacts);    // narrow phase → contact regions, warm start
+    run(world, StepStage::touch, roll_balls);       // balls alone on still ground: their way through the step
     run(world, StepStage::islands, list_active_joints);
     account(&Ledger::begin_impacts);
     run(world, StepStage::impact, solve_impacts);  // new, fast contacts by eq. (3)

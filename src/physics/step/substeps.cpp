@@ -9,6 +9,7 @@
 #include "physics/optimization/shock_propagation.h"
 #include "physics/optimization/solve_schedule.h"
 #include "physics/step/roll.h"
+#include "physics/step/roll_balls.h"
 #include "physics/step/share_awake.h"
 #include "physics/step/step.h"
 
@@ -204,7 +205,10 @@ SolveWays sort_islands(WorldState& world) {
     world.held.resize(world.bodies.slot_count());
     world.direct_solver.begin(world.settings.time_step, world.settings.substeps);
     for (const Island& island : world.islands.list) {
-        if (island.contact_count == 0 && island.joint_count == 0) {
+        if (take_rolled_ball(world, island)) {
+            note_outcomes(world, island);
+            if (world.ledger) world.ledger->note_rolled(world.islands.bodies[island.first_body]);
+        } else if (island.contact_count == 0 && island.joint_count == 0) {
             ways.free.push_back(world.islands.bodies[island.first_body]);
         } else if (island.contact_count == 0 && joint_system(world, island)) {
             ways.jointed.push_back(island);

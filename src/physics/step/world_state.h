@@ -24,6 +24,7 @@
 #include "physics/optimization/island_sleep.h"
 #include "physics/optimization/islands.h"
 #include "physics/optimization/solve_schedule.h"
+#include "physics/step/ball_memory.h"
 #include "physics/step/deformable_record.h"
 #include "physics/step/fluids.h"
 #include "physics/step/impact_memory.h"
@@ -117,6 +118,7 @@ struct WorldState {
     std::vector<Contact> contacts;                         // touch; impulses: impact, substeps
     std::vector<ContactGlance> contact_glances;            // touch, substeps, sleep: one for each of contacts
     ImpactMemory impact_memory;                            // impact
+    BallMemory ball_memory;                                // touch, for substeps
     std::vector<Joint> active_joints;                      // islands; impulses: substeps
     std::vector<std::uint32_t> active_joint_slots;         // islands
     Islands islands;                                       // islands

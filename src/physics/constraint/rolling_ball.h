@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "math/vec3.h"
+
+namespace embody::physics {
+
+/// A ball on a surface, of unit mass: `inertia` is I/(m r²), 2/5 of a solid one.
+struct BallMotion {
+    Vec3 velocity, spin;
+    double radius = 0, inertia = 0.4;
+
+    /// Of its matter where it touches, the normal pointing from there to its centre, m/s.
+    [[nodiscard]] Vec3 slip(Vec3 normal) const { return velocity - cross(spin, normal) * radius; }
+    [[nodiscard]] double energy() const;  ///< kinetic, J/kg
+};
+
+/// Coefficients of what it touches.
+struct BallFriction {
+    double at_rest = 0, sliding = 0;    ///< of Coulomb
+    double rolling = 0, torsional = 0;  ///< lever arms, m
+};
+
+/// What a push along the surface did.
+struct BallPush {
+    Vec3 mean_velocity;  ///< m/s
+    double work = 0;     ///< of friction, <= 0, J/kg
+    bool sticks = false;
+};
+
+/// Pushes a ball that moves along the surface for `time` (s) by the acceleration along it and by friction under the
+/// load (m/s², of unit mass): what friction can hold rolls. Exact on a plane.
+BallPush push_along(BallMotion& ball, Vec3 normal, Vec3 acceleration, double load, const BallFriction& friction,
+                    double time);
+
+/// Turns the motion along the surface with its normal. The surface's push does no work. Of what rolls, the spin about
+/// the normal and the velocity along the axis of the turn change into each other (see the source).
+void turn_with_normal(BallMotion& ball, Vec3 from, Vec3 to, bool rolls);
+
+/// Gives the ball that kinetic energy (J/kg) by another speed along the surface; of what rolls the spin goes along, but
+/// for that about the normal. False where it has none left: then it stands.
+bool set_energy(BallMotion& ball, Vec3 normal, double energy, bool rolls);
+
+}  // namespace embody::physics

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "physics/dynamic/body_state.h"
+
+namespace embody::physics {
+
+/// Where a ball that rolls alone ends the step.
+struct RolledBall {
+    std::uint32_t body = 0;
+    std::uint32_t contact = 0;  ///< index: of its contacts the one that lies most as the ball stands in the end
+    BodyState state;
+    Vec3 impulse;  ///< of the ground, N s
+};
+
+/// Memory of the stage that rolls balls: nothing in it outlives a step.
+struct BallMemory {
+    /// A ball that touches nothing but still ground, as far as known.
+    struct Candidate {
+        std::uint32_t body = 0;
+        bool is_alone = true, has_rolled = false;
+        std::vector<std::uint32_t> contacts;
+        RolledBall rolled;
+    };
+    std::vector<Candidate> candidates;
+    std::size_t count = 0;               ///< of candidates in use
+    std::vector<std::uint32_t> of_body;  ///< candidate + 1, by body
+    std::vector<RolledBall> rolled;      ///< ascending by body
+};
+
+}  // namespace embody::physics
