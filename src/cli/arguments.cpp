@@ -197,9 +197,9 @@ private:
         add_json(c);
     }
     void add_simulate() {
-        auto c =
-            add<SimulateArguments>("simulate", "Run a scene without a window and record what happens",
-                                   "embody simulate data/scenes/stack.json --seconds 5 --record out.jsonl --energy");
+        auto c = add<SimulateArguments>(
+            "simulate", "Run a scene without a window and record what happens",
+            "embody simulate data/scenes/stack_of_boxes.json --seconds 5 --record out.jsonl --energy");
         add_database(c);
         c.app->add_option("scene", c.into->scene, "Scene file, or a name that `embody scene` lists")->required();
         c.app->add_option("--seconds", c.into->seconds, "Simulated time")
