@@ -300,5 +300,29 @@ TEST(JointedImpact, NewtonsCradleOnHingesKeepsItsEnergy) {
     }
 }
 
+// A plate that 600 ball joints hold on to the world: more than are solved at once.
+TEST(JointedImpact, MoreJointsThanADirectSolveTakesHoldAsWell) {
+    auto world = make_world({});
+    Random random(1);
+    const auto plate = world
+                           ->create_body({.shape = world->create_shape(BoxShape{{1, 0.1, 1}}).value(),
+                                          .material = bouncing(0.5),
+                                          .allow_sleep = false})
+                           .value();
+    for (int i = 0; i < 600; ++i) {
+        const Transform frame{random_vector(random, 1), {}};
+        ASSERT_TRUE(world->create_joint({.joint = BallJoint{}, .body_b = plate, .frame_a = frame, .frame_b = frame}));
+    }
+    const auto ball = world
+                          ->create_body({.shape = world->create_shape(SphereShape{0.1}).value(),
+                                         .position = {0.3, 0.5, 0.2},
+                                         .linear_velocity = {0, -3, 0},
+                                         .material = bouncing(0.5)})
+                          .value();
+    run(*world, 0.2);
+    EXPECT_LT(length(world->pose(plate).position), 1e-6);
+    EXPECT_GT(world->pose(ball).position.y, 0.199);
+}
+
 }  // namespace
 }  // namespace embody::physics

@@ -277,10 +277,13 @@ Vec3 expansion_friction(const ImpactWork& work, std::span<const BodyState> bodie
     return size > limit ? stop * (limit / size) : stop;
 }
 
-std::size_t place_in_pair(const std::vector<ImpactWork>& works, std::size_t index) {
-    return static_cast<std::size_t>(
-        std::count_if(works.begin(), works.begin() + static_cast<std::ptrdiff_t>(index),
-                      [&](const ImpactWork& other) { return is_same_pair(other, works[index]); }));
+// Numbers the sites of each pair of bodies.
+void set_places(std::vector<ImpactWork>& works) {
+    for (std::size_t i = 0; i < works.size(); ++i) {
+        const auto is_of_pair = [&](const ImpactWork& other) { return is_same_pair(other, works[i]); };
+        const auto own = works.begin() + static_cast<std::ptrdiff_t>(i);
+        works[i].place = static_cast<std::size_t>(std::count_if(works.begin(), own, is_of_pair));
+    }
 }
 
 // Of bodies, among the sites that bounce.
@@ -304,15 +307,15 @@ void expand_together(std::vector<ImpactWork>& works, std::span<BodyState> bodies
 
     // Site by site of a pair; those of several pairs at once, in as many equal parts.
     const std::size_t pairs = count_bouncing_pairs(works);
+    set_places(works);
+    std::size_t places = 0;
+    for (const ImpactWork& work : works) places = std::max(places, work.place + 1);
     for (std::size_t part = 0; part < pairs; ++part) {
-        for (std::size_t place = 0, found = 1; found > 0; ++place) {
-            found = 0;
-            for (std::size_t i = 0; i < works.size(); ++i) {
-                ImpactWork& work = works[i];
+        for (std::size_t place = 0; place < places; ++place) {
+            for (ImpactWork& work : works) {
                 work.friction = {};
-                if (place_in_pair(works, i) != place) continue;
-                ++found;
-                if (work.expansion.z <= 0 || work.site->coefficients.friction_slide <= 0) continue;
+                if (work.place != place || work.expansion.z <= 0 || work.site->coefficients.friction_slide <= 0)
+                    continue;
                 work.friction = expansion_friction(work, bodies) / static_cast<double>(pairs);
             }
             for (ImpactWork& work : works) {
@@ -348,7 +351,9 @@ void limit_expansion(std::vector<ImpactWork>& works, std::span<BodyState> bodies
     if (excess <= 0) return;
     double after = 0, product = 0;
     for (const ImpactWork& work : works) after += dot(work.expansion, site_velocity(work, bodies));
-    for (ImpactWork& work : works) apply(work, -work.expansion, bodies);
+    for (const ImpactWork& work : works) {
+        if (work.is_ready) apply(work, -work.expansion, bodies);
+    }
     double before = 0;
     for (const ImpactWork& work : works) before += dot(work.expansion, site_velocity(work, bodies));
     product = after - before;
@@ -360,7 +365,7 @@ void limit_expansion(std::vector<ImpactWork>& works, std::span<BodyState> bodies
     if (product > 0 && discriminant >= 0) share = std::clamp((-before + std::sqrt(discriminant)) / product, 0.0, 1.0);
     for (ImpactWork& work : works) {
         work.expansion *= share;
-        apply(work, work.expansion, bodies);
+        if (work.is_ready) apply(work, work.expansion, bodies);
     }
     sum_impulses(works);
 }

@@ -44,6 +44,7 @@ struct ImpactWork {
     ImpactState state;
     double compression_work = 0;
     double velocity = 0;          ///< along the normal, before a round that several sites share, m/s
+    std::size_t place = 0;        ///< among the sites of its pair of bodies
     Vec3 friction;                ///< in the expansion, in the frame
     Vec3 compression, expansion;  ///< impulses in the frame
 };

@@ -193,7 +193,7 @@ bool BallPath::begin(Place& at) {
     const double gap = at.touch.gap, closing = -dot(at.motion.velocity, n);
     const bool is_on_face = is_flat(at);
     if (gap > std::min(most_gap, deepest * radius_) || gap < -deepest * radius_ || is_plain(at)) return false;
-    if (-closing > most_parting + most_rise * speed) return false;
+    if (-closing > most_parting + (bounces_ ? 0 : most_rise * speed)) return false;
     if (closing > (was_touching_ && !bounces_ ? most_fall + smooth_bend * speed : most_fall)) return false;
 
     // What is left of the motion into the ground goes; the way out of it is taken from the motion.

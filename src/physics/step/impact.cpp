@@ -30,7 +30,8 @@ namespace {
 constexpr double heap_slack = 0.02;    // of a step: in a heap, impacts this near in time may change places
 constexpr int most_bounces = 3;        // of one contact in a step; later impacts do not bounce (Zeno's ball)
 constexpr double same_instant = 1e-6;  // of a step: impacts this near in time are as simultaneous as mirror images
-constexpr int most_impacts = 5;        // of one contact in a step; then the contact solver stops it
+constexpr std::size_t most_simultaneous_sites = 64;  // what else collides then has events of its own
+constexpr int most_impacts = 5;                      // of one contact in a step; then the contact solver stops it
 
 class ImpactStage {
 public:
@@ -46,7 +47,6 @@ public:
 
 private:
     void push(double time, std::uint32_t contact);
-    void push(const ImpactEvent& event);
     void predict(std::uint32_t contact);
     void note(std::uint32_t contact, ImpactPaths::Prediction next);
     void predict_all();
@@ -54,9 +54,10 @@ private:
     void list_contacts();
     bool count_impact(std::uint32_t contact);
     bool add_region(std::uint32_t contact, const Manifold& manifold, double time);
+    bool joins_in(std::uint32_t contact, double time);
     void add_simultaneous(double time);
     void take(const ImpactEvent& event);
-    void list_bodies();
+    void list_bodies(std::size_t first);
     void gather(double time);
     void go_to(double time);
     void solve(double time, SlidePath path);
@@ -74,15 +75,15 @@ private:
     const double step_;
 };
 
-void ImpactStage::push(double time, std::uint32_t contact) { push({time, contact, memory_.version[contact]}); }
-
-void ImpactStage::push(const ImpactEvent& event) {
-    memory_.events.push_back(event);
+void ImpactStage::push(double time, std::uint32_t contact) {
+    memory_.next_time[contact] = time;
+    memory_.events.push_back({time, contact, memory_.version[contact]});
     std::push_heap(memory_.events.begin(), memory_.events.end(), std::greater<>());
 }
 
 void ImpactStage::predict(std::uint32_t contact) {
     memory_.is_open[contact] = 0;
+    memory_.next_time[contact] = ImpactPaths::never;
     if (memory_.impacts[contact] >= most_impacts) return;
     note(contact, paths_.predict(world_.contacts[contact]));
 }
@@ -172,9 +173,9 @@ void ImpactStage::note_impulse(Contact& contact, Vec3 position, Vec3 impulse, do
     }
 }
 
-// The movable bodies of the sites, each once.
-void ImpactStage::list_bodies() {
-    for (const ImpactSite& site : memory_.sites) {
+// The movable bodies of the sites from `first` on, each once.
+void ImpactStage::list_bodies(std::size_t first) {
+    for (const ImpactSite& site : std::span(memory_.sites).subspan(first)) {
         for (const std::uint32_t body : {site.a, site.b}) {
             const auto is_it = [body](const ImpactMemory::Moved& moved) { return moved.body == body; };
             const bool is_known = std::any_of(memory_.bodies.begin(), memory_.bodies.end(), is_it);
@@ -183,15 +184,19 @@ void ImpactStage::list_bodies() {
     }
 }
 
-// All that takes part: what collides, what joints connect with it, and what carries either.
+// All that takes part: what collides, what joints connect with it, what carries either, and what joints connect with
+// that.
 void ImpactStage::gather(double time) {
     memory_.bodies.clear();
-    list_bodies();
+    list_bodies(0);
     gather_jointed(world_);
     memory_.neighbours.clear();
     for (const ImpactMemory::Moved& moved : memory_.bodies) memory_.neighbours.push_back(moved.body);
+    const std::size_t colliding = memory_.sites.size();
     regions_.add_loaded_neighbours(memory_.neighbours, time);
-    list_bodies();
+    if (memory_.sites.size() == colliding) return;
+    list_bodies(colliding);
+    gather_jointed(world_);
 }
 
 // The bodies at the place of the impact. Joints have kept what they hold from falling on its way there.
@@ -295,40 +300,36 @@ bool ImpactStage::add_region(std::uint32_t contact, const Manifold& manifold, do
     return true;
 }
 
+// Whether the contact, of a body that takes part, collides at this instant, too; then its sites are added.
+bool ImpactStage::joins_in(std::uint32_t contact, double time) {
+    const double latest = time + same_instant * step_;
+    const auto& known = memory_.site_contact;
+    double own_time = memory_.next_time[contact];
+    if (own_time > latest || !paths_.bounces(world_.contacts[contact])) return false;
+    if (std::find(known.begin(), known.end(), contact) != known.end()) return false;
+    Manifold manifold;
+    if (!regions_.refine(world_.contacts[contact], own_time, manifold) || own_time > latest) return false;
+
+    // Its event is void.
+    ++memory_.version[contact];
+    memory_.next_time[contact] = ImpactPaths::never;
+    add_region(contact, manifold, time);
+    return true;
+}
+
 // Impacts of the same instant on the same bodies are one collision: one after the other, the first would turn what is
 // symmetric. Balls that touch in a row still pass it on one by one: the next ones begin to approach by it.
 void ImpactStage::add_simultaneous(double time) {
-    std::vector<ImpactEvent>& rest = memory_.simultaneous;
-    rest.clear();
-    while (!memory_.events.empty() && memory_.events.front().time <= time + same_instant * step_) {
-        if (memory_.events.front().version == memory_.version[memory_.events.front().contact]) {
-            rest.push_back(memory_.events.front());
+    memory_.bodies.clear();
+    list_bodies(0);
+    for (std::size_t i = 0; i < memory_.bodies.size(); ++i) {
+        const std::uint32_t body = memory_.bodies[i].body;
+        for (std::uint32_t k = memory_.first_of_body[body]; k < memory_.first_of_body[body + 1]; ++k) {
+            if (memory_.sites.size() >= most_simultaneous_sites) return;
+            const std::size_t known = memory_.sites.size();
+            if (joins_in(memory_.of_body[k], time)) list_bodies(known);
         }
-        std::pop_heap(memory_.events.begin(), memory_.events.end(), std::greater<>());
-        memory_.events.pop_back();
     }
-    const auto joins = [&](const ImpactEvent& event) {
-        const Contact& contact = world_.contacts[event.contact];
-        const auto& known = memory_.site_contact;
-        const auto meets = [&](const ImpactSite& site) {
-            const auto is_shared = [&](std::uint32_t body) {
-                return world_.motion[body].inverse_mass > 0 && (body == site.a || body == site.b);
-            };
-            return is_shared(contact.a) || is_shared(contact.b);
-        };
-        if (!paths_.bounces(contact) || std::find(known.begin(), known.end(), event.contact) != known.end())
-            return false;
-        if (std::none_of(memory_.sites.begin(), memory_.sites.end(), meets)) return false;
-        double own_time = event.time;
-        Manifold manifold;
-        if (!regions_.refine(world_.contacts[event.contact], own_time, manifold)) return false;
-        if (own_time > time + same_instant * step_) return false;
-        add_region(event.contact, manifold, time);
-        return true;
-    };
-    for (auto found = rest.begin(); (found = std::find_if(rest.begin(), rest.end(), joins)) != rest.end();)
-        rest.erase(found);
-    for (const ImpactEvent& event : rest) push(event);
 }
 
 // The next impact, if its place and time are right; else it comes back with better ones.
@@ -398,7 +399,12 @@ bool ImpactStage::keeps_apart_bent(const Contact& contact) const {
     using HeldAcceleration = ImpactMemory::HeldAcceleration;
     const auto held = [&](std::uint32_t body) {
         const bool is_held = memory_.is_jointed[body] && body < memory_.held_accelerations.size();
-        return is_held ? memory_.held_accelerations[body] : HeldAcceleration{};
+        if (!is_held) return HeldAcceleration{};
+        HeldAcceleration now = memory_.held_accelerations[body];
+
+        // The path of what is carried goes without its weight.
+        now.linear = to_vec3f(Vec3(now.linear) + world_.constants[body].acceleration - bodies_.free_acceleration(body));
+        return now;
     };
     const HeldAcceleration a = held(contact.a), b = held(contact.b);
     const double closing = dot(contact.normal, Vec3(a.linear) - Vec3(b.linear)) +
@@ -417,6 +423,7 @@ bool ImpactStage::keeps_apart_bent(const Contact& contact) const {
 void ImpactStage::run() {
     const std::size_t count = world_.contacts.size();
     memory_.version.assign(count, 0);
+    memory_.next_time.assign(count, ImpactPaths::never);
     memory_.is_open.assign(count, 0);
     memory_.impacts.assign(count, 0);
     memory_.events.clear();
@@ -432,6 +439,7 @@ void ImpactStage::run() {
             world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
             break;
         }
+        memory_.next_time[event.contact] = ImpactPaths::never;
         take(event);
     }
     open_jointed_contacts();

@@ -48,8 +48,9 @@ void sort_once(std::vector<std::uint32_t>& list) {
 
 bool can_fly_jointed(const WorldState& world) {
     const ImpactMemory& memory = world.impact_memory;
-    if (memory.jointed.size() > most_flown_bodies) return false;
-    const auto has_way_back = [&](std::uint32_t body) { return memory.is_jointed[body] != 0; };
+    const std::size_t nodes = memory.jointed.size() + memory.jointed_joints.size();
+    if (memory.jointed.size() > most_flown_bodies || nodes >= BlockPattern::most_nodes) return false;
+    const auto has_way_back = [&](std::uint32_t body) { return memory.is_jointed[body] && !memory.is_supported[body]; };
     return std::all_of(memory.jointed.begin(), memory.jointed.end(), has_way_back);
 }
 
@@ -92,7 +93,7 @@ void gather_jointed(WorldState& world) {
         return std::find(found.begin(), found.end(), body) != found.end();
     };
     for (const ImpactMemory::Moved& moved : memory.bodies) {
-        if (!joints_of(memory, moved.body).empty()) found.push_back(moved.body);
+        if (found.size() < most_jointed_bodies && !joints_of(memory, moved.body).empty()) found.push_back(moved.body);
     }
     for (std::size_t i = 0; i < found.size() && found.size() < most_jointed_bodies; ++i) {
         for (const std::uint32_t index : joints_of(memory, found[i])) {
@@ -113,6 +114,8 @@ void gather_jointed(WorldState& world) {
         }
     }
     sort_once(memory.jointed_joints);
+    const std::size_t most_joints = BlockPattern::most_nodes - found.size();
+    if (memory.jointed_joints.size() > most_joints) memory.jointed_joints.resize(most_joints);
     for (const std::uint32_t body : found) {
         const auto is_it = [body](const ImpactMemory::Moved& moved) { return moved.body == body; };
         if (std::none_of(memory.bodies.begin(), memory.bodies.end(), is_it))

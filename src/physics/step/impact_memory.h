@@ -28,7 +28,7 @@ struct ImpactPrediction {
     bool may_hide = false;   ///< no point meets, but surfaces that turn as fast may, at others
 };
 
-/// Memory of the impact stage: nothing in it outlives a step, but a steady step allocates nothing.
+/// Memory of the impact stage, so that a steady step allocates nothing. Of the last step it knows held_accelerations.
 struct ImpactMemory {
     // By body.
     std::vector<std::uint8_t> is_supported;   ///< a contact carried it in the last step
@@ -42,6 +42,7 @@ struct ImpactMemory {
     // By contact; the lists of each body's contacts once there is an impact at all.
     std::vector<ImpactPrediction> first;  ///< its first impact as predicted at the step's start
     std::vector<std::uint32_t> version;
+    std::vector<double> next_time;         ///< of the event that waits, s; ImpactPrediction::never: none
     std::vector<std::uint8_t> impacts;     ///< in this step
     std::vector<std::uint8_t> is_open;     ///< its bodies keep apart for the rest of the step if nothing else hits them
     std::vector<std::uint32_t> uncertain;  ///< contacts whose first impact straight paths do not tell
@@ -66,8 +67,7 @@ struct ImpactMemory {
     std::size_t heap_bounces = 0;  ///< of bodies that others carry
 
     // Of the present impact.
-    std::vector<ImpactEvent> events;        ///< a heap, the earliest on top
-    std::vector<ImpactEvent> simultaneous;  ///< of the same instant
+    std::vector<ImpactEvent> events;  ///< a heap, the earliest on top
     std::vector<ImpactSite> sites;
     std::vector<std::uint32_t> site_contact;  ///< contact of each site
     std::vector<Manifold> manifolds;

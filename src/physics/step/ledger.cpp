@@ -216,6 +216,8 @@ void Ledger::add_damping(const WorldState& world, std::uint32_t body) {
 }
 
 void Ledger::note_scaled(const WorldState& world, std::uint32_t body, double share) {
+    // What was stopped whole tells nothing of its velocity; that was all energy which the joints had no right to.
+    if (!(share > 0)) return;
     const BodyState& state = world.motion[body];
     const BodyConstants& constants = world.constants[body];
     const double change = 1 - 1 / share;

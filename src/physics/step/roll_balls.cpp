@@ -20,7 +20,8 @@ bool may_roll(const WorldState& world, std::uint32_t body) {
     const TouchBody& touch = world.touch_memory.bodies[body];
     if (!touch.is_ball || !touch.yields) return false;
     const BodyConstants& constants = world.constants[body];
-    return constants.torque == Vec3{} && constants.linear_damping == 0 && constants.angular_damping == 0;
+    return constants.is_isotropic && constants.torque == Vec3{} && constants.linear_damping == 0 &&
+           constants.angular_damping == 0;
 }
 
 void list_candidates(const WorldState& world, BallMemory& memory) {
