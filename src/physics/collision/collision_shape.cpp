@@ -8,6 +8,7 @@
 #include "physics/collision/collision_shape_data.h"
 #include "physics/collision/convex_pair.h"
 #include "physics/collision/convex_pairs.h"
+#include "physics/collision/polytope_query.h"
 #include "physics/collision/shape_mass.h"
 
 namespace embody::physics {
@@ -57,13 +58,21 @@ Result<Convex> make_convex(const HullShape& s) {
 Bounds convex_bounds(const Convex& convex, const Transform& pose) {
     const Mat3 r = to_matrix(pose.rotation);
     const PlacedConvex placed{&convex, r, pose.position};
+    Bounds b;
+    if (convex.is_box) {
+        const Vec3 half =
+            abs(r.x) * convex.bounds.upper.x + abs(r.y) * convex.bounds.upper.y + abs(r.z) * convex.bounds.upper.z;
+        return {pose.position - half, pose.position + half};
+    }
     if (convex.kind == ConvexKind::polytope) {
-        Bounds b;
-        for (const Vec3& v : convex.polytope.vertices) b.add(placed.to_frame(v));
+        for (int k = 0; k < 3; ++k) {
+            const Extent along = extent(convex.polytope.vertex_lanes, {r.x[k], r.y[k], r.z[k]});
+            b.lower[k] = pose.position[k] + along.lowest;
+            b.upper[k] = pose.position[k] + along.highest;
+        }
         return b;
     }
     // Extents along each axis: of the core, then the radius around it.
-    Bounds b;
     const Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int k = 0; k < 3; ++k) {
         b.lower[k] = core_support(placed, -axes[k])[k] - rounding(convex);

@@ -9,6 +9,7 @@ namespace embody::EMBODY_WIDE {
 
 namespace {
 
+using physics::Extent;
 using physics::Extreme;
 using physics::VectorLanes;
 
@@ -50,6 +51,17 @@ Extreme farthest(const VectorLanes<double>& vectors, const double* d) {
     const WideDouble wanted = broadcast(along);
     return {along,
             find_first(vectors.count, double_lanes, [&](std::size_t i) { return equal_mask(products.at(i), wanted); })};
+}
+
+Extent extent(const VectorLanes<double>& vectors, const double* d) {
+    const Products products = Products::of(vectors, d);
+    WideDouble high = broadcast(-1e300), low = broadcast(1e300);
+    for (std::size_t i = 0; i < vectors.count; i += double_lanes) {
+        const WideDouble along = products.at(i);
+        high = maximum(high, along);
+        low = minimum(low, along);
+    }
+    return {-highest(-low), highest(high)};
 }
 
 std::uint32_t farthest_roughly(const VectorLanes<float>& vectors, const float* d) {
@@ -103,6 +115,7 @@ std::uint32_t find_low(const VectorLanes<double>& vectors, const double* d, doub
 }  // namespace
 
 extern const physics::PolytopeKernels polytope_kernels;
-const physics::PolytopeKernels polytope_kernels{farthest, farthest_roughly, heights_over_faces, lower_bounds, find_low};
+const physics::PolytopeKernels polytope_kernels{farthest,           extent,       farthest_roughly,
+                                                heights_over_faces, lower_bounds, find_low};
 
 }  // namespace embody::EMBODY_WIDE

@@ -12,6 +12,11 @@ struct Extreme {
     std::uint32_t index = 0;
 };
 
+/// How far many reach along a direction, least and most.
+struct Extent {
+    double lowest = 0, highest = 0;
+};
+
 /// Vectors by components; `count` is a multiple of what one instruction takes up.
 template <class Number>
 struct VectorLanes {
@@ -23,6 +28,7 @@ struct VectorLanes {
 /// bits. `d` points to the three components of a vector. What they compute is told in polytope_query.h.
 struct PolytopeKernels {
     Extreme (*farthest)(const VectorLanes<double>& vectors, const double* d);
+    Extent (*extent)(const VectorLanes<double>& vectors, const double* d);
     std::uint32_t (*farthest_roughly)(const VectorLanes<float>& vectors, const float* d);
     double (*heights_over_faces)(const VectorLanes<double>& normals, const double* reach, const double* d,
                                  double* heights);

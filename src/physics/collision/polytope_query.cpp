@@ -22,6 +22,11 @@ Extreme farthest(const Lanes& lanes, Vec3 direction) {
     return kernels.farthest(view(lanes), d);
 }
 
+Extent extent(const Lanes& lanes, Vec3 direction) {
+    const double d[3] = {direction.x, direction.y, direction.z};
+    return kernels.extent(view(lanes), d);
+}
+
 std::uint32_t farthest_roughly(const RoughLanes& lanes, Vec3 direction) {
     const Vec3f rough = to_vec3f(direction);
     const float d[3] = {rough.x, rough.y, rough.z};

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "physics/dynamic/equations_of_motion.h"
 #include "physics/step/share_awake.h"
 #include "physics/step/step.h"
 
@@ -15,18 +16,26 @@ bool stands(const WorldState& world, std::uint32_t body) {
            world.constants[body].torque == Vec3{};
 }
 
-// All places of the body while it turns in this step: no surface point leaves its place by more than its chord, nor the
-// ball around the centre of mass.
-Bounds turned_bounds(const WorldState& world, std::uint32_t body) {
-    const BodyRecord& record = world.record(body);
+// All places of the body while it turns in this step by the angle θ: a surface point leaves its first place by at most
+// r θ, and stays in the ball around the centre of mass.
+Bounds turned_bounds(const WorldState& world, std::uint32_t body, const Bounds& now, double angle) {
     const BodyState& state = world.motion[body];
-    Bounds bounds = record.shape->bounds(world.pose(body));
-    const double way = length(state.angular_velocity) * world.settings.time_step * record.reach;
-    if (record.is_ball || way == 0) return bounds;
-    const Vec3 chord{way, way, way}, reach{record.reach, record.reach, record.reach};
-    bounds.add(
-        Bounds{max(bounds.lower - chord, state.center - reach), min(bounds.upper + chord, state.center + reach)});
+    const double reach = world.record(body).reach;
+    const Bounds near = enlarged(now, reach * angle), ball = enlarged({state.center, state.center}, reach);
+    Bounds bounds = now;
+    bounds.add(Bounds{max(near.lower, ball.lower), min(near.upper, ball.upper)});
     return bounds;
+}
+
+// The same, closer for θ < 1: a point leaves the straight line between its first and its last place by at most r θ²/8,
+// and gyroscopic torque, which changes ω by less than ω² dt, puts its last place off by less than r θ²/3.
+Bounds close_turned_bounds(const WorldState& world, std::uint32_t body, const Bounds& now, double angle) {
+    const BodyState& state = world.motion[body];
+    const BodyRecord& record = world.record(body);
+    const Quat last = cayley(state.angular_velocity * world.settings.time_step) * state.rotation;
+    Bounds bounds = record.shape->bounds({state.center - rotate(last, world.constants[body].local_center), last});
+    bounds.add(now);
+    return enlarged(bounds, record.reach * angle * angle / 2);
 }
 
 // Lists which of a share of the awake bodies have left their bounds, and the bounds they want.
@@ -43,9 +52,19 @@ void list_leaving(WorldState& world, Share share, std::vector<LeavingBody>& leav
             world.motion[body].linear_velocity * dt + world.constants[body].acceleration * (dt * dt / 2);
 
         // The whole way counts as bounds: what lies on it must be a pair before the body gets there.
-        Bounds swept = turned_bounds(world, body);
-        swept.add(Bounds{swept.lower + motion, swept.upper + motion});
-        if (!world.broad_phase.holds(body, swept, motion)) leaving.push_back({body, swept, motion});
+        const Bounds now = record.shape->bounds(world.pose(body));
+        const double angle = record.is_ball ? 0 : length(world.motion[body].angular_velocity) * dt;
+        const auto swept = [&motion](Bounds bounds) {
+            bounds.add(Bounds{bounds.lower + motion, bounds.upper + motion});
+            return bounds;
+        };
+        Bounds wanted = swept(angle > 0 ? turned_bounds(world, body, now, angle) : now);
+        if (world.broad_phase.holds(body, wanted, motion)) continue;
+        if (angle > 0 && angle < 1) {
+            wanted = swept(close_turned_bounds(world, body, now, angle));
+            if (world.broad_phase.holds(body, wanted, motion)) continue;
+        }
+        leaving.push_back({body, wanted, motion});
     }
 }
 

@@ -67,6 +67,9 @@ TEST_P(PolytopeKernelsOf, find_what_a_plain_loop_finds) {
         const Extreme farthest = kernels->farthest(vectors.lanes(), d);
         EXPECT_EQ(farthest.along, first_highest(along).along);
         EXPECT_EQ(farthest.index, first_highest(along).index);
+        const Extent extent = kernels->extent(vectors.lanes(), d);
+        EXPECT_EQ(extent.lowest, *std::min_element(along.begin(), along.end()));
+        EXPECT_EQ(extent.highest, farthest.along);
         EXPECT_EQ(kernels->farthest_roughly(vectors.rough_lanes(), rough_d), first_highest(along).index);
 
         std::vector<double> found_heights(count);

@@ -138,8 +138,10 @@ TEST(ShapeMass, two_halves_make_the_whole_box) {
 
 TEST(ShapeBounds, hold_every_surface_point_and_touch_the_farthest) {
     Random random(11);
-    const ShapeDefinition shapes[] = {SphereShape{0.4}, BoxShape{{0.2, 0.7, 0.3}}, CapsuleShape{0.3, 0.6},
-                                      CylinderShape{0.5, 0.2}, ConeShape{0.5, 0.8}};
+    std::vector<Vec3> points;
+    for (int i = 0; i < 13; ++i) points.push_back(random_direction(random) * 0.6);
+    const ShapeDefinition shapes[] = {SphereShape{0.4},        BoxShape{{0.2, 0.7, 0.3}}, CapsuleShape{0.3, 0.6},
+                                      CylinderShape{0.5, 0.2}, ConeShape{0.5, 0.8},       HullShape{points}};
     for (const ShapeDefinition& definition : shapes) {
         const auto shape = make_shape(definition);
         for (int trial = 0; trial < 50; ++trial) {
