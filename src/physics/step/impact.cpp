@@ -410,12 +410,10 @@ bool ImpactStage::keeps_apart_bent(const Contact& contact) const {
     const double closing = dot(contact.normal, Vec3(a.linear) - Vec3(b.linear)) +
                            wrong_share * (length(Vec3(a.linear)) + length(Vec3(b.linear))) + a.turning + b.turning;
     const double start = paths_.earliest_time(contact), time = step_ - start;
-    for (int k = 0; k < contact.count; ++k) {
-        const ContactPoint& point = contact.points[static_cast<std::size_t>(k)];
-        const ImpactPaths::Gap first = paths_.gap_at(contact, point, start),
-                               last = paths_.gap_at(contact, point, step_);
-        const bool begins_apart = first.size > ImpactPaths::touch_gap || first.rate > closing * time;
-        if (!begins_apart || last.size <= closing * time * time / 2) return false;
+    const ImpactPaths::Gaps first = paths_.gaps_at(contact, start), last = paths_.gaps_at(contact, step_);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+        const bool begins_apart = first[k].size > ImpactPaths::touch_gap || first[k].rate > closing * time;
+        if (!begins_apart || last[k].size <= closing * time * time / 2) return false;
     }
     return true;
 }

@@ -80,18 +80,19 @@ bool ImpactPaths::is_surely_slow(const ContactGlance& glance) const {
 
 // Prediction needs no more of a path than half a millimetre; what turns slowly turns evenly for that.
 ImpactPaths::Motion ImpactPaths::motion_at(std::uint32_t body, double time) const {
-    BodyPaths::Motion motion;
-    if (time > 0 && turns_far(body)) {
-        motion = bodies_.motion_about(body, time);
-    } else {
-        const BodyState& now = world_.motion[body];
-        const Vec3 acceleration = bodies_.free_acceleration(body);
-        motion = {now.center - now.start_center + (now.linear_velocity + acceleration * (time / 2)) * time,
-                  now.linear_velocity + acceleration * time, now.angular_velocity, now.turn};
-        if (time > 0 && now.angular_velocity != Vec3{}) motion.turn = cayley(now.angular_velocity * time) * now.turn;
-    }
-    const Quat& turn = motion.turn;
-    return {motion, (turn.w < 0 ? -2 : 2) * Vec3{turn.x, turn.y, turn.z}};
+    const auto with_tilt = [](const BodyPaths::Motion& motion) {
+        const Quat& turn = motion.turn;
+        return Motion{motion, (turn.w < 0 ? -2 : 2) * Vec3{turn.x, turn.y, turn.z}};
+    };
+    const BodyState& now = world_.motion[body];
+    BodyPaths::Motion motion{now.center - now.start_center, now.linear_velocity, now.angular_velocity, now.turn};
+    if (time <= 0) return with_tilt(motion);
+    if (turns_far(body)) return with_tilt(bodies_.motion_about(body, time));
+    const Vec3 acceleration = bodies_.free_acceleration(body);
+    motion.shift += (now.linear_velocity + acceleration * (time / 2)) * time;
+    motion.velocity += acceleration * time;
+    if (now.angular_velocity != Vec3{}) motion.turn = cayley(now.angular_velocity * time) * now.turn;
+    return with_tilt(motion);
 }
 
 bool ImpactPaths::turns_far(std::uint32_t body) const {
@@ -132,6 +133,15 @@ void mark_open(ContactPoint& point, bool stays_open, double step) {
 
 ImpactPaths::Gap ImpactPaths::gap_at(const Contact& contact, const ContactPoint& point, double time) const {
     return gap_between(contact, point, motion_at(contact.a, time), motion_at(contact.b, time));
+}
+
+ImpactPaths::Gaps ImpactPaths::gaps_at(const Contact& contact, double time) const {
+    const Motion a = motion_at(contact.a, time), b = motion_at(contact.b, time);
+    Gaps gaps;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(contact.count); ++i) {
+        gaps[i] = gap_between(contact, contact.points[i], a, b);
+    }
+    return gaps;
 }
 
 // The first time from `start` on at which a point touches whose gap is `first` then and `last` at the end of the step;
@@ -240,11 +250,10 @@ bool ImpactPaths::keeps_apart(const Contact& contact, double start) const {
     for (int k = 0; k <= world_.settings.substeps; ++k) {
         const double time = k == 0 ? start : k * substep_;
         if (k > 0 && time <= start) continue;
-        const Motion a = motion_at(contact.a, time), b = motion_at(contact.b, time);
-        for (int i = 0; i < contact.count; ++i) {
-            const Gap gap = gap_between(contact, contact.points[static_cast<std::size_t>(i)], a, b);
-            const bool parts = k == 0 && gap.rate > slowest_impact;
-            if (gap.size <= touch_gap && !parts) return false;
+        const Gaps gaps = gaps_at(contact, time);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(contact.count); ++i) {
+            const bool parts = k == 0 && gaps[i].rate > slowest_impact;
+            if (gaps[i].size <= touch_gap && !parts) return false;
         }
     }
     return true;
@@ -253,10 +262,9 @@ bool ImpactPaths::keeps_apart(const Contact& contact, double start) const {
 void ImpactPaths::leave_open(Contact& contact) {
     const double slowest = slowest_speed(contact);
     if (slowest == never) return;
-    for (int i = 0; i < contact.count; ++i) {
-        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        const Gap now = gap_at(contact, point, 0);
-        mark_open(point, now.rate < -slowest && now.size > 0, step_);
+    const Gaps now = gaps_at(contact, 0);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(contact.count); ++i) {
+        mark_open(contact.points[i], now[i].rate < -slowest && now[i].size > 0, step_);
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "physics/step/body_paths.h"
@@ -27,9 +28,11 @@ public:
     /// Gap of a point and its rate, the turning of the bodies included: a foot of a spinning chair does not move
     /// straight. m, m/s.
     struct Gap {
-        double size, rate;
+        double size = 0, rate = 0;
     };
-    [[nodiscard]] Gap gap_at(const Contact& contact, const ContactPoint& point, double time) const;
+    using Gaps = std::array<Gap, Manifold::max_points>;
+    /// Of the contact's points, in their order.
+    [[nodiscard]] Gaps gaps_at(const Contact& contact, double time) const;
 
     [[nodiscard]] Material material_of(const Contact& contact) const;
     /// Whether the contact has a bounce, and neither body has bounced so often in this step that hardly any speed is
@@ -62,6 +65,7 @@ private:
     };
     [[nodiscard]] Motion motion_at(std::uint32_t body, double time) const;
     [[nodiscard]] double slowest_speed(const Contact& contact) const;
+    [[nodiscard]] Gap gap_at(const Contact& contact, const ContactPoint& point, double time) const;
     [[nodiscard]] double touch_time(const Contact& contact, const ContactPoint& point, double start, Gap first,
                                     Gap last) const;
     /// How far the true paths of the contact's points can leave the straight ones, m, and how much faster they can

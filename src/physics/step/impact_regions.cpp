@@ -169,39 +169,38 @@ void ImpactRegions::add_manifold_sites(const Contact& contact, const Manifold& m
     }
 }
 
-// The same by the region found at the start of the step, on straight paths: the points that lie lower than `highest`,
-// as a patch at their middle and one by one. Without the patch, which goes first, what lands flat would lean to the
-// corner that happens to be solved first.
-void ImpactRegions::add_points_below(const Contact& contact, double highest, double time) {
+ImpactRegions::PointGaps ImpactRegions::straight_gaps(const Contact& contact, double time) const {
+    const ImpactPaths::Gaps now = paths_.gaps_at(contact, 0);
+    PointGaps gaps{};
+    for (std::size_t i = 0; i < static_cast<std::size_t>(contact.count); ++i)
+        gaps[i] = now[i].size + now[i].rate * time;
+    return gaps;
+}
+
+// The same by the region found at the start of the step: the points whose gaps are at most `highest`, as a patch at
+// their middle and one by one. Without the patch, which goes first, what lands flat would lean to the corner that
+// happens to be solved first.
+void ImpactRegions::add_points_below(const Contact& contact, const PointGaps& gaps, double highest, double time) {
     Vec3 arm_a, arm_b;
-    std::array<bool, Manifold::max_points> is_low{};
     int touching = 0;
     const auto count = static_cast<std::size_t>(contact.count);
     for (std::size_t i = 0; i < count; ++i) {
-        is_low[i] = straight_gap(contact, contact.points[i], time) <= highest;
-        if (!is_low[i]) continue;
+        if (gaps[i] > highest) continue;
         arm_a += contact.points[i].arm_a;
         arm_b += contact.points[i].arm_b;
         ++touching;
     }
     if (touching > 1) add_site(contact, {arm_a / touching, arm_b / touching, contact.normal}, time, false);
     for (std::size_t i = 0; i < count; ++i) {
-        if (is_low[i])
-            add_site(contact, {contact.points[i].arm_a, contact.points[i].arm_b, contact.normal}, time, false);
+        if (gaps[i] > highest) continue;
+        add_site(contact, {contact.points[i].arm_a, contact.points[i].arm_b, contact.normal}, time, false);
     }
-}
-
-double ImpactRegions::straight_gap(const Contact& contact, const ContactPoint& point, double time) const {
-    const ImpactPaths::Gap now = paths_.gap_at(contact, point, 0);
-    return now.size + now.rate * time;
 }
 
 void ImpactRegions::add_point_sites(const Contact& contact, double time) {
-    double nearest = ImpactPaths::never;
-    for (int i = 0; i < contact.count; ++i) {
-        nearest = std::min(nearest, straight_gap(contact, contact.points[static_cast<std::size_t>(i)], time));
-    }
-    add_points_below(contact, nearest + patch_gap, time);
+    const PointGaps gaps = straight_gaps(contact, time);
+    const double nearest = *std::min_element(gaps.begin(), gaps.begin() + contact.count);
+    add_points_below(contact, gaps, nearest + patch_gap, time);
 }
 
 // Whether the two bodies pass an impact on by one of their own, which gives back most of the energy.
@@ -220,7 +219,8 @@ void ImpactRegions::add_loaded_neighbours(std::span<const std::uint32_t> bodies,
             const auto& known = memory_.site_contact;
             if (std::find(known.begin(), known.end(), other) != known.end()) continue;
             if (passes_on(world_.contacts[other])) continue;
-            add_points_below(world_.contacts[other], patch_gap, time);
+            const Contact& contact = world_.contacts[other];
+            add_points_below(contact, straight_gaps(contact, time), patch_gap, time);
             memory_.site_contact.resize(memory_.sites.size(), other);
         }
     }

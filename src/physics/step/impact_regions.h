@@ -58,8 +58,10 @@ private:
     [[nodiscard]] std::optional<std::uint32_t> find_contact(std::uint32_t beside, const Manifold& manifold) const;
     double closing_speed(const Contact& contact, const Manifold& manifold, double time, double gap);
     [[nodiscard]] bool passes_on(const Contact& contact) const;
-    void add_points_below(const Contact& contact, double highest, double time);
-    [[nodiscard]] double straight_gap(const Contact& contact, const ContactPoint& point, double time) const;
+    /// The gaps of the contact's points on straight paths, m.
+    using PointGaps = std::array<double, Manifold::max_points>;
+    [[nodiscard]] PointGaps straight_gaps(const Contact& contact, double time) const;
+    void add_points_below(const Contact& contact, const PointGaps& gaps, double highest, double time);
     void collide_at(const Contact& contact, double time);
     struct SitePlace {
         Vec3 arm_a, arm_b, normal;  ///< as in ImpactSite
