@@ -216,11 +216,22 @@ CREATE TABLE model_simulation_mesh (
 ) STRICT;
 )sql";
 
-constexpr std::array<Migration, 5> migrations{{{1, first_version},
+// Versions up to 5 merged the index of words with FTS5's 'optimize' at the end of each import. SQLite 3.40 puts the
+// result one level higher each time, and takes an index of more than 2000 levels for damaged: after about 1000 imports
+// none could be made any more. What merges by itself while words come in stays at a few levels, and searching is as
+// fast. The first command writes the structure of an empty index (cookie, levels, segments, counter), without which
+// FTS5 would refuse to rebuild it.
+constexpr const char* rebuilt_words = R"sql(
+UPDATE model_words_data SET block = x'00000000000000' WHERE id = 10;
+INSERT INTO model_words (model_words) VALUES ('rebuild');
+)sql";
+
+constexpr std::array<Migration, 6> migrations{{{1, first_version},
                                                {2, with_decompositions},
                                                {3, audit_of_manual_changes},
                                                {4, shared_contents},
-                                               {5, with_simulation_meshes}}};
+                                               {5, with_simulation_meshes},
+                                               {6, rebuilt_words}}};
 
 }  // namespace
 

@@ -297,8 +297,4 @@ Result<std::vector<std::pair<std::string, std::int64_t>>> ModelTable::count_cate
     }
 }
 
-Result<void> ModelTable::tidy() {
-    return connection_.execute("INSERT INTO model_words (model_words) VALUES ('optimize')");
-}
-
 }  // namespace embody::database

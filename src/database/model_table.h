@@ -73,8 +73,6 @@ public:
     Result<std::vector<std::pair<std::string, std::int64_t>>> count_categories();
     Result<std::int64_t> count();
     Result<std::vector<std::int64_t>> ids();
-    /// Merges the full-text index after many changes; searching is then fastest.
-    Result<void> tidy();
 
     // Of one model; the error says if there is no such model.
     Result<ModelKnowledge> knowledge(std::int64_t id);

@@ -138,7 +138,7 @@ Result<ImportReport> Importer::run(const std::vector<fs::path>& paths, const Imp
     progress_.unchanged = report_.unchanged;
     progress_.failed = report_.failures.size();
 
-    // Do it, and leave a tidy index behind.
+    // Do it.
     if (report_.stopped || !tell_progress(options, {})) {
         report_.stopped = true;
     } else if (!planned_.empty()) {
@@ -147,7 +147,6 @@ Result<ImportReport> Importer::run(const std::vector<fs::path>& paths, const Imp
         if (!once_more.empty() && !report_.stopped) {
             if (auto prepared = prepare_planned(once_more, options); !prepared) return prepared.error();
         }
-        if (auto tidied = models_.tidy(); !tidied) return tidied.error();
     }
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::move(report_);
