@@ -20,7 +20,7 @@ namespace embody::scene {
 
 /// Names an entity of a document for as long as the document lives; never used twice.
 using EntityIndex = std::uint32_t;
-/// Higher ones are for what actions spawn in a running simulation.
+/// Higher ones are for what actions spawn in a running simulation. Joints and actions have none higher either.
 inline constexpr EntityIndex last_document_index = 0x7FFFFFFF;
 /// Of one document: more would fill the memory before they were simulated.
 inline constexpr std::size_t most_entities = 300'000;

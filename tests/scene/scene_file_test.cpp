@@ -269,6 +269,28 @@ TEST(SceneFile, TakesRotationsAndAnchorsAsPeopleWriteThem) {
     EXPECT_LT(distance(rotate(door.pose.rotation, {1, 0, 0}), {0, 0, -1}), 1e-12);
 }
 
+// Found by tools/soak.sh: both were written as what could not be read again.
+TEST(SceneFile, ReadsBackWhatItWroteOfTheHighestIndexAndOfHugeAngles) {
+    json scene = minimal();
+    scene["entities"][0]["index"] = last_document_index;
+    scene["entities"][0]["pose"] = {{"rotation", {{"axis", {0, 1e300, 1e300}}, {"degrees", -1e308}}}};
+    const Result<Document> read = document_from_json(scene);
+    ASSERT_TRUE(read.ok()) << read.error().message();
+    const Quat rotation = read.value().entities[0].pose.rotation;
+    EXPECT_NEAR(length_squared(Vec3{rotation.x, rotation.y, rotation.z}) + rotation.w * rotation.w, 1, 1e-12);
+    EXPECT_EQ(rotation.y, rotation.z);
+    const Result<Document> again = document_from_json(document_to_json(read.value()));
+    ASSERT_TRUE(again.ok()) << again.error().message();
+    EXPECT_EQ(again.value().entities[0].pose.rotation, rotation);
+
+    // What has no index then finds none.
+    scene["entities"].push_back(minimal()["entities"][0]);
+    const Result<Document> one_more = document_from_json(scene);
+    ASSERT_FALSE(one_more.ok());
+    EXPECT_EQ(one_more.error().message(),
+              "entities[1]: has no number, and none is left above the highest (give it one that is free)");
+}
+
 TEST(SceneFileSaving, KeepsTheOldFileWhereTheNewOneCannotBeWritten) {
     const Folder folder;
     const fs::path file = folder.path / "scene.json";

@@ -19,8 +19,11 @@ const json& inner_or_self(const json& params, const char* name) {
 }
 
 template <class Item, class Number>
-std::uint32_t next_number(const std::vector<Item>& items, Number Item::*number) {
-    return items.empty() ? 1 : items.back().*number + 1;
+Result<std::uint32_t> next_number(const std::vector<Item>& items, Number Item::*number) {
+    if (items.empty()) return std::uint32_t{1};
+    if (items.back().*number >= last_document_index)
+        return Error{"", "no number is left above the highest", "give that one a lower number in the scene file"};
+    return items.back().*number + 1;
 }
 
 Result<json> add_joint(SessionState& state, const json& params) {
@@ -28,7 +31,9 @@ Result<json> add_joint(SessionState& state, const json& params) {
     if (!read.ok()) return read.error();
     SceneJoint joint = std::move(read).value();
     if (joint.index != 0) return Error{"index", "is given by the session", "leave it out"};
-    joint.index = next_number(state.document.joints, &SceneJoint::index);
+    const Result<std::uint32_t> number = next_number(state.document.joints, &SceneJoint::index);
+    if (!number.ok()) return number.error();
+    joint.index = number.value();
     Edit edit = state.start_edit("Add joint" + (joint.name.empty() ? "" : " " + joint.name));
     const std::uint32_t index = joint.index;
     edit.changes.emplace_back(JointChange{std::nullopt, std::move(joint)});
@@ -41,7 +46,9 @@ Result<json> add_action(SessionState& state, const json& params) {
     if (!read.ok()) return read.error();
     Action action = std::move(read).value();
     if (action.id != 0) return Error{"id", "is given by the session", "leave it out"};
-    action.id = next_number(state.document.actions, &Action::id);
+    const Result<std::uint32_t> number = next_number(state.document.actions, &Action::id);
+    if (!number.ok()) return number.error();
+    action.id = number.value();
     Edit edit = state.start_edit("Add action" + (action.name.empty() ? "" : " " + action.name));
     const std::uint32_t index = action.id;
     edit.changes.emplace_back(ActionChange{std::nullopt, std::move(action)});

@@ -228,7 +228,7 @@ Result<Action> action_from_json(const json& value, const std::string& where) {
     Action action;
     std::optional<Error> error;
     FieldReader reader(value, where, error);
-    reader.whole("id", action.id, 1);
+    reader.whole("id", action.id, 1, last_document_index);
     reader.text("name", action.name);
     read_target(reader, "sender", action.sender);
     read_target(reader, "receiver", action.receiver);

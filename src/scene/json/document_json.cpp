@@ -37,10 +37,17 @@ bool number_items(FieldReader& reader, const char* list, std::vector<Item>& item
                         "has the number " + std::to_string(given) + " of another one");
             return false;
         }
-        next = std::max(next, given == UINT32_MAX ? given : given + 1);
+        next = std::max(next, given + 1);
     }
-    for (Item& item : items)
-        if (item.*number == 0) item.*number = next++;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        if (items[i].*number != 0) continue;
+        if (next > last_document_index) {
+            reader.fail(element_path(reader.path(list), i), "has no number, and none is left above the highest",
+                        "give it one that is free");
+            return false;
+        }
+        items[i].*number = next++;
+    }
     std::sort(items.begin(), items.end(), [number](const Item& a, const Item& b) { return a.*number < b.*number; });
     return true;
 }
@@ -91,7 +98,7 @@ Result<Document> document_from_json(const json& value) {
                          " that a scene can have",
                      "split the scene"};
     // Entities first: joints name them.
-    reader.whole("next_index", document.next_index, 1, last_document_index);
+    reader.whole("next_index", document.next_index, 1, last_document_index + 1);  // that one: none is left
     read_list(reader, "entities", document.entities, entity_from_json);
     if (error || !number_items(reader, "entities", document.entities, &Entity::index, document.next_index))
         return *error;

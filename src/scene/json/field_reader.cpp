@@ -229,11 +229,14 @@ bool FieldReader::rotation(const char* name, Quat& value) {
         if (const json* given = reader.need("degrees", "the angle of the rotation"))
             read_number(*given, reader.path("degrees"), degrees, error_);
         if (!reader.finish()) return false;
-        if (length(axis) < 1e-12) {
+        // Only the direction of the axis counts, and of the angle what two whole turns leave: their squares and
+        // products must not overflow.
+        const double largest = std::max({std::fabs(axis.x), std::fabs(axis.y), std::fabs(axis.z)});
+        if (largest == 0) {
             fail(reader.path("axis"), "must not be zero");
             return false;
         }
-        value = from_axis_angle(normalized(axis), degrees * std::numbers::pi / 180);
+        value = from_axis_angle(normalized(axis / largest), std::fmod(degrees, 720) * std::numbers::pi / 180);
         return true;
     }
 

@@ -92,7 +92,7 @@ Result<SceneJoint> joint_from_json(const json& value, const std::string& where, 
     SceneJoint joint;
     std::optional<Error> error;
     FieldReader reader(value, where, error);
-    reader.whole("index", joint.index, 1);
+    reader.whole("index", joint.index, 1, last_document_index);
     reader.text("name", joint.name);
 
     // The two ends; without a first one the joint hangs in the world.
