@@ -262,6 +262,55 @@ TEST(JointedImpact, RandomTreesAnswerAsTheWholeSystemOfEquationsSays) {
     }
 }
 
+// A bead slides along a rod that turns by `rate` and bears it in its middle: a ball that strikes the bead across X
+// after `delay` of the step meets a rod that has turned. Along the rod the bead yields with its mass of 1 kg, across it
+// not at all.
+double speed_after_strike_on_turntable(double rate, double delay, double restitution, double angle) {
+    auto world = make_world({.gravity = {}});
+    const double radius = 0.05, speed = 0.5, step = world->settings().time_step;
+    const auto sphere = world->create_shape(SphereShape{radius}).value();
+    const auto turntable =
+        world->create_body({.kind = BodyKind::kinematic_body, .angular_velocity = {0, rate, 0}}).value();
+    const auto bead = world
+                          ->create_body({.shape = sphere,
+                                         .angular_velocity = {0, rate, 0},
+                                         .mass = {.mass = 1},
+                                         .material = bouncing(1),
+                                         .allow_sleep = false})
+                          .value();
+    const Quat along_rod = from_axis_angle({0, 1, 0}, angle);
+    EXPECT_TRUE(world->create_joint({.joint = SliderJoint{},
+                                     .body_a = turntable,
+                                     .body_b = bead,
+                                     .frame_a = {{}, along_rod},
+                                     .frame_b = {{}, along_rod}}));
+    const auto striker = world
+                             ->create_body({.shape = sphere,
+                                            .position = {-2 * radius - delay * step * speed, 0, 0},
+                                            .linear_velocity = {speed, 0, 0},
+                                            .mass = {.mass = 1},
+                                            .material = bouncing(restitution),
+                                            .allow_sleep = false})
+                             .value();
+    world->step();
+    return world->linear_velocity(striker).x / speed;
+}
+
+TEST(JointedImpact, MovingCarrierIsWhereItIsWhenTheBlowComes) {
+    const double rate = 20;
+    for (const double restitution : {0.3, 0.6, 1.0}) {
+        for (const double angle : {0.0, 0.7, pi / 2}) {
+            for (int phase = 0; phase < 8; ++phase) {
+                const double delay = (phase + 0.5) / 8, turned = angle + rate * delay / 60;
+                const double yielding = std::cos(turned) * std::cos(turned);
+                EXPECT_NEAR(speed_after_strike_on_turntable(rate, delay, restitution, angle),
+                            1 - (1 + restitution) / (1 + yielding), 5e-3)
+                    << "e " << restitution << " from " << angle << " at " << delay;
+            }
+        }
+    }
+}
+
 // Five balls on hinges, the first one lifted.
 double cradle_energy_after(double seconds, double angle, double length, double radius) {
     auto world = make_world({});

@@ -28,8 +28,8 @@ public:
 
     /// No body is jointed.
     void clear();
-    /// These bodies and joints, at the places where they are; a joint whose other body is not of the list holds on to
-    /// that body as it moves now. Bodies ascend.
+    /// These bodies and joints, at the places where they are at the impact; a joint whose other body is not of the list
+    /// holds on to that body as it is and moves then. Bodies ascend.
     void set(const JointedList& list, const View& view);
 
     [[nodiscard]] std::span<const std::uint32_t> bodies() const { return bodies_; }

@@ -215,8 +215,10 @@ void ImpactStage::go_to(double time) {
     joints.clear();
     if (!memory_.jointed.empty()) {
         const ImpactJoints::View view{world_.motion, world_.constants, world_.active_joints};
+        move_carriers(world_, time);
         joints.set({memory_.jointed, memory_.jointed_joints}, view);
         joints.project(view);
+        put_carriers_back(world_);
     }
     for (ImpactMemory::Moved& moved : memory_.bodies) {
         moved.linear_velocity = world_.motion[moved.body].linear_velocity;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/dynamic/equations_of_motion.h"
+
 namespace embody::physics {
 
 namespace {
@@ -39,6 +41,18 @@ std::span<const std::uint32_t> joints_of(const ImpactMemory& memory, std::uint32
     return std::span(memory.joint_of_body).subspan(first, last - first);
 }
 
+// Calls move(h) for the whole substeps from the step's start to `time`, s, and for the rest; from there back, with
+// negative ones, if the time is negative.
+template <class Move>
+void for_each_substep(const WorldState& world, double time, Move move) {
+    const double substep = world.settings.time_step / world.settings.substeps, length = std::fabs(time);
+    const int whole = std::min(static_cast<int>(length / substep), world.settings.substeps);
+    const double rest = std::copysign(length - whole * substep, time);
+    if (rest < 0) move(rest);
+    for (int k = 0; k < whole; ++k) move(std::copysign(substep, time));
+    if (rest > 0) move(rest);
+}
+
 void sort_once(std::vector<std::uint32_t>& list) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
@@ -65,19 +79,35 @@ void fly_jointed(WorldState& world, double time) {
     const JointSystem::View view{world.motion, world.constants, memory.flown_joints};
     JointSystem& system = memory.flight;
     system.set({memory.jointed, memory.flown_list}, view);
-    const auto carriers = system.carriers(view);
+    move_carriers(world, time < 0 ? -time : 0);
+    for_each_substep(world, time, [&](double h) { system.advance(h, view, JointSystem::Errors::kept); });
+    put_carriers_back(world);
+}
 
-    // Whole substeps from the step's start on, then the rest; back the other way round.
-    const double substep = world.settings.time_step / world.settings.substeps, way = std::fabs(time);
-    const int whole = std::min(static_cast<int>(way / substep), world.settings.substeps);
-    const double rest = way - whole * substep;
-    const auto fly = [&](double part) {
-        if (part > 0) system.advance(std::copysign(part, time), view, JointSystem::Errors::kept);
+void move_carriers(WorldState& world, double time) {
+    ImpactMemory& memory = world.impact_memory;
+    memory.carriers.clear();
+    const auto add = [&](std::uint32_t body) {
+        const BodyState& state = world.motion[body];
+        const bool moves = state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{};
+        const auto is_it = [body](const ImpactMemory::Carrier& carrier) { return carrier.body == body; };
+        if (is_movable(world, body) || !moves) return;
+        if (std::none_of(memory.carriers.begin(), memory.carriers.end(), is_it))
+            memory.carriers.push_back({body, state});
     };
-    if (time < 0) fly(rest);
-    for (int k = 0; k < whole; ++k) fly(substep);
-    if (time > 0) fly(rest);
-    for (const auto& [body, state] : carriers) world.motion[body] = state;
+    for (const std::uint32_t index : memory.jointed_joints) {
+        const Joint& joint = world.active_joints[index];
+        if (!joint.a_is_world) add(joint.a);
+        add(joint.b);
+    }
+    for (const ImpactMemory::Carrier& carrier : memory.carriers) {
+        for_each_substep(world, time, [&](double h) { drift_kinematic(world.motion[carrier.body], h); });
+    }
+}
+
+void put_carriers_back(WorldState& world) {
+    for (const ImpactMemory::Carrier& carrier : world.impact_memory.carriers)
+        world.motion[carrier.body] = carrier.start;
 }
 
 void gather_jointed(WorldState& world) {

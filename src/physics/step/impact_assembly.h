@@ -15,7 +15,13 @@ inline constexpr std::size_t most_jointed_bodies = 64;
 /// Whether the jointed bodies of the present impact can be flown as the substeps will move them: few, all of what
 /// joints connect, carried by nothing, without motors and limits, which have no way back.
 bool can_fly_jointed(const WorldState& world);
-/// Moves them through `time`, s, also back (negative).
+/// Moves them from the step's start to `time`, s; from there back to the start if the time is negative.
 void fly_jointed(WorldState& world, double time);
+
+/// Puts the moving bodies without a free motion that the joints of the present impact hold on to where they are at
+/// `time`, s since the step began.
+void move_carriers(WorldState& world, double time);
+/// Puts them back to where they are at the step's start.
+void put_carriers_back(WorldState& world);
 
 }  // namespace embody::physics

@@ -81,6 +81,11 @@ struct ImpactMemory {
     std::vector<std::uint32_t> neighbours;      ///< those that collide, and their jointed ones
     std::vector<std::uint32_t> jointed;         ///< those of them that joints connect, ascending
     std::vector<std::uint32_t> jointed_joints;  ///< indices of these joints, ascending
+    struct Carrier {
+        std::uint32_t body;
+        BodyState start;  ///< of the step
+    };
+    std::vector<Carrier> carriers;  ///< kinematic bodies in motion that these joints hold on to
     std::vector<ImpactJoints::Push> pushes;
     bool is_flown = false;            ///< the jointed ones fly to the impact and back as the substeps will move them
     JointSystem flight;               ///< of these
