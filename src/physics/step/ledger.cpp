@@ -138,7 +138,8 @@ void Ledger::add_displaced(const WorldState& world, std::uint32_t body) {
     add(StepCause::coupling, dot(forces.coupling, way), {}, {});
 }
 
-// What a joint passed on in the impacts. That is no work, but an impulse where it leads to the ground.
+// What a joint passed on in the impacts. That is no work between bodies in free motion, but an impulse where it leads
+// to the ground, and work where that moves: a carrier goes straight on, whatever the joint does to it.
 void Ledger::note_blow(const WorldState& world, const Joint& joint) {
     joint_totals_.push_back({joint.total_linear, joint.total_angular});
     const bool ends_at_a = joint.a_is_world || world.motion[joint.a].inverse_mass == 0;
@@ -146,8 +147,12 @@ void Ledger::note_blow(const WorldState& world, const Joint& joint) {
     if (!ends_at_a && b.inverse_mass > 0) return;
     const double sign = ends_at_a ? 1 : -1;
     const Vec3 place = b.center + rotate(b.rotation, joint.local_b.position);
-    add(StepCause::joints, 0, sign * joint.total_linear,
-        sign * (cross(place, joint.total_linear) + joint.total_angular));
+    const Vec3 impulse = sign * joint.total_linear, moment = sign * joint.total_angular;
+    add(has_motor(joint) ? StepCause::motors : StepCause::joints, 0, impulse, cross(place, impulse) + moment);
+    if (ends_at_a && joint.a_is_world) return;
+    const BodyState& carrier = ends_at_a ? world.motion[joint.a] : b;
+    const Vec3 velocity = velocity_at(carrier, place - carrier.center);
+    add(StepCause::moving_bodies, dot(impulse, velocity) + dot(moment, carrier.angular_velocity), {}, {});
 }
 
 void Ledger::close_impacts(const WorldState& world) {

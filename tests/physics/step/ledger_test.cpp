@@ -162,6 +162,56 @@ TEST(StepAccount, OfAMotorIsItsTorqueTimesTheTurn) {
     EXPECT_NEAR(sums.unexplained, 0, 1e-6);
 }
 
+// A ball strikes a box on a hinge off its middle: the hinge leads the blow on to what holds it.
+StepAccount account_of_blow(const HingeJoint& hinge, Vec3 carrier_velocity) {
+    const auto world = make_world({});
+    const Material bouncy{
+        .friction_static = 0, .friction_dynamic = 0, .restitution = 0.5, .restitution_combine = CombineRule::maximum};
+    const BodyHandle carrier =
+        world->create_body({.kind = BodyKind::kinematic_body, .linear_velocity = carrier_velocity}).value();
+    const BodyHandle box = add_box(
+        *world, {.linear_velocity = carrier_velocity, .mass = {.mass = 2.0}, .material = bouncy, .allow_sleep = false});
+    EXPECT_TRUE(world->create_joint({.joint = hinge,
+                                     .body_a = carrier_velocity == Vec3{} ? BodyHandle{} : carrier,
+                                     .body_b = box,
+                                     .frame_a = {{0, 0, 0.3}, {}},
+                                     .frame_b = {{0, 0, 0.3}, {}}}));
+    BodyDefinition ball{.position = {0.2, 0.605, 0},
+                        .linear_velocity = {carrier_velocity.x, -1, 0},
+                        .mass = {.mass = 1.0},
+                        .material = bouncy,
+                        .allow_sleep = false};
+    ball.shape = world->create_shape(SphereShape{0.1}).value();
+    EXPECT_TRUE(world->create_body(ball));
+    const StepReport& report = world->step();
+    EXPECT_EQ(report.impacts, 1U);
+    return *report.account;
+}
+
+TEST(StepAccount, BooksTheBlowOnAMotorsJointAsTheMotors) {
+    HingeJoint hinge;
+    const StepAccount free = account_of_blow(hinge, {});
+    EXPECT_GT(free.of(StepCause::joints).linear_impulse.y, 0.1);
+    EXPECT_EQ(free.of(StepCause::motors).linear_impulse, Vec3{});
+    hinge.motor = JointMotor{0, 0.5};
+    const StepAccount driven = account_of_blow(hinge, {});
+    EXPECT_EQ(driven.of(StepCause::joints).linear_impulse, Vec3{});
+    EXPECT_EQ(driven.of(StepCause::joints).angular_impulse, Vec3{});
+    EXPECT_GT(driven.of(StepCause::motors).linear_impulse.y, 0.1);
+    for (const StepAccount& account : {free, driven}) {
+        EXPECT_NEAR(account.unexplained_linear_momentum.y, 0, 1e-5);
+        EXPECT_NEAR(length(account.unexplained_angular_momentum), 0, 1e-3);
+        EXPECT_NEAR(account.unexplained_energy, 0, 1e-4);
+    }
+}
+
+TEST(StepAccount, BooksWhatAMovingCarrierDoesInABlow) {
+    for (const Vec3 velocity : {Vec3{5, 0, 0}, Vec3{0, 5, 0}, Vec3{0, 0.3, 0}}) {
+        const StepAccount account = account_of_blow({}, velocity);
+        EXPECT_NEAR(account.unexplained_energy, 0, 1e-4) << velocity.x << " " << velocity.y;
+    }
+}
+
 TEST(StepAccount, NamesWhatWasCutAndWhatFellAsleep) {
     WorldSettings settings;
     settings.gravity = {};
