@@ -311,6 +311,93 @@ TEST(JointedImpact, MovingCarrierIsWhereItIsWhenTheBlowComes) {
     }
 }
 
+// Two swinging double pendulums, far apart; the second is struck in the tenth step, the first one before or never.
+std::vector<Vec3> state_after_own_strike(bool other_is_struck) {
+    auto world = make_world({});
+    const double radius = 0.05;
+    const auto sphere = world->create_shape(SphereShape{radius}).value();
+    std::vector<BodyHandle> bodies;
+    const auto add_ball = [&](Vec3 position, Vec3 velocity) {
+        return world
+            ->create_body({.shape = sphere,
+                           .position = position,
+                           .linear_velocity = velocity,
+                           .mass = {.mass = 1},
+                           .material = bouncing(1),
+                           .allow_sleep = false})
+            .value();
+    };
+    for (const double x : {0.0, 100.0}) {
+        const auto upper = add_ball({x, 0, 0}, {0, 0, 0.2}), lower = add_ball({x, -0.5, 0}, {0, 0, -0.1});
+        const Transform hook{{0, 0.5, 0}, {}};
+        EXPECT_TRUE(world->create_joint(
+            {.joint = BallJoint{}, .body_b = upper, .frame_a = {{x, 0.5, 0}, {}}, .frame_b = hook}));
+        EXPECT_TRUE(world->create_joint({.joint = BallJoint{}, .body_a = upper, .body_b = lower, .frame_b = hook}));
+        bodies = {upper, lower};
+    }
+    add_ball({-0.15, -0.5, 0}, {other_is_struck ? 4.0 : -4.0, 0, 0});
+    add_ball({100 - 0.1 - 9.5 / 60, -0.5 + gravity / 2 / 36, 0}, {1, 0, 0});
+    std::vector<Vec3> states;
+    for (int i = 0; i < 12; ++i) {
+        world->step();
+        for (const BodyHandle body : bodies) {
+            states.push_back(world->pose(body).position);
+            states.push_back(world->linear_velocity(body));
+            states.push_back(world->angular_velocity(body));
+        }
+    }
+    EXPECT_GT(std::fabs(world->linear_velocity(bodies[1]).x), 0.1);
+    return states;
+}
+
+TEST(JointedImpact, BlowIsTheSameWhateverWasStruckBefore) {
+    EXPECT_EQ(state_after_own_strike(true), state_after_own_strike(false));
+}
+
+// A body on a joint turned about it in the last step, fast or not at all. A pendulum that takes its slot then swings
+// past a wall.
+std::vector<Vec3> state_in_slot_of_turning_body(double old_rate) {
+    auto world = make_world({});
+    const double radius = 0.05, arm = 0.5;
+    const auto sphere = world->create_shape(SphereShape{radius}).value();
+    const auto wall = world->create_shape(PlaneShape{{1, 0, 0}, -radius - 2e-3}).value();
+    EXPECT_TRUE(world->create_body({.kind = BodyKind::static_body, .shape = wall, .material = bouncing(1)}));
+    const auto add_pendulum = [&](Vec3 place, Vec3 velocity, Vec3 spin) {
+        const auto body = world
+                              ->create_body({.shape = sphere,
+                                             .position = place,
+                                             .linear_velocity = velocity,
+                                             .angular_velocity = spin,
+                                             .mass = {.mass = 1},
+                                             .material = bouncing(1),
+                                             .allow_sleep = false})
+                              .value();
+        const Vec3 hook = Vec3{0, arm, 0};
+        const auto joint = world->create_joint(
+            {.joint = BallJoint{}, .body_b = body, .frame_a = {place + hook, {}}, .frame_b = {hook, {}}});
+        EXPECT_TRUE(joint);
+        return std::pair{body, joint.value()};
+    };
+    const auto [old, old_joint] = add_pendulum({50, 0, 0}, {0, 0, -arm * old_rate}, {old_rate, 0, 0});
+    world->step();
+    EXPECT_TRUE(world->destroy_joint(old_joint));
+    EXPECT_TRUE(world->destroy_body(old));
+    const auto body = add_pendulum({}, {0.05, 0, 1}, {-2, 0, 0.1}).first;
+    EXPECT_EQ(body.index, old.index);
+    std::vector<Vec3> states;
+    for (int i = 0; i < 3; ++i) {
+        world->step();
+        states.push_back(world->pose(body).position);
+        states.push_back(world->linear_velocity(body));
+        states.push_back(world->angular_velocity(body));
+    }
+    return states;
+}
+
+TEST(JointedImpact, BodyInheritsNothingOfItsSlot) {
+    EXPECT_EQ(state_in_slot_of_turning_body(60), state_in_slot_of_turning_body(0));
+}
+
 // Five balls on hinges, the first one lifted.
 double cradle_energy_after(double seconds, double angle, double length, double radius) {
     auto world = make_world({});

@@ -43,6 +43,8 @@ public:
 
     /// Takes the list over. Bodies keep their slots and joints their places until the next call.
     void set(const JointedList& list, const View& view);
+    /// The joints' impulses are of no known time: the next phase takes none over.
+    void start_cold() { impulse_time_ = 0; }
 
     /// Moves what nothing but joints and forces acts on through `time`, s: halves of the kick, the joints' impulses and
     /// the drift; back, if the time is negative. A motion that is too fast for one go is taken in parts. Bodies outside

@@ -91,6 +91,8 @@ void place_body(WorldState& world, std::uint32_t body, BodySetup setup) {
     world.constants[body] = setup.constants;
     world.motion[body] = setup.state;
     world.sleep[body] = setup.sleep;
+    auto& held_accelerations = world.impact_memory.held_accelerations;
+    if (body < held_accelerations.size()) held_accelerations[body] = {};
     introduce_body(world, body);
 
     const BodyRecord& record = world.record(body);

@@ -79,6 +79,7 @@ void fly_jointed(WorldState& world, double time) {
     const JointSystem::View view{world.motion, world.constants, memory.flown_joints};
     JointSystem& system = memory.flight;
     system.set({memory.jointed, memory.flown_list}, view);
+    system.start_cold();
     move_carriers(world, time < 0 ? -time : 0);
     for_each_substep(world, time, [&](double h) { system.advance(h, view, JointSystem::Errors::kept); });
     put_carriers_back(world);
