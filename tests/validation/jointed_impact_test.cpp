@@ -460,5 +460,50 @@ TEST(JointedImpact, MoreJointsThanADirectSolveTakesHoldAsWell) {
     EXPECT_GT(world->pose(ball).position.y, 0.199);
 }
 
+// A bridge of 60 planks under balls that all come down on it in one step.
+TEST(JointedImpact, ManyBlowsOnOneAssemblyReachALimitAndGainNothing) {
+    for (const int rows : {1, 8}) {
+        auto world = make_world({});
+        const int planks = 60;
+        const double length = 0.5, half = 0.2, radius = 0.04, speed = 6;
+        const auto plank = world->create_shape(BoxShape{{half, 0.02, 0.5}}).value();
+        const auto sphere = world->create_shape(SphereShape{radius}).value();
+        BodyHandle before;
+        for (int i = 0; i < planks; ++i) {
+            const double x = i * length;
+            const auto body =
+                world
+                    ->create_body(
+                        {.shape = plank, .position = {x, 0, 0}, .material = bouncing(0.9), .allow_sleep = false})
+                    .value();
+            const Vec3 end = i == 0 ? Vec3{-length / 2, 0, 0} : Vec3{length / 2, 0, 0};
+            ASSERT_TRUE(world->create_joint({.joint = BallJoint{},
+                                             .body_a = before,
+                                             .body_b = body,
+                                             .frame_a = {end, {}},
+                                             .frame_b = {{-length / 2, 0, 0}, {}}}));
+            before = body;
+        }
+        for (int i = 0; i < planks; ++i) {
+            for (int k = 0; k < rows; ++k) {
+                const double gap = speed / 60 * (0.1 + 0.8 * ((7 * i + 3 * k) % 50) / 50.0);
+                ASSERT_TRUE(
+                    world->create_body({.shape = sphere,
+                                        .position = {i * length, 0.02 + radius + gap, 0.1 * k - 0.05 * (rows - 1)},
+                                        .linear_velocity = {0, -speed, 0},
+                                        .material = bouncing(0.9),
+                                        .allow_sleep = false}));
+            }
+        }
+        const double start = energy(*world);
+        const StepReport& report = world->step();
+        const bool is_exhausted = (report.limits & static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted)) != 0;
+        EXPECT_EQ(is_exhausted, rows > 1) << report.impacts << " impacts";
+        EXPECT_LT(energy(*world), start);
+        for (int i = 0; i < 30; ++i) world->step();
+        EXPECT_LT(energy(*world), start);
+    }
+}
+
 }  // namespace
 }  // namespace embody::physics

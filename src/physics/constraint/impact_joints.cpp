@@ -40,12 +40,12 @@ void ImpactJoints::set(const JointedList& list, const View& view) {
                            .rows = make_rows(joint, geometry),
                            .arm_b = geometry.arm_b});
     }
-    analyse();
+    choose_matrix();
     factor(view);
 }
 
-void ImpactJoints::analyse() {
-    std::swap(edges_, last_edges_);
+// The matrix of this structure: as analysed before, or in the place of the one longest out of use.
+void ImpactJoints::choose_matrix() {
     edges_.clear();
     for (std::size_t i = 0; i < places_.size(); ++i) {
         Place& place = places_[i];
@@ -59,36 +59,47 @@ void ImpactJoints::analyse() {
         place.edge_b = add_edge(place.b);
     }
     const std::size_t nodes = bodies_.size() + places_.size();
-    const bool is_known = unknowns_.size() == nodes && analysed_bodies_ == bodies_.size() && edges_ == last_edges_;
-    if (is_known) return;
-    analysed_bodies_ = bodies_.size();
-    matrix_.analyse(nodes, edges_, places_.size());
     unknowns_.resize(nodes);
+    const auto is_it = [&](const Analysed& a) {
+        return a.bodies == bodies_.size() && a.nodes == nodes && a.edges == edges_;
+    };
+    auto found = std::find_if(analysed_.begin(), analysed_.end(), is_it);
+    if (found == analysed_.end()) {
+        const auto is_older = [](const Analysed& a, const Analysed& b) { return a.last_use < b.last_use; };
+        found = analysed_.size() < most_analysed ? analysed_.emplace(analysed_.end())
+                                                 : std::min_element(analysed_.begin(), analysed_.end(), is_older);
+        found->bodies = bodies_.size();
+        found->nodes = nodes;
+        found->edges = edges_;
+        found->matrix.analyse(nodes, edges_, places_.size());
+    }
+    found->last_use = ++uses_;
+    chosen_ = static_cast<std::size_t>(found - analysed_.begin());
 }
 
 void ImpactJoints::factor(const View& view) {
-    matrix_.clear();
+    matrix().clear();
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const BodyConstants& c = view.constants[bodies_[i]];
         const Mat3 inertia = c.is_isotropic ? c.inertia : rotate_tensor(view.bodies[bodies_[i]].rotation, c.inertia);
-        add_to(matrix_.diagonal(i), Mat3::identity() * c.mass, Mat3::zero(), Mat3::zero(), inertia);
+        add_to(matrix().diagonal(i), Mat3::identity() * c.mass, Mat3::zero(), Mat3::zero(), inertia);
     }
     for (std::size_t i = 0; i < places_.size(); ++i) put_joint(i, view);
-    matrix_.factor();
+    matrix().factor();
 }
 
 void ImpactJoints::put_joint(std::size_t number, const View& view) {
     const Place& place = places_[number];
     const Joint& joint = view.joints[place.joint];
-    Block6& own = matrix_.diagonal(bodies_.size() + number);
+    Block6& own = matrix().diagonal(bodies_.size() + number);
     for (int row = 0; row < max_joint_rows; ++row) own.column[row][row] = -1;
     for (int row = 0; row < place.rows.count; ++row) {
         const JointRow& j = place.rows.rows[static_cast<std::size_t>(row)];
         own.column[row][row] = -regularisation * row_response(joint, j, view.bodies);
         const auto put = [&](std::int32_t body, std::uint32_t edge, const Vec6& numbers) {
             if (body < 0) return;
-            const bool joint_has_rows = matrix_.row_end(edge) == 0;
-            for (Block6* block : {&matrix_.lower(edge), &matrix_.upper(edge)}) {
+            const bool joint_has_rows = matrix().row_end(edge) == 0;
+            for (Block6* block : {&matrix().lower(edge), &matrix().upper(edge)}) {
                 for (int i = 0; i < 6; ++i) {
                     (joint_has_rows ? block->column[i][row] : block->column[row][i]) = numbers.value[i];
                 }
@@ -108,7 +119,7 @@ void ImpactJoints::project(const View& view) {
                 row_speed(joint, places_[i].rows.rows[static_cast<std::size_t>(row)], view.bodies);
         }
     }
-    matrix_.solve(unknowns_);
+    matrix().solve(unknowns_);
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         view.bodies[bodies_[i]].linear_velocity += unknowns_[i].linear();
         view.bodies[bodies_[i]].angular_velocity += unknowns_[i].angular();
@@ -123,7 +134,7 @@ std::span<const Vec6> ImpactJoints::respond(std::span<const Push> pushes) {
         Vec6& sum = unknowns_[static_cast<std::size_t>(number)];
         sum = make_vec6(sum.linear() + push.impulse, sum.angular() + cross(push.arm, push.impulse));
     }
-    matrix_.solve(unknowns_);
+    matrix().solve(unknowns_);
     return std::span(unknowns_).first(bodies_.size());
 }
 

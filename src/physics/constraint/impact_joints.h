@@ -44,6 +44,9 @@ public:
     /// Adds the joints' answer to the pushes to their totals of the step.
     void add_to_totals(std::span<const Push> pushes, const View& view);
 
+    /// How many structures of assemblies are remembered.
+    static constexpr std::size_t most_analysed = 16;
+
 private:
     struct Place {
         std::uint32_t joint = 0;      // index
@@ -52,15 +55,24 @@ private:
         JointRows rows;
         Vec3 arm_b;  // from b's centre of mass to the joint
     };
-    void analyse();
+    /// A matrix whose pattern is analysed. Assemblies of one structure share it.
+    struct Analysed {
+        std::size_t bodies = 0, nodes = 0;
+        std::vector<BlockPattern::Edge> edges;
+        BlockLu matrix;
+        std::uint64_t last_use = 0;
+    };
+    void choose_matrix();
     void factor(const View& view);
     void put_joint(std::size_t number, const View& view);
+    BlockLu& matrix() { return analysed_[chosen_].matrix; }
 
     std::vector<std::uint32_t> bodies_;
     std::vector<Place> places_;
-    BlockLu matrix_;
-    std::vector<BlockPattern::Edge> edges_, last_edges_;  // now, and as last analysed
-    std::size_t analysed_bodies_ = 0;
+    std::vector<BlockPattern::Edge> edges_;
+    std::vector<Analysed> analysed_;  // at most most_analysed; those longest out of use make room
+    std::size_t chosen_ = 0;          // of analysed_
+    std::uint64_t uses_ = 0;
     std::vector<Vec6> unknowns_;  // changes of the bodies' velocities, impulses of the joints
 };
 

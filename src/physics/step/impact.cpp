@@ -32,6 +32,7 @@ constexpr int most_bounces = 3;        // of one contact in a step; later impact
 constexpr double same_instant = 1e-6;  // of a step: impacts this near in time are as simultaneous as mirror images
 constexpr std::size_t most_simultaneous_sites = 64;  // what else collides then has events of its own
 constexpr int most_impacts = 5;                      // of one contact in a step; then the contact solver stops it
+constexpr std::size_t nodes_as_bounce = 32;          // of an assembly's bodies and joints: they cost a bounce in a heap
 
 class ImpactStage {
 public:
@@ -41,7 +42,10 @@ public:
           bodies_(world),
           paths_(world, bodies_),
           regions_(world, bodies_, paths_),
-          step_(world.settings.time_step) {}
+          step_(world.settings.time_step),
+          most_assembly_nodes_(nodes_as_bounce * paths_.most_heap_bounces()) {
+        memory_.assembly_nodes = 0;
+    }
 
     void run();
 
@@ -53,6 +57,8 @@ private:
     void predict_again();
     void list_contacts();
     bool count_impact(std::uint32_t contact);
+    void count_assembly();
+    [[nodiscard]] bool is_left_to_contacts(const Contact& contact) const;
     bool add_region(std::uint32_t contact, const Manifold& manifold, double time);
     bool joins_in(std::uint32_t contact, double time);
     void add_simultaneous(double time);
@@ -73,6 +79,7 @@ private:
     ImpactPaths paths_;
     ImpactRegions regions_;
     const double step_;
+    const std::size_t most_assembly_nodes_;  // in a step
 };
 
 void ImpactStage::push(double time, std::uint32_t contact) {
@@ -199,6 +206,20 @@ void ImpactStage::gather(double time) {
     gather_jointed(world_);
 }
 
+// Impacts of large assemblies are as dear as the bounces of a heap, and have as many.
+void ImpactStage::count_assembly() {
+    const bool had_any_left = memory_.assembly_nodes < most_assembly_nodes_;
+    if (!memory_.jointed.empty()) memory_.assembly_nodes += memory_.jointed.size() + memory_.jointed_joints.size();
+    if (had_any_left && memory_.assembly_nodes >= most_assembly_nodes_) {
+        world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
+    }
+}
+
+bool ImpactStage::is_left_to_contacts(const Contact& contact) const {
+    if (memory_.assembly_nodes < most_assembly_nodes_) return false;
+    return has_joints(world_, contact.a) || has_joints(world_, contact.b);
+}
+
 // The bodies at the place of the impact. Joints have kept what they hold from falling on its way there.
 void ImpactStage::go_to(double time) {
     for (ImpactMemory::Moved& moved : memory_.bodies) moved.start = world_.motion[moved.body];
@@ -230,6 +251,7 @@ void ImpactStage::go_to(double time) {
 void ImpactStage::solve(double time, SlidePath path) {
     // To the place of the impact, the collision, and back to the start of the step on the new path.
     gather(time);
+    count_assembly();
     go_to(time);
     const ImpactReport report = solve_impact_group(memory_.sites, world_.motion, memory_.group, path);
     if (!report.converged) {
@@ -337,6 +359,7 @@ void ImpactStage::add_simultaneous(double time) {
 // The next impact, if its place and time are right; else it comes back with better ones.
 void ImpactStage::take(const ImpactEvent& event) {
     Contact& contact = world_.contacts[event.contact];
+    if (is_left_to_contacts(contact)) return;
     double time = event.time;
     Manifold manifold;
     const bool in_heap = paths_.hits_heap(contact), is_rough = in_heap && !paths_.bounces(contact);

@@ -11,6 +11,7 @@ namespace embody::physics {
 namespace {
 
 constexpr std::size_t most_flown_bodies = 8;
+constexpr std::size_t most_flights = 16;  // remembered
 
 bool is_movable(const WorldState& world, std::uint32_t body) { return world.motion[body].inverse_mass > 0; }
 
@@ -53,12 +54,34 @@ void for_each_substep(const WorldState& world, double time, Move move) {
     if (rest > 0) move(rest);
 }
 
+// The system of the present assembly: from its last flight, or in the place of the one longest out of use.
+JointSystem& flight_of_jointed(ImpactMemory& memory) {
+    std::vector<ImpactMemory::Flight>& flights = memory.flights;
+    const auto is_it = [&](const ImpactMemory::Flight& flight) {
+        return flight.bodies == memory.jointed && flight.joints == memory.jointed_joints;
+    };
+    auto found = std::find_if(flights.begin(), flights.end(), is_it);
+    if (found == flights.end()) {
+        const auto is_older = [](const ImpactMemory::Flight& a, const ImpactMemory::Flight& b) {
+            return a.last_use < b.last_use;
+        };
+        found = flights.size() < most_flights ? flights.emplace(flights.end())
+                                              : std::min_element(flights.begin(), flights.end(), is_older);
+        found->bodies = memory.jointed;
+        found->joints = memory.jointed_joints;
+    }
+    found->last_use = ++memory.flight_uses;
+    return found->system;
+}
+
 void sort_once(std::vector<std::uint32_t>& list) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
 }  // namespace
+
+bool has_joints(const WorldState& world, std::uint32_t body) { return !joints_of(world.impact_memory, body).empty(); }
 
 bool can_fly_jointed(const WorldState& world) {
     const ImpactMemory& memory = world.impact_memory;
@@ -77,7 +100,7 @@ void fly_jointed(WorldState& world, double time) {
         memory.flown_joints.push_back(world.active_joints[index]);
     }
     const JointSystem::View view{world.motion, world.constants, memory.flown_joints};
-    JointSystem& system = memory.flight;
+    JointSystem& system = flight_of_jointed(memory);
     system.set({memory.jointed, memory.flown_list}, view);
     system.start_cold();
     move_carriers(world, time < 0 ? -time : 0);

@@ -12,6 +12,9 @@ void gather_jointed(WorldState& world);
 
 inline constexpr std::size_t most_jointed_bodies = 64;
 
+/// Whether an active joint holds the body. Needs an impact of jointed bodies before in this step.
+bool has_joints(const WorldState& world, std::uint32_t body);
+
 /// Whether the jointed bodies of the present impact can be flown as the substeps will move them: few, all of what
 /// joints connect, carried by nothing, without motors and limits, which have no way back.
 bool can_fly_jointed(const WorldState& world);

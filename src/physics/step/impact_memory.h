@@ -64,7 +64,8 @@ struct ImpactMemory {
     };
     std::vector<HeldAcceleration> held_accelerations;  ///< by body; empty without joints
 
-    std::size_t heap_bounces = 0;  ///< of bodies that others carry
+    std::size_t heap_bounces = 0;    ///< of bodies that others carry
+    std::size_t assembly_nodes = 0;  ///< bodies and joints of all jointed assemblies that were solved in this step
 
     // Of the present impact.
     std::vector<ImpactEvent> events;  ///< a heap, the earliest on top
@@ -87,9 +88,15 @@ struct ImpactMemory {
     };
     std::vector<Carrier> carriers;  ///< kinematic bodies in motion that these joints hold on to
     std::vector<ImpactJoints::Push> pushes;
-    bool is_flown = false;            ///< the jointed ones fly to the impact and back as the substeps will move them
-    JointSystem flight;               ///< of these
-    std::vector<Joint> flown_joints;  ///< copies of their joints
+    bool is_flown = false;  ///< the jointed ones fly to the impact and back as the substeps will move them
+    struct Flight {
+        std::vector<std::uint32_t> bodies, joints;  ///< as jointed and jointed_joints
+        JointSystem system;
+        std::uint64_t last_use = 0;
+    };
+    std::vector<Flight> flights;  ///< of the last assemblies that were flown: their systems are analysed
+    std::uint64_t flight_uses = 0;
+    std::vector<Joint> flown_joints;        ///< copies of their joints
     std::vector<std::uint32_t> flown_list;  ///< indices of these
     ImpactGroupMemory group;
 };

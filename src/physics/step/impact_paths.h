@@ -39,6 +39,7 @@ public:
     /// left of the first one (Zeno's ball).
     [[nodiscard]] bool bounces(const Contact& contact) const;
     void note_bounce(const Contact& contact);
+    [[nodiscard]] std::size_t most_heap_bounces() const { return most_heap_bounces_; }
     /// Whether it hits what others carry: one of many contacts that stop it together.
     [[nodiscard]] bool hits_heap(const Contact& contact) const;
     /// Whether no point can close as fast as an impact does: most contacts of a heap at rest, told by what the touch
