@@ -413,10 +413,9 @@ void JointSystem::advance(double time, const View& view, Errors errors) {
     errors_ = Errors::mended;
 }
 
-std::vector<std::pair<std::uint32_t, BodyState>> JointSystem::carriers(const View& view) const {
-    std::vector<std::pair<std::uint32_t, BodyState>> result;
-    for (const std::uint32_t slot : carriers_) result.emplace_back(slot, view.bodies[slot]);
-    return result;
+void JointSystem::list_carriers(const View& view, std::vector<std::pair<std::uint32_t, BodyState>>& carriers) const {
+    carriers.clear();
+    for (const std::uint32_t slot : carriers_) carriers.emplace_back(slot, view.bodies[slot]);
 }
 
 void JointSystem::advance(double time, int halvings, const View& view) {

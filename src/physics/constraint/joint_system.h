@@ -50,8 +50,8 @@ public:
     /// the drift; back, if the time is negative. A motion that is too fast for one go is taken in parts. Bodies outside
     /// the list that joints hold on to go along by their own velocities.
     void advance(double time, const View& view, Errors errors = Errors::mended);
-    /// Those bodies as they are now.
-    [[nodiscard]] std::vector<std::pair<std::uint32_t, BodyState>> carriers(const View& view) const;
+    /// Lists those bodies as they are now.
+    void list_carriers(const View& view, std::vector<std::pair<std::uint32_t, BodyState>>& carriers) const;
 
     // Where others change velocities between rounds. The joints must have been prepared anew.
 

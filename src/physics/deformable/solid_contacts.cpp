@@ -79,9 +79,9 @@ void SolidContacts::solve(std::span<SolidContact> contacts, Solids solids, std::
 
 // A group that is most of the work by all workers together, else each by one.
 void SolidContacts::find_forces(double h, TaskPool& workers) {
+    if (groups_.empty()) return;
     std::size_t first_shared = 0;
-    if (!groups_.empty() && 2 * groups_[0].active.size() > active_.size())
-        find_forces(groups_[first_shared++], h, workers);
+    if (2 * groups_[0].active.size() > active_.size()) find_forces(groups_[first_shared++], h, workers);
     std::atomic<std::size_t> next = first_shared;
     const auto work = [&](int) {
         TaskPool alone(1);

@@ -5,6 +5,7 @@
 #include "physics/optimization/islands.h"
 
 #include <algorithm>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -16,8 +17,9 @@ constexpr std::uint32_t none = 0xFFFFFFFFu;
 
 class DisjointSets {
 public:
-    explicit DisjointSets(std::size_t count) : parent_(count) {
-        for (std::size_t i = 0; i < count; ++i) parent_[i] = static_cast<std::uint32_t>(i);
+    DisjointSets(std::size_t count, std::vector<std::uint32_t>& parent) : parent_(parent) {
+        parent_.resize(count);
+        std::iota(parent_.begin(), parent_.end(), 0U);
     }
     std::uint32_t find(std::uint32_t i) {
         while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
@@ -31,32 +33,35 @@ public:
     }
 
 private:
-    std::vector<std::uint32_t> parent_;
+    std::vector<std::uint32_t>& parent_;
 };
 
 bool is_movable(const BodyState& body) { return body.inverse_mass > 0; }
 
 // Breadth first through the contacts, all immovable bodies first.
-void find_levels(std::span<const BodyState> bodies, std::span<const ContactGlance> contacts,
+void find_levels(std::span<const BodyState> bodies, std::span<const ContactGlance> contacts, Islands::Memory& memory,
                  std::vector<std::uint32_t>& level) {
     level.assign(bodies.size(), no_level);
 
     // Neighbours of each body by counting sort.
-    std::vector<std::uint32_t> first(bodies.size() + 1, 0), neighbour(2 * contacts.size());
+    std::vector<std::uint32_t>&first = memory.first, &next = memory.next, &neighbour = memory.neighbour;
+    std::vector<std::uint32_t>& front = memory.front;
+    first.assign(bodies.size() + 1, 0);
+    neighbour.resize(2 * contacts.size());
     for (const ContactGlance& c : contacts) {
         if (c.is_idle) continue;
         ++first[c.a + 1];
         ++first[c.b + 1];
     }
     for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
-    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+    next.assign(first.begin(), first.end() - 1);
     for (const ContactGlance& c : contacts) {
         if (c.is_idle) continue;
         neighbour[next[c.a]++] = c.b;
         neighbour[next[c.b]++] = c.a;
     }
 
-    std::vector<std::uint32_t> front;
+    front.clear();
     for (const ContactGlance& c : contacts) {
         for (const std::uint32_t body : {c.a, c.b}) {
             if (c.is_idle || is_movable(bodies[body]) || level[body] == 0) continue;
@@ -134,7 +139,7 @@ void build_islands(std::span<const std::uint32_t> awake, std::span<const BodySta
     if (islands.graph == islands.last_graph && islands.level.size() == bodies.size()) return;
 
     // Immovable bodies do not connect: two boxes on one floor are two islands.
-    DisjointSets sets(bodies.size());
+    DisjointSets sets(bodies.size(), islands.memory.parent);
     for (const ContactGlance& c : contacts) {
         if (!c.is_idle && is_movable(bodies[c.a]) && is_movable(bodies[c.b])) sets.unite(c.a, c.b);
     }
@@ -143,7 +148,8 @@ void build_islands(std::span<const std::uint32_t> awake, std::span<const BodySta
     }
 
     // Islands in the order of their smallest slot.
-    std::vector<std::uint32_t> island_of_root(bodies.size(), none);
+    std::vector<std::uint32_t>& island_of_root = islands.memory.island_of_root;
+    island_of_root.assign(bodies.size(), none);
     islands.list.clear();
     for (const std::uint32_t body : awake) {
         std::uint32_t& island = island_of_root[sets.find(body)];
@@ -175,7 +181,7 @@ void build_islands(std::span<const std::uint32_t> awake, std::span<const BodySta
         [](Island& i) -> std::uint32_t& { return i.joint_count; });
 
     // Solve order: from the ground up; the contacts' own order breaks ties.
-    find_levels(bodies, contacts, islands.level);
+    find_levels(bodies, contacts, islands.memory, islands.level);
     std::uint32_t deepest = 0;
     for (const std::uint32_t body : awake) {
         if (islands.level[body] != no_level) deepest = std::max(deepest, islands.level[body]);

@@ -36,6 +36,12 @@ struct Islands {
     std::vector<std::uint32_t> joints;    ///< indices, island by island
     std::vector<std::uint32_t> level;     ///< by body slot: steps through contacts to an immovable body; 0 is immovable
     ContactGraph graph, last_graph;       ///< that all this was made of, and the one before: memory only
+
+    /// Of the search, so that a graph that changes allocates nothing. By slot, but `neighbour` by contact.
+    struct Memory {
+        std::vector<std::uint32_t> parent, island_of_root, first, next, neighbour, front;
+    };
+    Memory memory;
 };
 
 inline constexpr std::uint32_t no_level = 0xFFFFFFFFu;  ///< hangs in the air

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "physics/collision/ball_touch.h"
+#include "physics/constraint/rolling_ball.h"
 #include "physics/dynamic/body_state.h"
 
 namespace embody::physics {
@@ -18,6 +20,20 @@ struct RolledBall {
 
 /// Memory of the stage that rolls balls: nothing in it outlives a step.
 struct BallMemory {
+    /// What a ball may touch, and where it is near that, while its path is followed.
+    struct Ground {
+        std::uint32_t body = 0;
+        const CollisionShape* shape = nullptr;
+        Transform pose;
+        BallFriction friction;
+    };
+    struct Surroundings {
+        std::vector<Ground> grounds;
+        std::vector<BallTouch> touches;
+        std::vector<std::size_t> ground_of;  ///< by touch
+    };
+    std::vector<Surroundings> surroundings;  ///< by worker
+
     /// A ball that touches nothing but still ground, as far as known.
     struct Candidate {
         std::uint32_t body = 0;

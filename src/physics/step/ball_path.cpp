@@ -35,13 +35,6 @@ constexpr double most_fall = 0.05;        // m/s: faster, what did not touch bef
 
 const double smooth_cosine = std::cos(smooth_bend);
 
-struct Ground {
-    std::uint32_t body = 0;
-    const CollisionShape* shape = nullptr;
-    Transform pose;
-    BallFriction friction;
-};
-
 /// The ball on its way.
 struct Place {
     Vec3 center;
@@ -55,7 +48,8 @@ struct Place {
 
 class BallPath {
 public:
-    BallPath(const WorldState& world, std::uint32_t body, std::span<const std::uint32_t> contacts);
+    BallPath(const WorldState& world, std::uint32_t body, std::span<const std::uint32_t> contacts,
+             BallMemory::Surroundings& surroundings);
     bool roll(RolledBall& rolled);
 
 private:
@@ -79,12 +73,13 @@ private:
     const Vec3 acceleration_;
     const double mass_;
     bool was_touching_ = false, bounces_ = false, resists_ = false;
-    std::vector<Ground> grounds_;
-    std::vector<BallTouch> touches_;
-    std::vector<std::size_t> ground_of_;  // by touch
+    std::vector<BallMemory::Ground>& grounds_;
+    std::vector<BallTouch>& touches_;
+    std::vector<std::size_t>& ground_of_;
 };
 
-BallPath::BallPath(const WorldState& world, std::uint32_t body, std::span<const std::uint32_t> contacts)
+BallPath::BallPath(const WorldState& world, std::uint32_t body, std::span<const std::uint32_t> contacts,
+                   BallMemory::Surroundings& surroundings)
     : world_(world),
       body_(body),
       contacts_(contacts),
@@ -92,7 +87,11 @@ BallPath::BallPath(const WorldState& world, std::uint32_t body, std::span<const 
       step_(world.settings.time_step),
       radius_(world.record(body).reach),
       acceleration_(world.constants[body].acceleration),
-      mass_(world.constants[body].mass) {
+      mass_(world.constants[body].mass),
+      grounds_(surroundings.grounds),
+      touches_(surroundings.touches),
+      ground_of_(surroundings.ground_of) {
+    grounds_.clear();
     for (const std::uint32_t index : contacts) {
         const Contact& contact = world.contacts[index];
         const std::uint32_t other = contact.a == body ? contact.b : contact.a;
@@ -319,8 +318,8 @@ bool BallPath::roll(RolledBall& rolled) {
 }  // namespace
 
 bool roll_ball(const WorldState& world, std::uint32_t body, std::span<const std::uint32_t> contacts,
-               RolledBall& rolled) {
-    return BallPath(world, body, contacts).roll(rolled);
+               BallMemory::Surroundings& surroundings, RolledBall& rolled) {
+    return BallPath(world, body, contacts, surroundings).roll(rolled);
 }
 
 }  // namespace embody::physics

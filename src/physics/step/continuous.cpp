@@ -142,7 +142,10 @@ void for_each_met(const WorldState& world, std::uint32_t body, const Sweep& swee
 
 // Those that may tunnel, in the order of the bodies.
 std::vector<FastBody> list_fast(WorldState& world) {
-    std::vector<std::vector<FastBody>> found(static_cast<std::size_t>(world.workers->workers()));
+    thread_local std::vector<std::vector<FastBody>> kept;
+    std::vector<std::vector<FastBody>>& found = kept;  // of this thread, for all workers
+    found.resize(static_cast<std::size_t>(world.workers->workers()));
+    for (std::vector<FastBody>& of_worker : found) of_worker.clear();
     share_awake(world, [&](int worker, Share share) {
         for (std::size_t i = share.first; i < share.last; ++i) {
             const std::uint32_t body = world.awake[i];

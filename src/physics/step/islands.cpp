@@ -104,8 +104,8 @@ void find_islands(WorldState& world) {
     set_idle_contacts(world);
 
     // Kinematic bodies are awake, but no island holds them.
-    std::vector<std::uint32_t> movable;
-    movable.reserve(world.awake.size());
+    std::vector<std::uint32_t>& movable = world.movable;
+    movable.clear();
     for (const std::uint32_t body : world.awake) {
         if (world.motion[body].inverse_mass > 0) movable.push_back(body);
     }

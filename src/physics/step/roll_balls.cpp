@@ -71,11 +71,13 @@ void roll_balls(WorldState& world) {
     if (memory.count == 0) return;
     give_contacts(world, memory);
     constexpr std::size_t fewest_shared = 64;
-    share_among(*world.workers, memory.count, memory.count >= fewest_shared, [&](int, Share share) {
+    memory.surroundings.resize(static_cast<std::size_t>(world.workers->workers()));
+    share_among(*world.workers, memory.count, memory.count >= fewest_shared, [&](int worker, Share share) {
+        BallMemory::Surroundings& own = memory.surroundings[static_cast<std::size_t>(worker)];
         for (std::size_t i = share.first; i < share.last; ++i) {
             BallMemory::Candidate& candidate = memory.candidates[i];
             if (!candidate.is_alone || candidate.contacts.empty()) continue;
-            candidate.has_rolled = roll_ball(world, candidate.body, candidate.contacts, candidate.rolled);
+            candidate.has_rolled = roll_ball(world, candidate.body, candidate.contacts, own, candidate.rolled);
         }
     });
     for (std::size_t i = 0; i < memory.count; ++i) {

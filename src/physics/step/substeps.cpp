@@ -17,27 +17,6 @@ namespace embody::physics {
 
 namespace {
 
-/// Islands by the way they are solved (docs/physics/wide-solver.md).
-struct SolveWays {
-    /// Islands of contacts only that share a plan.
-    struct Wide {
-        ContactPlan plan;
-        std::vector<Island> islands;
-    };
-    std::vector<std::uint32_t> free;  // bodies that nothing holds
-    std::vector<Island> one_by_one;   // joints and contacts, or too many joints
-    std::vector<Island> jointed;      // joints only, all at once
-    std::vector<Wide> wide;           // contacts only; the finest plan first
-
-    void add(const Island& island, const ContactPlan& plan);
-};
-
-void SolveWays::add(const Island& island, const ContactPlan& plan) {
-    auto way = std::find_if(wide.begin(), wide.end(), [&](const Wide& w) { return w.plan.substeps <= plan.substeps; });
-    if (way == wide.end() || way->plan.substeps != plan.substeps) way = wide.insert(way, {plan, {}});
-    way->islands.push_back(island);
-}
-
 std::span<const std::uint32_t> contacts_of(const WorldState& world, const Island& island) {
     return std::span(world.islands.contacts).subspan(island.first_contact, island.contact_count);
 }
@@ -61,15 +40,14 @@ JointSystem* joint_system(WorldState& world, const Island& island) {
 }
 
 // The kinematic bodies in motion.
-std::vector<std::uint32_t> list_carriers(const WorldState& world) {
-    std::vector<std::uint32_t> carriers;
-    if (world.awake.size() == world.islands.bodies.size()) return carriers;
+void list_carriers(const WorldState& world, std::vector<std::uint32_t>& carriers) {
+    carriers.clear();
+    if (world.awake.size() == world.islands.bodies.size()) return;
     for (const std::uint32_t body : world.awake) {
         const BodyState& state = world.motion[body];
         const bool moves = state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{};
         if (state.inverse_mass == 0 && moves) carriers.push_back(body);
     }
-    return carriers;
 }
 
 // Whether a kinematic body may give the island energy by a contact.
@@ -94,9 +72,14 @@ bool spins(const WorldState& world, const Island& island) {
 }
 
 // Solves all given islands, of contacts only, through the step.
-void solve_wide(WorldState& world, const SolveWays::Wide& way) {
-    std::vector<std::uint32_t> order, bodies;
-    std::vector<WideContactSolver::Group> groups;
+void solve_wide(WorldState& world, const IslandsBySolver::Wide& way) {
+    if (way.islands.empty()) return;
+    std::vector<std::uint32_t>&order = world.substep_memory.wide_contacts, &bodies = world.substep_memory.wide_bodies;
+    std::vector<WideContactSolver::Group>& groups = world.substep_memory.wide_groups;
+    order.clear();
+    bodies.clear();
+    groups.clear();
+    list_carriers(world, world.substep_memory.wide_carriers);
     for (const Island& island : way.islands) {
         groups.push_back({island.body_count, spins(world, island) && !is_pushed(world, island)});
         const auto contacts = contacts_of(world, island);
@@ -107,7 +90,7 @@ void solve_wide(WorldState& world, const SolveWays::Wide& way) {
     WideContactSolver& solver = world.wide_solver;
     build_schedule(order, world.contact_glances, world.motion, solver.lanes(), world.schedule);
     const ContactSoftness softness = way.plan.softness(world.settings.time_step);
-    solver.begin({bodies, list_carriers(world), groups}, softness.substep, way.plan.substeps);
+    solver.begin({bodies, world.substep_memory.wide_carriers, groups}, softness.substep, way.plan.substeps);
     for (const SolveSchedule::Stage& stage : world.schedule.stages) {
         solver.begin_stage();
         for (std::uint32_t i = 0; i < stage.batch_count; ++i) {
@@ -189,7 +172,8 @@ void solve_jointed(WorldState& world, const std::vector<Island>& islands, double
     const JointSystem::View view{world.motion, world.constants, world.active_joints};
     for (const Island& island : islands) {
         JointSystem& system = *joint_system(world, island);
-        const std::vector<std::pair<std::uint32_t, BodyState>> carriers = system.carriers(view);
+        std::vector<std::pair<std::uint32_t, BodyState>>& carriers = world.substep_memory.carriers;
+        system.list_carriers(view, carriers);
         for (int k = 0; k < world.settings.substeps; ++k) {
             system.advance(h, view);
             if (world.ledger) world.ledger->close_island(world, island, h);
@@ -199,8 +183,9 @@ void solve_jointed(WorldState& world, const std::vector<Island>& islands, double
 }
 
 // Solves what is solved directly, and tells how the others have to be.
-SolveWays sort_islands(WorldState& world) {
-    SolveWays ways;
+const IslandsBySolver& sort_islands(WorldState& world) {
+    IslandsBySolver& ways = world.substep_memory.islands;
+    ways.clear();
     set_up_joint_systems(world);
     world.held.resize(world.bodies.slot_count());
     world.direct_solver.begin(world.settings.time_step, world.settings.substeps);
@@ -359,7 +344,10 @@ void freeze_lost_bodies(WorldState& world) {
 class EnergyBounds {
 public:
     EnergyBounds(WorldState& world, const std::vector<Island>& islands)
-        : world_(world), view_{world.motion, world.constants, world.active_joints} {
+        : world_(world),
+          view_{world.motion, world.constants, world.active_joints},
+          bounds_(world.substep_memory.energy_bounds) {
+        bounds_.clear();
         for (const Island& island : islands) {
             const JointSystem* system = island.contact_count > 0 ? joint_system(world, island) : nullptr;
             if (!system || is_pushed(world, island)) continue;
@@ -380,11 +368,7 @@ private:
     static constexpr double mending_speed = 3;  // m/s
     static constexpr double far_off = 0.7;      // impulses that gave so much too much are no guess for the next ones
 
-    struct Bound {
-        Island island;
-        const JointSystem* system;
-        double energy, mending;  // J
-    };
+    using Bound = SubstepMemory::EnergyBound;
     void keep(const Bound& bound, double most) const {
         const double share = bound.system->bound_energy(most, view_);
         if (world_.ledger && share < 1) {
@@ -403,7 +387,7 @@ private:
 
     WorldState& world_;
     JointSystem::View view_;
-    std::vector<Bound> bounds_;
+    std::vector<Bound>& bounds_;
 };
 
 // Through the whole step: half of the forces before the drift and half after it.
@@ -448,48 +432,41 @@ void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, dou
     for (const Island& island : islands) note_outcomes(world, island);
 }
 
-// How joints and contacts accelerate what joints hold.
-class HeldAccelerations {
-public:
-    explicit HeldAccelerations(WorldState& world) : world_(world) {
-        if (world.active_joints.empty()) return;
-        for (const Island& island : world.islands.list) {
-            if (island.joint_count == 0) continue;
-            for (const std::uint32_t body : bodies_of(world, island)) {
-                starts_.push_back({body, world.motion[body].linear_velocity, world.motion[body].angular_velocity});
-            }
+// What joints hold, at the step's start.
+void note_held_starts(WorldState& world) {
+    std::vector<SubstepMemory::HeldStart>& starts = world.substep_memory.held_starts;
+    starts.clear();
+    if (world.active_joints.empty()) return;
+    for (const Island& island : world.islands.list) {
+        if (island.joint_count == 0) continue;
+        for (const std::uint32_t body : bodies_of(world, island)) {
+            starts.push_back({body, world.motion[body].linear_velocity, world.motion[body].angular_velocity});
         }
     }
-    void note() const {
-        std::vector<ImpactMemory::HeldAcceleration>& accelerations = world_.impact_memory.held_accelerations;
-        accelerations.clear();
-        if (starts_.empty()) return;
-        accelerations.resize(world_.motion.size());
-        const double time = world_.settings.time_step;
-        for (const Start& start : starts_) {
-            const BodyState& now = world_.motion[start.body];
-            const Vec3 change = (now.linear_velocity - start.linear_velocity) / time;
-            const double turning = length(now.angular_velocity - start.angular_velocity) / time;
-            accelerations[start.body] = {to_vec3f(change - world_.constants[start.body].acceleration),
-                                         static_cast<float>(turning * world_.record(start.body).reach)};
-        }
+}
+
+// How joints and contacts have accelerated it since.
+void note_held_accelerations(WorldState& world) {
+    std::vector<ImpactMemory::HeldAcceleration>& accelerations = world.impact_memory.held_accelerations;
+    accelerations.clear();
+    if (world.substep_memory.held_starts.empty()) return;
+    accelerations.resize(world.motion.size());
+    const double time = world.settings.time_step;
+    for (const SubstepMemory::HeldStart& start : world.substep_memory.held_starts) {
+        const BodyState& now = world.motion[start.body];
+        const Vec3 change = (now.linear_velocity - start.linear_velocity) / time;
+        const double turning = length(now.angular_velocity - start.angular_velocity) / time;
+        accelerations[start.body] = {to_vec3f(change - world.constants[start.body].acceleration),
+                                     static_cast<float>(turning * world.record(start.body).reach)};
     }
+}
 
-private:
-    struct Start {
-        std::uint32_t body;
-        Vec3 linear_velocity, angular_velocity;
-    };
-    WorldState& world_;
-    std::vector<Start> starts_;
-};
-
-void propagate_shocks(WorldState& world, const SolveWays& ways) {
+void propagate_shocks(WorldState& world, const IslandsBySolver& ways) {
     const auto propagate = [&](const Island& island, const ContactPlan& plan) {
         propagate_shock(island, world.islands, world.contacts, plan.softness(world.settings.time_step), world.motion);
     };
     const auto is_sunk = [&](std::uint32_t contact) { return world.contact_glances[contact].is_sunk; };
-    for (const SolveWays::Wide& way : ways.wide) {
+    for (const IslandsBySolver::Wide& way : ways.wide) {
         for (const Island& island : way.islands) {
             const auto contacts = contacts_of(world, island);
             if (std::any_of(contacts.begin(), contacts.end(), is_sunk)) propagate(island, way.plan);
@@ -504,16 +481,16 @@ void propagate_shocks(WorldState& world, const SolveWays& ways) {
 
 void run_substeps(WorldState& world) {
     const double h = world.settings.time_step / world.settings.substeps;
-    const HeldAccelerations held_accelerations(world);
-    const SolveWays ways = sort_islands(world);
+    note_held_starts(world);
+    const IslandsBySolver& ways = sort_islands(world);
 
     // The last one moves the kinematic bodies, which the others take from where the step found them.
-    for (const SolveWays::Wide& way : ways.wide) solve_wide(world, way);
+    for (const IslandsBySolver::Wide& way : ways.wide) solve_wide(world, way);
     solve_jointed(world, ways.jointed, h);
     solve_free(world, ways.free, h);
     solve_one_by_one(world, ways.one_by_one, h);
     if (world.settings.shock_propagation) propagate_shocks(world, ways);
-    held_accelerations.note();
+    note_held_accelerations(world);
     if (world.ledger) world.ledger->close_substeps(world);
     limit_speeds(world);
     freeze_lost_bodies(world);

@@ -29,6 +29,7 @@
 #include "physics/step/fluids.h"
 #include "physics/step/impact_memory.h"
 #include "physics/step/ledger.h"
+#include "physics/step/substep_memory.h"
 #include "physics/step/touch_memory.h"
 
 namespace embody::physics {
@@ -122,6 +123,7 @@ struct WorldState {
     std::vector<Joint> active_joints;                      // islands; impulses: substeps
     std::vector<std::uint32_t> active_joint_slots;         // islands
     Islands islands;                                       // islands
+    std::vector<std::uint32_t> movable;                    // islands: memory only
 
     std::unique_ptr<TaskPool> workers = std::make_unique<TaskPool>(1);
     WideContactSolver wide_solver{widest_contact_kernels()};  // substeps: memory only
@@ -131,6 +133,7 @@ struct WorldState {
     SolveSchedule schedule;                                   // substeps: memory only
     std::vector<PreparedContact> prepared_contacts;           // substeps: memory only
     std::vector<Vec3> kicked_velocity;                        // substeps: linear velocity before the constraints, m/s
+    SubstepMemory substep_memory;                             // substeps: memory only
 
     SolidContacts solid_contacts;              // deformables: memory only
     ThinContacts thin_contacts;                // deformables: contacts between sheets and ropes
