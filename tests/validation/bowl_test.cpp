@@ -210,6 +210,63 @@ TEST(Bowls, CoarseHalfPipeIsRoundWhereItsEdgesAreSmall) {
     }
 }
 
+// A smooth bowl pushes a ball through its centre: where its moments of inertia differ it goes on turning as in free
+// flight, and its angular momentum about the centre stays.
+TEST(Bowls, BallOfUnequalMomentsTurnsAsInFreeFlight) {
+    for (const std::string kind : {"pipe", "bowl"}) {
+        Random random(1);
+        auto world = make_world({});
+        add_hollow(*world, {kind, 1, 60, 1.5}, 0, random);
+        const double r = 0.1, angle = in_degrees(20);
+        const Vec3 moments{0.002, 0.004, 0.005}, spin{3, 0.3, 2};
+        const auto ball = world
+                              ->create_body({.shape = world->create_shape(SphereShape{r}).value(),
+                                             .position = {(1 - r) * std::sin(angle), 1 - (1 - r) * std::cos(angle), 0},
+                                             .angular_velocity = spin,
+                                             .mass = {.mass = 1, .inertia = Mat3::diagonal(moments)},
+                                             .material = friction(0),
+                                             .allow_sleep = false})
+                              .value();
+        const Vec3 start{moments.x * spin.x, moments.y * spin.y, moments.z * spin.z};
+        for (int i = 0; i < 60; ++i) {
+            world->step();
+            const Quat rotation = world->pose(ball).rotation;
+            const Vec3 own = rotate_inverse(rotation, world->angular_velocity(ball));
+            const Vec3 momentum = rotate(rotation, Vec3{moments.x * own.x, moments.y * own.y, moments.z * own.z});
+            ASSERT_LT(length(momentum - start), 0.08 * length(start)) << kind << " step " << i;
+        }
+    }
+}
+
+// A ball with its centre of mass below the middle stands up in its place like a tumbler: it swings about the lowest
+// place with T = 2 pi sqrt((I + m (r - d)^2) / (m g d)), I about the centre of mass, and rolls nowhere.
+TEST(Bowls, WeightedBallSwingsAboutItsHeavySide) {
+    auto world = make_world({.air_density = 0});
+    const double r = 0.1, d = 0.04, inertia = 0.003, lean = 0.1;
+    add_plane(*world, friction(1));
+    const auto ball = world
+                          ->create_body({.shape = world->create_shape(SphereShape{r}).value(),
+                                         .position = {0, r, 0},
+                                         .rotation = from_axis_angle({0, 0, 1}, lean),
+                                         .mass = {.mass = 1,
+                                                  .center_of_mass = Vec3{0, -d, 0},
+                                                  .inertia = Mat3::diagonal({inertia, inertia, inertia})},
+                                         .material = friction(1),
+                                         .allow_sleep = false})
+                          .value();
+    int crossings = 0;
+    double time = 0, last = -1;
+    for (; crossings < 5; time += 1.0 / 60) {
+        ASSERT_LT(time, 20);
+        world->step();
+        const double now = rotate(world->pose(ball).rotation, {0, 1, 0}).x;
+        if (now * last < 0) ++crossings;
+        if (now != 0) last = now;
+    }
+    const double period = 2 * pi * std::sqrt((inertia + (r - d) * (r - d)) / (gravity * d));
+    EXPECT_NEAR((time - 1.0 / 60) / 2.25, period, 0.03 * period);
+}
+
 // Small swings: T = 2 pi sqrt((R - r) / g), of what rolls sqrt(7/5) times as long. Told by the fifth turn.
 TEST(Bowls, SwingTakesItsTime) {
     for (const std::string kind : {"pipe", "bowl", "field pipe", "box pipe"}) {
