@@ -24,24 +24,24 @@ PlacedTriangle place_triangle(const std::array<Vec3, 3>& corners, Vec3 normal, V
 }
 
 // The shape operator of a triangle by the normals midway over its edges, each the mean of the two faces': linear over
-// the triangle, with the gradient  Σ 2 tan(bend/2) / height · o oᵀ,  o across the edge. Source: E. Grinspun et al.,
-// "Computing discrete shape operators on general meshes", 2006. Real edges and the surface's end bend nothing.
-void add_bend(const PlacedTriangle& t, const std::array<float, 3>& half_bends, BallTouch& touch) {
-    static const double most = std::tan(smooth_bend / 2);
+// the triangle, with the gradient  Σ 2 tan(angle/2) / height · o oᵀ,  o across the edge. Source: E. Grinspun et al.,
+// "Computing discrete shape operators on general meshes", 2006. Real edges and the surface's end have none.
+void add_curvature(const PlacedTriangle& t, const std::array<float, 3>& half_dihedrals, BallTouch& touch) {
+    static const double most = std::tan(smooth_edge_angle / 2);
     for (std::size_t i = 0; i < 3; ++i) {
-        const auto half = static_cast<double>(half_bends[i]);
+        const auto half = static_cast<double>(half_dihedrals[i]);
         const double height = -t.beyond(i, t.corners[i == 0 ? 2 : i - 1]);
         if (!(std::fabs(half) <= most) || !(height > 0)) continue;
-        touch.bend += outer(t.outward[i], t.outward[i]) * (2 * half / height);
+        touch.shape_operator += outer(t.outward[i], t.outward[i]) * (2 * half / height);
     }
 }
 
 // Whether the place lies on an edge that no smooth surface has.
-bool is_on_real_edge(const PlacedTriangle& t, const std::array<float, 3>& half_bends, Vec3 nearest) {
-    static const double most = std::tan(smooth_bend / 2);
+bool is_on_real_edge(const PlacedTriangle& t, const std::array<float, 3>& half_dihedrals, Vec3 nearest) {
+    static const double most = std::tan(smooth_edge_angle / 2);
     constexpr double on_edge = 1e-6;  // in shares of the edge's length
     for (std::size_t i = 0; i < 3; ++i) {
-        const bool is_real = !(static_cast<double>(half_bends[i]) <= most);
+        const bool is_real = !(static_cast<double>(half_dihedrals[i]) <= most);
         if (is_real && t.beyond(i, nearest) > -on_edge * length(t.along(i))) return true;
     }
     return false;
@@ -56,15 +56,15 @@ void touch_triangle(const TriangleSurface& surface, const NearTriangle& near, Ve
     const Vec3 nearest = t.nearest_to({});
     const double gap = length(nearest) - radius;
     if (gap > margin) return;
-    t.half_bends = surface.half_bends(near.index);
+    t.half_dihedrals = surface.half_dihedrals(near.index);
     BallTouch touch{.normal = normalized(-nearest, t.normal), .gap = gap};
     const bool is_flat = t.is_flat_to(touch.normal);
     if (!is_flat && t.leans_too_far(touch.normal, nearest)) return;
     if (is_flat) touch.normal = t.normal;
     touch.is_flat = is_flat;
-    const auto& bends = surface.signed_half_bends(near.index);
-    touch.knows_bend = is_flat || !is_on_real_edge(t, bends, nearest);
-    if (touch.knows_bend) add_bend(t, bends, touch);
+    const auto& dihedrals = surface.signed_half_dihedrals(near.index);
+    touch.knows_curvature = is_flat || !is_on_real_edge(t, dihedrals, nearest);
+    if (touch.knows_curvature) add_curvature(t, dihedrals, touch);
     touches.push_back(touch);
 }
 
@@ -85,7 +85,7 @@ void touch_surface(const TriangleSurface& surface, const Transform& pose, double
         if (touches.size() == before) continue;
         BallTouch& touch = touches.back();
         touch.normal = turn * touch.normal;
-        touch.bend = turn * touch.bend * back;
+        touch.shape_operator = turn * touch.shape_operator * back;
     }
 }
 

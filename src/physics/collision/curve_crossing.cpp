@@ -44,8 +44,10 @@ struct Curve {
         point = center + outward * radius;
         tangent = cross(axis, outward);
     }
-    // How much faster than the tangent's the distance to the other curve grows, by the circle's own bend.
-    [[nodiscard]] double bend(Vec3 way_to_other) const { return is_circle ? dot(way_to_other, outward) / radius : 0; }
+    // How much faster than the tangent's the distance to the other curve grows, by the circle's own curvature.
+    [[nodiscard]] double curvature(Vec3 way_to_other) const {
+        return is_circle ? dot(way_to_other, outward) / radius : 0;
+    }
 };
 
 void set_axis(const PlacedConvex& round, Curve& curve) {
@@ -143,11 +145,11 @@ bool approach(Curve& p, Curve& q) {
         const Vec3 gap = q.point - p.point;
         const double cosine = dot(p.tangent, q.tangent);
         const double slope_p = dot(gap, p.tangent), slope_q = dot(gap, q.tangent);
-        const double bent_p = 1 + p.bend(gap), bent_q = 1 - q.bend(gap);
-        const double determinant = bent_p * bent_q - cosine * cosine;
+        const double curved_p = 1 + p.curvature(gap), curved_q = 1 - q.curvature(gap);
+        const double determinant = curved_p * curved_q - cosine * cosine;
         if (!(std::fabs(determinant) > 1e-7)) return false;
-        const double way_p = (bent_q * slope_p - cosine * slope_q) / determinant;
-        const double way_q = (cosine * slope_p - bent_p * slope_q) / determinant;
+        const double way_p = (curved_q * slope_p - cosine * slope_q) / determinant;
+        const double way_q = (cosine * slope_p - curved_p * slope_q) / determinant;
         if (!(std::fabs(way_p) + std::fabs(way_q) < 16 * size)) return false;
         p.go(way_p);
         q.go(way_q);

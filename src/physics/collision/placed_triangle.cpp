@@ -11,7 +11,7 @@ bool PlacedTriangle::leans_too_far(Vec3 outwards, Vec3 at) const {
     if (up <= 0) return true;
     for (std::size_t i = 0; i < 3; ++i) {
         if (beyond(i, at) < -on_edge * length(along(i))) continue;
-        const double over = dot(outwards, outward[i]), half = static_cast<double>(half_bends[i]);
+        const double over = dot(outwards, outward[i]), half = static_cast<double>(half_dihedrals[i]);
         if (over <= flat_sine || std::isinf(half)) continue;
         // Angle of lean against angle of bend: positive sine of their difference is too far. All is multiplied by
         // 1 + half², for sine and cosine of the bend.

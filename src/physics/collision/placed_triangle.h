@@ -16,16 +16,16 @@ inline constexpr double flat_sine = 1e-3;
 struct PlacedTriangle {
     std::uint32_t index = 0;  ///< in the surface
     std::array<Vec3, 3> corners;
-    Vec3 normal;                        ///< unit
-    std::array<Vec3, 3> outward;        ///< unit, in the plane, across each edge
-    std::array<float, 3> half_bends{};  ///< of the surface at each edge: see TriangleSurface::half_bends
+    Vec3 normal;                            ///< unit
+    std::array<Vec3, 3> outward;            ///< unit, in the plane, across each edge
+    std::array<float, 3> half_dihedrals{};  ///< of the surface at each edge: see TriangleSurface::half_dihedrals
 
     // The convex's point that is lowest along the normal, and how high it is over the plane, m.
     Vec3 lowest;
     double height = 0;
 
     /// Whether a normal may lean over the edge.
-    [[nodiscard]] bool is_open(std::size_t edge) const { return half_bends[edge] > 0; }
+    [[nodiscard]] bool is_open(std::size_t edge) const { return half_dihedrals[edge] > 0; }
     /// Whether a normal (from the triangle outwards) at the triangle's point `at` leans over an edge on which that
     /// point lies, beyond the bend there: the neighbour's business.
     [[nodiscard]] bool leans_too_far(Vec3 outwards, Vec3 at) const;
@@ -45,13 +45,14 @@ struct PlacedTriangle {
 /// the neighbour's normal, so that nothing in the wedge between the two prisms is lost.
 struct PrismSide {
     /// Tangent of half the bend (30 degrees) up to which neighbours share the wedge.
-    static constexpr float shallow_bend = 0.268F;
+    static constexpr float shallow_half_dihedral = 0.268F;
 
     Vec3 outwards;
     double offset = 0;
 
     PrismSide(const PlacedTriangle& t, std::size_t edge) : outwards(t.outward[edge]) {
-        if (t.half_bends[edge] <= shallow_bend) outwards -= t.normal * static_cast<double>(t.half_bends[edge]);
+        if (t.half_dihedrals[edge] <= shallow_half_dihedral)
+            outwards -= t.normal * static_cast<double>(t.half_dihedrals[edge]);
         // A tiny slack keeps points that lie on the side.
         const Vec3 way = abs(t.along(edge));
         offset = dot(outwards, t.corners[edge]) + 1e-9 * (way.x + way.y + way.z);

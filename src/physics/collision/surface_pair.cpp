@@ -134,7 +134,7 @@ void collide_surface(const ConvexPiece& piece, std::uint32_t piece_index, const 
         if (!probe.may_meet(found, across)) continue;
         if (!place_near(probe, corners, across / length(across), triangle)) continue;
         triangle.index = index;
-        triangle.half_bends = placed.surface.half_bends(index);
+        triangle.half_dihedrals = placed.surface.half_dihedrals(index);
         region.points.clear();
         bool has_all_corners = false;
         if (probe.is_polytope()) {

@@ -90,7 +90,7 @@ void lean_to_faces(TriangleSearch& s, std::vector<double>& heights) {
 void lean_over_edge(TriangleSearch& s, std::size_t edge) {
     const PlacedTriangle& t = s.triangle;
     // As far as the neighbour's normal, but not beyond the upright.
-    const double half = std::min(1.0, static_cast<double>(t.half_bends[edge]));
+    const double half = std::min(1.0, static_cast<double>(t.half_dihedrals[edge]));
     const double cosine = (1 - half * half) / (1 + half * half), sine = 2 * half / (1 + half * half);
     // Leaning by an angle v the lowest point alone allows height cos v + beyond sin v.
     const double most = std::max(t.height, t.height * cosine) + std::max(0.0, t.beyond(edge, t.lowest)) * sine;
@@ -260,8 +260,10 @@ void add_crossing(const TriangleSearch& s, ContactRegion& region) {
 
 // In the wedge over a sharp edge the nearest points alone, if the normal there is this triangle's business.
 void add_nearest(const TriangleSearch& s, ContactRegion& region) {
-    const auto& bends = s.triangle.half_bends;
-    if (s.best.separation <= 0 || std::max({bends[0], bends[1], bends[2]}) <= PrismSide::shallow_bend) return;
+    const auto& dihedrals = s.triangle.half_dihedrals;
+    if (s.best.separation <= 0 ||
+        std::max({dihedrals[0], dihedrals[1], dihedrals[2]}) <= PrismSide::shallow_half_dihedral)
+        return;
     thread_local Convex flat{ConvexKind::polytope, 0, 0, triangle_polytope({}, {1, 0, 0}, {0, 0, 1}), {}};
     set_triangle(flat.polytope, s.triangle.corners[0], s.triangle.corners[1], s.triangle.corners[2]);
     const CoreDistance gap = core_distance(Core({&s.convex, {}, {}}), Core({&flat, {}, {}}), s.margin);

@@ -86,9 +86,9 @@ TriangleSurface::TriangleSurface(const MeshShape& mesh) : positions_(mesh.positi
     }
     tree_ = std::make_unique<Tree>();
     tree_->tree = geometry::BoundingVolumeTree(leaves);
-    half_bends_.resize(triangles_.size());
+    half_dihedrals_.resize(triangles_.size());
     const std::vector<Neighbours> neighbours = find_neighbours();
-    for (std::uint32_t t = 0; t < count(); ++t) measure_bends(t, neighbours[t]);
+    for (std::uint32_t t = 0; t < count(); ++t) measure_dihedrals(t, neighbours[t]);
 }
 
 TriangleSurface::TriangleSurface(const HeightfieldShape& field)
@@ -97,11 +97,11 @@ TriangleSurface::TriangleSurface(const HeightfieldShape& field)
       rows_(field.rows),
       cell_x_(field.cell_x),
       cell_z_(field.cell_z),
-      half_bends_(2 * static_cast<std::size_t>(field.columns - 1) * static_cast<std::size_t>(field.rows - 1)) {
+      half_dihedrals_(2 * static_cast<std::size_t>(field.columns - 1) * static_cast<std::size_t>(field.rows - 1)) {
     const auto [low, high] = std::minmax_element(heights_.begin(), heights_.end());
     bounds_ = {{0, static_cast<double>(*low), 0},
                {(columns_ - 1) * cell_x_, static_cast<double>(*high), (rows_ - 1) * cell_z_}};
-    for (std::uint32_t t = 0; t < count(); ++t) measure_bends(t, neighbours_in_field(t));
+    for (std::uint32_t t = 0; t < count(); ++t) measure_dihedrals(t, neighbours_in_field(t));
 }
 
 TriangleSurface::~TriangleSurface() = default;
@@ -128,18 +128,18 @@ std::vector<TriangleSurface::Neighbours> TriangleSurface::find_neighbours() cons
     return neighbours;
 }
 
-void TriangleSurface::measure_bends(std::uint32_t triangle, const Neighbours& neighbours) {
+void TriangleSurface::measure_dihedrals(std::uint32_t triangle, const Neighbours& neighbours) {
     const Vec3 own = normal(triangle);
     const auto at = corners(triangle);
     for (std::size_t e = 0; e < 3; ++e) {
-        float& bend = half_bends_[triangle][e];
-        bend = std::numeric_limits<float>::infinity();
+        float& half = half_dihedrals_[triangle][e];
+        half = std::numeric_limits<float>::infinity();
         if (neighbours[e] == no_neighbour) continue;
         // Towards the outside the neighbour's normal leans away over a convex edge, back over a concave one.
         const Vec3 other = normal(neighbours[e]), outward = normalized(cross(at[e == 2 ? 0 : e + 1] - at[e], own));
         const double sine = dot(other, outward), cosine = dot(other, own);
         const bool is_folded = sine <= 0 && cosine < -1 + 1e-12;
-        bend = is_folded ? -1e6F : static_cast<float>(sine / (1 + cosine));
+        half = is_folded ? -1e6F : static_cast<float>(sine / (1 + cosine));
     }
 }
 
@@ -173,7 +173,7 @@ Vec3 TriangleSurface::normal(std::uint32_t triangle) const {
 std::size_t TriangleSurface::memory_bytes() const {
     const std::size_t of_tree = tree_ ? tree_->tree.memory_bytes() : 0;
     return of_tree + positions_.size() * sizeof(Vec3f) + heights_.size() * sizeof(float) +
-           triangles_.size() * sizeof(triangles_[0]) + half_bends_.size() * sizeof(half_bends_[0]);
+           triangles_.size() * sizeof(triangles_[0]) + half_dihedrals_.size() * sizeof(half_dihedrals_[0]);
 }
 
 void TriangleSurface::find(const Bounds& box, std::vector<std::uint32_t>& found) const {
@@ -183,7 +183,7 @@ void TriangleSurface::find(const Bounds& box, std::vector<std::uint32_t>& found)
     }
     tree_->tree.query(box, [&](std::uint32_t triangle) {
         __builtin_prefetch(&triangles_[triangle]);
-        __builtin_prefetch(&half_bends_[triangle]);
+        __builtin_prefetch(&half_dihedrals_[triangle]);
         found.push_back(triangle);
     });
 }

@@ -22,7 +22,7 @@ public:
     ~TriangleSurface();
 
     [[nodiscard]] const Bounds& bounds() const { return bounds_; }
-    [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(half_bends_.size()); }
+    [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(half_dihedrals_.size()); }
     [[nodiscard]] std::array<Vec3, 3> corners(std::uint32_t triangle) const {
         if (!tree_) return corners_in_field(triangle);
         const auto& t = triangles_[triangle];
@@ -30,16 +30,16 @@ public:
     }
     /// Unit; zero for a triangle without area.
     [[nodiscard]] Vec3 normal(std::uint32_t triangle) const;
-    /// Over the edges from each corner to the next one: the tangent of half the angle by which the surface bends away
-    /// there, negative where it bends towards the front (concave), infinite where it ends.
-    [[nodiscard]] const std::array<float, 3>& signed_half_bends(std::uint32_t triangle) const {
-        return half_bends_[triangle];
+    /// Over the edges from each corner to the next one: the tangent of half the angle by which the surface dihedrals
+    /// away there, negative where it bends towards the front (concave), infinite where it ends.
+    [[nodiscard]] const std::array<float, 3>& signed_half_dihedrals(std::uint32_t triangle) const {
+        return half_dihedrals_[triangle];
     }
     /// The same, 0 where it is flat (within flat_sine) or concave.
-    [[nodiscard]] std::array<float, 3> half_bends(std::uint32_t triangle) const {
-        const auto& bends = half_bends_[triangle];
-        const auto away = [](float bend) { return bend > flat_half_bend ? bend : 0; };
-        return {away(bends[0]), away(bends[1]), away(bends[2])};
+    [[nodiscard]] std::array<float, 3> half_dihedrals(std::uint32_t triangle) const {
+        const auto& dihedrals = half_dihedrals_[triangle];
+        const auto away = [](float half) { return half > flat_half_dihedral ? half : 0; };
+        return {away(dihedrals[0]), away(dihedrals[1]), away(dihedrals[2])};
     }
     /// Of all that is kept, bytes.
     [[nodiscard]] std::size_t memory_bytes() const;
@@ -53,11 +53,11 @@ public:
 private:
     struct Tree;
     static constexpr std::uint32_t no_neighbour = 0xFFFFFFFFu;
-    static constexpr float flat_half_bend = 0.5e-3F;  // tangent of half an angle whose sine is flat_sine
+    static constexpr float flat_half_dihedral = 0.5e-3F;  // tangent of half an angle whose sine is flat_sine
     using Neighbours = std::array<std::uint32_t, 3>;
     [[nodiscard]] std::vector<Neighbours> find_neighbours() const;
     [[nodiscard]] Neighbours neighbours_in_field(std::uint32_t triangle) const;
-    void measure_bends(std::uint32_t triangle, const Neighbours& neighbours);
+    void measure_dihedrals(std::uint32_t triangle, const Neighbours& neighbours);
     [[nodiscard]] std::uint32_t sample(int column, int row) const {
         return static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(columns_) +
                static_cast<std::uint32_t>(column);
@@ -74,7 +74,7 @@ private:
     int columns_ = 0, rows_ = 0;
     double cell_x_ = 1, cell_z_ = 1;
     // Of both.
-    std::vector<std::array<float, 3>> half_bends_;
+    std::vector<std::array<float, 3>> half_dihedrals_;
     Bounds bounds_;
 };
 

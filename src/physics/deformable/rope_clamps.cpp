@@ -220,8 +220,8 @@ TwistMode RopeClamps::mode_of(const Span& span, const Bow& bow) const {
 }
 
 // ½ m (k + damping) m with m = t - e: by the segment's nodes and by the turn of what holds e, δe = ω × e.
-void RopeClamps::add_bend(const HalfBend& bend, std::span<const Vec3> places, std::span<const Vec3> moves,
-                          std::span<const BodyMove> body_moves, RopeSystem& system) const {
+void RopeClamps::add_curvature(const HalfBend& bend, std::span<const Vec3> places, std::span<const Vec3> moves,
+                               std::span<const BodyMove> body_moves, RopeSystem& system) const {
     const std::size_t s = bend.segment;
     const Held& held = held_[bend.held];
     const SegmentDirection direction = direction_of(places[s + 1] - places[s], lengths_[s]);
@@ -276,7 +276,7 @@ void RopeClamps::add_curvature(const Span& span, const Bow& bow, std::span<const
 
 void RopeClamps::add(std::span<const Vec3> places, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
                      bool with_curvature, RopeSystem& system) const {
-    for (const HalfBend& bend : bends_) add_bend(bend, places, moves, body_moves, system);
+    for (const HalfBend& bend : bends_) add_curvature(bend, places, moves, body_moves, system);
     for (const Span& span : spans_) {
         const Bow bow = bow_of(span, places, body_moves);
         TwistMode mode = mode_of(span, bow);

@@ -92,8 +92,8 @@ private:
     void find_held(const Start& start, std::vector<Frame>& at_start);
     void find_bends(const Start& start, std::span<const Frame> at_start);
     void find_spans(const Start& start, std::span<const Frame> at_start);
-    void add_bend(const HalfBend& bend, std::span<const Vec3> places, std::span<const Vec3> moves,
-                  std::span<const BodyMove> body_moves, RopeSystem& system) const;
+    void add_curvature(const HalfBend& bend, std::span<const Vec3> places, std::span<const Vec3> moves,
+                       std::span<const BodyMove> body_moves, RopeSystem& system) const;
     void add_curvature(const Span& span, const Bow& bow, std::span<const Vec3> moves, RopeSystem& system) const;
 
     std::vector<Clamp> clamps_;  // by node

@@ -108,7 +108,7 @@ void RopeLine::add_stretch(std::size_t segment, double h) {
     system_.rhs[b] -= force;
 }
 
-void RopeLine::add_bend(std::size_t node) {
+void RopeLine::add_curvature(std::size_t node) {
     const Bend bend = bend_at(node, places_);
     if (!bend.is_whole) return;
     const Bend& start = bends_[node];
@@ -218,7 +218,7 @@ void RopeLine::assemble(const Substep& substep, bool with_curvature) {
         system_.rhs[i] = nodes_.mass[i] * (nodes_.mean_velocity[i] / h + substep.gravity);
     }
     for (std::size_t s = 0; s < segments_.size(); ++s) add_stretch(s, h);
-    for (std::size_t i = 1; i + 1 < count; ++i) add_bend(i);
+    for (std::size_t i = 1; i + 1 < count; ++i) add_curvature(i);
     if (clamps_.holds_any()) clamps_.add(places_, moves_, body_moves_, with_curvature, system_);
 }
 

@@ -88,7 +88,7 @@ private:
     // The matrix and right side about `moves_`; forces of springs not yet.
     void assemble(const Substep& substep, bool with_curvature = true);
     void add_stretch(std::size_t segment, double h);
-    void add_bend(std::size_t node);
+    void add_curvature(std::size_t node);
     bool solve_round(const Substep& substep, std::span<const BodyInertia> inertias);
     // What the round's step minimises: inertia, elastic energy, damping and springs of these moves, J.
     using SpringEnergy = double (*)(const TouchSpring&, std::span<const Vec3>, std::span<const BodyMove>);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // A ball along still ground: in parts of the step it moves along the plane that touches it, is put back onto the ground
-// there, and its motion is turned with the normal. A mesh stands for a smooth surface where it bends by less than
-// smooth_bend: there the turn takes nothing. Whatever the parts leave out, the energy says the speed:
+// there, and its motion is turned with the normal. A mesh stands for a smooth surface where its edges turn by less than
+// smooth_edge_angle: there the turn takes nothing. Whatever the parts leave out, the energy says the speed:
 //     T₁ = T₀ + m a · (x₁ − x₀) + work of friction,
 // so what puts the ball back takes from its motion what it lifts.
 #include "physics/step/ball_path.h"
@@ -19,21 +19,21 @@ namespace embody::physics {
 
 namespace {
 
-constexpr double same_normal = 1 - 1e-9;  // cosine
-constexpr double part_turn = 0.06;        // rad of the normal, or of a swing's phase, in a part
-constexpr double part_way = 0.5;          // of the radius, in a part
-constexpr int most_parts = 256;           // of a step
-constexpr int most_halvings = 6;          // of a part
-constexpr double slow = 2e-3;             // m/s: slower by itself and by a step's gravity, it comes to rest
-constexpr double slow_resisted = 0.05;    // m/s: the same of what the ground resists to roll
-constexpr double most_gap = 2e-4;         // m: farther from the ground it does not touch
-constexpr double soft_sag = 1e-5;         // m: so deep the contact solver carries it (validation.SleepOnlyInBalance)
-constexpr double deepest = 0.1;           // of the radius: deeper, the contact solver takes it out
-constexpr double most_parting = 1e-3;     // m/s, and
-constexpr double most_rise = 0.02;        // of the speed: faster, it leaves the ground
-constexpr double most_fall = 0.05;        // m/s: faster, what did not touch before has an impact
+constexpr double same_normal = 1 - 1e-9;     // cosine
+constexpr double part_turn = 0.06;           // rad of the normal, or of a swing's phase, in a part
+constexpr double part_way = 0.5;             // of the radius, in a part
+constexpr int most_parts = 256;              // of a step
+constexpr int most_halvings = 6;             // of a part
+constexpr double slow = 2e-3;                // m/s: slower by itself and by a step's gravity, it comes to rest
+constexpr double slow_resisted = 0.05;       // m/s: the same of what the ground resists to roll
+constexpr double most_gap = 2e-4;            // m: farther from the ground it does not touch
+constexpr double soft_sag = 1e-5;            // m: so deep the contact solver carries it (validation.SleepOnlyInBalance)
+constexpr double deepest = 0.1;              // of the radius: deeper, the contact solver takes it out
+constexpr double most_parting = 1e-3;        // m/s, and
+constexpr double most_parting_share = 0.02;  // of the speed: faster, it leaves the ground
+constexpr double most_fall = 0.05;           // m/s: faster, what did not touch before has an impact
 
-const double smooth_cosine = std::cos(smooth_bend);
+const double smooth_cosine = std::cos(smooth_edge_angle);
 
 /// The ball on its way.
 struct Place {
@@ -42,7 +42,7 @@ struct Place {
     BallMotion motion;
     BallTouch touch;
     std::size_t ground = 0;
-    double rise = 0;  ///< v · dn/dt in the last part, m/s²: what the ground's bend asks for
+    double centripetal = 0;  ///< v · dn/dt in the last part, m/s²: what the curvature of the ground asks for
     bool rolls = false;
 };
 
@@ -62,6 +62,8 @@ private:
     bool leaves(const Place& at);
     bool hit(Place& at, Vec3 last_normal);
     bool settle(Place& at, const Vec3* last_normal, double margin);
+    double move_along_plane(const Place& from, Place& to, double pressing, double time) const;
+    std::optional<double> turn_or_hit(Place& at, Vec3 last_normal, double time);
     bool advance(Place& at, double time, int halvings);
     void write(const Place& at, RolledBall& rolled) const;
 
@@ -192,8 +194,8 @@ bool BallPath::begin(Place& at) {
     const double gap = at.touch.gap, closing = -dot(at.motion.velocity, n);
     const bool is_on_face = is_flat(at);
     if (gap > std::min(most_gap, deepest * radius_) || gap < -deepest * radius_ || is_plain(at)) return false;
-    if (-closing > most_parting + (bounces_ ? 0 : most_rise * speed)) return false;
-    if (closing > (was_touching_ && !bounces_ ? most_fall + smooth_bend * speed : most_fall)) return false;
+    if (-closing > most_parting + (bounces_ ? 0 : most_parting_share * speed)) return false;
+    if (closing > (was_touching_ && !bounces_ ? most_fall + smooth_edge_angle * speed : most_fall)) return false;
 
     // What is left of the motion into the ground goes; the way out of it is taken from the motion.
     at.motion.velocity += n * closing;
@@ -208,30 +210,31 @@ bool BallPath::begin(Place& at) {
 
 int BallPath::count_parts(const Place& at) const {
     const double speed = length(at.motion.velocity) + length(acceleration_) * step_ / 2;
-    double bend = 0;
+    double curvature = 0;
     for (const BallTouch& touch : touches_) {
-        const double own = std::max({length(touch.bend.x), length(touch.bend.y), length(touch.bend.z)});
-        bend = std::max(bend, touch.knows_bend ? own / (1 - std::min(0.8, own * radius_))
-                              : touch.is_flat  ? 0
-                                               : 1 / radius_);
+        const double own =
+            std::max({length(touch.shape_operator.x), length(touch.shape_operator.y), length(touch.shape_operator.z)});
+        curvature = std::max(curvature, touch.knows_curvature ? own / (1 - std::min(0.8, own * radius_))
+                                        : touch.is_flat       ? 0
+                                                              : 1 / radius_);
     }
-    const double rate = std::max(speed * bend, std::sqrt(length(acceleration_) * bend));
+    const double rate = std::max(speed * curvature, std::sqrt(length(acceleration_) * curvature));
     const double parts = std::max({rate * step_ / part_turn, speed * step_ / (part_way * radius_),
                                    static_cast<double>(world_.settings.substeps)});
     return static_cast<int>(std::ceil(std::min(parts, 1e6)));
 }
 
-// How hard the ground must press, m/s². Of a smooth mesh its bend tells, that of the centre's path being κ/(1 + κ r);
-// else the last part does.
+// How hard the ground must press, m/s². Of a smooth mesh its curvature tells, that of the centre's path being κ/(1 + κ
+// r); else the last part does.
 double BallPath::load(const Place& at) const {
     constexpr double least = 0.2;  // of 1 + κ r: a hollow that is hardly wider than the ball
-    double rise = at.rise;
+    double centripetal = at.centripetal;
     const double squared = length_squared(at.motion.velocity);
-    if (at.touch.knows_bend && squared > 0) {
-        const double bend = dot(at.motion.velocity, at.touch.bend * at.motion.velocity) / squared;
-        rise = squared * bend / std::max(least, 1 + bend * radius_);
+    if (at.touch.knows_curvature && squared > 0) {
+        const double curvature = dot(at.motion.velocity, at.touch.shape_operator * at.motion.velocity) / squared;
+        centripetal = squared * curvature / std::max(least, 1 + curvature * radius_);
     }
-    return -dot(acceleration_, at.touch.normal) - rise;
+    return -dot(acceleration_, at.touch.normal) - centripetal;
 }
 
 // Whether free flight takes it off the ground within a step's time.
@@ -241,37 +244,51 @@ bool BallPath::leaves(const Place& at) {
     return touches_.empty();
 }
 
+// Along the plane that touches it at the start, pressed by so much (m/s²). The work of friction, J/kg.
+double BallPath::move_along_plane(const Place& from, Place& to, double pressing, double time) const {
+    const Vec3 n = from.touch.normal, along = acceleration_ - n * dot(acceleration_, n);
+    const BallPush push = push_along(to.motion, n, along, pressing, grounds_[from.ground].friction, time);
+    to.center += push.mean_velocity * time;
+    to.rolls = push.sticks;
+    const Vec3 turned = (from.motion.spin + to.motion.spin) * (time / 2);
+    to.rotation = normalized(cayley(turned) * from.rotation);
+    return push.work;
+}
+
+// Turns the motion with the ground, which loses nothing, or hits what stands at a real angle to the last place. The
+// energy that is lost, J/kg, <= 0; none where it bounces or is wedged.
+std::optional<double> BallPath::turn_or_hit(Place& at, Vec3 last_normal, double time) {
+    const Vec3 n = at.touch.normal;
+    if (dot(last_normal, n) >= smooth_cosine) {
+        at.centripetal = dot(at.motion.velocity, n - last_normal) / time;
+        turn_with_normal(at.motion, last_normal, n, at.rolls);
+        return 0;
+    }
+    const double before = at.motion.energy();
+    if (!hit(at, last_normal)) return std::nullopt;
+    at.centripetal = 0;
+    return at.motion.energy() - before;
+}
+
 bool BallPath::advance(Place& at, double time, int halvings) {
     const auto in_halves = [&] {
         return halvings > 0 && advance(at, time / 2, halvings - 1) && advance(at, time / 2, halvings - 1);
     };
-    const Vec3 n = at.touch.normal;
-    double pressing = load(at);
+    const double pressing = load(at);
     if (pressing < 0 && leaves(at)) return false;
-    pressing = std::max(0.0, pressing);
-    Place next = at;
-    const Vec3 along = acceleration_ - n * dot(acceleration_, n);
-    const BallPush push = push_along(next.motion, n, along, pressing, grounds_[at.ground].friction, time);
-    const Vec3 way = push.mean_velocity * time;
-    next.center += way;
-    next.rolls = push.sticks;
-    const Vec3 turned = (at.motion.spin + next.motion.spin) * (time / 2);
-    next.rotation = normalized(cayley(turned) * at.rotation);
-    if (!settle(next, &n, smooth_bend * length(way) + 1e-3 * radius_)) return in_halves();
 
-    const Vec3 after = next.touch.normal;
-    double lost = push.work;
-    if (dot(n, after) >= smooth_cosine) {
-        next.rise = dot(next.motion.velocity, after - n) / time;
-        turn_with_normal(next.motion, n, after, next.rolls);
-    } else {
-        const double before = next.motion.energy();
-        if (!hit(next, n)) return false;
-        next.rise = 0;
-        lost += next.motion.energy() - before;
-    }
-    const double left = at.motion.energy() + dot(acceleration_, next.center - at.center) + lost;
-    if (!set_energy(next.motion, after, left, next.rolls) && halvings > 0) return in_halves();
+    // Along the plane, and back onto the ground.
+    Place next = at;
+    const double friction_work = move_along_plane(at, next, std::max(0.0, pressing), time);
+    const Vec3 last_normal = at.touch.normal;
+    const double moved = length(next.center - at.center);
+    if (!settle(next, &last_normal, smooth_edge_angle * moved + 1e-3 * radius_)) return in_halves();
+
+    // With the energy that this leaves.
+    const std::optional<double> lost = turn_or_hit(next, last_normal, time);
+    if (!lost) return false;
+    const double left = at.motion.energy() + dot(acceleration_, next.center - at.center) + friction_work + *lost;
+    if (!set_energy(next.motion, next.touch.normal, left, next.rolls) && halvings > 0) return in_halves();
     at = next;
     return true;
 }
@@ -300,11 +317,11 @@ bool BallPath::roll(RolledBall& rolled) {
     if (!begin(start)) return false;
     int parts = count_parts(start);
     if (parts > most_parts) return false;
-    if (!start.touch.knows_bend && !start.touch.is_flat) {
-        // How the ground bends is seen from a first part.
+    if (!start.touch.knows_curvature && !start.touch.is_flat) {
+        // The curvature is seen from a first part.
         Place trial = start;
         if (!advance(trial, step_ / parts, most_halvings)) return false;
-        start.rise = trial.rise;
+        start.centripetal = trial.centripetal;
     }
     Place at = start;
     for (int i = 0; i < parts; ++i) {

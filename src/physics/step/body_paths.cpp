@@ -135,7 +135,7 @@ void BodyPaths::lead_through(std::uint32_t body, BodyState state, double time) {
     begin_anew(body, state);
 }
 
-void BodyPaths::bend(std::uint32_t body, Vec3 linear, Vec3 angular, double time) {
+void BodyPaths::change_velocities(std::uint32_t body, Vec3 linear, Vec3 angular, double time) {
     BodyState state = world_.motion[body];
     state.center -= linear * time;
     state.rotation = turn_evenly(state.rotation, angular, -time, substep_);

@@ -20,7 +20,7 @@ public:
 
     /// The body at `time` (s since the step began): pose, velocities and inertia.
     [[nodiscard]] BodyState state_at(std::uint32_t body, double time) const;
-    /// The same, kept until another impact bends the path: who looks at an impact asks for its two bodies again and
+    /// The same, kept until another impact changes the path: who looks at an impact asks for its two bodies again and
     /// again. Holds until the second next call for another body or time. Not for several threads.
     const BodyState& kept_state_at(std::uint32_t body, double time);
     Transform pose_at(std::uint32_t body, double time);
@@ -29,7 +29,7 @@ public:
     void lead_through(std::uint32_t body, BodyState state, double time);
     /// The same for what joints hold, which flies on no free path: its velocities change by these, m/s and rad/s, at
     /// the step's start already, from where they lead to the same place at `time`.
-    void bend(std::uint32_t body, Vec3 linear, Vec3 angular, double time);
+    void change_velocities(std::uint32_t body, Vec3 linear, Vec3 angular, double time);
     /// Sets the body's state at the step's start.
     void begin_anew(std::uint32_t body, const BodyState& state);
 

@@ -68,7 +68,7 @@ private:
     void go_to(double time);
     void solve(double time, SlidePath path);
     void open_jointed_contacts();
-    [[nodiscard]] bool keeps_apart_bent(const Contact& contact) const;
+    [[nodiscard]] bool keeps_apart_when_held(const Contact& contact) const;
     void note_joint_impulses();
     void go_back(double time);
     void note_impulse(Contact& contact, Vec3 position, Vec3 impulse, double time);
@@ -301,8 +301,8 @@ void ImpactStage::go_back(double time) {
         } else if (memory_.is_flown) {
             bodies_.begin_anew(moved.body, state);
         } else {
-            bodies_.bend(moved.body, state.linear_velocity - moved.linear_velocity,
-                         state.angular_velocity - moved.angular_velocity, time);
+            bodies_.change_velocities(moved.body, state.linear_velocity - moved.linear_velocity,
+                                      state.angular_velocity - moved.angular_velocity, time);
         }
         memory_.last_time[moved.body] = time;
     }
@@ -408,22 +408,22 @@ void ImpactStage::predict_again() {
     }
 }
 
-// Joints bend the paths of what they hold. Their contacts are open if they carried nothing and the surfaces keep apart
-// on paths that are bent as in the last step, and still if that is wrong by a tenth.
+// Joints turn what they hold from its free path. Their contacts are open if they carried nothing and the surfaces keep
+// apart on paths that joints change as in the last step, and still if that is wrong by a tenth.
 void ImpactStage::open_jointed_contacts() {
     if (world_.active_joints.empty()) return;
     for (std::uint32_t i = 0; i < world_.contacts.size(); ++i) {
         const Contact& contact = world_.contacts[i];
-        if (!memory_.is_jointed[contact.a] && !memory_.is_jointed[contact.b]) continue;
-        memory_.is_open[i] = !contact.was_loaded && keeps_apart_bent(contact) ? 1 : 0;
+        if (!memory_.has_jointed_path[contact.a] && !memory_.has_jointed_path[contact.b]) continue;
+        memory_.is_open[i] = !contact.was_loaded && keeps_apart_when_held(contact) ? 1 : 0;
     }
 }
 
-bool ImpactStage::keeps_apart_bent(const Contact& contact) const {
+bool ImpactStage::keeps_apart_when_held(const Contact& contact) const {
     constexpr double wrong_share = 0.1;
     using HeldAcceleration = ImpactMemory::HeldAcceleration;
     const auto held = [&](std::uint32_t body) {
-        const bool is_held = memory_.is_jointed[body] && body < memory_.held_accelerations.size();
+        const bool is_held = memory_.has_jointed_path[body] && body < memory_.held_accelerations.size();
         if (!is_held) return HeldAcceleration{};
         HeldAcceleration now = memory_.held_accelerations[body];
 

@@ -87,7 +87,9 @@ bool can_fly_jointed(const WorldState& world) {
     const ImpactMemory& memory = world.impact_memory;
     const std::size_t nodes = memory.jointed.size() + memory.jointed_joints.size();
     if (memory.jointed.size() > most_flown_bodies || nodes >= BlockPattern::most_nodes) return false;
-    const auto has_way_back = [&](std::uint32_t body) { return memory.is_jointed[body] && !memory.is_supported[body]; };
+    const auto has_way_back = [&](std::uint32_t body) {
+        return memory.has_jointed_path[body] && !memory.is_supported[body];
+    };
     return std::all_of(memory.jointed.begin(), memory.jointed.end(), has_way_back);
 }
 

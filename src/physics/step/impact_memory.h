@@ -54,9 +54,10 @@ struct ImpactMemory {
     std::vector<std::uint32_t> first_joint_of_body, joint_of_body;
     bool has_joint_lists = false;
 
-    std::vector<std::uint8_t> is_held;        ///< by body: something else than free flight moves it
-    std::vector<std::uint8_t> is_jointed;     ///< by body, with joints that have no limit and motor; empty without any
-    std::vector<std::uint32_t> jointed_with;  ///< by body: another one that joints connect with it, or itself
+    std::vector<std::uint8_t> is_held;  ///< by body: something else than free flight moves it
+    std::vector<std::uint8_t>
+        has_jointed_path;  ///< by body: joints without limits and motors hold it; empty without any
+    std::vector<std::uint32_t> assembly_parent;  ///< by body: union-find over what joints connect
     /// What joints and contacts accelerated a jointed body by in the last step.
     struct HeldAcceleration {
         Vec3f linear;       ///< of the centre of mass, m/s²

@@ -177,16 +177,16 @@ ImpactPaths::Prediction ImpactPaths::predict_straight(Contact& contact) {
     if (slowest == never) return {};
 
     const Motion a = motion_at(contact.a, 0), b = motion_at(contact.b, 0);
-    const Bend bend = bend_of(contact, a, b);
+    const Deviation deviation = deviation_of(contact, a, b);
     const double start = earliest_time(contact);
     Prediction first{.is_open = true};
     for (int i = 0; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const Gap now = gap_between(contact, point, a, b);
         const double end = now.size + now.rate * step_;
-        const bool may_meet = now.size <= touch_gap || std::min(now.size, end) < bend.way;
-        if (may_meet && now.rate - bend.speed < -slowest) first.is_certain = false;
-        const bool parts = start > 0 && now.rate > bend.speed && end > bend.way;
+        const bool may_meet = now.size <= touch_gap || std::min(now.size, end) < deviation.distance;
+        if (may_meet && now.rate - deviation.speed < -slowest) first.is_certain = false;
+        const bool parts = start > 0 && now.rate > deviation.speed && end > deviation.distance;
         if (may_meet && !parts) first.is_open = false;
         mark_open(point, now.rate < -slowest && now.size > 0 && end > 0, step_);
         if (now.rate < -slowest && end <= 0) first.time = std::min(first.time, std::max(start, now.size / -now.rate));
@@ -197,16 +197,16 @@ ImpactPaths::Prediction ImpactPaths::predict_straight(Contact& contact) {
     return first;
 }
 
-ImpactPaths::Bend ImpactPaths::bend_of(const Contact& contact, const Motion& a, const Motion& b) const {
+ImpactPaths::Deviation ImpactPaths::deviation_of(const Contact& contact, const Motion& a, const Motion& b) const {
     double arm_a = 0, arm_b = 0;
     for (int i = 0; i < contact.count; ++i) {
         const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         arm_a = std::max<double>(arm_a, length_squared(point.arm_a));
         arm_b = std::max<double>(arm_b, length_squared(point.arm_b));
     }
-    const double bend = length_squared(a.spin) * std::sqrt(arm_a) + length_squared(b.spin) * std::sqrt(arm_b) +
-                        length(bodies_.free_acceleration(contact.a) - bodies_.free_acceleration(contact.b));
-    return {bend * step_ * step_ / 2, bend * step_};
+    const double acceleration = length_squared(a.spin) * std::sqrt(arm_a) + length_squared(b.spin) * std::sqrt(arm_b) +
+                                length(bodies_.free_acceleration(contact.a) - bodies_.free_acceleration(contact.b));
+    return {acceleration * step_ * step_ / 2, acceleration * step_};
 }
 
 ImpactPaths::Prediction ImpactPaths::predict_exactly(Contact& contact) {
@@ -240,7 +240,7 @@ ImpactPaths::Prediction ImpactPaths::predict_exactly(Contact& contact) {
     const auto is_fast = [&](std::uint32_t body, const Motion& m) {
         return !world_.touch_memory.bodies[body].is_ball && length_squared(m.spin) > farthest_turn * farthest_turn;
     };
-    const bool is_clear = start == 0 && nearest > bend_of(contact, now.a, now.b).way;
+    const bool is_clear = start == 0 && nearest > deviation_of(contact, now.a, now.b).distance;
     return {.is_open = is_clear || keeps_apart(contact, start),
             .may_hide = is_fast(contact.a, now.a) || is_fast(contact.b, now.b)};
 }

@@ -71,10 +71,10 @@ private:
                                     Gap last) const;
     /// How far the true paths of the contact's points can leave the straight ones, m, and how much faster they can
     /// become, m/s.
-    struct Bend {
-        double way, speed;
+    struct Deviation {
+        double distance, speed;
     };
-    [[nodiscard]] Bend bend_of(const Contact& contact, const Motion& a, const Motion& b) const;
+    [[nodiscard]] Deviation deviation_of(const Contact& contact, const Motion& a, const Motion& b) const;
     [[nodiscard]] bool keeps_apart(const Contact& contact, double start) const;
 
     WorldState& world_;

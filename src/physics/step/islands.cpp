@@ -39,13 +39,15 @@ void set_idle_contacts(WorldState& world) {
     const auto spins = [&](std::uint32_t body) {
         return has_gyroscopic_torque(world.motion[body], world.constants[body], world.settings.time_step);
     };
-    const auto is_jointed = [&](std::uint32_t body) { return !memory.is_jointed.empty() && memory.is_jointed[body]; };
+    const auto has_path = [&](std::uint32_t body) {
+        return !memory.has_jointed_path.empty() && memory.has_jointed_path[body];
+    };
     for (std::size_t i = 0; i < world.contacts.size(); ++i) {
         ContactGlance& contact = world.contact_glances[i];
-        const bool a_is_jointed = is_jointed(contact.a), b_is_jointed = is_jointed(contact.b);
-        contact.is_idle = memory.is_open[i] && (a_is_jointed || is_free(contact.a)) &&
-                          (b_is_jointed || is_free(contact.b)) &&
-                          (a_is_jointed || b_is_jointed || spins(contact.a) || spins(contact.b));
+        const bool a_has_path = has_path(contact.a), b_has_path = has_path(contact.b);
+        contact.is_idle = memory.is_open[i] && (a_has_path || is_free(contact.a)) &&
+                          (b_has_path || is_free(contact.b)) &&
+                          (a_has_path || b_has_path || spins(contact.a) || spins(contact.b));
         if (contact.is_idle) contact.touches = is_touching(world.contacts[i]);
     }
 }
@@ -58,28 +60,28 @@ std::uint32_t root_of(std::vector<std::uint32_t>& parents, std::uint32_t body) {
 
 // The bodies that active joints hold, but where one that is connected with them has a limit or a motor: that may stop
 // them within a step, so that nothing is known of their paths.
-void mark_jointed(WorldState& world) {
-    std::vector<std::uint8_t>& is_jointed = world.impact_memory.is_jointed;
-    is_jointed.clear();
+void mark_jointed_paths(WorldState& world) {
+    std::vector<std::uint8_t>& has_path = world.impact_memory.has_jointed_path;
+    has_path.clear();
     if (world.active_joints.empty()) return;
-    is_jointed.resize(world.motion.size());
-    std::vector<std::uint32_t>& parents = world.impact_memory.jointed_with;
+    has_path.resize(world.motion.size());
+    std::vector<std::uint32_t>& parents = world.impact_memory.assembly_parent;
     parents.resize(world.motion.size());
     std::iota(parents.begin(), parents.end(), 0U);
     const auto moves = [&](std::uint32_t body) { return world.motion[body].inverse_mass > 0; };
     for (const Joint& joint : world.active_joints) {
-        if (moves(joint.b)) is_jointed[joint.b] = 1;
+        if (moves(joint.b)) has_path[joint.b] = 1;
         if (joint.a_is_world || !moves(joint.a)) continue;
-        is_jointed[joint.a] = 1;
+        has_path[joint.a] = 1;
         if (moves(joint.b)) parents[root_of(parents, joint.a)] = root_of(parents, joint.b);
     }
     for (const Joint& joint : world.active_joints) {
         if (!has_motor(joint) && !has_limit(joint)) continue;
-        if (moves(joint.b)) is_jointed[root_of(parents, joint.b)] = 0;
-        if (!joint.a_is_world && moves(joint.a)) is_jointed[root_of(parents, joint.a)] = 0;
+        if (moves(joint.b)) has_path[root_of(parents, joint.b)] = 0;
+        if (!joint.a_is_world && moves(joint.a)) has_path[root_of(parents, joint.a)] = 0;
     }
-    for (std::uint32_t body = 0; body < is_jointed.size(); ++body) {
-        is_jointed[body] = is_jointed[body] && is_jointed[root_of(parents, body)] ? 1 : 0;
+    for (std::uint32_t body = 0; body < has_path.size(); ++body) {
+        has_path[body] = has_path[body] && has_path[root_of(parents, body)] ? 1 : 0;
     }
 }
 
@@ -97,7 +99,7 @@ void list_active_joints(WorldState& world) {
         world.active_joints.push_back(record.constraint);
         world.active_joint_slots.push_back(slot);
     }
-    mark_jointed(world);
+    mark_jointed_paths(world);
 }
 
 void find_islands(WorldState& world) {

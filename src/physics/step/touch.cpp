@@ -294,20 +294,24 @@ FollowedPair followed_pair(const WorldState& world, const PairRecord& record, co
 
 // A bouncing contact whose load changes no velocity by more than rounding carries none: bodies that only touch, as the
 // balls of a rack do, are as free as those apart.
-ContactGlance glance_at(const WorldState& world, Contact& contact) {
+void clear_rounding_load(const WorldState& world, Contact& contact) {
     constexpr double slightest_load = 1e-6;  // m/s
-    if (contact.was_loaded && contact.bounces) {
-        const double yielding = world.motion[contact.a].inverse_mass + world.motion[contact.b].inverse_mass;
-        contact.was_loaded = load_of(contact) * yielding > slightest_load;
-    }
-    return physics::glance_at(contact);
+    if (!contact.was_loaded || !contact.bounces) return;
+    const double inverse_masses = world.motion[contact.a].inverse_mass + world.motion[contact.b].inverse_mass;
+    contact.was_loaded = load_of(contact) * inverse_masses > slightest_load;
+}
+
+void write_glance(WorldState& world, std::uint32_t index) {
+    Contact& contact = world.contacts[index];
+    clear_rounding_load(world, contact);
+    world.contact_glances[index] = glance_at(contact);
 }
 
 // Puts a pair's newly found contacts in the place of as many old ones.
 void replace_contacts(WorldState& world, PairTouch& touch, TouchMemory::Worker& worker) {
     for (std::uint32_t k = 0; k < touch.count; ++k) {
         world.contacts[touch.first + k] = worker.found[touch.found_first + k];
-        world.contact_glances[touch.first + k] = glance_at(world, world.contacts[touch.first + k]);
+        write_glance(world, touch.first + k);
     }
     worker.found.resize(touch.found_first);
     touch.finder = PairTouch::keeps;
@@ -316,7 +320,7 @@ void replace_contacts(WorldState& world, PairTouch& touch, TouchMemory::Worker& 
 void follow_contacts(WorldState& world, const PairTouch& touch, const FollowedPair& followed) {
     for (std::uint32_t i = touch.first; i < touch.first + touch.count; ++i) {
         follow_bodies(world.contacts[i], followed);
-        world.contact_glances[i] = glance_at(world, world.contacts[i]);
+        write_glance(world, i);
     }
 }
 
@@ -330,7 +334,7 @@ bool may_keep(const WorldState& world, const PairWatch& watch, const PairRecord&
 void keep_contacts(WorldState& world, const PairTouch& touch) {
     for (std::uint32_t i = touch.first; i < touch.first + touch.count; ++i) {
         begin_step(world.contacts[i]);
-        world.contact_glances[i] = glance_at(world, world.contacts[i]);
+        write_glance(world, i);
         world.contact_glances[i].is_kept = true;
     }
 }
@@ -414,7 +418,7 @@ void lay_out(WorldState& world) {
         for (std::uint32_t k = 0; k < touch.next_count; ++k) {
             const Contact& contact = world.touch_memory.workers[touch.finder].found[touch.found_first + k];
             world.contacts[touch.next_first + k] = contact;
-            world.contact_glances[touch.next_first + k] = glance_at(world, world.contacts[touch.next_first + k]);
+            write_glance(world, touch.next_first + k);
         }
     }
     world.contacts.resize(total);
