@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "physics/inter/definitions/shape_definition.h"
+#include "physics/definitions/shape_definition.h"
 
 namespace embody::scenes {
 

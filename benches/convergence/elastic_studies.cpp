@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "benches/convergence/measurements.h"
-#include "physics/inter/definitions/deformable_primitives.h"
+#include "physics/definitions/deformable_primitives.h"
 
 namespace embody::convergence {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "foundation/random.h"
-#include "physics/collision/collision_shape.h"
+#include "physics/collision/shapes/collision_shape.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "foundation/random.h"
-#include "physics/inter/definitions/grain_material.h"
+#include "physics/definitions/grain_material.h"
 
 namespace embody::scenes {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "physics/inter/definitions/deformable_primitives.h"
+#include "physics/definitions/deformable_primitives.h"
 #include "scenes/structures/box_stacks.h"
 
 namespace embody::scenes {

@@ -10,7 +10,7 @@
 
 #include "attributes/taxonomy_data.h"
 #include "foundation/result.h"
-#include "physics/inter/definitions/surface_pairs.h"
+#include "physics/definitions/surface_pairs.h"
 
 namespace embody::attributes {
 

@@ -10,10 +10,10 @@
 #include "attributes/resolver.h"
 #include "foundation/result.h"
 #include "geometry/tetrahedra/tetrahedral_mesh.h"
-#include "physics/inter/definitions/body_definition.h"
-#include "physics/inter/definitions/deformable_definition.h"
-#include "physics/inter/definitions/fluid_definition.h"
-#include "physics/inter/definitions/shape_definition.h"
+#include "physics/definitions/body_definition.h"
+#include "physics/definitions/deformable_definition.h"
+#include "physics/definitions/fluid_definition.h"
+#include "physics/definitions/shape_definition.h"
 
 namespace embody::attributes {
 

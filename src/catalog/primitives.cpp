@@ -11,7 +11,7 @@
 #include "catalog/prepare/surface_finish.h"
 #include "catalog/prepare/thumbnail.h"
 #include "interchange/compact/compact_geometry.h"
-#include "physics/inter/definitions/shape_definition.h"
+#include "physics/definitions/shape_definition.h"
 
 namespace embody::catalog {
 namespace {

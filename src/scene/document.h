@@ -11,9 +11,9 @@
 
 #include "attributes/attribute.h"
 #include "math/transform.h"
-#include "physics/inter/definitions/joint_definition.h"
-#include "physics/inter/definitions/shape_definition.h"
-#include "physics/inter/definitions/world_settings.h"
+#include "physics/definitions/joint_definition.h"
+#include "physics/definitions/shape_definition.h"
+#include "physics/definitions/world_settings.h"
 #include "scene/action.h"
 
 namespace embody::scene {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "attributes/to_physics.h"
-#include "physics/inter/definitions/field_check.h"
+#include "physics/definitions/field_check.h"
 #include "scene/entity_body.h"
 
 namespace embody::scene {

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "attributes/assemble.h"
-#include "physics/inter/definitions/grain_material.h"
+#include "physics/definitions/grain_material.h"
 #include "scene/entity_body.h"
 #include "scene/grain_filling.h"
 

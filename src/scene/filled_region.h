@@ -8,7 +8,7 @@
 #include "geometry/convex_hull.h"
 #include "math/bounds.h"
 #include "math/transform.h"
-#include "physics/inter/definitions/shape_definition.h"
+#include "physics/definitions/shape_definition.h"
 
 namespace embody::scene {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "foundation/result.h"
-#include "physics/inter/definitions/shape_definition.h"
+#include "physics/definitions/shape_definition.h"
 
 namespace embody::scene {
 

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "math/transform.h"
-#include "physics/inter/definitions/body_definition.h"
-#include "physics/inter/definitions/deformable_definition.h"
-#include "physics/inter/definitions/fluid_definition.h"
-#include "physics/inter/definitions/shape_definition.h"
+#include "physics/definitions/body_definition.h"
+#include "physics/definitions/deformable_definition.h"
+#include "physics/definitions/fluid_definition.h"
+#include "physics/definitions/shape_definition.h"
 
 namespace embody::scene {
 

@@ -3,7 +3,7 @@
 
 #include "foundation/result.h"
 #include "geometry/triangle_mesh.h"
-#include "physics/inter/definitions/shape_definition.h"
+#include "physics/definitions/shape_definition.h"
 
 namespace embody::scene {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "physics/inter/definitions/grain_material.h"
+#include "physics/definitions/grain_material.h"
 #include "scene/document_field.h"
 #include "scene/liquid_notes.h"
 #include "scene/simulation_state.h"

@@ -8,7 +8,7 @@
 
 #include "attributes/form.h"
 #include "geometry/bounding_volume_tree.h"
-#include "physics/inter/definitions/deformable_primitives.h"
+#include "physics/definitions/deformable_primitives.h"
 #include "scene/shape_surface.h"
 
 namespace embody::scene {

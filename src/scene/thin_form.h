@@ -6,7 +6,7 @@
 #include "attributes/to_physics.h"
 #include "foundation/result.h"
 #include "geometry/triangle_mesh.h"
-#include "physics/inter/definitions/shape_definition.h"
+#include "physics/definitions/shape_definition.h"
 
 namespace embody::scene {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <memory>
 
-#include "physics/deformable/cloth_sheet.h"
-#include "physics/deformable/rope_line.h"
+#include "physics/deformable/cloth/cloth_sheet.h"
+#include "physics/deformable/rope/rope_line.h"
 
 namespace embody::physics {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "physics/inter/definitions/grain_material.h"
+#include "physics/definitions/grain_material.h"
 #include "scene/grain_filling.h"
 #include "scene/live_scene.h"
 #include "scene/sample_documents.h"

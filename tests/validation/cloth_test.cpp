@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "physics/deformable/nearest_points.h"
-#include "physics/inter/definitions/deformable_primitives.h"
+#include "physics/definitions/deformable_primitives.h"
+#include "physics/deformable/contact/nearest_points.h"
 #include "validation/reference.h"
 
 namespace embody::physics {

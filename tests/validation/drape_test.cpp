@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "physics/inter/definitions/deformable_primitives.h"
+#include "physics/definitions/deformable_primitives.h"
 #include "validation/reference.h"
 
 namespace embody::physics {

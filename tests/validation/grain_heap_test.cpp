@@ -3,7 +3,7 @@
 // few thousand: single heaps of the same kind differ by a degree).
 #include <gtest/gtest.h>
 
-#include "physics/inter/definitions/grain_material.h"
+#include "physics/definitions/grain_material.h"
 #include "scenes/structures/grain_heap.h"
 
 namespace embody::physics {

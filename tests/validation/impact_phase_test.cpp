@@ -7,7 +7,7 @@
 #include <array>
 
 #include "foundation/random.h"
-#include "physics/constraint/frictional_impact.h"
+#include "physics/constraint/impact/frictional_impact.h"
 #include "validation/reference.h"
 
 namespace embody::physics {

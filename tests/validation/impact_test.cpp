@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include "physics/constraint/frictional_impact.h"
+#include "physics/constraint/impact/frictional_impact.h"
 #include "validation/reference.h"
 
 namespace embody::physics {

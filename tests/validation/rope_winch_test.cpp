@@ -2,7 +2,7 @@
 // A drum that turns and winds up a rope with a load; ropes whose ends are twisted, for any number of workers.
 #include <gtest/gtest.h>
 
-#include "physics/inter/definitions/deformable_primitives.h"
+#include "physics/definitions/deformable_primitives.h"
 #include "validation/reference.h"
 
 namespace embody::physics {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "physics/deformable/solid_deformable.h"
-#include "physics/inter/definitions/deformable_primitives.h"
+#include "physics/definitions/deformable_primitives.h"
+#include "physics/deformable/solid/solid_deformable.h"
 #include "validation/reference.h"
 
 namespace embody::physics {

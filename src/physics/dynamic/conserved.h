@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/definitions/step_report.h"
 #include "physics/dynamic/body_state.h"
-#include "physics/inter/definitions/step_report.h"
 
 namespace embody::physics {
 

@@ -3,8 +3,8 @@
 
 #include "foundation/result.h"
 #include "geometry/mass_properties.h"
+#include "physics/definitions/body_definition.h"
 #include "physics/dynamic/body_state.h"
-#include "physics/inter/definitions/body_definition.h"
 
 namespace embody::physics {
 

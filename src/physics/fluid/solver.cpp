@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/fluid/collide_particles.h"
-#include "physics/fluid/drops.h"
-#include "physics/fluid/faces.h"
-#include "physics/fluid/small_body.h"
-#include "physics/fluid/transfer.h"
-#include "physics/fluid/wall_friction.h"
+#include "physics/fluid/grid/faces.h"
+#include "physics/fluid/obstacles/small_body.h"
+#include "physics/fluid/obstacles/wall_friction.h"
+#include "physics/fluid/particles/collide_particles.h"
+#include "physics/fluid/particles/drops.h"
+#include "physics/fluid/particles/transfer.h"
 
 namespace embody::physics {
 

@@ -4,14 +4,14 @@
 #include <span>
 #include <vector>
 
-#include "physics/fluid/free_lumps.h"
-#include "physics/fluid/grid.h"
-#include "physics/fluid/pressure_system.h"
-#include "physics/fluid/solids.h"
-#include "physics/fluid/surface_tension.h"
-#include "physics/fluid/viscosity.h"
-#include "physics/inter/definitions/fluid_definition.h"
-#include "physics/inter/definitions/step_report.h"
+#include "physics/definitions/fluid_definition.h"
+#include "physics/definitions/step_report.h"
+#include "physics/fluid/grid/grid.h"
+#include "physics/fluid/obstacles/solids.h"
+#include "physics/fluid/particles/free_lumps.h"
+#include "physics/fluid/pressure/pressure_system.h"
+#include "physics/fluid/pressure/surface_tension.h"
+#include "physics/fluid/pressure/viscosity.h"
 
 namespace embody::physics {
 

@@ -3,9 +3,9 @@
 
 #include "foundation/state_hash.h"
 #include "physics/dynamic/conserved.h"
-#include "physics/step/body_setup.h"
+#include "physics/stages/rigid/body_setup.h"
+#include "physics/stages/rigid/wake.h"
 #include "physics/step/step.h"
-#include "physics/step/wake.h"
 
 namespace embody::physics {
 

@@ -10,15 +10,15 @@
 
 #include "foundation/result.h"
 #include "math/bounds.h"
-#include "physics/inter/definitions/body_definition.h"
-#include "physics/inter/definitions/deformable_definition.h"
-#include "physics/inter/definitions/events.h"
-#include "physics/inter/definitions/fluid_definition.h"
-#include "physics/inter/definitions/joint_definition.h"
-#include "physics/inter/definitions/shape_definition.h"
-#include "physics/inter/definitions/step_report.h"
-#include "physics/inter/definitions/surface_pairs.h"
-#include "physics/inter/definitions/world_settings.h"
+#include "physics/definitions/body_definition.h"
+#include "physics/definitions/deformable_definition.h"
+#include "physics/definitions/events.h"
+#include "physics/definitions/fluid_definition.h"
+#include "physics/definitions/joint_definition.h"
+#include "physics/definitions/shape_definition.h"
+#include "physics/definitions/step_report.h"
+#include "physics/definitions/surface_pairs.h"
+#include "physics/definitions/world_settings.h"
 
 namespace embody::physics {
 

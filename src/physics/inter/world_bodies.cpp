@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "physics/inter/definitions/field_check.h"
+#include "physics/definitions/field_check.h"
 #include "physics/inter/world.h"
-#include "physics/step/body_setup.h"
-#include "physics/step/wake.h"
+#include "physics/stages/rigid/body_setup.h"
+#include "physics/stages/rigid/wake.h"
 
 namespace embody::physics {
 

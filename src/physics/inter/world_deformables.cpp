@@ -4,12 +4,12 @@
 #include <string>
 #include <utility>
 
-#include "physics/deformable/nearest_points.h"
-#include "physics/deformable/rotation_part.h"
+#include "math/rotation_part.h"
+#include "physics/deformable/contact/nearest_points.h"
 #include "physics/inter/world.h"
-#include "physics/step/thin_groups.h"
-#include "physics/step/wake.h"
-#include "physics/step/world_state.h"
+#include "physics/stages/deformable/thin_groups.h"
+#include "physics/stages/rigid/wake.h"
+#include "physics/state/world_state.h"
 
 namespace embody::physics {
 

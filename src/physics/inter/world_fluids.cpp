@@ -3,8 +3,9 @@
 
 #include <cmath>
 
-#include "physics/step/wake.h"
-#include "physics/step/world_state.h"
+#include "physics/stages/fluid/fluids.h"
+#include "physics/stages/rigid/wake.h"
+#include "physics/state/world_state.h"
 
 namespace embody::physics {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
+#include "physics/inter/queries.h"
 #include "physics/inter/world.h"
-#include "physics/step/queries.h"
-#include "physics/step/world_state.h"
+#include "physics/state/world_state.h"
 
 namespace embody::physics {
 

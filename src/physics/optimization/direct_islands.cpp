@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "physics/constraint/direct_contact_solver.h"
+#include "physics/constraint/direct/direct_contact_solver.h"
 
 namespace embody::physics {
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "physics/constraint/contact.h"
+#include "physics/constraint/contact/contact.h"
 #include "physics/optimization/islands.h"
 
 namespace embody::physics {

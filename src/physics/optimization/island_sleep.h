@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "physics/definitions/body_definition.h"
 #include "physics/dynamic/body_state.h"
-#include "physics/inter/definitions/body_definition.h"
 #include "physics/optimization/islands.h"
 
 namespace embody::physics {

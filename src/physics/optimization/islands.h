@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "physics/constraint/contact.h"
-#include "physics/constraint/joint.h"
+#include "physics/constraint/contact/contact.h"
+#include "physics/constraint/joint/joint.h"
 
 namespace embody::physics {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "physics/constraint/contact.h"
+#include "physics/constraint/contact/contact.h"
 
 namespace embody::physics {
 

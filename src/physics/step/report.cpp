@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include "physics/step/report.h"
+
 #include <algorithm>
 
-#include "physics/step/share_awake.h"
-#include "physics/step/step.h"
+#include "physics/state/share_awake.h"
 
 namespace embody::physics {
 

@@ -4,7 +4,9 @@
 #include <chrono>
 #include <optional>
 
-#include "physics/step/roll_balls.h"
+#include "physics/stages/rigid/roll_balls.h"
+#include "physics/stages/stages.h"
+#include "physics/step/report.h"
 
 namespace embody::physics {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <nlohmann/json.hpp>
 
-#include "physics/inter/definitions/field_check.h"
+#include "physics/definitions/field_check.h"
 #include "scene/document_field.h"
 #include "scene/json/field_reader.h"
 #include "scene/json/parts.h"

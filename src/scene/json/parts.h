@@ -8,7 +8,7 @@
 #include "attributes/attribute.h"
 #include "foundation/result.h"
 #include "math/transform.h"
-#include "physics/inter/definitions/shape_definition.h"
+#include "physics/definitions/shape_definition.h"
 #include "scene/document.h"
 
 namespace embody::scene {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "physics/collision/box_tree.h"
+#include "physics/collision/broad_phase/box_tree.h"
 
 #include <gtest/gtest.h>
 

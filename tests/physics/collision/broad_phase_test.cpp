@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "physics/collision/broad_phase.h"
+#include "physics/collision/broad_phase/broad_phase.h"
 
 #include <gtest/gtest.h>
 

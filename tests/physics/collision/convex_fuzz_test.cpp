@@ -7,7 +7,7 @@
 #include <string>
 
 #include "physics/collision/collision_probe.h"
-#include "physics/collision/collision_shape_data.h"
+#include "physics/collision/shapes/collision_shape_data.h"
 
 namespace embody::physics {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "physics/collision/collision_shape.h"
+#include "physics/collision/shapes/collision_shape.h"
 
 namespace embody::physics {
 namespace {

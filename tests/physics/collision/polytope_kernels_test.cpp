@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Loops over polytopes give the bits of a plain loop on every width that this processor has, ties and zeros included.
-#include "physics/collision/polytope_kernels.h"
+#include "physics/collision/shapes/polytope_kernels.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "physics/collision/collision_probe.h"
-#include "physics/collision/collision_shape_data.h"
+#include "physics/collision/shapes/collision_shape_data.h"
 
 namespace embody::physics {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "physics/constraint/contact_newton.h"
+#include "physics/constraint/direct/contact_newton.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include "physics/collision/collision_shape.h"
-#include "physics/constraint/contact.h"
+#include "physics/collision/shapes/collision_shape.h"
+#include "physics/constraint/contact/contact.h"
 
 namespace embody::physics {
 namespace {

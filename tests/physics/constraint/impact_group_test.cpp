@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "foundation/random.h"
-#include "physics/constraint/contact.h"
-#include "physics/constraint/impact_group.h"
+#include "physics/constraint/contact/contact.h"
+#include "physics/constraint/impact/impact_group.h"
 
 namespace embody::physics {
 namespace {

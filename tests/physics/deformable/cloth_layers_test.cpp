@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "physics/deformable/cloth_layers.h"
+#include "physics/deformable/cloth/cloth_layers.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
-#include "physics/deformable/nearest_points.h"
-#include "physics/inter/definitions/deformable_primitives.h"
+#include "physics/definitions/deformable_primitives.h"
+#include "physics/deformable/contact/nearest_points.h"
 
 namespace embody::physics {
 namespace {

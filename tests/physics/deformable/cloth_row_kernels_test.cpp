@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "physics/deformable/cloth_row_kernels.h"
+#include "physics/deformable/cloth/cloth_row_kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "foundation/random.h"
-#include "physics/deformable/cloth_matrix.h"
+#include "physics/deformable/cloth/cloth_matrix.h"
 
 namespace embody::physics {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "physics/deformable/cloth_sheet.h"
+#include "physics/deformable/cloth/cloth_sheet.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "physics/definitions/deformable_primitives.h"
 #include "physics/deformable_scene.h"
-#include "physics/inter/definitions/deformable_primitives.h"
 
 namespace embody::physics {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "physics/deformable/rope_line.h"
+#include "physics/deformable/rope/rope_line.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "physics/definitions/deformable_primitives.h"
 #include "physics/deformable_scene.h"
-#include "physics/inter/definitions/deformable_primitives.h"
 
 namespace embody::physics {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "physics/definitions/deformable_primitives.h"
 #include "physics/deformable_scene.h"
-#include "physics/inter/definitions/deformable_primitives.h"
 
 namespace embody::physics {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "physics/inter/definitions/deformable_primitives.h"
+#include "physics/definitions/deformable_primitives.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics {

@@ -5,10 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "physics/collision/collision_shape.h"
+#include "physics/collision/shapes/collision_shape.h"
 #include "physics/inter/world.h"
-#include "physics/step/step.h"
-#include "physics/step/world_state.h"
+#include "physics/stages/fluid/fluids.h"
+#include "physics/stages/stages.h"
+#include "physics/state/world_state.h"
 
 namespace embody::physics {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "physics/inter/definitions/deformable_primitives.h"
+#include "physics/definitions/deformable_primitives.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics {

@@ -2,7 +2,7 @@
 // What the world tells of a rope: tensions, and that it broke.
 #include <gtest/gtest.h>
 
-#include "physics/inter/definitions/deformable_primitives.h"
+#include "physics/definitions/deformable_primitives.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Friction and restitution by pair of surfaces.
-#include "physics/inter/definitions/surface_pairs.h"
+#include "physics/definitions/surface_pairs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,427 @@
+// SPDX-License-Identifier: MIT
+#include "physics/collision/broad_phase/broad_phase.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "foundation/assert.h"
+#include "physics/collision/broad_phase/box_tree.h"
+
+namespace embody::physics {
+
+namespace {
+
+// A box wider than this would make every box above it useless; such bodies (planes) are kept in a list.
+constexpr double widest_in_tree = 1e7;
+// The enlargement: a tenth of the size, but no more than 5 cm, so that small things do not pair with far ones.
+constexpr double most_margin = 0.05;
+// Worlds with fewer changed bodies look for pairs on one thread.
+constexpr std::uint32_t fewest_shared = 500;
+// As many pairs are always kept; beyond, as many as a body may have partners.
+constexpr std::size_t always_kept_pairs = 100000;
+
+double margin_of(const Bounds& bounds) {
+    const Vec3 size = bounds.size();
+    return std::min(most_margin, 0.1 * std::max(size.x, std::max(size.y, size.z)));
+}
+
+Bounds enlarged_for(const Bounds& bounds, Vec3 motion) {
+    Bounds fat = enlarged(bounds, margin_of(bounds));
+    fat.lower += min(motion, {});
+    fat.upper += max(motion, {});
+    return fat;
+}
+
+bool is_wide(const Bounds& b) {
+    const Vec3 s = b.size();
+    return s.x > widest_in_tree || s.y > widest_in_tree || s.z > widest_in_tree;
+}
+
+std::uint32_t lowest_lane(std::uint32_t mask) { return static_cast<std::uint32_t>(std::countr_zero(mask)); }
+
+// Where the ray enters the box, `never` if not before `max_distance`; m along the direction.
+constexpr double never = 1e300;
+double entry_of(const Bounds& box, Vec3 origin, Vec3 direction, double max_distance) {
+    double enter = 0, leave = max_distance;
+    for (int k = 0; k < 3; ++k) {
+        if (std::fabs(direction[k]) < 1e-300) {
+            if (origin[k] < box.lower[k] || origin[k] > box.upper[k]) return never;
+            continue;
+        }
+        const double a = (box.lower[k] - origin[k]) / direction[k], b = (box.upper[k] - origin[k]) / direction[k];
+        enter = std::max(enter, std::min(a, b));
+        leave = std::min(leave, std::max(a, b));
+    }
+    return enter <= leave ? enter : never;
+}
+
+}  // namespace
+
+struct BroadPhase::State {
+    struct Proxy {
+        FloatBox fat;
+        bool used = false, movable = false, wide = false;
+    };
+    /// One worker's share of the new pairs.
+    struct Finder {
+        std::vector<Pair> pairs;
+        std::vector<std::uint32_t> partners, movable_leaves, immovable_leaves;  ///< scratch
+    };
+    BoxTree movable, immovable;
+    std::vector<Proxy> proxies;             ///< by body
+    std::vector<std::uint32_t> wide;        ///< bodies in neither tree, ascending
+    std::vector<std::uint8_t> has_changed;  ///< by body: placed or removed since the last update
+    std::vector<std::uint32_t> changed;     ///< those bodies
+    std::vector<Pair> pairs;
+    std::uint64_t version = 0;  ///< of pairs
+    bool too_many = false;
+    bool all_changed = false;  ///< all movable ones, in this update
+    std::vector<Finder> finders;
+    std::vector<Pair> kept, found, sorted;  ///< scratch of update, as is the next
+    std::vector<std::uint32_t> first_of_a;
+
+    BoxTree& tree_of(const Proxy& proxy) { return proxy.movable ? movable : immovable; }
+
+    void mark_changed(std::uint32_t body) {
+        if (!has_changed[body]) changed.push_back(body);
+        has_changed[body] = 1;
+    }
+
+    void place(std::uint32_t body, const Bounds& fat) {
+        Proxy& proxy = proxies[body];
+        proxy.fat = FloatBox(fat);
+        proxy.wide = is_wide(fat);
+        if (proxy.wide) {
+            wide.insert(std::lower_bound(wide.begin(), wide.end(), body), body);
+        } else {
+            tree_of(proxy).insert(body, proxy.fat);
+        }
+        mark_changed(body);
+    }
+
+    void unplace(std::uint32_t body) {
+        Proxy& proxy = proxies[body];
+        if (proxy.wide) {
+            wide.erase(std::lower_bound(wide.begin(), wide.end(), body));
+        } else {
+            tree_of(proxy).remove(body);
+        }
+        mark_changed(body);
+    }
+
+    void refresh() {
+        movable.refresh();
+        immovable.refresh();
+    }
+
+    // Visits the bodies whose enlarged bounds overlap the box.
+    template <class Visit>
+    void visit_overlapping(const FloatBox& box, Visit&& visit) const {
+        for (const BoxTree* tree : {&movable, &immovable}) {
+            tree->query(box, [&](std::uint32_t node, std::uint32_t mask) {
+                for (; mask != 0; mask &= mask - 1) visit(tree->value(node, lowest_lane(mask)));
+            });
+        }
+        for (const std::uint32_t body : wide) {
+            if (proxies[body].fat.overlaps(box)) visit(body);
+        }
+    }
+
+    void change_all();
+    void find_new_pairs(TaskPool& workers);
+    void find_pairs_of_leaf(std::uint32_t leaf, Finder& finder) const;
+    void find_pairs_of_immovable_leaf(std::uint32_t leaf, Finder& finder) const;
+    void find_pairs_of_wide(std::uint32_t body, Finder& finder) const;
+    void find_few_pairs(TaskPool& workers);
+    void find_few_pairs_of(std::uint32_t body, Finder& finder) const;
+    void keep_pairs();
+    void sort_found();
+    [[nodiscard]] std::size_t most_pairs() const { return always_kept_pairs + most_partners * proxies.size(); }
+};
+
+namespace {
+
+void add_pair(std::vector<BroadPhase::Pair>& pairs, std::uint32_t a, std::uint32_t b) {
+    pairs.push_back({std::min(a, b), std::max(a, b)});
+}
+
+}  // namespace
+
+// The changed boxes of one leaf against all others: first all of them together, then each against the leaves that they
+// meet. Of two movable boxes that changed, the earlier one finds the pair.
+void BroadPhase::State::find_pairs_of_leaf(std::uint32_t leaf, Finder& finder) const {
+    const std::uint32_t mine = movable.changed_mask(leaf);
+    if (mine == 0) return;
+    const FloatBox together = movable.leaf(leaf).joined(mine);
+    const auto collect = [&](std::vector<std::uint32_t>& leaves) {
+        leaves.clear();
+        return [&leaves](std::uint32_t node, std::uint32_t) { leaves.push_back(node); };
+    };
+    movable.query(together, collect(finder.movable_leaves), all_changed ? leaf : 0);
+    immovable.query(together, collect(finder.immovable_leaves));
+
+    for (std::uint32_t rest = mine; rest != 0; rest &= rest - 1) {
+        const std::uint32_t lane = lowest_lane(rest), body = movable.value(leaf, lane);
+        const FloatBox box = movable.leaf(leaf).box(lane);
+        for (const std::uint32_t node : finder.movable_leaves) {
+            std::uint32_t mask = movable.leaf(node).overlap_mask(box);
+            if (node < leaf) mask &= ~movable.changed_mask(node);
+            if (node == leaf) mask &= ~(mine & ((2u << lane) - 1));
+            for (; mask != 0; mask &= mask - 1) add_pair(finder.pairs, body, movable.value(node, lowest_lane(mask)));
+        }
+        for (const std::uint32_t node : finder.immovable_leaves) {
+            std::uint32_t mask = immovable.leaf(node).overlap_mask(box);
+            for (; mask != 0; mask &= mask - 1) add_pair(finder.pairs, body, immovable.value(node, lowest_lane(mask)));
+        }
+        for (const std::uint32_t other : wide) {
+            if (proxies[other].fat.overlaps(box)) add_pair(finder.pairs, body, other);
+        }
+    }
+}
+
+// Movable boxes that changed have found theirs with the immovable ones.
+void BroadPhase::State::find_pairs_of_immovable_leaf(std::uint32_t leaf, Finder& finder) const {
+    for (std::uint32_t mine = immovable.changed_mask(leaf); mine != 0; mine &= mine - 1) {
+        const std::uint32_t lane = lowest_lane(mine), body = immovable.value(leaf, lane);
+        const FloatBox box = immovable.leaf(leaf).box(lane);
+        movable.query(box, [&](std::uint32_t node, std::uint32_t mask) {
+            mask &= ~movable.changed_mask(node);
+            for (; mask != 0; mask &= mask - 1) add_pair(finder.pairs, body, movable.value(node, lowest_lane(mask)));
+        });
+        for (const std::uint32_t other : wide) {
+            if (proxies[other].movable && proxies[other].fat.overlaps(box)) add_pair(finder.pairs, body, other);
+        }
+    }
+}
+
+// What has changed in the trees has found its pairs with the wide bodies.
+void BroadPhase::State::find_pairs_of_wide(std::uint32_t body, Finder& finder) const {
+    const Proxy& proxy = proxies[body];
+    const auto add_unchanged_of = [&](const BoxTree& tree) {
+        tree.query(proxy.fat, [&](std::uint32_t node, std::uint32_t mask) {
+            mask &= ~tree.changed_mask(node);
+            for (; mask != 0; mask &= mask - 1) add_pair(finder.pairs, body, tree.value(node, lowest_lane(mask)));
+        });
+    };
+    add_unchanged_of(movable);
+    if (proxy.movable) add_unchanged_of(immovable);
+    for (const std::uint32_t other : wide) {
+        const bool is_others = has_changed[other] && other <= body;
+        if (is_others || !(proxy.movable || proxies[other].movable)) continue;
+        if (proxies[other].fat.overlaps(proxy.fat)) add_pair(finder.pairs, body, other);
+    }
+}
+
+void BroadPhase::State::change_all() {
+    for (std::uint32_t body = 0; body < proxies.size(); ++body) {
+        if (proxies[body].used) mark_changed(body);
+    }
+    movable.change_all();
+    immovable.change_all();
+}
+
+// Stops where there are too many.
+void BroadPhase::State::find_new_pairs(TaskPool& workers) {
+    const bool are_many = changed.size() >= fewest_shared;
+    all_changed = movable.are_all_changed();
+    share_among(workers, movable.leaf_count(), are_many, [&](int worker, Share share) {
+        Finder& finder = finders[static_cast<std::size_t>(worker)];
+        for (auto leaf = share.first; leaf < share.last; ++leaf) {
+            find_pairs_of_leaf(static_cast<std::uint32_t>(leaf), finder);
+            if (finder.pairs.size() > most_pairs()) return;
+        }
+    });
+    for (std::uint32_t leaf = 0; leaf < immovable.leaf_count(); ++leaf) find_pairs_of_immovable_leaf(leaf, finders[0]);
+    for (const std::uint32_t body : wide) {
+        if (has_changed[body]) find_pairs_of_wide(body, finders[0]);
+    }
+}
+
+// Which pairs are left out depends on the bodies' indices only.
+void BroadPhase::State::find_few_pairs_of(std::uint32_t body, Finder& finder) const {
+    const auto add_lowest = [&](bool are_movable, std::size_t most) {
+        finder.partners.clear();
+        visit_overlapping(proxies[body].fat, [&](std::uint32_t other) {
+            if (proxies[other].movable != are_movable || (are_movable && other <= body)) return;
+            finder.partners.push_back(other);
+        });
+        std::vector<std::uint32_t>& partners = finder.partners;
+        const auto last = partners.begin() + static_cast<std::ptrdiff_t>(std::min(most, partners.size()));
+        std::partial_sort(partners.begin(), last, partners.end());
+        std::for_each(partners.begin(), last, [&](std::uint32_t other) { add_pair(finder.pairs, body, other); });
+    };
+    add_lowest(true, most_partners);
+    add_lowest(false, most_immovable_partners);
+}
+
+void BroadPhase::State::find_few_pairs(TaskPool& workers) {
+    share_among(workers, proxies.size(), true, [&](int worker, Share share) {
+        Finder& finder = finders[static_cast<std::size_t>(worker)];
+        finder.pairs.clear();
+        for (auto body = share.first; body < share.last; ++body) {
+            const Proxy& proxy = proxies[body];
+            if (proxy.used && proxy.movable) find_few_pairs_of(static_cast<std::uint32_t>(body), finder);
+        }
+    });
+}
+
+// The pairs of bodies that have not changed.
+void BroadPhase::State::keep_pairs() {
+    kept.clear();
+    for (const Pair& pair : pairs) {
+        if (!has_changed[pair.a] && !has_changed[pair.b]) kept.push_back(pair);
+    }
+}
+
+// Sorts the found pairs: by the first body by counting, then each body's few by the second.
+void BroadPhase::State::sort_found() {
+    first_of_a.assign(proxies.size() + 1, 0);
+    std::size_t count = 0;
+    for (const Finder& finder : finders) {
+        count += finder.pairs.size();
+        for (const Pair& pair : finder.pairs) ++first_of_a[pair.a + 1];
+    }
+    for (std::size_t a = 1; a < first_of_a.size(); ++a) first_of_a[a] += first_of_a[a - 1];
+    found.resize(count);
+    for (const Finder& finder : finders) {
+        for (const Pair& pair : finder.pairs) found[first_of_a[pair.a]++] = pair;
+    }
+
+    // After the distribution an entry tells where the next body's pairs begin.
+    std::uint32_t begin = 0;
+    for (std::size_t a = 0; a + 1 < first_of_a.size(); ++a) {
+        const std::uint32_t end = first_of_a[a];
+        std::sort(found.begin() + begin, found.begin() + end);
+        begin = end;
+    }
+}
+
+BroadPhase::BroadPhase() : state_(std::make_unique<State>()) {}
+BroadPhase::~BroadPhase() = default;
+
+void BroadPhase::insert(std::uint32_t body, const Bounds& bounds, bool movable) {
+    State& s = *state_;
+    if (body >= s.proxies.size()) {
+        s.proxies.resize(body + 1);
+        s.has_changed.resize(body + 1);
+    }
+    EMBODY_ASSERT(!s.proxies[body].used);
+    EMBODY_ASSERT(!bounds.is_empty());
+    s.proxies[body].used = true;
+    s.proxies[body].movable = movable;
+    s.place(body, enlarged_for(bounds, {}));
+}
+
+// Its pairs go with the next update, also if a new body has its index by then.
+void BroadPhase::remove(std::uint32_t body) {
+    State& s = *state_;
+    EMBODY_ASSERT(body < s.proxies.size() && s.proxies[body].used);
+    s.unplace(body);
+    s.proxies[body].used = false;
+}
+
+// Kept while it still holds the body and has not become far too large (after a fast move came to rest).
+bool BroadPhase::holds(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion) const {
+    const FloatBox& fat = state_->proxies[body].fat;
+    const Bounds largest = enlarged(enlarged_for(bounds, expected_motion), 4 * margin_of(bounds));
+    return fat.contains(bounds) && contains(largest, fat.bounds());
+}
+
+void BroadPhase::move(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion) {
+    State& s = *state_;
+    EMBODY_ASSERT(body < s.proxies.size() && s.proxies[body].used);
+    if (holds(body, bounds, expected_motion)) return;
+    State::Proxy& proxy = s.proxies[body];
+    const Bounds wanted = enlarged_for(bounds, expected_motion);
+    if (proxy.wide || is_wide(wanted)) {
+        s.unplace(body);
+        s.place(body, wanted);
+        return;
+    }
+    proxy.fat = FloatBox(wanted);
+    s.tree_of(proxy).set(body, proxy.fat);
+    s.mark_changed(body);
+}
+
+std::uint64_t BroadPhase::pairs_version() const { return state_->version; }
+bool BroadPhase::has_too_many_pairs() const { return state_->too_many; }
+
+const std::vector<BroadPhase::Pair>& BroadPhase::update_pairs(TaskPool& workers) {
+    State& s = *state_;
+    if (s.changed.empty()) return s.pairs;
+    s.refresh();
+    s.finders.resize(static_cast<std::size_t>(workers.workers()));
+    for (State::Finder& finder : s.finders) finder.pairs.clear();
+
+    // Changed bodies lose their pairs and look for them anew; the others keep theirs, unless some were left out.
+    if (s.too_many) s.change_all();
+    s.keep_pairs();
+    s.find_new_pairs(workers);
+    std::size_t count = s.kept.size();
+    for (const State::Finder& finder : s.finders) count += finder.pairs.size();
+    s.too_many = count > s.most_pairs();
+    if (s.too_many) {
+        s.kept.clear();
+        s.find_few_pairs(workers);
+    }
+    s.sort_found();
+    s.sorted.resize(s.kept.size() + s.found.size());
+    std::merge(s.kept.begin(), s.kept.end(), s.found.begin(), s.found.end(), s.sorted.begin());
+    if (s.sorted != s.pairs) {
+        s.pairs.swap(s.sorted);
+        ++s.version;
+    }
+
+    for (const std::uint32_t body : s.changed) s.has_changed[body] = 0;
+    s.changed.clear();
+    s.movable.forget_changes();
+    s.immovable.forget_changes();
+    return s.pairs;
+}
+
+void BroadPhase::query(const Bounds& box, const std::function<void(std::uint32_t)>& visit) const {
+    state_->refresh();
+    std::vector<std::uint32_t> found;
+    state_->visit_overlapping(FloatBox(box), [&found](std::uint32_t body) { found.push_back(body); });
+    std::sort(found.begin(), found.end());
+    for (const std::uint32_t body : found) visit(body);
+}
+
+void BroadPhase::query_ray(Vec3 origin, Vec3 direction, double max_distance,
+                           const std::function<double(std::uint32_t, double)>& visit) const {
+    State& s = *state_;
+    s.refresh();
+    struct Met {
+        double entry;
+        std::uint32_t body;
+        auto operator<=>(const Met&) const = default;
+    };
+    std::vector<Met> met;
+    const auto entry = [&](const FloatBox& b) { return entry_of(b.bounds(), origin, direction, max_distance); };
+    const auto meets = [&](const BoxNode& node) {
+        std::uint32_t mask = 0;
+        for (std::uint32_t lane = 0; lane < BoxNode::lanes; ++lane) {
+            if (!node.is_clear(lane) && entry(node.box(lane)) < never) mask |= 1u << lane;
+        }
+        return mask;
+    };
+    const auto add = [&](std::uint32_t body) {
+        if (const double e = entry(s.proxies[body].fat); e < never) met.push_back({e, body});
+    };
+    std::for_each(s.wide.begin(), s.wide.end(), add);
+    for (const BoxTree* tree : {&s.movable, &s.immovable}) {
+        tree->walk(meets, [&](std::uint32_t node, std::uint32_t mask) {
+            for (; mask != 0; mask &= mask - 1) add(tree->value(node, lowest_lane(mask)));
+        });
+    }
+
+    // The nearest first: what lies behind a hit need not be looked at.
+    std::sort(met.begin(), met.end());
+    for (const Met& m : met) {
+        if (m.entry > max_distance) break;
+        max_distance = visit(m.body, max_distance);
+    }
+}
+
+}  // namespace embody::physics

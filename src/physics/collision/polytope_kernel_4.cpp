@@ -1,4 +1,0 @@
-// SPDX-License-Identifier: MIT
-// Loops over polytopes for 4 lanes; compiled with the flags of its instruction set (src/CMakeLists.txt).
-#define EMBODY_LANES 4
-#include "physics/collision/polytope_kernel_code.h"

@@ -1,4 +1,0 @@
-// SPDX-License-Identifier: MIT
-// Factors of blocked matrices for 8 lanes; compiled with the flags of its instruction set (src/CMakeLists.txt).
-#define EMBODY_LANES 8
-#include "physics/constraint/block_kernel_code.h"

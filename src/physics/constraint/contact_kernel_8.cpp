@@ -1,4 +1,0 @@
-// SPDX-License-Identifier: MIT
-// The contact solver for 8 lanes; compiled with the flags of its instruction set (src/CMakeLists.txt).
-#define EMBODY_LANES 8
-#include "physics/constraint/contact_kernel_code.h"

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "physics/constraint/contact/contact.h"
+#include "physics/linear/block_cholesky.h"
+
+namespace embody::physics {
+
+/// What goes with each other in a contact's frame (n, t1, t2) at its anchor: a relative velocity, or an impulse on b.
+struct PatchTwist {
+    Vec3 normal_part;    ///< along n; about t1, t2
+    Vec3 friction_part;  ///< along t1, t2; about n
+};
+inline PatchTwist operator+(const PatchTwist& a, const PatchTwist& b) {
+    return {a.normal_part + b.normal_part, a.friction_part + b.friction_part};
+}
+inline PatchTwist operator*(const PatchTwist& a, double factor) {
+    return {a.normal_part * factor, a.friction_part * factor};
+}
+inline double dot(const PatchTwist& a, const PatchTwist& b) {
+    return dot(a.normal_part, b.normal_part) + dot(a.friction_part, b.friction_part);
+}
+
+/// What bounds a patch's friction while Newton's method looks for it.
+enum class FrictionBound {
+    hasty,    ///< the load of the last round; what has just met, or turns round within the step, sticks
+    lagged,   ///< the load of the last round
+    coupled,  ///< the load itself, found with it: for what rests. What slides would be lifted
+};
+
+/// A contact region as the direct solver sees it (docs/physics/direct-solver.md): a law that gives the impulse for a
+/// relative velocity. Impulses are a substep's.
+struct DirectPatch {
+    static constexpr std::int32_t immovable = -1;
+
+    struct Point {
+        double s = 0, t = 0;        ///< from the anchor along t1, t2, m
+        double gap = 0;             ///< now, m
+        double guess = 0;           ///< λ₀, N s
+        double load = 0;            ///< λ, N s
+        double foretold = 0;        ///< λ by the slopes of the last round, N s
+        double total = 0;           ///< of the step, N s
+        double limit = 0;           ///< the approach speed that the gap allows, m/s
+        double inactive_until = 0;  ///< s in the step
+        bool is_active = true;
+        bool is_loaded = false;  ///< the load answers the velocity
+    };
+
+    std::uint32_t contact = 0;                  ///< index
+    std::int32_t a = immovable, b = immovable;  ///< the solver's number of the body
+    Vec3 normal, tangent_1, tangent_2;          ///< world
+    Vec3 arm_a, arm_b;                          ///< of the anchor, the points' centroid, m
+    double friction_static = 0, friction_dynamic = 0;
+    double rolling_arm = 0, torsion_arm = 0;  ///< m
+    int count = 0;
+    std::array<Point, Manifold::max_points> points;
+
+    Vec3 friction_guess, friction, friction_total;  ///< along t1, t2; about n at the anchor, N s, N m s
+    Vec3 rolling_guess, rolling;                    ///< x, y: about t1, t2, N m s
+    bool sticks = true;                             ///< holds by static friction until the cone is left
+
+    // Lagged: of the last round; of the first one with loads where the patch is new.
+    bool is_new = true;
+    double lagged_load = 0;             ///< N s
+    double center_s = 0, center_t = 0;  ///< centre of pressure, m
+    double spin_arm = 0;                ///< ρ, m
+
+    // Of the last evaluation.
+    bool is_sliding = false, is_rolling = false;
+    double bound = 0;      ///< of the friction, N s
+    Vec3 slide_direction;  ///< in the metric of friction
+    PatchTwist velocity, impulse;
+    Mat3 friction_slope = Mat3::zero();  ///< −∂friction_part of the impulse / ∂friction_part of the velocity
+    Mat3 normal_slope = Mat3::zero();
+    Mat3 coupling_slope = Mat3::zero();  ///< −∂normal_part of the impulse / ∂friction_part of the velocity
+    PatchTwist change;                   ///< of the velocity, by a full step of Newton's method
+    Mat3 factored_friction_slope = Mat3::zero(), factored_normal_slope = Mat3::zero(),
+         factored_coupling_slope = Mat3::zero();
+};
+
+/// From a contact; `substep_share` is what the new substep is of the last one.
+DirectPatch make_patch(std::uint32_t index, const Contact& contact, double substep_share);
+/// Hands back impulses: those of a substep are `substep_share` of the patch's.
+void write_patch(const DirectPatch& patch, double substep_share, Contact& contact);
+
+/// How the normal part of a velocity becomes a point's speed of parting.
+inline Vec3 row_of(const DirectPatch::Point& point) { return {1, point.t, -point.s}; }
+
+/// Begins a substep of `duration` that ends `time` s after the step began. What was loaded and is apart by `slack` m or
+/// less counts as touching.
+void begin_substep(DirectPatch& patch, double time, double duration, double slack = 0);
+/// Before the first round with coupled bounds: what the guess tells of the friction's metric.
+void begin_coupled(DirectPatch& patch);
+/// The impulses become the next guess and part of the step's totals.
+void end_substep(DirectPatch& patch);
+/// The points' loads after the patch's change of velocity, were the same ones loaded.
+void foretell_loads(DirectPatch& patch, double stiffness);
+/// Whether it slides under the static coefficient: from then on the dynamic one counts.
+bool breaks_away(DirectPatch& patch);
+
+/// Writes down the impulse for the patch's velocity, and how it changes with it. `stiffness` is k, kg.
+void evaluate(DirectPatch& patch, double stiffness, FrictionBound bound);
+/// The impulse for another velocity under the same bounds; writes nothing down.
+PatchTwist impulse_at(const DirectPatch& patch, const PatchTwist& velocity, double stiffness, FrictionBound bound);
+/// Leaves the slopes of the loaded points alone.
+void drop_friction(DirectPatch& patch, double stiffness);
+/// The same, were the loaded points and the sticking as they were in the last substep.
+void evaluate_as_before(DirectPatch& patch, double stiffness);
+/// Relative velocity (or small motion) of the bodies at the anchor.
+PatchTwist relative_twist(const DirectPatch& patch, std::span<const Vec6> bodies);
+/// Adds the impulse on b, and its opposite on a, to the bodies' right sides.
+void add_impulse(const DirectPatch& patch, const PatchTwist& impulse, std::span<Vec6> bodies);
+
+}  // namespace embody::physics

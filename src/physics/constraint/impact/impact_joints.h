@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "physics/constraint/joint/joint_system.h"
+
+namespace embody::physics {
+
+/// How joints pass an impact on, in the same instant: an impulse f on jointed bodies changes their velocities by the Δv
+/// of
+///
+///   M Δv − Jᵀ λ = f,   J Δv = 0      λ: impulses of the joints
+///
+/// which keeps momentum and all joints, and whose inverse is symmetric, so that the energy of a collision is told by
+/// its impulse alone. Motors and springs take no part: their forces are finite. One factorisation serves all impulses.
+class ImpactJoints {
+public:
+    using View = JointSystem::View;
+
+    /// An impulse on a body, N s, at `arm` from its centre of mass, m.
+    struct Push {
+        std::uint32_t body = 0;
+        Vec3 impulse, arm;
+    };
+
+    /// No body is jointed.
+    void clear();
+    /// These bodies and joints, at the places where they are at the impact; a joint whose other body is not of the list
+    /// holds on to that body as it is and moves then. Bodies ascend.
+    void set(const JointedList& list, const View& view);
+
+    [[nodiscard]] std::span<const std::uint32_t> bodies() const { return bodies_; }
+    /// The body's place in bodies(), or −1.
+    [[nodiscard]] int number_of(std::uint32_t body) const;
+
+    /// Takes from the velocities what the joints forbid.
+    void project(const View& view);
+    /// How the velocities of bodies() change if these pushes come at once, in their order; until the next call. Pushes
+    /// on others are left out.
+    std::span<const Vec6> respond(std::span<const Push> pushes);
+    /// Adds the joints' answer to the pushes to their totals of the step.
+    void add_to_totals(std::span<const Push> pushes, const View& view);
+
+    /// How many structures of assemblies are remembered.
+    static constexpr std::size_t most_analysed = 16;
+
+private:
+    struct Place {
+        std::uint32_t joint = 0;      // index
+        std::int32_t a = -1, b = -1;  // numbers of the bodies; −1: does not answer
+        std::uint32_t edge_a = 0, edge_b = 0;
+        JointRows rows;
+        Vec3 arm_b;  // from b's centre of mass to the joint
+    };
+    /// A matrix whose pattern is analysed. Assemblies of one structure share it.
+    struct Analysed {
+        std::size_t bodies = 0, nodes = 0;
+        std::vector<BlockPattern::Edge> edges;
+        BlockLu matrix;
+        std::uint64_t last_use = 0;
+    };
+    void choose_matrix();
+    void factor(const View& view);
+    void put_joint(std::size_t number, const View& view);
+    BlockLu& matrix() { return analysed_[chosen_].matrix; }
+
+    std::vector<std::uint32_t> bodies_;
+    std::vector<Place> places_;
+    std::vector<BlockPattern::Edge> edges_;
+    std::vector<Analysed> analysed_;  // at most most_analysed; those longest out of use make room
+    std::size_t chosen_ = 0;          // of analysed_
+    std::uint64_t uses_ = 0;
+    std::vector<Vec6> unknowns_;  // changes of the bodies' velocities, impulses of the joints
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: MIT
+//
+// Joints as bilateral constraints: their errors C and rows J, and how one is solved after the other in the two phases
+// of a substep where a list is too long for all at once (joint_system.h). Sources: J.-P. Ryckaert et al., "Numerical
+// integration of the cartesian equations of motion of a system with constraints", 1977 (Shake); H. Andersen, "Rattle",
+// 1983. With the Jacobian J of the pose before the drift,
+//   position phase:  λ₁ such that C(pose after the drift) = 0      (C itself, not its linearisation)
+//   velocity phase:  λ₂ such that J v = 0 at the new pose
+// which is symplectic: a pendulum neither gains nor loses energy. The rows of one joint are one block, K = J M⁻¹ Jᵀ.
+#include "physics/constraint/joint/joint.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/arc_tangent.h"
+#include "physics/dynamic/equations_of_motion.h"
+
+namespace embody::physics {
+
+JointImpulses& impulses_of(Joint& joint, SolvePhase phase) {
+    return phase == SolvePhase::position ? joint.position_phase : joint.velocity_phase;
+}
+
+namespace {
+
+const BodyState world_body{};
+
+const BodyState& body_a(const Joint& joint, std::span<const BodyState> bodies) {
+    return joint.a_is_world ? world_body : bodies[joint.a];
+}
+
+// The two joint frames in the world.
+struct Frames {
+    Transform a, b;
+};
+
+Frames frames_now(const Joint& joint, std::span<const BodyState> bodies) {
+    const BodyState& a = body_a(joint, bodies);
+    const BodyState& b = bodies[joint.b];
+    return {Transform{a.center, a.rotation} * joint.local_a, Transform{b.center, b.rotation} * joint.local_b};
+}
+
+Transform after_drift(const BodyState& body, double time) {
+    return {body.center + body.linear_velocity * time,
+            normalized(cayley(body.angular_velocity * time) * body.rotation)};
+}
+
+Frames frames_after_drift(const Joint& joint, double time, std::span<const BodyState> bodies) {
+    const Transform a = joint.a_is_world ? Transform{} : after_drift(bodies[joint.a], time);
+    return {a * joint.local_a, after_drift(bodies[joint.b], time) * joint.local_b};
+}
+
+template <class Kind>
+bool is(const Joint& joint) {
+    return std::holds_alternative<Kind>(joint.kind);
+}
+
+Vec3 axis_of(const Transform& frame, int i) {
+    return rotate(frame.rotation, i == 0 ? Vec3{1, 0, 0} : i == 1 ? Vec3{0, 1, 0} : Vec3{0, 0, 1});
+}
+
+// Small rotation vector that takes frame a to frame b.
+Vec3 rotation_error(const Frames& frames) {
+    const Quat q = frames.b.rotation * conjugate(frames.a.rotation);
+    return Vec3{q.x, q.y, q.z} * (q.w < 0 ? -2.0 : 2.0);
+}
+
+// C(pose), one number a row, in the order of set_rows().
+std::array<double, max_joint_rows> constraint_errors(const Joint& joint, const Frames& frames) {
+    const Vec3 gap = frames.b.position - frames.a.position;
+    if (is<BallJoint>(joint)) return {gap.x, gap.y, gap.z};
+    if (is<HingeJoint>(joint)) {
+        const Vec3 axis_b = axis_of(frames.b, 0);
+        return {gap.x, gap.y, gap.z, -dot(axis_of(frames.a, 2), axis_b), dot(axis_of(frames.a, 1), axis_b)};
+    }
+    const Vec3 turn = rotation_error(frames);
+    if (is<FixedJoint>(joint)) return {gap.x, gap.y, gap.z, turn.x, turn.y, turn.z};
+    return {dot(axis_of(frames.a, 1), gap), dot(axis_of(frames.a, 2), gap), turn.x, turn.y, turn.z};
+}
+
+JointGeometry geometry_of(const Frames& frames, Vec3 center_a, Vec3 center_b) {
+    return {frames.a.position - center_a, frames.b.position - center_b, frames.b.position - center_a,
+            axis_of(frames.a, 0),         axis_of(frames.a, 1),         axis_of(frames.a, 2),
+            axis_of(frames.b, 0)};
+}
+
+double coordinate_of(const Joint& joint, const Frames& frames) {
+    if (is<SliderJoint>(joint)) return dot(axis_of(frames.a, 0), frames.b.position - frames.a.position);
+    if (!is<HingeJoint>(joint)) return 0;
+    const Quat q = conjugate(frames.a.rotation) * frames.b.rotation;
+    return 2 * (q.w < 0 ? arc_tangent(-q.x, -q.w) : arc_tangent(q.x, q.w));
+}
+
+// Joints are mended no faster than this: bodies that a user joined far apart come together instead of bursting.
+constexpr double fastest_mending = 5;  // m/s or rad/s
+
+Vec3 angular_effect(const BodyState& body, Vec3 row) { return body.inverse_inertia * row; }
+
+double row_product(const JointRow& i, const JointRow& j, const BodyState& a, const BodyState& b) {
+    return (a.inverse_mass + b.inverse_mass) * dot(i.linear, j.linear) +
+           dot(i.angular_a, angular_effect(a, j.angular_a)) + dot(i.angular_b, angular_effect(b, j.angular_b));
+}
+
+void apply_row(const Joint& joint, const JointRow& row, double impulse, std::span<BodyState> bodies) {
+    BodyState& b = bodies[joint.b];
+    b.linear_velocity += row.linear * (impulse * b.inverse_mass);
+    b.angular_velocity += angular_effect(b, row.angular_b * impulse);
+    if (joint.a_is_world) return;
+    BodyState& a = bodies[joint.a];
+    a.linear_velocity -= row.linear * (impulse * a.inverse_mass);
+    a.angular_velocity -= angular_effect(a, row.angular_a * impulse);
+}
+
+// K = L Lᵀ. Two immovable bodies give a zero K, which leaves the joint without rows.
+void factor_block(Joint& joint, const BodyState& a, const BodyState& b) {
+    const auto n = static_cast<std::size_t>(joint.row_count);
+    auto& l = joint.cholesky;
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = 0; j <= i; ++j) {
+            double sum = row_product(joint.rows[i], joint.rows[j], a, b);
+            for (std::size_t k = 0; k < j; ++k) sum -= l[i][k] * l[j][k];
+            if (i != j) {
+                l[i][j] = sum / l[j][j];
+            } else if (sum > 0) {
+                l[i][i] = std::sqrt(sum);
+            } else {
+                joint.row_count = 0;
+                return;
+            }
+        }
+    }
+}
+
+std::array<double, max_joint_rows> solve_block(const Joint& joint, std::array<double, max_joint_rows> x) {
+    const auto n = static_cast<std::size_t>(joint.row_count);
+    const auto& l = joint.cholesky;
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t k = 0; k < i; ++k) x[i] -= l[i][k] * x[k];
+        x[i] /= l[i][i];
+    }
+    for (std::size_t i = n; i-- > 0;) {
+        for (std::size_t k = i + 1; k < n; ++k) x[i] -= l[k][i] * x[k];
+        x[i] /= l[i][i];
+    }
+    return x;
+}
+
+const std::optional<JointLimit>* limit_of(const Joint& joint) {
+    if (const auto* hinge = std::get_if<HingeJoint>(&joint.kind)) return &hinge->limit;
+    if (const auto* slider = std::get_if<SliderJoint>(&joint.kind)) return &slider->limit;
+    return nullptr;
+}
+
+const std::optional<JointMotor>* motor_of(const Joint& joint) {
+    if (const auto* hinge = std::get_if<HingeJoint>(&joint.kind)) return &hinge->motor;
+    if (const auto* slider = std::get_if<SliderJoint>(&joint.kind)) return &slider->motor;
+    return nullptr;
+}
+
+void change_free_impulse(Joint& joint, double& impulse, double value, double sign, std::span<BodyState> bodies) {
+    const double change = value - impulse;
+    impulse = value;
+    if (change != 0) apply_row(joint, joint.free_row, sign * change, bodies);
+}
+
+void solve_motor(Joint& joint, SolvePhase phase, double substep, std::span<BodyState> bodies) {
+    const auto* motor = motor_of(joint);
+    if (!motor || !*motor) return;
+    double& impulse = impulses_of(joint, phase).motor;
+    const double largest = (*motor)->max_force * substep / 2;
+    const double missing = (*motor)->speed - row_speed(joint, joint.free_row, bodies);
+    change_free_impulse(joint, impulse, std::clamp(impulse + joint.free_mass * missing, -largest, largest), 1, bodies);
+}
+
+// Whether a body turns so far in a substep that its pose after the drift tells nothing: the passes would run away. The
+// speed of the rows then stands for the way.
+bool turns_too_far(const Joint& joint, double substep, std::span<const BodyState> bodies) {
+    const double fastest = std::max(length_squared(body_a(joint, bodies).angular_velocity),
+                                    length_squared(bodies[joint.b].angular_velocity));
+    return fastest * substep * substep > 1;
+}
+
+// How fast each row's error grows beyond what may be left of it.
+std::array<double, max_joint_rows> position_excess(const Joint& joint, double substep,
+                                                   std::span<const BodyState> bodies) {
+    std::array<double, max_joint_rows> excess{};
+    const bool is_linear = turns_too_far(joint, substep, bodies);
+    if (!is_linear) excess = constraint_errors(joint, frames_after_drift(joint, substep, bodies));
+    for (std::size_t i = 0; i < max_joint_rows; ++i) {
+        if (is_linear) excess[i] = joint.errors[i] + substep * row_speed(joint, joint.rows[i], bodies);
+        excess[i] = (excess[i] - rest_of_error(joint.errors[i], substep)) / substep;
+    }
+    return excess;
+}
+
+// One side of a limit.
+struct Bound {
+    double value;  // of the joint coordinate
+    double sign;   // +1 for the lower, −1 for the upper one
+};
+
+std::array<Bound, 2> bounds_of(const JointLimit& limit) { return {{{limit.lower, 1}, {limit.upper, -1}}}; }
+
+double& impulse_of(JointImpulses& impulses, const Bound& bound) {
+    return bound.sign > 0 ? impulses.lower : impulses.upper;
+}
+
+// The velocity phase may take back what the bound gave in the position phase.
+double earlier_impulse(Joint& joint, SolvePhase phase, const Bound& bound) {
+    return phase == SolvePhase::velocity ? impulse_of(joint.position_phase, bound) : 0;
+}
+
+// How fast the coordinate leaves the allowed range: by where the drift would take it, or by its speed.
+double leaving_speed(const Joint& joint, SolvePhase phase, double substep, const Bound& bound,
+                     std::span<const BodyState> bodies) {
+    const double speed = -bound.sign * row_speed(joint, joint.free_row, bodies);
+    if (phase == SolvePhase::velocity) return speed;
+    const auto beyond = [&](const Frames& frames) {
+        return -bound.sign * (coordinate_of(joint, frames) - bound.value);
+    };
+    const double now = beyond(frames_now(joint, bodies));
+    const double after = turns_too_far(joint, substep, bodies) ? now + substep * speed
+                                                               : beyond(frames_after_drift(joint, substep, bodies));
+    return (after - rest_of_error(std::max(now, 0.0), substep)) / substep;
+}
+
+void solve_bound(Joint& joint, SolvePhase phase, double substep, const Bound& bound, std::span<BodyState> bodies) {
+    const double earlier = earlier_impulse(joint, phase, bound);
+    double& impulse = impulse_of(impulses_of(joint, phase), bound);
+
+    // What the warm start gave to a bound that holds no more is taken back.
+    if (phase == SolvePhase::velocity && !(earlier > 0)) {
+        change_free_impulse(joint, impulse, 0, bound.sign, bodies);
+        return;
+    }
+    const double leaving = leaving_speed(joint, phase, substep, bound, bodies);
+    change_free_impulse(joint, impulse, std::max(impulse + joint.free_mass * leaving, -earlier), bound.sign, bodies);
+}
+
+void solve_free_row(Joint& joint, SolvePhase phase, double substep, std::span<BodyState> bodies) {
+    if (joint.free_mass == 0) return;
+    solve_motor(joint, phase, substep, bodies);
+    const auto* limit = limit_of(joint);
+    if (!limit || !*limit) return;
+    for (const Bound& bound : bounds_of(**limit)) solve_bound(joint, phase, substep, bound, bodies);
+}
+
+}  // namespace
+
+JointGeometry mean_of(const JointGeometry& first, const JointGeometry& second) {
+    const auto mean = [](Vec3 p, Vec3 q) { return (p + q) * 0.5; };
+    return {mean(first.arm_a, second.arm_a),  mean(first.arm_b, second.arm_b), mean(first.reach_a, second.reach_a),
+            mean(first.x, second.x),          mean(first.y, second.y),         mean(first.z, second.z),
+            mean(first.axis_b, second.axis_b)};
+}
+
+JointPose pose_joint(const Joint& joint, const Transform& a, const Transform& b) {
+    const Frames frames{a * joint.local_a, b * joint.local_b};
+    return {geometry_of(frames, a.position, b.position), constraint_errors(joint, frames)};
+}
+
+// With the mean geometry of two poses these are discrete gradients: the rows times the way between the poses are the
+// difference of the errors, exactly so for points and hinges, whose errors are bilinear in what the bodies carry, and
+// for directions that turn together.
+JointRows make_rows(const Joint& joint, const JointGeometry& g) {
+    const auto point_row = [&](Vec3 d) { return JointRow{d, cross(g.arm_a, d), cross(g.arm_b, d)}; };
+    const auto slide_row = [&](Vec3 d) { return JointRow{d, cross(g.reach_a, d), cross(g.arm_b, d)}; };
+    const auto turn_row = [](Vec3 d) { return JointRow{{}, d, d}; };
+    constexpr Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+    if (is<SliderJoint>(joint)) {
+        return {5, {slide_row(g.y), slide_row(g.z), turn_row(x), turn_row(y), turn_row(z)}, slide_row(g.x)};
+    }
+    JointRows rows{3, {point_row(x), point_row(y), point_row(z)}, {}};
+    if (is<HingeJoint>(joint)) {
+        rows.rows[3] = turn_row(cross(g.z, g.axis_b));
+        rows.rows[4] = turn_row(cross(g.axis_b, g.y));
+        rows.count = 5;
+        rows.free_row = turn_row(g.x);
+    } else if (is<FixedJoint>(joint)) {
+        rows.rows[3] = turn_row(x);
+        rows.rows[4] = turn_row(y);
+        rows.rows[5] = turn_row(z);
+        rows.count = 6;
+    }
+    return rows;
+}
+
+void set_rows(Joint& joint, const JointGeometry& geometry) {
+    const JointRows rows = make_rows(joint, geometry);
+    joint.row_count = rows.count;
+    joint.rows = rows.rows;
+    joint.free_row = rows.free_row;
+    joint.arm_b = geometry.arm_b;
+}
+
+bool has_motor(const Joint& joint) {
+    const auto* motor = motor_of(joint);
+    return motor && *motor;
+}
+
+bool has_limit(const Joint& joint) {
+    const auto* limit = limit_of(joint);
+    return limit && *limit;
+}
+
+double row_response(const Joint& joint, const JointRow& row, std::span<const BodyState> bodies) {
+    return row_product(row, row, body_a(joint, bodies), bodies[joint.b]);
+}
+
+double row_speed(const Joint& joint, const JointRow& row, std::span<const BodyState> bodies) {
+    const BodyState& a = body_a(joint, bodies);
+    const BodyState& b = bodies[joint.b];
+    return dot(row.linear, b.linear_velocity - a.linear_velocity) + dot(row.angular_b, b.angular_velocity) -
+           dot(row.angular_a, a.angular_velocity);
+}
+
+double rest_of_error(double error, double substep) {
+    const double most = fastest_mending * substep;
+    return error - std::clamp(error, -most, most);
+}
+
+void prepare_joint(Joint& joint, std::span<const BodyState> bodies) {
+    const BodyState& a = body_a(joint, bodies);
+    const BodyState& b = bodies[joint.b];
+    const JointPose pose = pose_joint(joint, {a.center, a.rotation}, {b.center, b.rotation});
+    joint.errors = pose.errors;
+    set_rows(joint, pose.geometry);
+    const double free_product = row_response(joint, joint.free_row, bodies);
+    joint.free_mass = free_product > 0 ? 1 / free_product : 0;
+}
+
+void factor_joint(Joint& joint, std::span<const BodyState> bodies) {
+    factor_block(joint, body_a(joint, bodies), bodies[joint.b]);
+}
+
+void warm_start_joint(Joint& joint, SolvePhase phase, std::span<BodyState> bodies) {
+    const JointImpulses& impulses = impulses_of(joint, phase);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(joint.row_count); ++i) {
+        apply_row(joint, joint.rows[i], impulses.rows[i], bodies);
+    }
+    apply_row(joint, joint.free_row, impulses.motor + impulses.lower - impulses.upper, bodies);
+}
+
+double solve_joint(Joint& joint, SolvePhase phase, double substep, std::span<BodyState> bodies) {
+    solve_free_row(joint, phase, substep, bodies);
+
+    // What each row's speed is too much.
+    std::array<double, max_joint_rows> excess{};
+    if (phase == SolvePhase::position) {
+        excess = position_excess(joint, substep, bodies);
+    } else {
+        for (std::size_t i = 0; i < max_joint_rows; ++i) excess[i] = row_speed(joint, joint.rows[i], bodies);
+    }
+    const std::array<double, max_joint_rows> change = solve_block(joint, excess);
+    JointImpulses& impulses = impulses_of(joint, phase);
+    double largest = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(joint.row_count); ++i) {
+        impulses.rows[i] -= change[i];
+        apply_row(joint, joint.rows[i], -change[i], bodies);
+        largest = std::max(largest, std::fabs(excess[i]));
+    }
+    return largest;
+}
+
+// Primal-dual active set: M. Hintermüller, K. Ito, K. Kunisch, "The primal-dual active set strategy as a semismooth
+// Newton method", 2003. A bound holds where its impulse and what the free row alone would add for the speed at which it
+// is left have a positive sum; a motor drives where that sum is within its force.
+double choose_free_hold(Joint& joint, SolvePhase phase, double substep, bool is_first, std::span<BodyState> bodies) {
+    JointImpulses& impulses = impulses_of(joint, phase);
+    const FreeHold last = impulses.hold;
+    impulses.hold = FreeHold::nothing;
+    if (joint.free_mass == 0) return 0;
+    double excess = 0;
+
+    // Limits.
+    const auto* limit = limit_of(joint);
+    if (limit && *limit) {
+        for (const Bound& bound : bounds_of(**limit)) {
+            const FreeHold side = bound.sign > 0 ? FreeHold::lower : FreeHold::upper;
+            double& impulse = impulse_of(impulses, bound);
+            const double earlier = earlier_impulse(joint, phase, bound);
+            const bool may_hold = impulses.hold == FreeHold::nothing && (phase == SolvePhase::position || earlier > 0);
+            const double leaving = may_hold ? leaving_speed(joint, phase, substep, bound, bodies) : 0;
+            const bool goes_on = is_first && last == side;
+            if (may_hold && (goes_on || impulse + joint.free_mass * leaving > -earlier)) {
+                impulses.hold = side;
+                excess = -bound.sign * leaving;
+            } else {
+                change_free_impulse(joint, impulse, -earlier, bound.sign, bodies);
+            }
+        }
+    }
+
+    // Motor. What a bound holds it only pushes.
+    const auto* motor = motor_of(joint);
+    if (!motor || !*motor) return excess;
+    const double largest = (*motor)->max_force * substep / 2;
+    const double too_fast = row_speed(joint, joint.free_row, bodies) - (*motor)->speed;
+    const double wanted = impulses.motor - joint.free_mass * too_fast;
+    const bool drives = std::fabs(wanted) < largest || (is_first && last == FreeHold::motor);
+    if (impulses.hold == FreeHold::nothing && drives) {
+        impulses.hold = FreeHold::motor;
+        return too_fast;
+    }
+    change_free_impulse(joint, impulses.motor, std::clamp(wanted, -largest, largest), 1, bodies);
+    return excess;
+}
+
+void add_free_impulse(Joint& joint, SolvePhase phase, double change) {
+    JointImpulses& impulses = impulses_of(joint, phase);
+    if (impulses.hold == FreeHold::motor) impulses.motor += change;
+    if (impulses.hold == FreeHold::lower) impulses.lower += change;
+    if (impulses.hold == FreeHold::upper) impulses.upper -= change;
+}
+
+void add_to_totals(Joint& joint, SolvePhase phase) {
+    const JointImpulses& impulses = impulses_of(joint, phase);
+    Vec3 linear, angular;
+    const auto add = [&](const JointRow& row, double impulse) {
+        linear += row.linear * impulse;
+        angular += row.angular_b * impulse;
+    };
+    for (std::size_t i = 0; i < static_cast<std::size_t>(joint.row_count); ++i) add(joint.rows[i], impulses.rows[i]);
+    add(joint.free_row, impulses.motor + impulses.lower - impulses.upper);
+    joint.total_linear += linear;
+    joint.total_angular += angular - cross(joint.arm_b, linear);
+}
+
+double joint_coordinate(const Joint& joint, std::span<const BodyState> bodies) {
+    return coordinate_of(joint, frames_now(joint, bodies));
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Sliding and rolling friction that give a heap of balls its slope: measured on poured heaps, docs/physics/grains.md.
+#include "physics/definitions/grain_material.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace embody::physics {
+
+namespace {
+
+// A ball that spins on the spot stops within this lever arm, in diameters.
+constexpr double torsion = 0.1;
+
+/// Slope (degrees) that a sliding friction and a rolling resistance (in diameters) were measured to give.
+struct Heap {
+    double angle, sliding, rolling;
+};
+constexpr std::array<Heap, 15> heaps = {{{6.5, 0.1, 0.005},
+                                         {13.1, 0.2, 0.005},
+                                         {17.5, 0.3, 0.005},
+                                         {20.5, 0.4, 0.005},
+                                         {25.5, 0.6, 0.006},
+                                         {27.8, 0.6, 0.012},
+                                         {29.9, 0.6, 0.02},
+                                         {32.5, 0.6, 0.035},
+                                         {34.3, 0.6, 0.05},
+                                         {35.8, 0.6, 0.07},
+                                         {38.1, 0.6, 0.1},
+                                         {41.3, 0.6, 0.14},
+                                         {45.3, 0.6, 0.2},
+                                         {49.0, 0.6, 0.3},
+                                         {90.0, 0.6, 0.3}}};
+
+// Between the measured heaps by straight lines.
+Heap heap_of(double angle) {
+    const auto above = std::ranges::find_if(heaps, [angle](const Heap& heap) { return heap.angle >= angle; });
+    if (above == heaps.begin()) return heaps.front();
+    const Heap &a = *std::prev(above), &b = *above;
+    const double share = (angle - a.angle) / (b.angle - a.angle);
+    return {angle, a.sliding + share * (b.sliding - a.sliding), a.rolling + share * (b.rolling - a.rolling)};
+}
+
+}  // namespace
+
+Material grain_material(double friction_angle, double diameter) {
+    const Heap heap = heap_of(std::clamp(friction_angle, 0.0, heaps.back().angle));
+    Material material;
+    material.friction_static = material.friction_dynamic = heap.sliding;
+    material.friction_rolling = std::min(0.05, heap.rolling * diameter);
+    material.friction_torsional = std::min(0.1, torsion * diameter);
+    return material;
+}
+
+int substeps_for_grains(double diameter, const WorldSettings& settings) {
+    // A part of a step against the time in which a grain falls its own diameter; large islands are solved in twice as
+    // many parts as the settings say.
+    constexpr double longest_part = 0.047;
+    constexpr int most = 16;
+    const double gravity = std::max(length(settings.gravity), 0.1);
+    const double parts = settings.time_step * std::sqrt(gravity / diameter) / (2 * longest_part);
+    return std::max(settings.substeps, std::min(most, static_cast<int>(std::ceil(parts))));
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/definitions/material.h"
+#include "physics/definitions/world_settings.h"
+
+namespace embody::physics {
+
+/// Surface of balls of this diameter (m) whose poured heap comes to rest at `friction_angle` (degrees); what is flatter
+/// than 7 or steeper than 49 gets these. How it was measured: docs/physics/grains.md.
+Material grain_material(double friction_angle, double diameter);
+
+/// WorldSettings::substeps that balls of this diameter need so that their heaps have the slope that grain_material
+/// says; not fewer than the settings have.
+int substeps_for_grains(double diameter, const WorldSettings& settings);
+
+}  // namespace embody::physics

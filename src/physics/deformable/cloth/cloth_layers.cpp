@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT
+#include "physics/deformable/cloth/cloth_layers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "physics/deformable/contact/nearest_points.h"
+
+namespace embody::physics {
+
+struct ClothLayers::Search {
+    const ClothLayers& layers;
+    const Nodes& nodes;
+    std::span<const Vec3> moves;
+    double thickness = 0;
+
+    // Adds it if it may come nearer than twice the thickness.
+    void add(LayerContact contact, Vec3 away, std::vector<LayerContact>& found) const {
+        contact.distance = length(away);
+        if (contact.distance < 1e-9 || layers.is_same_layer(contact, thickness)) return;
+        contact.normal = away / contact.distance;
+        double end = contact.distance;
+        for (std::size_t k = 0; k < 4; ++k) end += contact.weight[k] * dot(contact.normal, moves[contact.node[k]]);
+        if (end < 2 * thickness) found.push_back(contact);
+    }
+};
+
+ClothLayers::ClothLayers(const std::vector<std::array<std::uint32_t, 3>>& triangles, const std::vector<Vec3>& nodes)
+    : triangles_(triangles), rest_(nodes), rest_normal_(nodes.size()), patches_(triangles, nodes.size()) {
+    leaf_nodes_.resize(patches_.leaves());
+    leaf_edges_.resize(patches_.leaves());
+    std::vector<bool> has_leaf(nodes.size(), false);
+    std::set<std::pair<std::uint32_t, std::uint32_t>> known;
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+        const auto& triangle = triangles_[t];
+        const std::uint32_t leaf = patches_.leaf_of(t);
+        const Vec3 normal = cross(nodes[triangle[1]] - nodes[triangle[0]], nodes[triangle[2]] - nodes[triangle[0]]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (!has_leaf[triangle[k]]) leaf_nodes_[leaf].push_back(triangle[k]);
+            has_leaf[triangle[k]] = true;
+            rest_normal_[triangle[k]] += normal;
+            const auto [a, b] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
+            if (!known.emplace(a, b).second) continue;
+            leaf_edges_[leaf].push_back(static_cast<std::uint32_t>(edges_.size()));
+            edges_.push_back({a, b});
+            edge_length_ += length(nodes[b] - nodes[a]);
+        }
+    }
+    edge_length_ /= static_cast<double>(edges_.size());
+}
+
+// What lay that near on the same side when it was made belongs together.
+bool ClothLayers::is_same_layer(const LayerContact& contact, double reach) const {
+    const std::size_t other = contact.kind == ThinFeature::edge_on_edge ? 2 : 1;
+    if (dot(rest_normal_[contact.node[0]], rest_normal_[contact.node[other]]) <= 0) return false;
+    Vec3 away;
+    for (std::size_t k = 0; k < 4; ++k) away += contact.weight[k] * rest_[contact.node[k]];
+    return length(away) < 3 * reach;
+}
+
+// The whole's own move is left out: what falls together does not meet.
+void ClothLayers::find_boxes(const Search& search, TaskPool& workers) {
+    const Nodes& nodes = search.nodes;
+    Vec3 mean;
+    double mass = 0;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        mean += nodes.mass[i] * search.moves[i];
+        mass += nodes.mass[i];
+    }
+    mean = mean / mass;
+    node_boxes_.resize(nodes.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const Vec3 start = nodes.position[i], end = start + search.moves[i] - mean;
+        node_boxes_[i] = enlarged(Bounds{min(start, end), max(start, end)}, search.thickness);
+    }
+    triangle_boxes_.resize(triangles_.size());
+    leans_.resize(triangles_.size());
+    share_among(workers, triangles_.size(), triangles_.size() >= 1000, [&](int, Share share) {
+        for (std::size_t t = share.first; t < share.last; ++t) {
+            const auto [p, q, r] = triangles_[t];
+            triangle_boxes_[t] = box_around(triangles_[t]);
+            const Vec3 a = nodes.position[q] - nodes.position[p], b = nodes.position[r] - nodes.position[p];
+            const Vec3 a_way = search.moves[q] - search.moves[p], b_way = search.moves[r] - search.moves[p];
+            leans_[t] = leans_of(cross(a, b)) & leans_of(cross(a + a_way, b + b_way));
+        }
+    });
+    patches_.update(triangle_boxes_, leans_);
+}
+
+void ClothLayers::search_node(const Search& search, std::uint32_t node, std::uint32_t triangle,
+                              std::vector<LayerContact>& found) const {
+    const std::vector<Vec3>& x = search.nodes.position;
+    const auto [p, q, r] = triangles_[triangle];
+    if (node == p || node == q || node == r || !overlaps(triangle_boxes_[triangle], node_boxes_[node])) return;
+    const auto weight = nearest_weights(x[node], x[p], x[q], x[r]);
+    const Vec3 away = x[node] - (weight[0] * x[p] + weight[1] * x[q] + weight[2] * x[r]);
+    search.add({ThinFeature::node_on_triangle,
+                node,
+                triangle,
+                {node, p, q, r},
+                {1, -weight[0], -weight[1], -weight[2]},
+                {},
+                0},
+               away, found);
+}
+
+void ClothLayers::search_edges(const Search& search, std::uint32_t edge, std::uint32_t other,
+                               std::vector<LayerContact>& found) const {
+    const std::vector<Vec3>& x = search.nodes.position;
+    const auto [a, b] = edges_[edge];
+    const auto [c, d] = edges_[other];
+    if (a == c || a == d || b == c || b == d) return;
+    double s = 0, u = 0;
+    if (!nearest_inside(x[a], x[b], x[c], x[d], s, u)) return;
+    const Vec3 away = (1 - s) * x[a] + s * x[b] - (1 - u) * x[c] - u * x[d];
+    search.add({ThinFeature::edge_on_edge, edge, other, {a, b, c, d}, {1 - s, s, u - 1, -u}, {}, 0}, away, found);
+}
+
+// All of one leaf with all of another, or with its own.
+void ClothLayers::search_pair(const Search& search, const std::array<std::uint32_t, 2>& leaves,
+                              std::vector<LayerContact>& nodes, std::vector<LayerContact>& edges) const {
+    const bool is_own = leaves[0] == leaves[1];
+    for (const bool is_swapped : {false, true}) {
+        const std::uint32_t of_nodes = leaves[is_swapped ? 1 : 0], of_triangles = leaves[is_swapped ? 0 : 1];
+        if (is_swapped && is_own) break;
+        const Bounds& box = patches_.box_of(of_triangles);
+        for (const std::uint32_t node : leaf_nodes_[of_nodes]) {
+            if (!overlaps(node_boxes_[node], box)) continue;
+            for (const std::uint32_t triangle : patches_.triangles_of(of_triangles))
+                search_node(search, node, triangle, nodes);
+        }
+    }
+    for (const std::uint32_t edge : leaf_edges_[leaves[0]]) {
+        const Bounds box = box_around(edges_[edge]);
+        if (!overlaps(box, patches_.box_of(leaves[1]))) continue;
+        for (const std::uint32_t other : leaf_edges_[leaves[1]]) {
+            if ((!is_own || edge < other) && overlaps(box, box_around(edges_[other])))
+                search_edges(search, edge, other, edges);
+        }
+    }
+}
+
+void ClothLayers::find(const Nodes& nodes, double thickness, std::span<const Vec3> moves, TaskPool& workers) {
+    const Search search{*this, nodes, moves, thickness};
+    find_boxes(search, workers);
+    patches_.find_pairs(leaf_pairs_);
+    struct Found {
+        std::vector<LayerContact> nodes, edges;
+    };
+    std::vector<Found> found(static_cast<std::size_t>(std::max(1, workers.workers())));
+    share_among(workers, leaf_pairs_.size(), leaf_pairs_.size() >= 200, [&](int worker, Share share) {
+        Found& own = found[static_cast<std::size_t>(worker)];
+        for (std::size_t p = share.first; p < share.last; ++p)
+            search_pair(search, leaf_pairs_[p], own.nodes, own.edges);
+    });
+    // Whatever the order of the patches.
+    contacts_.clear();
+    const auto append = [&](std::vector<LayerContact> Found::*kind) {
+        const auto first = static_cast<std::ptrdiff_t>(contacts_.size());
+        for (const Found& own : found) contacts_.insert(contacts_.end(), (own.*kind).begin(), (own.*kind).end());
+        std::sort(contacts_.begin() + first, contacts_.end(),
+                  [](const LayerContact& a, const LayerContact& b) { return a.node < b.node; });
+    };
+    append(&Found::nodes);
+    append(&Found::edges);
+}
+
+namespace {
+
+Vec3 way_of(const LayerContact& contact, std::span<const Vec3> moves) {
+    Vec3 way;
+    for (std::size_t k = 0; k < 4; ++k) way += contact.weight[k] * moves[contact.node[k]];
+    return way;
+}
+
+double give_of(const LayerContact& contact, std::span<const double> give) {
+    double sum = 0;
+    for (std::size_t k = 0; k < 4; ++k) sum += contact.weight[k] * contact.weight[k] * give[contact.node[k]];
+    return sum;
+}
+
+void push(const LayerContact& contact, Vec3 by, std::span<const double> give, std::span<Vec3> moves) {
+    for (std::size_t k = 0; k < 4; ++k) moves[contact.node[k]] += (contact.weight[k] * give[contact.node[k]]) * by;
+}
+
+// Where pushes did not part them all: nodes that would pass through each other go together for this substep, with the
+// mean of their moves (X. Provot, "Collision and self-collision handling in cloth model", 1997).
+void join(std::span<const LayerContact> contacts, double thickness, std::span<const double> give,
+          std::span<Vec3> moves) {
+    constexpr double least_share = 0.2;
+    constexpr int most_rounds = 20;
+    std::vector<std::uint32_t> zone(moves.size());
+    for (std::uint32_t i = 0; i < zone.size(); ++i) zone[i] = i;
+    const auto root_of = [&](std::uint32_t i) {
+        while (zone[i] != i) i = zone[i] = zone[zone[i]];
+        return i;
+    };
+    for (int round = 0; round < most_rounds; ++round) {
+        bool has_joined = false;
+        for (const LayerContact& contact : contacts) {
+            const double end = contact.distance + dot(contact.normal, way_of(contact, moves));
+            if (end >= least_share * std::min(thickness, contact.distance)) continue;
+            for (std::size_t k = 1; k < 4; ++k) {
+                const std::uint32_t a = root_of(contact.node[0]), b = root_of(contact.node[k]);
+                if (a == b) continue;
+                has_joined = true;
+                zone[std::max(a, b)] = std::min(a, b);
+            }
+        }
+        if (!has_joined) return;
+        std::vector<double> weight(moves.size(), 0);
+        std::vector<Vec3> sum(moves.size());
+        std::vector<bool> is_held(moves.size(), false), is_joined(moves.size(), false);
+        for (std::uint32_t i = 0; i < moves.size(); ++i) {
+            const std::uint32_t root = root_of(i);
+            if (root != i) is_joined[root] = true;
+            if (give[i] == 0) {
+                is_held[root] = true;
+                continue;
+            }
+            weight[root] += 1 / give[i];
+            sum[root] += (1 / give[i]) * moves[i];
+        }
+        for (std::uint32_t i = 0; i < moves.size(); ++i) {
+            const std::uint32_t root = root_of(i);
+            if (is_joined[root] && give[i] > 0) moves[i] = is_held[root] ? Vec3{} : sum[root] / weight[root];
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<ThinCandidate> ClothLayers::near(const Nodes& nodes, double reach, std::span<const Vec3> moves,
+                                             TaskPool& workers) {
+    find(nodes, reach, moves, workers);
+    std::vector<ThinCandidate> candidates;
+    for (const LayerContact& contact : contacts_)
+        candidates.push_back({contact.kind, false, contact.first, contact.second});
+    std::ranges::stable_sort(candidates, {}, [](const ThinCandidate& c) { return std::pair(c.kind, c.first); });
+    return candidates;
+}
+
+double ClothLayers::longest_way(const Nodes& nodes, double thickness, std::span<const Vec3> moves, TaskPool& workers) {
+    find(nodes, thickness, moves, workers);
+    double longest = 0;
+    for (const LayerContact& contact : contacts_) longest = std::max(longest, length(way_of(contact, moves)));
+    return longest;
+}
+
+void ClothLayers::part(const Nodes& nodes, double thickness, double friction, std::span<const double> give,
+                       std::span<Vec3> moves, TaskPool& workers) {
+    constexpr int rounds = 10;
+    find(nodes, thickness, moves, workers);
+    std::vector<double> pushed(contacts_.size(), 0);  // m kg, so far
+    for (int round = 0; round < rounds; ++round) {
+        bool is_parted = true;
+        for (std::size_t c = 0; c < contacts_.size(); ++c) {
+            const LayerContact& contact = contacts_[c];
+            const double sum = give_of(contact, give), target = std::min(thickness, contact.distance);
+            const double distance = contact.distance + dot(contact.normal, way_of(contact, moves));
+            if (distance >= target || sum == 0) continue;
+            is_parted = false;
+            pushed[c] += (target - distance) / sum;
+            push(contact, ((target - distance) / sum) * contact.normal, give, moves);
+        }
+        if (is_parted) break;
+    }
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+        if (pushed[c] == 0) continue;
+        const LayerContact& contact = contacts_[c];
+        const Vec3 way = way_of(contact, moves), sliding = way - dot(way, contact.normal) * contact.normal;
+        const double size = length(sliding);
+        if (size == 0) continue;
+        push(contact, (-std::min(friction * pushed[c], size / give_of(contact, give)) / size) * sliding, give, moves);
+    }
+    join(contacts_, thickness, give, moves);
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: MIT
+// Rows of cloth for 16 lanes; compiled with the flags of its instruction set (src/CMakeLists.txt).
+#define EMBODY_LANES 16
+#include "physics/deformable/cloth/cloth_row_kernel_code.h"

@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: MIT
+//
+// Stretch and shear as in D. Baraff and A. Witkin, "Large steps in cloth simulation" (1998), section 4, with F = (f g)
+// the images of the unit steps along warp and weft: energy per area ½ k ((|f| - 1)² + (|g| - 1)²) + ½ s (f·g)². Of
+// their second derivative we keep what is positive: the stress of a stretched triangle stiffens it across, that of a
+// pressed one would let it buckle and is left out of the matrix, not out of the force.
+#include "physics/deformable/cloth/cloth_sheet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "physics/deformable/contact/free_motion.h"
+
+namespace embody::physics {
+
+namespace {
+
+constexpr std::uint32_t not_far = ~std::uint32_t{0};
+
+Mat3 symmetric_outer(Vec3 a) { return outer(a, a); }
+
+// The nearest positive semidefinite matrix of [a b; b c].
+void make_positive(double& a, double& b, double& c) {
+    const double mean = (a + c) / 2, half = (a - c) / 2, radius = std::sqrt(half * half + b * b);
+    const double low = mean - radius, high = mean + radius;
+    if (low >= 0) return;
+    if (high <= 0 || radius == 0) {
+        a = b = c = 0;
+        return;
+    }
+    // high · e eᵀ with e the eigenvector of high: (1 + [half b; b -half] / radius) / 2.
+    a = high * (1 + half / radius) / 2;
+    c = high * (1 - half / radius) / 2;
+    b = high * b / radius / 2;
+}
+
+}  // namespace
+
+ClothSheet::ClothSheet(const DeformableDefinition& definition)
+    : cloth_(std::get<Cloth>(definition.matter)),
+      triangles_(make_cloth_triangles(definition.nodes, cloth_)),
+      bending_(make_bending_rows(definition.nodes, cloth_)) {
+    const std::size_t count = definition.nodes.size();
+    nodes_.mass.assign(count, 0);
+    for (const ClothTriangle& triangle : triangles_) {
+        for (const std::uint32_t node : triangle.node) nodes_.mass[node] += cloth_.area_density * triangle.area / 3;
+    }
+    Vec3 center;
+    double mass = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        nodes_.position.push_back(transform_point(definition.pose, definition.nodes[i]));
+        nodes_.inverse_mass.push_back(1 / nodes_.mass[i]);
+        center += nodes_.mass[i] * nodes_.position[i];
+        mass += nodes_.mass[i];
+    }
+    center = center / mass;
+    for (const Vec3 position : nodes_.position)
+        nodes_.mean_velocity.push_back(definition.linear_velocity +
+                                       cross(definition.angular_velocity, position - center));
+    fixed_.assign(count, 0);
+    for (const std::uint32_t node : definition.pinned) {
+        nodes_.inverse_mass[node] = 0;
+        nodes_.mean_velocity[node] = {};
+        fixed_[node] = 1;
+    }
+    nodes_.velocity = nodes_.mean_velocity;
+    for (double& value : bending_.value) value *= cloth_.bend_stiffness;
+    springs_.radius = definition.contact_radius;
+    springs_.friction = definition.friction;
+    springs_.attachments = definition.attachments;
+    make_pattern(bending_);
+    layers_.emplace(cloth_.triangles, definition.nodes);
+}
+
+// Blocks between corners of a triangle, numbers between the nodes that only bending joins.
+void ClothSheet::make_pattern(const ScalarRows& bending) {
+    const std::size_t count = nodes_.size();
+    std::vector<std::map<std::uint32_t, std::uint32_t>> neighbours(count);
+    for (const ClothTriangle& triangle : triangles_) {
+        for (const std::uint32_t a : triangle.node) {
+            for (const std::uint32_t b : triangle.node) {
+                if (a != b) neighbours[a][b] = 0;
+            }
+        }
+    }
+    std::vector<std::vector<std::uint32_t>> near(count), far(count);
+    far_element_.assign(bending.column.size(), not_far);
+    for (std::size_t i = 0; i < count; ++i) {
+        for (auto& [other, which] : neighbours[i]) {
+            which = static_cast<std::uint32_t>(near[i].size());
+            near[i].push_back(other);
+        }
+        near_bending_.resize(near_bending_.size() + near[i].size(), 0);
+        double* near_bending = near_bending_.data() + near_bending_.size() - near[i].size();
+        for (std::uint32_t k = bending.start[i]; k < bending.start[i + 1]; ++k) {
+            const auto neighbour = neighbours[i].find(bending.column[k]);
+            if (neighbour != neighbours[i].end()) {
+                near_bending[neighbour->second] = bending.value[k];
+            } else if (bending.column[k] != i) {
+                far_element_[k] = static_cast<std::uint32_t>(far[i].size());
+                far[i].push_back(bending.column[k]);
+            }
+        }
+    }
+    matrix_.set_pattern(near, far);
+
+    std::vector<std::vector<Corner>> corners(count);
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const std::uint32_t node = triangles_[t].node[k];
+            Corner corner{t, k, {}};
+            for (std::size_t other = 0; other < 3; ++other) {
+                if (other != k) corner.element[other] = neighbours[node].at(triangles_[t].node[other]);
+            }
+            corners[node].push_back(corner);
+        }
+    }
+    corner_start_.push_back(0);
+    for (const auto& of_node : corners) {
+        corners_.insert(corners_.end(), of_node.begin(), of_node.end());
+        corner_start_.push_back(static_cast<std::uint32_t>(corners_.size()));
+    }
+}
+
+void ClothSheet::find_strains(const Substep& substep, TaskPool& workers) {
+    const double damped = 1 + cloth_.rayleigh_damping / substep.h;
+    strains_.resize(triangles_.size());
+    air_.resize(triangles_.size());
+    winds_.resize(triangles_.size());
+    const auto work = [&](int, Share share) {
+        for (std::size_t t = share.first; t < share.last; ++t) {
+            const ClothTriangle& triangle = triangles_[t];
+            Strain& strain = strains_[t];
+            strain.f = strain.g = {};
+            Vec3 velocity;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vec3 x = nodes_.position[triangle.node[k]];
+                strain.f += triangle.warp[k] * x;
+                strain.g += triangle.weft[k] * x;
+                velocity += nodes_.mean_velocity[triangle.node[k]] / 3;
+            }
+            const double f = length(strain.f), g = length(strain.g), angle = dot(strain.f, strain.g);
+            strain.f_way = normalized(strain.f, {1, 0, 0});
+            strain.g_way = normalized(strain.g, any_perpendicular(strain.f_way));
+            const double k = cloth_.stretch_stiffness, s = cloth_.shear_stiffness;
+            strain.f_stress = k * (f - 1) * strain.f_way + s * angle * strain.g;
+            strain.g_stress = k * (g - 1) * strain.g_way + s * angle * strain.f;
+            // The second derivative of ½ (|f| - 1)² is f̂ f̂ᵀ / |f| + (1 - 1/|f|) 1.
+            strain.across_ff = f > 0 ? k * (1 - 1 / f) : -k;
+            strain.across_gg = g > 0 ? k * (1 - 1 / g) : -k;
+            strain.across_fg = s * angle;
+            strain.warp = k * (std::min(1.0, 1 / std::max(f, 1e-9)) + damped - 1);
+            strain.weft = k * (std::min(1.0, 1 / std::max(g, 1e-9)) + damped - 1);
+            strain.shear = s * damped;
+            make_positive(strain.across_ff, strain.across_fg, strain.across_gg);
+
+            // Drag by what blows through the triangle: ρ/2 C A |v·n| (v·n) n, a third of it a node.
+            const Vec3 normal = normalized(cross(strain.f, strain.g));
+            winds_[t] = substep.wind.at((nodes_.position[triangle.node[0]] + nodes_.position[triangle.node[1]] +
+                                         nodes_.position[triangle.node[2]]) /
+                                        3);
+            const double through = std::fabs(dot(velocity - winds_[t], normal));
+            air_[t] = std::sqrt(substep.air_density * cloth_.drag_coefficient * triangle.area * through / 6) * normal;
+        }
+    };
+    share_among(workers, triangles_.size(), triangles_.size() >= 1000, work);
+}
+
+// `near`: to work with.
+void ClothSheet::fill_row(std::size_t i, const Substep& substep, std::vector<Block>& near) {
+    const double h = substep.h, damped = 1 + cloth_.rayleigh_damping / h;
+    const double inertia = nodes_.mass[i] / (h * h);
+    Mat3 own = Mat3::diagonal({inertia, inertia, inertia});
+    Vec3 load = nodes_.mass[i] / h * nodes_.mean_velocity[i] + weight_[i];
+
+    const std::size_t first = matrix_.near_first(i);
+    near.resize(matrix_.near_first(i + 1) - first);
+    for (std::size_t k = 0; k < near.size(); ++k) {
+        const double b = damped * near_bending_[first + k];
+        near[k] = to_block(Mat3::diagonal({b, b, b}));
+    }
+    for (std::uint32_t k = bending_.start[i]; k < bending_.start[i + 1]; ++k) {
+        load -= bending_.value[k] * nodes_.position[bending_.column[k]];
+        if (bending_.column[k] == i) own += damped * bending_.value[k] * Mat3::identity();
+        if (far_element_[k] != not_far)
+            matrix_.set_far(i, far_element_[k], static_cast<float>(damped * bending_.value[k]));
+    }
+    for (std::uint32_t c = corner_start_[i]; c < corner_start_[i + 1]; ++c) {
+        const Corner& corner = corners_[c];
+        const ClothTriangle& triangle = triangles_[corner.triangle];
+        const Strain& strain = strains_[corner.triangle];
+        const double area = triangle.area, b = triangle.warp[corner.corner], d = triangle.weft[corner.corner];
+        load -= area * (b * strain.f_stress + d * strain.g_stress);
+        const Vec3 angle = b * strain.g + d * strain.f;  // derivative of f·g
+        for (std::size_t other = 0; other < 3; ++other) {
+            const double b2 = triangle.warp[other], d2 = triangle.weft[other];
+            Mat3 block = (area * strain.warp * b * b2) * symmetric_outer(strain.f_way) +
+                         (area * strain.weft * d * d2) * symmetric_outer(strain.g_way) +
+                         (area * strain.shear) * outer(angle, b2 * strain.g + d2 * strain.f);
+            const double across =
+                area * (strain.across_ff * b * b2 + strain.across_gg * d * d2 + strain.across_fg * (b * d2 + d * b2));
+            block += across * Mat3::identity();
+            if (other == corner.corner)
+                own += block;
+            else
+                near[corner.element[other]] += to_block(block);
+        }
+        const Vec3 air = air_[corner.triangle];
+        own += (1 / h) * symmetric_outer(air);
+        load += dot(air, winds_[corner.triangle]) * air;
+    }
+    for (std::size_t k = 0; k < near.size(); ++k) matrix_.set_near(i, k, near[k]);
+    matrix_.diagonal[i] = to_block(own);
+    node_stiffness_[i] = trace(own) / 3;
+    rhs_[i] = load;
+}
+
+void ClothSheet::fill_rows(const Substep& substep, TaskPool& workers) {
+    const std::size_t count = nodes_.size();
+    rhs_.resize(count);
+    weight_.resize(count);
+    small_load_.resize(count);
+    node_stiffness_.resize(count);
+    const double least = std::max(length(substep.gravity), 1.0);  // m/s²: an acceleration that matters anywhere
+    for (std::size_t i = 0; i < count; ++i) {
+        weight_[i] = nodes_.mass[i] * substep.gravity;
+        small_load_[i] = {0, nodes_.mass[i] * least, 0};
+    }
+    share_among(workers, count, count >= 1000, [&](int, Share share) {
+        std::vector<Block> near;
+        for (std::size_t i = share.first; i < share.last; ++i) fill_row(i, substep, near);
+    });
+}
+
+bool ClothSheet::solve_moves(const Substep& substep, std::span<const TouchedBody> bodies, TaskPool& workers) {
+    const double h = substep.h;
+    inertias_ = inertias_of(bodies, h);
+    body_moves_.assign(bodies.size(), {});
+    moves_.resize(nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) moves_[i] = h * nodes_.mean_velocity[i];
+    springs_.choose(moves_, body_moves_, true);
+    layer_springs_.choose(moves_, true);
+    rounds_ = solves_ = 0;
+    constexpr int most_solves = 4;
+    std::vector<TouchSpring> all;
+    for (;;) {
+        all.assign(springs_.springs().begin(), springs_.springs().end());
+        all.insert(all.end(), layer_springs_.springs().begin(), layer_springs_.springs().end());
+        const int rounds = solver.solve(std::array{system()}, {}, all, inertias_, moves_, body_moves_, workers);
+        if (rounds == ClothSolver::not_finite) return false;
+        rounds_ += rounds;
+        ++solves_;
+        if (all.empty() || solves_ == most_solves) break;
+        // The last solve's springs stay as they were in it, so that what bodies feel is what nodes felt.
+        TouchSprings next = springs_;
+        PairSprings next_layers = layer_springs_;
+        const bool has_changed = next.choose(moves_, body_moves_, false);
+        if (!next_layers.choose(moves_, false) && !has_changed) break;
+        springs_ = std::move(next);
+        layer_springs_ = std::move(next_layers);
+    }
+    for (const Vec3 move : moves_) {
+        if (!is_finite(move)) return false;
+    }
+    for (const BodyMove& move : body_moves_) {
+        if (!is_finite(move.shift) || !is_finite(move.turn)) return false;
+    }
+    return true;
+}
+
+// Only while nothing outside but weight, air and what is `given` acts.
+void ClothSheet::keep_momentum(const Substep& substep, std::span<const Vec3> given) {
+    const double h = substep.h;
+    std::vector<Vec3> all(nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) all[i] = h * weight_[i];
+    for (std::size_t i = 0; i < given.size(); ++i) all[i] += h * given[i];
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {  // the air as it acted
+        for (const std::uint32_t node : triangles_[t].node)
+            all[node] += dot(air_[t], h * winds_[t] - moves_[node]) * air_[t];
+    }
+    keep_momenta(nodes_, all, h, moves_);
+}
+
+// As of two sheets, but that this one is both.
+void ClothSheet::find_layers(const Substep& substep, TaskPool& workers) {
+    const double gravity = length(substep.gravity);
+    std::vector<Vec3> moves(nodes_.size());
+    for (std::size_t i = 0; i < moves.size(); ++i) moves[i] = substep.h * nodes_.mean_velocity[i];
+    ThinMember member;
+    member.surface = {.nodes = &nodes_,
+                      .triangles = cloth_.triangles,
+                      .edges = layers_->edges(),
+                      .radius = apart() / 2,
+                      .edge_length = layers_->edge_length(),
+                      .friction = springs_.friction};
+    member.load.assign(nodes_.size(), 0);
+    const ThinPair self{0, 0, layers_->near(nodes_, apart() + gravity * substep.h * substep.h, moves, workers)};
+    layer_springs_.begin(std::span(&member, 1), std::span(&self, 1), layer_contacts_, substep.h, gravity);
+}
+
+// What no spring held off in time; what lies on a body gives way last.
+void ClothSheet::part_layers(TaskPool& workers) {
+    constexpr double give_on_body = 0.05, least_share = 0.5;
+    std::vector<double> give = nodes_.inverse_mass;
+    for (const TouchSpring& spring : springs_.springs()) {
+        for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count) && spring.acts; ++k)
+            give[spring.node[k]] = give_on_body * nodes_.inverse_mass[spring.node[k]];
+    }
+    layers_->part(nodes_, least_share * apart(), springs_.friction, give, moves_, workers);
+}
+
+// Layers are kept apart reliably where they pass each other by no more than half an edge: faster ones take more parts.
+int ClothSheet::parts_of(double h, TaskPool& workers) {
+    constexpr int most_parts = 4;
+    const double edge = layers_->edge_length();
+    Vec3 mean;
+    double mass = 0, fastest = 0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        mean += nodes_.mass[i] * nodes_.mean_velocity[i];
+        mass += nodes_.mass[i];
+    }
+    for (const Vec3 velocity : nodes_.mean_velocity) fastest = std::max(fastest, length(velocity - mean / mass));
+    if (2 * h * fastest <= edge) return 1;
+    moves_.resize(nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) moves_[i] = h * nodes_.mean_velocity[i];
+    const double way = layers_->longest_way(nodes_, apart(), moves_, workers);
+    return static_cast<int>(std::clamp(std::ceil(2 * way / edge), 1.0, double{most_parts}));
+}
+
+void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> contacts,
+                         std::span<const SheetContact> between, std::span<const std::uint32_t> attachment_bodies,
+                         std::span<TouchedBody> bodies, TaskPool& workers) {
+    const PartPushes pushes(bodies);
+    if (is_frozen_) return;
+    const int parts = parts_of(substep.h, workers);
+    int rounds = 0, solves = 0;
+    for (int part = 0; part < parts; ++part) {
+        Substep own = substep;
+        own.h = substep.h / parts;
+        own.time = substep.time + part * own.h;
+        if (part > 0) pushes.go_on(bodies, own.h);
+        begin(own, contacts, between, attachment_bodies, bodies, workers);
+        if (!solve_moves(own, bodies, workers)) return freeze();
+        end(own, moves_, body_moves_, {}, bodies, workers);
+        rounds += rounds_;
+        solves += solves_;
+    }
+    rounds_ = rounds;
+    solves_ = solves;
+}
+
+void ClothSheet::begin(const Substep& substep, std::span<const NodeContact> contacts,
+                       std::span<const SheetContact> between, std::span<const std::uint32_t> attachment_bodies,
+                       std::span<const TouchedBody> bodies, TaskPool& workers) {
+    find_strains(substep, workers);
+    fill_rows(substep, workers);
+    springs_.attachment_bodies.assign(attachment_bodies.begin(), attachment_bodies.end());
+    springs_.begin(nodes_, contacts, bodies, substep, node_stiffness_);
+    for (const SheetContact& contact : between) springs_.add(nodes_, contact, bodies, substep);
+    find_layers(substep, workers);
+}
+
+void ClothSheet::freeze() {
+    is_frozen_ = true;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.mean_velocity[i] = nodes_.velocity[i] = {};
+}
+
+void ClothSheet::end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
+                     std::span<const Vec3> given, std::span<TouchedBody> bodies, TaskPool& workers) {
+    if (moves.data() != moves_.data()) moves_.assign(moves.begin(), moves.end());
+    const auto acts = [](const TouchSpring& spring) { return spring.acts; };
+    const bool is_held = std::any_of(fixed_.begin(), fixed_.end(), [](std::uint8_t f) { return f != 0; });
+    if (!is_held && std::none_of(springs_.springs().begin(), springs_.springs().end(), acts))
+        keep_momentum(substep, given);
+    std::vector<Vec3> within(nodes_.size());  // forces that are in the moves already
+    layer_springs_.finish(moves_, within, layer_contacts_);
+    springs_.finish(moves_, body_moves, substep, bodies);
+    part_layers(workers);
+    set_velocities(nodes_, moves_, substep.h);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += moves_[i];
+}
+
+double ClothSheet::elastic_energy() const {
+    double energy = 0;
+    for (const ClothTriangle& triangle : triangles_) {
+        Vec3 f, g;
+        for (std::size_t k = 0; k < 3; ++k) {
+            f += triangle.warp[k] * nodes_.position[triangle.node[k]];
+            g += triangle.weft[k] * nodes_.position[triangle.node[k]];
+        }
+        const double warp = length(f) - 1, weft = length(g) - 1, angle = dot(f, g);
+        energy += triangle.area / 2 *
+                  (cloth_.stretch_stiffness * (warp * warp + weft * weft) + cloth_.shear_stiffness * angle * angle);
+    }
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        for (std::uint32_t k = bending_.start[i]; k < bending_.start[i + 1]; ++k)
+            energy += bending_.value[k] / 2 * dot(nodes_.position[i], nodes_.position[bending_.column[k]]);
+    }
+    return energy;
+}
+
+}  // namespace embody::physics

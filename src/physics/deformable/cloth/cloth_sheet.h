@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+#include "foundation/task_pool.h"
+#include "physics/deformable/cloth/cloth_layers.h"
+#include "physics/deformable/cloth/cloth_mesh.h"
+#include "physics/deformable/cloth/cloth_solver.h"
+#include "physics/deformable/contact/nodes.h"
+#include "physics/deformable/contact/pair_springs.h"
+#include "physics/deformable/contact/touch_springs.h"
+
+namespace embody::physics {
+
+/// Cloth that moves: membrane of warp, weft and shear, bending, air, contacts, by backward Euler with one linear
+/// solve for the elastic forces a substep (docs/physics/cloth.md).
+class ClothSheet {
+public:
+    /// `definition` is valid and its matter is cloth.
+    explicit ClothSheet(const DeformableDefinition& definition);
+
+    /// One substep, in parts where layers of it move fast. `attachment_bodies`: where the attachments hold in `bodies`.
+    /// Pushes the bodies.
+    void advance(const Substep& substep, std::span<const NodeContact> contacts, std::span<const SheetContact> between,
+                 std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies, TaskPool& workers);
+
+    // The same in parts, where sheets and ropes that touch each other are solved together (docs/physics/cloth.md):
+    /// How many parts the substep takes.
+    [[nodiscard]] int parts_of(double h, TaskPool& workers);
+    /// Finds system(), touch() and layers() for the part.
+    void begin(const Substep& substep, std::span<const NodeContact> contacts, std::span<const SheetContact> between,
+               std::span<const std::uint32_t> attachment_bodies, std::span<const TouchedBody> bodies,
+               TaskPool& workers);
+    /// What the solve needs of it, valid until the next begin().
+    [[nodiscard]] SheetSystem system() { return {&matrix_, rhs_, small_load_, fixed_}; }
+    [[nodiscard]] TouchSprings& touch() { return springs_; }
+    /// Where the sheet touches itself.
+    [[nodiscard]] PairSprings& layers() { return layer_springs_; }
+    /// How each node resists on its own, N/m, since begin().
+    [[nodiscard]] std::span<const double> node_stiffness() const { return node_stiffness_; }
+    /// Goes by these moves, which touch() and layers() were solved with. `given`: forces on the nodes besides, N; none
+    /// or one a node. Pushes the bodies.
+    void end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
+             std::span<const Vec3> given, std::span<TouchedBody> bodies, TaskPool& workers);
+    /// Stops it for good where it is.
+    void freeze();
+    /// Each edge of its triangles once.
+    [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> edges() const { return layers_->edges(); }
+    /// Mean, m.
+    [[nodiscard]] double edge_length() const { return layers_->edge_length(); }
+
+    /// Instead of the definition's.
+    void set_attachments(const std::vector<Attachment>& attachments) { springs_.attachments = attachments; }
+    [[nodiscard]] Nodes& nodes() { return nodes_; }
+    [[nodiscard]] const Nodes& nodes() const { return nodes_; }
+    [[nodiscard]] const std::vector<ClothTriangle>& triangles() const { return triangles_; }
+    /// Energies of what it is now, J.
+    /// What it touches goes on as of another sheet of as many nodes.
+    void go_on_from(const ClothSheet& other) {
+        springs_.go_on_from(other.springs_);
+        layer_contacts_ = other.layer_contacts_;
+    }
+    [[nodiscard]] double elastic_energy() const;
+    /// Contacts and attachments of the last substep.
+    [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_.springs(); }
+    /// True once a number was none: it stays where it last was.
+    [[nodiscard]] bool is_frozen() const { return is_frozen_; }
+    /// Rounds of conjugate gradients in the last substep, and solves.
+    [[nodiscard]] int rounds() const { return rounds_; }
+    [[nodiscard]] int solves() const { return solves_; }
+
+    ClothSolver solver;
+
+private:
+    // How a triangle meets a node's row of the matrix.
+    struct Corner {
+        std::uint32_t triangle = 0, corner = 0;
+        std::array<std::uint32_t, 3> element{};  // of the row, near its diagonal; own: the diagonal
+    };
+    // Of a triangle, this substep: F's columns and what the energy makes of them.
+    struct Strain {
+        Vec3 f, g;                                           // images of the unit steps along warp and weft
+        Vec3 f_way, g_way;                                   // their directions
+        Vec3 f_stress, g_stress;                             // derivatives of the energy per area by f and g, N/m
+        double warp = 0, weft = 0, shear = 0;                // stiffness along f_way, g_way, of the angle, N/m
+        double across_ff = 0, across_fg = 0, across_gg = 0;  // stiffness by stress, N/m
+    };
+
+    void make_pattern(const ScalarRows& bending);
+    void find_strains(const Substep& substep, TaskPool& workers);
+    void fill_rows(const Substep& substep, TaskPool& workers);
+    void fill_row(std::size_t i, const Substep& substep, std::vector<Block>& near);
+    bool solve_moves(const Substep& substep, std::span<const TouchedBody> bodies, TaskPool& workers);
+    void keep_momentum(const Substep& substep, std::span<const Vec3> given);
+    void find_layers(const Substep& substep, TaskPool& workers);
+    void part_layers(TaskPool& workers);
+    // Layers lie as far from each other as two of them from a body between.
+    [[nodiscard]] double apart() const { return std::max(cloth_.thickness, 2 * springs_.radius); }
+
+    Cloth cloth_;
+    Nodes nodes_;
+    std::vector<ClothTriangle> triangles_;
+    ScalarRows bending_;  // times bend stiffness, N/m
+    ClothMatrix matrix_;
+    std::vector<std::uint32_t> corner_start_;
+    std::vector<Corner> corners_;
+    std::vector<double> near_bending_;        // of the blocks between neighbours
+    std::vector<std::uint32_t> far_element_;  // of bending_'s elements: which of the row's far ones each is
+    TouchSprings springs_;
+    std::optional<ClothLayers> layers_;
+    PairSprings layer_springs_;
+    ThinContacts layer_contacts_;  // what they have left from the last substep
+    std::vector<std::uint8_t> fixed_;
+
+    // Of the substep.
+    std::vector<Strain> strains_;
+    std::vector<Vec3> rhs_, weight_, small_load_, air_, winds_, moves_;
+    std::vector<double> node_stiffness_;
+    std::vector<BodyInertia> inertias_;
+    std::vector<BodyMove> body_moves_;
+    bool is_frozen_ = false;
+    int rounds_ = 0, solves_ = 0;
+};
+
+}  // namespace embody::physics

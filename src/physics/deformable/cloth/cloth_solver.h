@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "foundation/task_pool.h"
+#include "physics/deformable/cloth/cloth_matrix.h"
+#include "physics/deformable/contact/touch_springs.h"
+#include "physics/linear/band_cholesky.h"
+
+namespace embody::physics {
+
+/// A sheet's part of the equations, an entry a node.
+struct SheetSystem {
+    const ClothMatrix* matrix = nullptr;
+    std::span<const Vec3> rhs;            ///< N
+    std::span<const Vec3> small_load;     ///< N
+    std::span<const std::uint8_t> fixed;  ///< nodes that do not move
+};
+
+/// What the equations minimise for these moves, J, one a node.
+double energy_of(const SheetSystem& sheet, std::span<const Vec3> moves);
+
+/// A rope's part of them. The solver adds the springs to `matrix` and factorises it.
+struct LineSystem {
+    BandCholesky* matrix = nullptr;
+    std::span<const Vec3> rhs;         ///< N
+    std::span<const Vec3> small_load;  ///< N
+    const std::vector<bool>* fixed = nullptr;
+};
+
+/// Conjugate gradients for the moves of nodes and touched bodies,
+///   (A + springs) d = rhs.
+/// Preconditioned by the inverse of everything that couples a node with itself and with the bodies that hold it, and of
+/// all that couples the nodes of a line: springs and lines of any stiffness cost no rounds. Sheets in floats, sums in
+/// doubles and in a fixed order: same bits for any worker count.
+class ClothSolver {
+public:
+    /// Nodes are counted through, sheet after sheet, then line after line: by those numbers springs name them. `moves`:
+    /// first guess and answer. It ends when the residual is `tolerance` of the small loads in the norm of the
+    /// preconditioner. Returns the rounds that it took, or not_finite where numbers have broken.
+    int solve(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
+              std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies, std::span<Vec3> moves,
+              std::span<BodyMove> body_moves, TaskPool& workers);
+
+    static constexpr int not_finite = -1;
+    double tolerance = 5e-3;
+    int most_rounds = 200;
+
+private:
+    static constexpr std::size_t worth_sharing = 1000;  // nodes
+
+    struct BodyFactor {
+        std::array<double, 36> factor{};  // of its mass and what springs add, what nodes give way taken off
+    };
+    // What is between a line and a body: a column each unknown of the body, and what the line's factor makes of it.
+    struct LineHold {
+        std::uint32_t body = 0;
+        std::size_t line = 0;
+        std::array<std::vector<Vec3>, 6> column, given;
+    };
+    // What springs couple a node of a sheet with another of any.
+    struct Link {
+        std::uint32_t row = 0, column = 0;
+        Block block;
+    };
+    // A run of slices of one sheet, and its links.
+    struct Chunk {
+        std::size_t sheet = 0, first = 0, last = 0;
+        std::size_t first_link = 0, last_link = 0;
+    };
+    void lay_out(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines);
+    bool prepare(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
+                 std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies, TaskPool& workers);
+    [[nodiscard]] bool is_between_sheets(const TouchSpring& spring, std::span<const BodyInertia> bodies) const;
+    static void add_links(const TouchSpring& spring, std::vector<Link>& links);
+    void sort_links(std::vector<Link>& links);
+    void prepare_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
+    bool prepare_lines(std::span<const LineSystem> lines, std::span<const TouchSpring> springs);
+    void prepare_line_holds(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
+    void give_way(const LineHold& hold);
+    double guess(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
+                 std::span<const TouchSpring> springs, std::span<const Vec3> moves);
+    void find_residual(std::span<const SheetSystem> sheets, std::span<const TouchSpring> springs,
+                       std::span<const BodyInertia> bodies, TaskPool& workers);
+    [[nodiscard]] ClothVectors vectors_of(std::size_t sheet);
+    void multiply_rows(std::span<const SheetSystem> sheets, std::size_t chunk);
+    template <class Kernel>
+    [[nodiscard]] double sum_of_chunk(std::size_t chunk, Kernel kernel);
+    void add_springs(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
+    void precondition_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
+    void precondition_lines();
+    void add_line_pulls();
+    void follow_bodies();
+    void solve_lines(std::span<Vec3> rhs) const;
+    void go_on(std::span<const BodyInertia> bodies, double turn);
+    void go_along(double way, std::size_t bodies);
+    [[nodiscard]] Vec3 direction_of(std::uint32_t node) const;
+    [[nodiscard]] bool is_contained(const TouchSpring& spring, std::span<const BodyInertia> bodies) const;
+    [[nodiscard]] bool is_same_block(std::uint32_t a, std::uint32_t b) const {
+        return a == b || (a >= nodes_ && b >= nodes_ && line_of_[a - nodes_] == line_of_[b - nodes_]);
+    }
+    void iterate(std::span<const SheetSystem> sheets, std::span<const TouchSpring> springs,
+                 std::span<const BodyInertia> bodies, double enough, int worker, Barrier& barrier);
+    [[nodiscard]] double sum_of(const std::vector<double>& parts) const;
+
+    std::vector<Block> own_, inverse_;  // node's own block, springs with it, and its inverse
+    SliceBlocks own_blocks_, inverse_blocks_;
+    SliceVectors direction_, product_, residual_, better_, answer_;  // p, q, r, z, d
+    std::vector<Float4> quads_;                                      // p again, node by node
+    std::vector<BodyMove> body_direction_, body_product_, body_residual_, body_better_, body_answer_;
+    std::vector<BodyFactor> body_factors_;
+    // Of nodes of lines; product: of the line's own factor, and with what couples it.
+    std::vector<Vec3> line_direction_, line_own_product_, line_product_, line_residual_, line_better_, line_answer_;
+    std::vector<Vec3> line_own_better_;  // the line's own factor times line_better_
+    std::vector<LineHold> line_holds_;
+    std::vector<std::uint32_t> line_of_;
+    std::vector<std::size_t> line_first_;  // of line_of_, one more than lines
+    std::vector<bool> line_fixed_;
+    std::vector<const BandCholesky*> factors_;
+    std::vector<Chunk> chunks_;
+    std::vector<std::size_t> sheet_first_, sheet_slice_;  // node and slice where a sheet begins
+    std::vector<std::uint32_t> place_;                    // of a node: lanes of all slices counted through
+    std::vector<std::uint32_t> coupled_;  // springs that neither the preconditioner's blocks nor links hold
+    std::vector<Link> links_;             // by row
+    const ClothRowKernels* kernels_ = &widest_cloth_row_kernels();
+    std::vector<double> parts_, other_parts_;
+    std::size_t nodes_ = 0;  // of sheets
+    int workers_ = 1, rounds_ = 0;
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+// What a solve needs before its first round: where everything lies, and the preconditioner.
+#include <algorithm>
+#include <cmath>
+
+#include "physics/deformable/cloth/cloth_solver.h"
+
+namespace embody::physics {
+
+namespace {
+
+constexpr std::size_t chunk_slices = 8;  // whose products are summed before the others'
+
+// Lower factor L Lᵀ in place, row by row.
+void factorize(std::array<double, 36>& m) {
+    for (std::size_t i = 0; i < 6; ++i) {
+        for (std::size_t k = 0; k <= i; ++k) {
+            double sum = m[6 * i + k];
+            for (std::size_t j = 0; j < k; ++j) sum -= m[6 * i + j] * m[6 * k + j];
+            m[6 * i + k] = i == k ? std::sqrt(std::max(sum, 1e-300)) : sum / m[6 * k + k];
+        }
+    }
+}
+
+// Jᵀ m J of a point at `arm`: J (shift, turn) = shift + turn × arm.
+void add_at_arm(std::array<double, 36>& to, const Mat3& m, Vec3 arm) {
+    const Mat3 s = transpose(skew(arm));  // turn × arm = s turn
+    const Mat3 mixed = m * s, turned = transpose(s) * mixed;
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) {
+            const auto row = static_cast<std::size_t>(r), column = static_cast<std::size_t>(c);
+            to[6 * row + column] += m(r, c);
+            to[6 * row + column + 3] += mixed(r, c);
+            to[6 * (column + 3) + row] += mixed(r, c);
+            to[6 * (row + 3) + column + 3] += turned(r, c);
+        }
+    }
+}
+
+}  // namespace
+
+// Whether the preconditioner holds all of it: one node, or nodes of one line, and no body that moves.
+bool ClothSolver::is_contained(const TouchSpring& spring, std::span<const BodyInertia> bodies) const {
+    if (moves_body(spring, bodies)) return false;
+    for (std::size_t k = 1; k < static_cast<std::size_t>(spring.count); ++k) {
+        if (!is_same_block(spring.node[0], spring.node[k])) return false;
+    }
+    return true;
+}
+
+void ClothSolver::lay_out(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines) {
+    nodes_ = 0;
+    chunks_.clear();
+    sheet_first_.clear();
+    sheet_slice_.clear();
+    place_.clear();
+    std::size_t slices = 0;
+    for (std::size_t s = 0; s < sheets.size(); ++s) {
+        const std::size_t count = sheets[s].rhs.size(), own_slices = slices_for(count);
+        sheet_first_.push_back(nodes_);
+        sheet_slice_.push_back(slices);
+        for (std::size_t i = 0; i < count; ++i) place_.push_back(static_cast<std::uint32_t>(slices * slice_rows + i));
+        for (std::size_t first = 0; first < own_slices; first += chunk_slices)
+            chunks_.push_back({s, first, std::min(own_slices, first + chunk_slices)});
+        nodes_ += count;
+        slices += own_slices;
+    }
+    line_of_.clear();
+    line_fixed_.clear();
+    line_first_ = {0};
+    for (std::uint32_t l = 0; l < lines.size(); ++l) {
+        line_of_.insert(line_of_.end(), lines[l].rhs.size(), l);
+        line_fixed_.insert(line_fixed_.end(), lines[l].fixed->begin(), lines[l].fixed->end());
+        line_first_.push_back(line_of_.size());
+    }
+    for (auto* vector : {&direction_, &product_, &residual_, &better_, &answer_}) vector->resize(slices);
+    own_blocks_.resize(slices);
+    inverse_blocks_.resize(slices);
+    quads_.assign(slices * slice_rows, Float4{});
+    for (auto* vector : {&line_direction_, &line_own_product_, &line_product_, &line_residual_, &line_better_,
+                         &line_answer_, &line_own_better_})
+        vector->assign(line_of_.size(), {});
+}
+
+bool ClothSolver::prepare(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
+                          std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies,
+                          TaskPool& workers) {
+    own_.clear();
+    for (const SheetSystem& sheet : sheets)
+        own_.insert(own_.end(), sheet.matrix->diagonal.begin(), sheet.matrix->diagonal.end());
+    coupled_.clear();
+    std::vector<Link> links;
+    for (std::uint32_t s = 0; s < springs.size(); ++s) {
+        const TouchSpring& spring = springs[s];
+        if (!spring.acts) continue;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k) {
+            if (spring.node[k] >= nodes_) continue;
+            own_[spring.node[k]] += to_block(spring.weight[k] * spring.weight[k] * spring.matrix);
+        }
+        if (is_contained(spring, bodies)) continue;
+        if (is_between_sheets(spring, bodies))
+            add_links(spring, links);
+        else
+            coupled_.push_back(s);
+    }
+    sort_links(links);
+    inverse_.resize(nodes_);
+    for (std::size_t s = 0; s < sheets.size(); ++s) {
+        const std::size_t count = sheets[s].rhs.size();
+        share_among(workers, count, count >= worth_sharing, [&](int, Share share) {
+            for (std::size_t i = share.first; i < share.last; ++i) {
+                const std::size_t at = sheet_first_[s] + i, slice = place_[at] / slice_rows,
+                                  lane = place_[at] % slice_rows;
+                inverse_[at] = sheets[s].fixed[i] != 0 ? Block{} : to_block(inverse_or_zero(to_matrix(own_[at])));
+                own_blocks_.set(slice, lane, own_[at]);
+                inverse_blocks_.set(slice, lane, inverse_[at]);
+            }
+        });
+    }
+    if (!prepare_lines(lines, springs)) return false;
+    prepare_line_holds(springs, bodies);
+    prepare_bodies(springs, bodies);
+    return true;
+}
+
+bool ClothSolver::is_between_sheets(const TouchSpring& spring, std::span<const BodyInertia> bodies) const {
+    const auto nodes = std::span(spring.node).first(static_cast<std::size_t>(spring.count));
+    return !moves_body(spring, bodies) && std::ranges::all_of(nodes, [&](std::uint32_t n) { return n < nodes_; });
+}
+
+// What a spring between nodes of sheets adds beside the diagonal.
+void ClothSolver::add_links(const TouchSpring& spring, std::vector<Link>& links) {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(spring.count); ++a) {
+        for (std::size_t b = 0; b < static_cast<std::size_t>(spring.count); ++b) {
+            if (b == a || spring.weight[a] * spring.weight[b] == 0) continue;
+            links.push_back(
+                {spring.node[a], spring.node[b], to_block((spring.weight[a] * spring.weight[b]) * spring.matrix)});
+        }
+    }
+}
+
+// By row, in each in the order of the springs; the chunks' rows follow each other.
+void ClothSolver::sort_links(std::vector<Link>& links) {
+    std::ranges::stable_sort(links, {}, &Link::row);
+    links_.swap(links);
+    std::size_t at = 0;
+    for (Chunk& chunk : chunks_) {
+        const std::size_t end = (sheet_slice_[chunk.sheet] + chunk.last) * slice_rows;
+        chunk.first_link = at;
+        while (at < links_.size() && place_[links_[at].row] < end) ++at;
+        chunk.last_link = at;
+    }
+}
+
+void ClothSolver::prepare_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies) {
+    body_factors_.assign(bodies.size(), {});
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        auto& factor = body_factors_[b].factor;
+        for (int r = 0; r < 3; ++r) {
+            const auto row = static_cast<std::size_t>(r);
+            factor[7 * row] = bodies[b].moves ? bodies[b].mass : 1;
+            for (int c = 0; c < 3; ++c)
+                factor[6 * (row + 3) + static_cast<std::size_t>(c) + 3] =
+                    bodies[b].moves ? bodies[b].inertia(r, c) : (r == c ? 1.0 : 0.0);
+        }
+    }
+    for (const std::uint32_t s : coupled_) {
+        const TouchSpring& spring = springs[s];
+        if (!moves_body(spring, bodies)) continue;
+        const Mat3& k = spring.matrix;
+        auto& factor = body_factors_[spring.body].factor;
+        // A single node gives way: K - K D⁻¹ K is what the body feels of it.
+        const bool is_single = spring.count == 1 && spring.node[0] < nodes_;
+        const Mat3 felt = is_single ? k - k * to_matrix(inverse_[spring.node[0]]) * k : k;
+        add_at_arm(factor, felt, spring.arm);
+    }
+    for (const LineHold& hold : line_holds_) give_way(hold);
+    for (BodyFactor& body : body_factors_) factorize(body.factor);
+}
+
+}  // namespace embody::physics

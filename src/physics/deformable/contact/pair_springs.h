@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "physics/deformable/contact/thin_pairs.h"
+#include "physics/deformable/contact/touch_springs.h"
+
+namespace embody::physics {
+
+/// What a contact of two sheets or ropes has left from the last substep.
+struct ThinContact {
+    ThinFeature kind = ThinFeature::node_on_triangle;
+    bool is_swapped = false;
+    std::uint32_t first = 0, second = 0;
+    Vec3 normal;           ///< from the second to the first
+    double push = 0;       ///< N, without what parts two that lie in each other
+    Vec3 hold;             ///< m
+    double stiffness = 0;  ///< N/m
+    double carried = 0;    ///< what it has borne lately, as a mass, kg
+
+    [[nodiscard]] auto key() const { return std::tuple(kind, is_swapped, first); }
+};
+/// By the slots of the two, the lower first; each sorted by key().
+using ThinContacts = std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<ThinContact>>;
+
+/// A sheet or rope among those that are solved together.
+struct ThinMember {
+    ThinSurface surface;
+    std::uint32_t slot = 0;
+    std::uint32_t first = 0;   ///< number of its first node among those of all
+    std::vector<double> load;  ///< kg a node: of bodies that lie on it
+};
+/// Two of them, by index, the lower slot first, with what may touch; or a sheet with itself.
+struct ThinPair {
+    std::uint32_t a = 0, b = 0;
+    std::vector<ThinCandidate> candidates;
+};
+
+/// Contacts between sheets and ropes, as springs of two to four nodes each, one-sided and with friction, like
+/// those with bodies. Their forces are equal and opposite, so they leave the whole's momentum as it is.
+class PairSprings {
+public:
+    /// Begins a substep of h seconds. `gravity`: m/s².
+    void begin(std::span<const ThinMember> members, std::span<const ThinPair> pairs, const ThinContacts& memories,
+               double h, double gravity);
+    /// As TouchSprings::choose(), for moves of all nodes.
+    bool choose(std::span<const Vec3> moves, bool is_foretold);
+    /// Adds the forces of the springs to `given` (N), by node, and remembers.
+    void finish(std::span<const Vec3> moves, std::span<Vec3> given, ThinContacts& memories);
+    [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_; }
+
+    double tolerance = 0.05;  ///< share of the forces whose change is not worth a solve
+
+private:
+    using Slots = std::pair<std::uint32_t, std::uint32_t>;
+    struct Found;
+    struct Search;
+    void add(const Search& search, const Found& found);
+
+    double gravity_ = 0;
+    std::vector<TouchSpring> springs_;
+    std::vector<ThinContact> features_;                   // of the springs: what they are of, nothing of forces
+    std::vector<std::pair<Slots, std::size_t>> last_of_;  // of each pair, one beyond its last spring
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "foundation/task_pool.h"
+#include "physics/deformable/contact/nodes.h"
+
+namespace embody::physics {
+
+/// What another sheet or rope meets of one.
+struct ThinSurface {
+    const Nodes* nodes = nullptr;
+    std::span<const std::array<std::uint32_t, 3>> triangles;  ///< none of a rope
+    std::span<const std::array<std::uint32_t, 2>>
+        edges;               ///< of a rope: its segments, broken ones from a node to itself
+    double radius = 0;       ///< what it keeps off from its middle, m
+    double edge_length = 0;  ///< mean, m
+    double friction = 0;     ///< Coulomb coefficient
+};
+
+enum class ThinFeature : std::uint8_t { node_on_triangle, node_on_edge, edge_on_edge };
+
+/// Two features of different sheets or ropes that may touch.
+struct ThinCandidate {
+    ThinFeature kind = ThinFeature::node_on_triangle;
+    bool is_swapped = false;              ///< the node is one of the second
+    std::uint32_t first = 0, second = 0;  ///< node or edge of the one, triangle or edge of the other
+};
+
+/// Appends what of `a` and `b` may come nearer than their radii within `time_step` (s), while an acceleration of
+/// `gravity` (m/s²) may change how they go. In a fixed order for any number of workers.
+void find_thin_candidates(const ThinSurface& a, const ThinSurface& b, double time_step, double gravity,
+                          TaskPool& workers, std::vector<ThinCandidate>& candidates);
+
+/// The nearest points of two features: Σ weight x is the way from the second to the first.
+struct ThinPoints {
+    std::array<std::uint32_t, 4> node{};  ///< the first `count_first` of the first feature's surface
+    std::array<double, 4> weight{};
+    int count_first = 1, count = 4;
+    Vec3 away;  ///< m
+};
+
+/// Of a candidate as its nodes lie now; nothing where the nearest points of two edges are at an end.
+bool find_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate& candidate, ThinPoints& points);
+
+/// Whether any of these is going to touch within `time_step` (s) as it goes, or nearly does.
+bool will_touch(const ThinSurface& a, const ThinSurface& b, std::span<const ThinCandidate> candidates, double time_step,
+                double gravity);
+
+}  // namespace embody::physics

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "physics/deformable/contact/nodes.h"
+#include "physics/deformable/contact/touch_springs.h"
+
+namespace embody::physics {
+
+/// A tie of a sheet or rope to another, as one solve sees both.
+struct PlacedTie {
+    const Nodes *own = nullptr, *other = nullptr;
+    std::uint32_t own_first = 0, other_first = 0;  ///< number of the first node of each among those of all
+    const Tie* tie = nullptr;
+    Vec3* pull = nullptr;  ///< what it had at the last substep's end, N, on its own node; takes the new one
+};
+
+/// Ties as springs of two to four nodes with memory, as TouchSprings are, that pull in every direction. Their forces
+/// are equal and opposite.
+class TieSprings {
+public:
+    /// Begins a substep of h seconds. `gravity`: m/s². What is apart is drawn together no faster than recovery_speed.
+    void begin(std::span<const PlacedTie> ties, double h, double gravity);
+    /// Adds the forces of the springs to `given` (N), by node, and remembers.
+    void finish(std::span<const Vec3> moves, std::span<Vec3> given);
+    [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_; }
+
+private:
+    std::vector<TouchSpring> springs_;
+    std::vector<Vec3*> pulls_;  // of these
+};
+
+}  // namespace embody::physics

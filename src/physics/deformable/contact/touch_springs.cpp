@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: MIT
+#include "physics/deformable/contact/touch_springs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace embody::physics {
+
+namespace {
+
+constexpr double stiffness_factor = 20;  // over what the node's neighbours resist with, or over a point's inertia
+constexpr double recovery_factor = 2;    // over the inertia of a body at the place where something began inside it
+constexpr double load_factor = 4;        // over the inertia of what weighs on a point
+
+// A new contact that is deeper than its point can have come in the substep began inside, or something was put there. It
+// is brought out at a bounded speed, by no more than the point's own inertia asks for: where the point is held inside
+// by something else, a force that is remembered would grow for ever. Nor by more than a few times what that of a light
+// body asks for: squeezed between points on both sides of it by all that a heavy rope can give, it turns out of there
+// faster than substeps can follow.
+void begin_recovery(TouchSpring& spring, const TouchedBody& body, double h) {
+    spring.is_recovery = true;
+    spring.friction = 0;
+    spring.stiffness = stiffness_factor * spring.inertia;
+    const Vec3 turning = cross(spring.arm, spring.normal);
+    const double body_give = body.inverse_mass + dot(turning, body.inverse_inertia * turning);  // 1/kg
+    if (body_give > 0) spring.stiffness = std::min(spring.stiffness, recovery_factor / (body_give * h * h));
+    spring.gap = -recovery_speed * h - dot(spring.carried, spring.normal);
+}
+
+// Friction: k (hold + slip) up to its limit. Beyond it the secant through that limit at the slip to be expected, which
+// can only stop what slides; where the slip is so long that friction cannot end it in this substep, the limit itself.
+// Expected of what stuck is what the point would do alone with the limit instead of the larger force that it had.
+// Returns by how much the force is another than before, N.
+double choose_friction(TouchSpring& spring, Vec3 s, double limit, bool is_foretold) {
+    const Mat3 plane = Mat3::identity() - outer(spring.normal, spring.normal);
+    const Vec3 loose = spring.hold - across(spring.carried, spring.normal);  // stretch with s = 0
+    const Vec3 stretch = loose + across(s, spring.normal), force = across(spring.force(s), spring.normal);
+    const double size = length(stretch);
+    const double excess = length(force) - limit;
+    const bool has_stuck = length(force) > 0.99 * spring.stiffness * size;
+    const double expected = !is_foretold && has_stuck && excess > 0 ? size + excess / spring.inertia : size;
+    const bool sticks = limit > 0 && spring.stiffness * expected <= limit;
+    const double tangent = sticks ? spring.stiffness : limit > 0 ? limit / expected : 0;
+    spring.matrix = tangent * plane;
+    spring.load = -tangent * loose;
+    if (!sticks && spring.inertia * expected > 2 * limit && size > 0) {
+        const Vec3 way = stretch / size;
+        spring.load -= (limit - tangent * dot(way, loose)) * way;
+        spring.matrix = spring.matrix - tangent * outer(way, way);
+    }
+    return length(force - (spring.load - spring.matrix * s));
+}
+
+}  // namespace
+
+void choose_contact(TouchSpring& spring, Vec3 s, bool is_foretold, SpringChange& sum) {
+    const double push_before = dot(spring.pull, spring.normal);
+    const double depth = -(spring.gap + dot(spring.normal, s)), push = push_before + spring.stiffness * depth;
+    const bool is_new = !spring.acts;
+    if (is_new != (push <= 0)) sum.change += std::fabs(push);
+    // What pushed in the last substep is let go by a solve alone: the stiff spring calls every breath a leave.
+    spring.acts = push > 0 || (is_foretold && push_before > 0);
+    // Of what does not touch, as much as it would take to bring it there alone.
+    sum.near += spring.acts ? std::fabs(push) : std::min(std::fabs(push), spring.inertia * std::fabs(depth));
+    if (!spring.acts) {
+        spring.matrix = Mat3::zero();
+        spring.load = {};
+        return;
+    }
+    sum.acting += std::fabs(push);
+    // How deep something came that was not held back tells what it takes to stop it, not what the spring would push.
+    const double expected = is_foretold ? push_before : is_new ? push_before + spring.inertia * depth : push;
+    sum.change += choose_friction(spring, s, spring.friction * expected, is_foretold);
+    spring.matrix += spring.stiffness * outer(spring.normal, spring.normal);
+    spring.load += (push_before - spring.stiffness * spring.gap) * spring.normal;
+}
+
+double contact_stiffness(double mass, double force, double h, double gravity) {
+    const double carried = gravity > 0 ? force / gravity : 0;
+    return std::max(stiffness_factor * mass, load_factor * carried) / (h * h);
+}
+
+std::vector<BodyInertia> inertias_of(std::span<const TouchedBody> bodies, double h) {
+    std::vector<BodyInertia> inertias;
+    for (const TouchedBody& body : bodies) {
+        BodyInertia inertia;
+        if (body.inverse_mass > 0) {
+            // Axes that are held still turn a million times harder than the freest.
+            const Mat3& inverse = body.inverse_inertia;
+            const double least = std::max(1e-6 * trace(inverse), 1e-12 * body.inverse_mass);
+            inertia = {true, 1 / (body.inverse_mass * h * h),
+                       (1 / (h * h)) * inverse_or_zero(inverse + least * Mat3::identity())};
+        }
+        inertias.push_back(inertia);
+    }
+    return inertias;
+}
+
+Vec3 TouchSpring::lead(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves) const {
+    Vec3 s;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) s += weight[k] * node_moves[node[k]];
+    if (body != no_body) s -= body_moves[body].shift + cross(body_moves[body].turn, arm);
+    return s;
+}
+
+double energy_of(const TouchSpring& spring, std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves) {
+    if (!spring.acts) return 0;
+    const Vec3 s = spring.lead(node_moves, body_moves);
+    return 0.5 * dot(s, spring.matrix * s) - dot(spring.load, s);
+}
+
+double energy_pressed(const TouchSpring& spring, std::span<const Vec3> node_moves,
+                      std::span<const BodyMove> body_moves) {
+    if (spring.is_attachment) return energy_of(spring, node_moves, body_moves);
+    const double depth = -(spring.gap + dot(spring.normal, spring.lead(node_moves, body_moves)));
+    const double push = std::max(0.0, dot(spring.pull, spring.normal) + spring.stiffness * depth);
+    return push * push / (2 * spring.stiffness);
+}
+
+double energy_of(const BodyInertia& inertia, const BodyMove& move) {
+    if (!inertia.moves) return 0;
+    return inertia.mass / 2 * length_squared(move.shift) + 0.5 * dot(move.turn, inertia.inertia * move.turn);
+}
+
+std::vector<double> shares_of(std::span<const TouchSpring> springs, std::span<const Vec3> node_moves,
+                              std::span<const BodyMove> body_moves, std::span<const BodyInertia> inertias, double h) {
+    constexpr double most = 4;         // times the energy that the body's move takes
+    constexpr double slow_push = 0.5;  // m/s: what speeds it up by less does no harm
+    std::vector<BodyMove> pushes(inertias.size());
+    for (const TouchSpring& spring : springs) {
+        if (!spring.acts || !moves_body(spring, inertias)) continue;
+        const Vec3 force = spring.force(spring.lead(node_moves, body_moves));
+        pushes[spring.body].shift -= force;
+        pushes[spring.body].turn -= cross(spring.arm, force);
+    }
+    std::vector<double> shares(inertias.size(), 1);
+    for (std::size_t b = 0; b < inertias.size(); ++b) {
+        if (!inertias[b].moves) continue;
+        const auto& [force, torque] = pushes[b];
+        const double pushed = length_squared(force) / (2 * inertias[b].mass) +
+                              0.5 * dot(torque, inverse_or_zero(inertias[b].inertia) * torque);
+        const double moved = energy_of(inertias[b], body_moves[b]);
+        const double small = 0.5 * inertias[b].mass * slow_push * slow_push * h * h;
+        if (pushed > most * moved + small) shares[b] = std::sqrt(moved / pushed);
+    }
+    return shares;
+}
+
+bool TouchSprings::recall(const TouchedBody& body, TouchSpring& spring) const {
+    auto at = std::ranges::lower_bound(memory_, spring.feature, {}, &Memory::feature);
+    bool is_known = false;
+    double nearest = 0.8;  // cosine: another face of the body is another contact
+    for (; at != memory_.end() && at->feature == spring.feature; ++at) {
+        if (at->slot != body.body || at->is_attachment != spring.is_attachment) continue;
+        if (dot(at->normal, spring.normal) < nearest) continue;
+        is_known = true;
+        nearest = dot(at->normal, spring.normal);
+        spring.pull = spring.is_attachment ? at->pull : length(at->pull) * spring.normal;
+        spring.hold = across(at->hold, spring.normal);
+    }
+    return is_known;
+}
+
+bool TouchSprings::is_attached(std::uint32_t node, std::uint32_t body) const {
+    for (std::size_t i = 0; i < attachments.size(); ++i) {
+        if (attachments[i].node == node && attachment_bodies[i] == body) return true;
+    }
+    return false;
+}
+
+void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::span<const TouchedBody> bodies,
+                            const Substep& substep, std::span<const double> node_stiffness, TouchSpring& spring) {
+    const TouchedBody& body = bodies[plane.body];
+    const Place& place = places_[plane.body];
+    Vec3 point, velocity;
+    bool is_free = false;
+    double give = 0;  // 1/kg
+    for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k) {
+        const std::uint32_t node = spring.node[k];
+        point += spring.weight[k] * nodes.position[node];
+        velocity += spring.weight[k] * nodes.mean_velocity[node];
+        if (!node_stiffness.empty())
+            spring.stiffness = std::max(spring.stiffness, stiffness_factor * node_stiffness[node]);
+        spring.inertia += spring.weight[k] * nodes.mass[node] / (substep.h * substep.h);
+        give += spring.weight[k] * spring.weight[k] * nodes.inverse_mass[node];
+        is_free |= nodes.inverse_mass[node] > 0;
+    }
+    spring.body = plane.body;
+    spring.normal = place.rotation * plane.normal;
+    spring.arm = place.rotation * plane.anchor;
+    const Vec3 offset = point - place.center - spring.arm;
+    spring.gap = dot(offset, spring.normal) - radius;
+    // The point's own reach within the substep, and what gravity adds.
+    const double reach = (length(velocity) + length(substep.gravity) * substep.h) * substep.h + radius;
+    if (!is_free || spring.gap > reach) return;
+    spring.arm += across(offset, spring.normal);
+    spring.friction = std::sqrt(friction * body.friction);
+    spring.carried = place.way_of(spring.arm) + substep.h * plane.velocity;
+    const double gap_at_start = spring.gap + dot(spring.carried, spring.normal);
+    const double came_in = std::max(0.0, dot(spring.carried - substep.h * velocity, spring.normal));
+    const bool is_known = recall(body, spring);
+    if (node_stiffness.empty()) soften(substep, give, body.inverse_mass > 0, spring);
+    if (!is_known && gap_at_start < -recovery_speed * substep.h - came_in) {
+        if (std::ranges::find(attachment_bodies, plane.body) != attachment_bodies.end()) return;
+        begin_recovery(spring, body, substep.h);
+    }
+    springs_.push_back(spring);
+}
+
+// As between sheets (pair_springs.cpp): by inertia and by that of what weighs on it. That of a body would ask for
+// stiffer springs than these: with memory they would swing up, so they have none.
+void TouchSprings::soften(const Substep& substep, double give, bool is_with_body, TouchSpring& spring) {
+    if (is_with_body) spring.pull = spring.hold = {};
+    const double g = length(substep.gravity), squared = substep.h * substep.h;
+    const double carried = g > 0 ? length(spring.pull) / g : 0;
+    spring.stiffness = std::max(stiffness_factor * spring.inertia, load_factor * carried / squared);
+    spring.inertia = 1 / (give * squared);
+    spring.gap = std::max(spring.gap, -recovery_speed * substep.h);
+}
+
+void TouchSprings::add(const Nodes& nodes, const SheetContact& contact, std::span<const TouchedBody> bodies,
+                       const Substep& substep) {
+    TouchSpring spring{.count = contact.count, .feature = contact.feature};
+    std::ranges::copy(contact.node, spring.node.begin());
+    std::ranges::copy(contact.weight, spring.weight.begin());
+    complete(nodes, contact.plane, bodies, substep, {}, spring);
+}
+
+void TouchSprings::add(const Nodes& nodes, const SegmentContact& contact, std::span<const TouchedBody> bodies,
+                       const Substep& substep, std::span<const double> node_stiffness) {
+    TouchSpring spring{.node = {contact.node, contact.node + 1},
+                       .weight = {1 - contact.along, contact.along},
+                       .count = 2,
+                       .feature = {contact.node, contact.node + 1}};
+    complete(nodes, contact.plane, bodies, substep, node_stiffness, spring);
+}
+
+// Along its circle: what a straight way is off that, a stiff rope that sticks to a turning drum feels as a pull.
+TouchSprings::Place TouchSprings::place_of(const TouchedBody& body, const Substep& substep) {
+    const double end = substep.time + substep.h;
+    Place place{body.center_at(end), body.rotation_at(end)};
+    place.way = place.center - body.center_before(substep.h, end);
+    place.back = body.rotation_before(substep.h, end) * transpose(place.rotation);
+    return place;
+}
+
+void TouchSprings::begin(const Nodes& nodes, std::span<const NodeContact> contacts, std::span<const TouchedBody> bodies,
+                         const Substep& substep, std::span<const double> node_stiffness) {
+    places_.clear();
+    for (const TouchedBody& body : bodies) places_.push_back(place_of(body, substep));
+    springs_.clear();
+    for (const NodeContact& contact : contacts) {
+        if (is_attached(contact.node, contact.body)) continue;
+        TouchSpring spring{.node = {contact.node}, .weight = {1}, .feature = {contact.node, no_node}};
+        complete(nodes, contact, bodies, substep, node_stiffness, spring);
+    }
+    for (std::size_t i = 0; i < attachments.size(); ++i) {
+        const Attachment& attachment = attachments[i];
+        const std::uint32_t b = attachment_bodies[i];
+        if (b == no_body) continue;
+        const TouchedBody& body = bodies[b];
+        TouchSpring spring{.node = {attachment.node},
+                           .weight = {1},
+                           .feature = {attachment.node, no_node},
+                           .body = b,
+                           .is_attachment = true};
+        spring.normal = {1, 0, 0};
+        // The anchor is in the frame that the body's pose at the step's start gives.
+        const Vec3 anchor = transform_point(body.start, attachment.anchor) - body.start_center;
+        spring.arm = places_[b].rotation * anchor;
+        spring.carried = nodes.position[attachment.node] - places_[b].center - spring.arm;  // off the anchor
+        spring.stiffness = stiffness_factor * node_stiffness[attachment.node];
+        recall(body, spring);
+        springs_.push_back(spring);
+    }
+}
+
+bool TouchSprings::choose(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, bool is_foretold) {
+    SpringChange sum;
+    for (TouchSpring& spring : springs_) {
+        if (spring.is_attachment) {
+            spring.acts = true;
+            spring.matrix = spring.stiffness * Mat3::identity();
+            spring.load = spring.pull - spring.stiffness * spring.carried;
+            continue;
+        }
+        choose_contact(spring, spring.lead(node_moves, body_moves), is_foretold, sum);
+    }
+    return sum.change > tolerance * sum.near;
+}
+
+// What has come in where no solve has seen a contact, since it was not worth another, is stopped on its own.
+bool TouchSprings::stop(TouchSpring& spring, std::span<Vec3> node_moves, std::span<const BodyMove> body_moves) {
+    if (spring.count != 1 || spring.is_attachment) return false;
+    const Vec3 s = spring.lead(node_moves, body_moves), slip = across(s - spring.carried, spring.normal);
+    const double depth = -(spring.gap + dot(spring.normal, s));
+    if (depth <= 0) return false;
+    const double push = spring.inertia * depth, size = length(slip);
+    spring.felt = push * spring.normal;
+    if (size > 0) spring.felt -= (std::min(spring.friction * push, spring.inertia * size) / size) * slip;
+    node_moves[spring.node[0]] += spring.felt / spring.inertia;
+    return spring.acts = true;
+}
+
+void TouchSprings::finish(std::span<Vec3> node_moves, std::span<const BodyMove> body_moves, const Substep& substep,
+                          std::span<TouchedBody> bodies, std::span<const double> shares) {
+    memory_.clear();
+    for (TouchSpring& spring : springs_) {
+        if (spring.acts)
+            spring.felt = spring.force(spring.lead(node_moves, body_moves));
+        else if (!stop(spring, node_moves, body_moves))
+            continue;
+        if (spring.body == no_body) continue;
+        if (!shares.empty()) spring.felt *= shares[spring.body];
+        const Vec3 s = spring.lead(node_moves, body_moves), force = spring.felt;
+        bodies[spring.body].push(-substep.h * force, spring.arm, substep.h);
+        if (spring.is_recovery) continue;
+        Memory memory{spring.feature, bodies[spring.body].body, spring.is_attachment, spring.normal, force, {}};
+        if (!spring.is_attachment) {
+            const double push = std::max(0.0, dot(force, spring.normal));
+            memory.pull = push * spring.normal;
+            memory.hold = spring.hold + across(s - spring.carried, spring.normal);
+            const double most = spring.friction * push / spring.stiffness, size = length(memory.hold);
+            if (size > most) memory.hold *= most / size;
+        }
+        memory_.push_back(memory);
+    }
+    std::ranges::stable_sort(memory_, {}, &Memory::feature);
+}
+
+}  // namespace embody::physics

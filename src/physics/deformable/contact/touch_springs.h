@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "math/mat3.h"
+#include "physics/definitions/deformable_definition.h"
+#include "physics/deformable/contact/node_contacts.h"
+#include "physics/deformable/contact/substep.h"
+
+namespace embody::physics {
+
+/// How far the pushes of a substep move a body off its path: m, rad.
+struct BodyMove {
+    Vec3 shift, turn;
+};
+
+/// The move of a point at `arm` when the body's unknown c (three of its place, three of its turn) goes by one.
+inline Vec3 unit_move(std::size_t c, Vec3 arm) {
+    Vec3 axis;
+    axis[static_cast<int>(c % 3)] = 1;
+    return c < 3 ? axis : cross(axis, arm);
+}
+
+inline constexpr std::uint32_t no_body = 0xFFFFFFFFu;
+inline constexpr std::uint32_t no_node = 0xFFFFFFFFu;
+
+inline constexpr double recovery_speed = 0.2;  ///< m/s: what begins inside of something is parted from it no faster
+
+/// How hard bodies are to move within a substep of h seconds: none that the pushes do not move.
+struct BodyInertia {
+    bool moves = false;
+    double mass = 0;  ///< over the substep squared, kg/s²
+    Mat3 inertia = Mat3::zero();
+};
+std::vector<BodyInertia> inertias_of(std::span<const TouchedBody> bodies, double h);
+
+/// A point between two neighbours of a line, over a plane of a body.
+struct SegmentContact {
+    std::uint32_t node = 0;  ///< the first; the second comes after it
+    double along = 0.5;      ///< 0 … 1 from the first to the second
+    NodeContact plane;       ///< `node` does not count
+};
+
+/// What of a deformable touches, the same from substep to substep: a node and no_node, the two ends of an edge, or
+/// no_node and a number of what pokes into a triangle.
+using TouchFeature = std::array<std::uint32_t, 2>;
+
+/// A point of a sheet between two or three of its nodes, over a plane of a body.
+struct SheetContact {
+    std::array<std::uint32_t, 3> node{};
+    std::array<double, 3> weight{};
+    int count = 2;
+    TouchFeature feature{};
+    NodeContact plane;  ///< `node` does not count
+};
+
+/// What holds a point of a deformable, Σ weight x, off a plane or to an anchor of a body: the force
+///   load - matrix s
+/// on the point, where s is how far it moves in the substep on top of what the touched body's pushes move it.
+struct TouchSpring {
+    std::array<std::uint32_t, 4> node{};
+    std::array<double, 4> weight{};
+    int count = 1;                 ///< of nodes
+    TouchFeature feature{};        ///< with the body and about that direction, what is remembered
+    std::uint32_t body = no_body;  ///< index in the list of bodies
+    bool is_attachment = false;    ///< pulls too, in every direction
+    bool is_recovery = false;      ///< of a point that began inside: forgets its force
+    Vec3 normal;                   ///< unit, towards the point, at the end of the substep
+    Vec3 arm;                      ///< from the body's centre of mass to what is touched, then
+    double friction = 0;           ///< Coulomb coefficient
+    double gap = 0;                ///< at the end of the substep if the point stays, m
+    Vec3 carried;                  ///< how far the body's surface goes in the substep on its path, m
+    double stiffness = 0;          ///< of both directions at most, N/m
+    double inertia = 0;            ///< mass of the point over the substep squared, N/m
+    Vec3 pull;                     ///< force that the spring had at the last substep's end, N: the push is along n
+    Vec3 hold;                     ///< tangential stretch of the spring while it sticks, m
+
+    bool acts = false;
+    Vec3 felt;                   ///< force on the point in the substep that finish() ended, N
+    Mat3 matrix = Mat3::zero();  ///< symmetric, not negative, N/m
+    Vec3 load;
+
+    /// Of the point for that lead over the body.
+    [[nodiscard]] Vec3 force(Vec3 s) const { return load - matrix * s; }
+    [[nodiscard]] Vec3 lead(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves) const;
+};
+
+inline bool moves_body(const TouchSpring& spring, std::span<const BodyInertia> bodies) {
+    return spring.body != no_body && bodies[spring.body].moves;
+}
+
+/// What a solve minimises has of these: of a spring that acts, of a body's moves; J.
+double energy_of(const TouchSpring& spring, std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves);
+double energy_of(const BodyInertia& inertia, const BodyMove& move);
+/// The same of a spring whatever acted in the solve: of a contact, which only pushes, without friction.
+double energy_pressed(const TouchSpring& spring, std::span<const Vec3> node_moves,
+                      std::span<const BodyMove> body_moves);
+
+/// Of each body, how much of what the springs push it for these moves it may get: 1 where it goes by that as the solve
+/// has it in the substep of h seconds, less where a solve that has not come to its end left stiff springs with far
+/// more.
+std::vector<double> shares_of(std::span<const TouchSpring> springs, std::span<const Vec3> node_moves,
+                              std::span<const BodyMove> body_moves, std::span<const BodyInertia> inertias, double h);
+
+/// How much of contacts' forces has changed, N, beside those of contacts that act, and those that all that are near
+/// would have: the finer and the coarser measure.
+struct SpringChange {
+    double change = 0, acting = 0, near = 0;
+};
+/// Whether a contact acts, and how its friction does, for that lead (m). `is_foretold`: of moves by inertia alone, no
+/// measure of forces: those of the last substep are.
+void choose_contact(TouchSpring& spring, Vec3 s, bool is_foretold, SpringChange& sum);
+/// Of a contact or tie between sheets and ropes, N/m: over the inertia of the heavier point (`mass`, kg), or of what
+/// weighs on it, which `force` (N) tells, in a substep of h seconds. `gravity`: m/s².
+double contact_stiffness(double mass, double force, double h, double gravity);
+/// The part of v along a plane.
+inline Vec3 across(Vec3 v, Vec3 normal) { return v - dot(v, normal) * normal; }
+
+/// Contacts and attachments of one deformable as springs with memory. A spring starts where it left off in the last
+/// substep, so its force grows until nothing gives way any more: stiff as it is, it acts like a hard contact (method of
+/// multipliers, one round a substep; stable from a stiffness of the node's own on). Friction is a spring along the
+/// plane that gives way at Coulomb's limit.
+class TouchSprings {
+public:
+    /// Begins a substep: `radius`, friction of the deformable; `node_stiffness`: what the node's neighbours resist with
+    /// together, N/m. A contact counts that may close in the substep, but none of a node with what it is attached to.
+    void begin(const Nodes& nodes, std::span<const NodeContact> contacts, std::span<const TouchedBody> bodies,
+               const Substep& substep, std::span<const double> node_stiffness);
+    /// After begin(): one of a point of a line.
+    void add(const Nodes& nodes, const SegmentContact& contact, std::span<const TouchedBody> bodies,
+             const Substep& substep, std::span<const double> node_stiffness);
+    /// After begin(): one of a point of a sheet. Softer than that of a node, as the solver knows each node's own part
+    /// of it only.
+    void add(const Nodes& nodes, const SheetContact& contact, std::span<const TouchedBody> bodies,
+             const Substep& substep);
+    /// Which springs act, and how friction does, for these moves. True where that has changed by more than a solve is
+    /// worth. `is_foretold`: as of choose_contact().
+    bool choose(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, bool is_foretold);
+    /// Goes on with what the contacts of another deformable of as many nodes felt last.
+    void go_on_from(const TouchSprings& other) { memory_ = other.memory_; }
+    /// Pushes the bodies, and remembers. Changes moves of nodes that came in where no spring acted. `shares`: as of
+    /// shares_of(), or none.
+    void finish(std::span<Vec3> node_moves, std::span<const BodyMove> body_moves, const Substep& substep,
+                std::span<TouchedBody> bodies, std::span<const double> shares = {});
+
+    [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_; }
+
+    double radius = 1e-3;                          ///< m
+    double friction = 0.5;                         ///< Coulomb coefficient of the deformable
+    double tolerance = 0.05;                       ///< share of the forces whose change is not worth a solve
+    std::vector<Attachment> attachments;           ///< that still hold
+    std::vector<std::uint32_t> attachment_bodies;  ///< index of each in the list of bodies, set before begin()
+
+private:
+    struct Memory {
+        TouchFeature feature{};
+        std::uint32_t slot = 0;
+        bool is_attachment = false;
+        Vec3 normal, pull, hold;
+    };
+    struct Place {
+        Vec3 center;
+        Mat3 rotation;
+        Vec3 way;                      // of the centre in the substep, m
+        Mat3 back = Mat3::identity();  // what turns directions of its end to those of its start
+        /// How far the point that is there then goes in the substep, m.
+        [[nodiscard]] Vec3 way_of(Vec3 arm) const { return way + arm - back * arm; }
+    };
+    static Place place_of(const TouchedBody& body, const Substep& substep);
+    // Of a contact at a point, once its nodes and weights are known. Without stiffness of nodes: by inertia and load.
+    void complete(const Nodes& nodes, const NodeContact& plane, std::span<const TouchedBody> bodies,
+                  const Substep& substep, std::span<const double> node_stiffness, TouchSpring& spring);
+    static void soften(const Substep& substep, double give, bool is_with_body, TouchSpring& spring);
+    [[nodiscard]] bool is_attached(std::uint32_t node, std::uint32_t body) const;
+    // False where the contact is new.
+    bool recall(const TouchedBody& body, TouchSpring& spring) const;
+    static bool stop(TouchSpring& spring, std::span<Vec3> node_moves, std::span<const BodyMove> body_moves);
+
+    std::vector<TouchSpring> springs_;
+    std::vector<Memory> memory_;  // by feature
+    std::vector<Place> places_;   // of the bodies, at the substep's end
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/deformable/rope/rope_segment.h"
+#include "physics/deformable/rope/rope_system.h"
+
+namespace embody::physics {
+
+/// Where a rope's direction is held, and the twist of its spans from one such place to the next
+/// (docs/physics/ropes.md).
+class RopeClamps {
+public:
+    /// What one substep begins with.
+    struct Start {
+        const Rope& rope;
+        std::span<const RopeSegment> segments;
+        const Nodes& nodes;
+        const std::vector<bool>& fixed;
+        const TouchSprings& springs;  ///< for the attachments
+        std::span<const TouchedBody> bodies;
+        const Substep& substep;
+    };
+
+    /// Spans between clamps that were there already stay twisted as they are, others begin without.
+    void set(const std::vector<Clamp>& clamps);
+    [[nodiscard]] const std::vector<Clamp>& clamps() const { return clamps_; }
+    void begin(const Start& start);
+    [[nodiscard]] bool holds_any() const { return !held_.empty(); }
+    [[nodiscard]] bool holds(std::size_t node) const;
+    [[nodiscard]] bool has_twist() const { return !spans_.empty(); }
+
+    /// Into the system about these moves. `with_curvature`: how the moments press bent rope sideways too, which is
+    /// positive definite only as far as the rope bears them.
+    void add(std::span<const Vec3> places, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
+             bool with_curvature, RopeSystem& system) const;
+    /// Of the twists, as a solve has foretold them, N m.
+    void foretell(std::span<const double> moments);
+    /// Elastic energy and damping, J.
+    [[nodiscard]] double energy(std::span<const Vec3> places, std::span<const BodyMove> body_moves) const;
+    /// Pushes the bodies, and remembers.
+    void finish(std::span<const Vec3> places, std::span<const BodyMove> body_moves, double h,
+                std::span<TouchedBody> bodies);
+
+    /// In the last substep.
+    [[nodiscard]] std::span<const RopeTwist> twists() const { return twists_; }
+    [[nodiscard]] double elastic_energy() const { return elastic_energy_; }
+
+private:
+    // A clamp that has what holds it.
+    struct Held {
+        Clamp clamp;
+        std::uint32_t body = no_body, slot = no_body;  // no_body: the world
+        Vec3 axis, side;                               // unit, at the substep's end on the body's path
+    };
+    // Between a clamp and half of a segment at it.
+    struct HalfBend {
+        std::size_t held = 0, segment = 0;
+        double stiffness = 0;  // N m
+        Vec3 start;            // turn of the direction when the substep began
+        Mat3 damping = Mat3::zero();
+    };
+    struct Span {
+        std::size_t from = 0, to = 0;       // indices of held_
+        double stiffness = 0, damping = 0;  // GJ / L, N m/rad; the same of the change in the substep
+        double straight = 0;                // what the angle is read as without twist, rad
+        double angle = 0, moment = 0;       // when the substep began; as foretold, N m
+    };
+    // What is kept of a span from substep to substep.
+    struct Memory {
+        std::uint32_t from = 0, to = 0;            // nodes
+        std::uint32_t from_slot = 0, to_slot = 0;  // of the bodies
+        double straight = 0, angle = 0;
+    };
+    struct Frame {
+        Vec3 axis, side;
+    };
+    // Directions along a span, those of its clamps first and last, and the curvature between each and the next.
+    struct Bow {
+        std::vector<SegmentDirection> directions;
+        std::vector<Vec3> curvature;
+    };
+    [[nodiscard]] Frame frame_of(const Held& held, std::span<const BodyMove> body_moves) const;
+    [[nodiscard]] double read_angle(std::size_t from_node, std::size_t to_node, const Frame& from, const Frame& to,
+                                    std::span<const Vec3> places) const;
+    [[nodiscard]] double angle_of(const Span& span, std::span<const Vec3> places,
+                                  std::span<const BodyMove> body_moves) const;
+    [[nodiscard]] Vec3 turn_of(const HalfBend& bend, std::span<const Vec3> places,
+                               std::span<const BodyMove> body_moves) const;
+    [[nodiscard]] Bow bow_of(const Span& span, std::span<const Vec3> places,
+                             std::span<const BodyMove> body_moves) const;
+    [[nodiscard]] TwistMode mode_of(const Span& span, const Bow& bow) const;
+    void find_held(const Start& start, std::vector<Frame>& at_start);
+    void find_bends(const Start& start, std::span<const Frame> at_start);
+    void find_spans(const Start& start, std::span<const Frame> at_start);
+    void add_curvature(const HalfBend& bend, std::span<const Vec3> places, std::span<const Vec3> moves,
+                       std::span<const BodyMove> body_moves, RopeSystem& system) const;
+    void add_curvature(const Span& span, const Bow& bow, std::span<const Vec3> moves, RopeSystem& system) const;
+
+    std::vector<Clamp> clamps_;  // by node
+    std::vector<Memory> memory_;
+    std::vector<RopeTwist> twists_;
+    double elastic_energy_ = 0;
+
+    // Of the substep.
+    std::vector<double> lengths_;  // of segments at rest, m
+    std::vector<Held> held_;
+    std::vector<HalfBend> bends_;
+    std::vector<Span> spans_;
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: MIT
+//
+// Bending by the turn of the direction from segment to segment, ½ EI/l |t₁ - t₀|² with l the mean length of the two:
+// 2 sin(φ/2) instead of the 2 tan(φ/2) of M. Bergou, M. Wardetzky, S. Robinson, B. Audoly and E. Grinspun, "Discrete
+// elastic rods" (2008), eq. 1: the same for small turns, and finite where a rope is folded back on itself. Its second
+// derivative is taken as that of the turn squared, which is never negative.
+#include "physics/deformable/rope/rope_line.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/deformable/contact/free_motion.h"
+
+namespace embody::physics {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+}  // namespace
+
+RopeLine::RopeLine(const DeformableDefinition& definition) : rope_(std::get<Rope>(definition.matter)) {
+    const std::size_t count = definition.nodes.size();
+    nodes_.mass.assign(count, 0);
+    Vec3 center;
+    double mass = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        nodes_.position.push_back(transform_point(definition.pose, definition.nodes[i]));
+        if (i + 1 == count) break;
+        segments_.push_back({(1 + rope_.slack) * length(definition.nodes[i + 1] - definition.nodes[i])});
+        nodes_.mass[i] += rope_.linear_density * segments_[i].length / 2;
+        nodes_.mass[i + 1] += rope_.linear_density * segments_[i].length / 2;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        center += nodes_.mass[i] * nodes_.position[i];
+        mass += nodes_.mass[i];
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        nodes_.inverse_mass.push_back(1 / nodes_.mass[i]);
+        nodes_.mean_velocity.push_back(definition.linear_velocity +
+                                       cross(definition.angular_velocity, nodes_.position[i] - center / mass));
+    }
+    fixed_.assign(count, false);
+    for (const std::uint32_t node : definition.pinned) {
+        nodes_.inverse_mass[node] = 0;
+        nodes_.mean_velocity[node] = {};
+        fixed_[node] = true;
+    }
+    nodes_.velocity = nodes_.mean_velocity;
+    tensions_.assign(segments_.size(), 0);
+    springs_.radius = definition.contact_radius;
+    springs_.friction = definition.friction;
+    springs_.attachments = definition.attachments;
+    clamps_.set(definition.clamps);
+    springs_.tolerance = 0.005;  // along a drum the errors add up in the exponent
+}
+
+RopeLine::Bend RopeLine::bend_at(std::size_t node, std::span<const Vec3> positions) const {
+    Bend bend;
+    if (segments_[node - 1].is_broken || segments_[node].is_broken || clamps_.holds(node)) return bend;
+    const Vec3 e0 = positions[node] - positions[node - 1], e1 = positions[node + 1] - positions[node];
+    const SegmentDirection before = direction_of(e0, segments_[node - 1].length);
+    const SegmentDirection after = direction_of(e1, segments_[node].length);
+    bend.is_whole = true;
+    bend.stiffness = rope_.bend_rigidity / ((segments_[node - 1].length + segments_[node].length) / 2);
+    bend.turn = after.way - before.way;
+    bend.by_node = {before.by_end, -1.0 * (before.by_end + after.by_end), after.by_end};
+    return bend;
+}
+
+// EA times the strain; pressed harder than Euler's load π² EI / l² of a piece that long, it gives way sideways between
+// its nodes, and pushes with that load.
+RopeLine::Tension RopeLine::tension_at(std::size_t segment, double now) const {
+    const double rest = segments_[segment].length, slope = rope_.axial_stiffness / rest, longer = now - rest;
+    const double buckling = pi * pi * rope_.bend_rigidity / (rest * rest);
+    if (slope * longer >= -buckling) return {slope * longer, slope, slope / 2 * longer * longer};
+    const double until = -buckling / slope;
+    return {-buckling, 0, slope / 2 * until * until - buckling * (longer - until)};
+}
+
+// With what resists the change of its length in the substep.
+RopeLine::Tension RopeLine::damped_tension_at(std::size_t segment, double now, double h) const {
+    Tension tension = tension_at(segment, now);
+    const double damping = rope_.rayleigh_damping / h * rope_.axial_stiffness / segments_[segment].length;
+    const double longer = now - start_lengths_[segment];
+    tension.force += damping * longer;
+    tension.slope += damping;
+    tension.energy += damping / 2 * longer * longer;
+    return tension;
+}
+
+void RopeLine::add_stretch(std::size_t segment, double h) {
+    if (segments_[segment].is_broken) return;
+    const std::size_t a = segment, b = segment + 1;
+    const Vec3 edge = places_[b] - places_[a];
+    const double now = length(edge);
+    const Tension tension = damped_tension_at(segment, now, h);
+    const Vec3 way = normalized(edge, {1, 0, 0});
+    // (EA/l₀) t tᵀ + (T/l)(1 - t tᵀ); a pressed segment buckles, which is left to the forces. T is what the last round
+    // foretold, not what its nodes' places say: those it has moved by d across, which lengthens the segment by d²/2l.
+    const double across = std::max(pulls_[segment], 0.0) / std::max(now, 1e-12);
+    const Mat3 stiffness = (tension.slope - across) * outer(way, way) + across * Mat3::identity();
+    system_.band.add(a, a, stiffness);
+    system_.band.add(b, b, stiffness);
+    system_.band.add(b, a, -1.0 * stiffness);
+    const Vec3 force = tension.force * way + stiffness * (moves_[a] - moves_[b]);
+    system_.rhs[a] += force;
+    system_.rhs[b] -= force;
+}
+
+void RopeLine::add_curvature(std::size_t node) {
+    const Bend bend = bend_at(node, places_);
+    if (!bend.is_whole) return;
+    const Bend& start = bends_[node];
+    Vec3 moved;
+    for (std::size_t k = 0; k < 3; ++k) moved += bend.by_node[k] * moves_[node - 1 + k];
+    for (std::size_t r = 0; r < 3; ++r) {
+        const Mat3 turned = transpose(bend.by_node[r]), damped = transpose(start.by_node[r]) * start.damping;
+        system_.rhs[node - 1 + r] += bend.stiffness * (turned * (moved - bend.turn));
+        for (std::size_t c = 0; c <= r; ++c) {
+            system_.band.add(node - 1 + r, node - 1 + c,
+                             bend.stiffness * (turned * bend.by_node[c]) + damped * start.by_node[c]);
+        }
+    }
+}
+
+void RopeLine::begin_substep(double h) {
+    const std::size_t count = nodes_.size();
+    moves_.resize(count);
+    for (std::size_t i = 0; i < count; ++i) moves_[i] = h * nodes_.mean_velocity[i];
+    start_lengths_.resize(segments_.size());
+    for (std::size_t s = 0; s < segments_.size(); ++s)
+        start_lengths_[s] = length(nodes_.position[s + 1] - nodes_.position[s]);
+    bends_.assign(count, {});
+    for (std::size_t i = 1; i + 1 < count; ++i) {
+        Bend& bend = bends_[i] = bend_at(i, nodes_.position);
+        bend.damping = damping_of_growth(bend.turn, bend.stiffness * rope_.rayleigh_damping / h);
+    }
+    pulls_ = tensions_;
+}
+
+double RopeLine::energy(const Substep& substep, std::span<const Vec3> moves) const {
+    const double h = substep.h;
+    std::vector<Vec3> at(moves.size());
+    double sum = 0;
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+        at[i] = nodes_.position[i] + moves[i];
+        if (fixed_[i]) continue;
+        const Vec3 away = moves[i] - h * nodes_.mean_velocity[i] - h * h * substep.gravity;
+        sum += nodes_.mass[i] / (2 * h * h) * length_squared(away);
+    }
+    for (std::size_t s = 0; s < segments_.size(); ++s) {
+        if (segments_[s].is_broken) continue;
+        sum += damped_tension_at(s, length(at[s + 1] - at[s]), h).energy;
+    }
+    for (std::size_t i = 1; i + 1 < moves.size(); ++i) {
+        const Bend& known = bends_[i];
+        if (!known.is_whole) continue;
+        Vec3 rate;
+        for (std::size_t k = 0; k < 3; ++k) rate += known.by_node[k] * moves[i - 1 + k];
+        sum += known.stiffness / 2 * length_squared(bend_at(i, at).turn) + 0.5 * dot(rate, known.damping * rate);
+    }
+    return sum;
+}
+
+double RopeLine::merit_pressed(const Substep& substep, std::span<const BodyInertia> inertias) const {
+    return merit(substep, inertias, moves_, body_moves_, energy_pressed);
+}
+
+double RopeLine::merit(const Substep& substep, std::span<const BodyInertia> inertias, std::span<const Vec3> moves,
+                       std::span<const BodyMove> body_moves, SpringEnergy spring_energy) const {
+    double sum = energy(substep, moves);
+    for (std::size_t b = 0; b < inertias.size(); ++b) sum += energy_of(inertias[b], body_moves[b]);
+    for (const TouchSpring& spring : springs_.springs()) sum += spring_energy(spring, moves, body_moves);
+    for (const TouchSpring& spring : held_) sum += energy_of(spring, moves, body_moves);
+    if (!clamps_.holds_any()) return sum;
+    std::vector<Vec3> at(moves.size());
+    for (std::size_t i = 0; i < moves.size(); ++i) at[i] = nodes_.position[i] + moves[i];
+    return sum + clamps_.energy(at, body_moves);
+}
+
+void RopeLine::foretell(const Substep& substep, std::span<const Vec3> from, std::span<const Vec3> to) {
+    for (std::size_t s = 0; s < segments_.size(); ++s) {
+        const Vec3 edge = places_[s + 1] - places_[s], moved = to[s + 1] - from[s + 1] - to[s] + from[s];
+        pulls_[s] = damped_tension_at(s, length(edge) + dot(normalized(edge, {1, 0, 0}), moved), substep.h).force;
+    }
+}
+
+// Goes from the moves towards those that the round found, as far as it pays.
+bool RopeLine::take_step(const Substep& substep, std::span<const BodyInertia> inertias) {
+    const std::vector<Vec3> from = moves_, full = next_moves_;
+    const std::vector<BodyMove> body_from = body_moves_, body_full = next_body_moves_;
+    const double before = merit(substep, inertias, from, body_from);
+    for (double share = 1; share > 1e-3; share /= 2) {
+        for (std::size_t i = 0; i < from.size(); ++i) moves_[i] = from[i] + share * (full[i] - from[i]);
+        for (std::size_t b = 0; b < body_from.size(); ++b) {
+            body_moves_[b].shift = body_from[b].shift + share * (body_full[b].shift - body_from[b].shift);
+            body_moves_[b].turn = body_from[b].turn + share * (body_full[b].turn - body_from[b].turn);
+        }
+        const double after = merit(substep, inertias, moves_, body_moves_);
+        if (!std::isfinite(after)) continue;
+        if (after <= before + 1e-9 * std::fabs(before)) {
+            foretell(substep, from, moves_);
+            return true;
+        }
+    }
+    return std::isfinite(before);
+}
+
+void RopeLine::assemble(const Substep& substep, bool with_curvature) {
+    const double h = substep.h;
+    const std::size_t count = nodes_.size();
+    system_.reset(count);
+    places_.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        places_[i] = nodes_.position[i] + moves_[i];
+        system_.band.add_diagonal(i, nodes_.mass[i] / (h * h));
+        system_.rhs[i] = nodes_.mass[i] * (nodes_.mean_velocity[i] / h + substep.gravity);
+    }
+    for (std::size_t s = 0; s < segments_.size(); ++s) add_stretch(s, h);
+    for (std::size_t i = 1; i + 1 < count; ++i) add_curvature(i);
+    if (clamps_.holds_any()) clamps_.add(places_, moves_, body_moves_, with_curvature, system_);
+}
+
+// One linear solve with springs, touched bodies and twists. Past the moments that the bent rope bears, without how they
+// press it sideways: that is left to the forces.
+bool RopeLine::solve_round(const Substep& substep, std::span<const BodyInertia> inertias) {
+    next_body_moves_ = body_moves_;
+    std::vector<TouchSpring> all;
+    if (!held_.empty()) {
+        all.assign(springs_.springs().begin(), springs_.springs().end());
+        all.insert(all.end(), held_.begin(), held_.end());
+    }
+    const auto solve = [&] {
+        return system_.solve(all.empty() ? springs_.springs() : all, inertias, fixed_, next_moves_, next_body_moves_,
+                             moments_);
+    };
+    if (!solve()) {
+        if (!clamps_.has_twist()) return false;
+        assemble(substep, false);
+        if (!solve()) return false;
+    }
+    clamps_.foretell(moments_);
+    return true;
+}
+
+bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> bodies) {
+    constexpr int most_rounds = 12;
+    constexpr double small = 1e-4;  // of a segment's length
+    const std::vector<BodyInertia> inertias = inertias_of(bodies, substep.h);
+    TouchSprings chosen = springs_;
+    chosen.choose(moves_, body_moves_, true);
+    // From rest or from inertia, whichever is nearer to the end: what begins no higher than rest gains no energy.
+    const std::vector<Vec3> rest(moves_.size());
+    if (merit(substep, inertias, rest, body_moves_) < merit(substep, inertias, moves_, body_moves_)) {
+        moves_ = rest;
+        assemble(substep);
+    }
+    // Of rounds that do not come to an end, those moves that leave the least.
+    std::vector<Vec3> best_moves = moves_;
+    std::vector<BodyMove> best_body_moves = body_moves_;
+    double least = merit_pressed(substep, inertias);
+    for (rounds_ = 1;; ++rounds_) {
+        springs_ = chosen;
+        if (rounds_ > 1) assemble(substep);
+        if (!solve_round(substep, inertias)) return false;
+        const std::vector<Vec3> before = moves_;
+        if (!take_step(substep, inertias)) return false;
+        double change = 0;
+        for (std::size_t i = 0; i < moves_.size(); ++i) {
+            if (!is_finite(moves_[i])) return false;
+            change = std::max(change, length(moves_[i] - before[i]));
+        }
+        const bool has_changed = chosen.choose(moves_, body_moves_, false);
+        if (!has_changed && change < small * segments_[0].length) return true;
+        if (const double left = merit_pressed(substep, inertias); left < least) {
+            least = left;
+            best_moves = moves_;
+            best_body_moves = body_moves_;
+        } else if (rounds_ == most_rounds) {
+            moves_ = best_moves;
+            body_moves_ = best_body_moves;
+            springs_.choose(moves_, body_moves_, false);
+        }
+        if (rounds_ == most_rounds) return true;
+    }
+}
+
+// At most one breaks a substep: what is left of the others' load goes with it.
+void RopeLine::break_segments() {
+    std::uint32_t tightest = 0;
+    for (std::uint32_t s = 0; s < segments_.size(); ++s) {
+        const double now = length(nodes_.position[s + 1] - nodes_.position[s]);
+        tensions_[s] = segments_[s].is_broken ? 0 : tension_at(s, now).force;
+        if (tensions_[s] > tensions_[tightest]) tightest = s;
+    }
+    if (tensions_[tightest] <= rope_.break_tension) return;
+    new_breaks_.push_back({tightest, tensions_[tightest]});
+    segments_[tightest].is_broken = true;
+    tensions_[tightest] = 0;
+}
+
+void RopeLine::go_on_from(const RopeLine& other) {
+    for (std::size_t s = 0; s < segments_.size(); ++s) segments_[s].is_broken = other.is_broken(s);
+    const std::vector<Clamp> own = clamps_.clamps();
+    clamps_ = other.clamps_;
+    clamps_.set(own);
+    springs_.go_on_from(other.springs_);
+}
+
+void RopeLine::begin(const Substep& substep, std::span<const NodeContact> contacts,
+                     std::span<const SegmentContact> segment_contacts, std::span<const std::uint32_t> attachment_bodies,
+                     std::span<const TouchedBody> bodies) {
+    const std::size_t count = nodes_.size();
+    springs_.attachment_bodies.assign(attachment_bodies.begin(), attachment_bodies.end());
+    clamps_.begin({rope_, segments_, nodes_, fixed_, springs_, bodies, substep});
+    begin_substep(substep.h);
+    body_moves_.assign(bodies.size(), {});
+    assemble(substep);
+    node_stiffness_.resize(count);
+    for (std::size_t i = 0; i < count; ++i) node_stiffness_[i] = system_.band.diagonal_mean(i);
+    springs_.begin(nodes_, contacts, bodies, substep, node_stiffness_);
+    for (const SegmentContact& contact : segment_contacts)
+        springs_.add(nodes_, contact, bodies, substep, node_stiffness_);
+}
+
+LineSystem RopeLine::linearize(const Substep& substep, std::span<const Vec3> moves) {
+    moves_.assign(moves.begin(), moves.end());
+    assemble(substep, false);  // without what may not be positive
+    // Twists by the moments that the rope had on its own last.
+    for (std::size_t k = 0; k < system_.twists.size() && moments_.size() == system_.twists.size(); ++k) {
+        for (std::size_t i = 0; i < system_.rhs.size(); ++i)
+            system_.rhs[i] -= moments_[k] * system_.twists[k].by_node[i];
+    }
+    const double least = std::max(length(substep.gravity), 1.0);  // m/s²: an acceleration that matters anywhere
+    small_load_.resize(nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) small_load_[i] = {0, nodes_.mass[i] * least, 0};
+    return {&system_.band, system_.rhs, small_load_, &fixed_};
+}
+
+void RopeLine::freeze() {
+    is_frozen_ = true;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.mean_velocity[i] = nodes_.velocity[i] = {};
+}
+
+void RopeLine::advance(const Substep& substep, std::span<const NodeContact> contacts,
+                       std::span<const SegmentContact> segment_contacts,
+                       std::span<const std::uint32_t> attachment_bodies, std::span<TouchedBody> bodies,
+                       std::span<const TouchSpring> held) {
+    new_breaks_.clear();
+    if (is_frozen_) return;
+    held_.assign(held.begin(), held.end());
+    begin(substep, contacts, segment_contacts, attachment_bodies, bodies);
+    if (!solve_moves(substep, bodies)) return freeze();
+    std::vector<double> shares;
+    if (!clamps_.holds_any())
+        shares = shares_of(springs_.springs(), moves_, body_moves_, inertias_of(bodies, substep.h), substep.h);
+    end(substep, moves_, body_moves_, {}, bodies, shares);
+}
+
+void RopeLine::end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
+                   std::span<const Vec3> given, std::span<TouchedBody> bodies, std::span<const double> shares) {
+    new_breaks_.clear();
+    if (is_frozen_) return;
+    const std::size_t count = nodes_.size();
+    if (moves.data() != moves_.data()) moves_.assign(moves.begin(), moves.end());
+    const auto acts = [](const TouchSpring& spring) { return spring.acts; };
+    const bool is_whole = std::ranges::none_of(segments_, &RopeSegment::is_broken);
+    const bool is_free = std::ranges::find(fixed_, true) == fixed_.end() && held_.empty() &&
+                         std::ranges::none_of(springs_.springs(), acts);
+    if (is_whole && is_free) {
+        std::vector<Vec3> all(count);
+        for (std::size_t i = 0; i < count; ++i) all[i] = substep.h * nodes_.mass[i] * substep.gravity;
+        for (std::size_t i = 0; i < given.size(); ++i) all[i] += substep.h * given[i];
+        keep_momenta(nodes_, all, substep.h, moves_);
+    }
+    held_.clear();
+    springs_.finish(moves_, body_moves, substep, bodies, shares);
+    if (clamps_.holds_any()) {
+        for (std::size_t i = 0; i < count; ++i) places_[i] = nodes_.position[i] + moves_[i];
+        clamps_.finish(places_, body_moves, substep.h, bodies);
+    }
+    set_velocities(nodes_, moves_, substep.h);
+    for (std::size_t i = 0; i < count; ++i) nodes_.position[i] += moves_[i];
+    break_segments();
+}
+
+double RopeLine::elastic_energy() const {
+    double energy = 0;
+    for (std::size_t s = 0; s < segments_.size(); ++s) {
+        if (segments_[s].is_broken) continue;
+        energy += tension_at(s, length(nodes_.position[s + 1] - nodes_.position[s])).energy;
+    }
+    for (std::size_t i = 1; i + 1 < nodes_.size(); ++i) {
+        const Bend bend = bend_at(i, nodes_.position);
+        energy += bend.stiffness / 2 * length_squared(bend.turn);
+    }
+    return energy + clamps_.elastic_energy();
+}
+
+}  // namespace embody::physics

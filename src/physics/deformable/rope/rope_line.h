@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+
+#include "physics/deformable/cloth/cloth_solver.h"
+#include "physics/deformable/contact/nodes.h"
+#include "physics/deformable/rope/rope_clamps.h"
+#include "physics/deformable/rope/rope_system.h"
+
+namespace embody::physics {
+
+/// A rope in motion: stretch and bending of a line of nodes by backward Euler, with Newton's method and a direct solve,
+/// so that it is exact for any stiffness (docs/physics/ropes.md).
+class RopeLine {
+public:
+    /// `definition` is valid and its matter is a rope.
+    explicit RopeLine(const DeformableDefinition& definition);
+
+    /// One substep. `attachment_bodies`: where the attachments hold in `bodies`; `held`: what else holds its nodes, by
+    /// springs that act and are to no body. Pushes the bodies.
+    void advance(const Substep& substep, std::span<const NodeContact> contacts,
+                 std::span<const SegmentContact> segment_contacts, std::span<const std::uint32_t> attachment_bodies,
+                 std::span<TouchedBody> bodies, std::span<const TouchSpring> held = {});
+
+    // For a solve together with other sheets and ropes that it touches (docs/physics/cloth.md):
+    /// Finds touch() and node_stiffness() for the substep.
+    void begin(const Substep& substep, std::span<const NodeContact> contacts,
+               std::span<const SegmentContact> segment_contacts, std::span<const std::uint32_t> attachment_bodies,
+               std::span<const TouchedBody> bodies);
+    /// The equations about these moves, without springs; valid until the next call. Their answer are moves again.
+    LineSystem linearize(const Substep& substep, std::span<const Vec3> moves);
+    /// What the solve minimises of the rope alone, without springs and clamps, J.
+    [[nodiscard]] double energy(const Substep& substep, std::span<const Vec3> moves) const;
+    /// What its segments pull with where the solve about the moves `from` goes to `to`: for the next linearize().
+    void foretell(const Substep& substep, std::span<const Vec3> from, std::span<const Vec3> to);
+    /// Goes by these moves, which touch() was solved with. `given`: forces on the nodes besides, N; none or one a node.
+    /// Pushes the bodies; `shares` as of TouchSprings::finish().
+    void end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
+             std::span<const Vec3> given, std::span<TouchedBody> bodies, std::span<const double> shares);
+    [[nodiscard]] TouchSprings& touch() { return springs_; }
+    [[nodiscard]] bool has_clamps() const { return clamps_.holds_any(); }
+    /// Of the first at rest, m.
+    [[nodiscard]] double segment_length() const { return segments_[0].length; }
+    /// How each node resists on its own, N/m, since begin().
+    [[nodiscard]] std::span<const double> node_stiffness() const { return node_stiffness_; }
+    /// Stops it for good where it is.
+    void freeze();
+
+    /// Instead of the definition's.
+    void set_attachments(const std::vector<Attachment>& attachments) { springs_.attachments = attachments; }
+    void set_clamps(const std::vector<Clamp>& clamps) { clamps_.set(clamps); }
+    [[nodiscard]] Nodes& nodes() { return nodes_; }
+    [[nodiscard]] const Nodes& nodes() const { return nodes_; }
+    /// Of each segment, from node k to k + 1, N; below zero: pressed. 0 where it is broken.
+    [[nodiscard]] std::span<const double> tensions() const { return tensions_; }
+    [[nodiscard]] bool is_broken(std::size_t segment) const { return segments_[segment].is_broken; }
+    /// What broke in the last substep.
+    struct Break {
+        std::uint32_t segment = 0;
+        double tension = 0;  ///< when it broke, N
+    };
+    [[nodiscard]] std::span<const Break> new_breaks() const { return new_breaks_; }
+    /// Between clamps that hold, in the last substep.
+    [[nodiscard]] std::span<const RopeTwist> twists() const { return clamps_.twists(); }
+    /// The same segments as of another rope of as many are broken, and it is twisted and touched as that one.
+    void go_on_from(const RopeLine& other);
+    [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_.springs(); }
+    [[nodiscard]] double elastic_energy() const;
+    /// True once a number was none: it stays where it last was.
+    [[nodiscard]] bool is_frozen() const { return is_frozen_; }
+    /// Rounds of Newton's method in the last substep.
+    [[nodiscard]] int rounds() const { return rounds_; }
+
+private:
+    // How the direction turns at a node, with its derivatives by the three nodes.
+    struct Bend {
+        bool is_whole = false;
+        double stiffness = 0;  // EI / l, N m
+        Vec3 turn;
+        std::array<Mat3, 3> by_node;
+        Mat3 damping = Mat3::zero();  // over the substep, of the turn's change, N m
+    };
+    struct Tension {
+        double force = 0, slope = 0;  // N, N/m
+        double energy = 0;            // J
+    };
+    // The matrix and right side about `moves_`; forces of springs not yet.
+    void assemble(const Substep& substep, bool with_curvature = true);
+    void add_stretch(std::size_t segment, double h);
+    void add_curvature(std::size_t node);
+    bool solve_round(const Substep& substep, std::span<const BodyInertia> inertias);
+    // What the round's step minimises: inertia, elastic energy, damping and springs of these moves, J.
+    using SpringEnergy = double (*)(const TouchSpring&, std::span<const Vec3>, std::span<const BodyMove>);
+    [[nodiscard]] double merit(const Substep& substep, std::span<const BodyInertia> inertias,
+                               std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
+                               SpringEnergy spring_energy = energy_of) const;
+    [[nodiscard]] double merit_pressed(const Substep& substep, std::span<const BodyInertia> inertias) const;
+    bool take_step(const Substep& substep, std::span<const BodyInertia> inertias);
+    bool solve_moves(const Substep& substep, std::span<const TouchedBody> bodies);
+    void break_segments();
+    [[nodiscard]] Tension tension_at(std::size_t segment, double length) const;
+    [[nodiscard]] Tension damped_tension_at(std::size_t segment, double length, double h) const;
+    void begin_substep(double h);
+    [[nodiscard]] Bend bend_at(std::size_t node, std::span<const Vec3> positions) const;
+
+    Rope rope_;
+    Nodes nodes_;
+    std::vector<RopeSegment> segments_;
+    std::vector<bool> fixed_;
+    TouchSprings springs_;
+    RopeClamps clamps_;
+    std::vector<double> tensions_;
+    std::vector<Break> new_breaks_;
+
+    // Of the substep.
+    RopeSystem system_;
+    std::vector<Vec3> places_, moves_, next_moves_;
+    std::vector<TouchSpring> held_;
+    std::vector<Vec3> small_load_;       // N
+    std::vector<Bend> bends_;            // by node, when the substep began
+    std::vector<double> start_lengths_;  // of segments, then, m
+    std::vector<double> pulls_;          // of segments, as the last round foretold them, N
+    std::vector<double> node_stiffness_;
+    std::vector<BodyMove> body_moves_, next_body_moves_;
+    std::vector<double> moments_;  // of twists, as the last round foretold them, N m
+    bool is_frozen_ = false;
+    int rounds_ = 0;
+};
+
+}  // namespace embody::physics

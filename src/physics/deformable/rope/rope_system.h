@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "physics/deformable/contact/touch_springs.h"
+#include "physics/linear/band_cholesky.h"
+
+namespace embody::physics {
+
+/// A twist as a stiffness of rank one: its moment y (N m) pushes the unknowns with -y times the derivatives of the
+/// angle by them, and y = stiffness (offset + what the angle grows by with the unknowns).
+struct TwistMode {
+    double compliance = 1;      ///< 1 / stiffness, rad/(N m)
+    double offset = 0;          ///< rad
+    std::vector<Vec3> by_node;  ///< one a node of the rope, rad/m
+    std::array<std::uint32_t, 2> body{no_body, no_body};
+    std::array<Vec3, 2> by_turn;  ///< of these bodies
+};
+
+/// What couples a rope with a body that holds its direction: second derivatives of the energy by a node's place and the
+/// body's turn.
+struct TurnCoupling {
+    std::uint32_t body = no_body, node = 0;
+    Mat3 by_node_and_turn;  ///< N
+};
+
+/// The same of the turn alone, with the torque at turn zero.
+struct TurnStiffness {
+    std::uint32_t body = no_body;
+    Mat3 stiffness;  ///< N m
+    Vec3 load;       ///< N m
+};
+
+/// The linear system of one round of Newton's method of a rope: its nodes in a band; touched bodies, six unknowns each,
+/// and twists, one each, as the border.
+class RopeSystem {
+public:
+    /// All zero.
+    void reset(std::size_t nodes);
+
+    BandCholesky band;
+    std::vector<Vec3> rhs;  ///< by node, N
+    std::vector<TurnCoupling> couplings;
+    std::vector<TurnStiffness> turns;  ///< bodies of these three are held by springs too
+    std::vector<TwistMode> twists;
+
+    /// Adds the springs, holds the fixed nodes, and solves. `moments`: of the twists. False where the matrix is not
+    /// positive definite.
+    bool solve(std::span<const TouchSpring> springs, std::span<const BodyInertia> inertias,
+               const std::vector<bool>& fixed, std::vector<Vec3>& moves, std::vector<BodyMove>& body_moves,
+               std::vector<double>& moments);
+
+private:
+    struct Unknowns {
+        std::vector<Vec3> nodes;
+        std::vector<double> bodies;  // six each, in the order of moving_
+    };
+    [[nodiscard]] bool moves(std::uint32_t body) const { return body != no_body && place_[body] != 0; }
+    [[nodiscard]] std::size_t first_of(std::uint32_t body) const { return 6 * (place_[body] - 1); }
+    void add_springs(std::span<const TouchSpring> springs, std::span<const BodyInertia> inertias);
+    void make_border(std::span<const TouchSpring> springs, std::span<const BodyInertia> inertias,
+                     const std::vector<bool>& fixed, std::vector<double>& load);
+    bool factorize_border();
+    void solve_bordered(Unknowns& values) const;
+    bool solve_twists(const std::vector<bool>& fixed, Unknowns& values, std::vector<double>& moments) const;
+
+    std::vector<std::size_t> place_;     // by body: 1 + its index in moving_; 0: none
+    std::vector<std::uint32_t> moving_;  // bodies that are unknowns
+    std::vector<std::vector<Vec3>> columns_, given_;
+    std::vector<double> border_;  // dense, by rows; its lower factor once factorised
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,462 @@
+// SPDX-License-Identifier: MIT
+#include "physics/deformable/solid/solid_contacts.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+
+namespace embody::physics {
+
+namespace {
+
+constexpr int most_rounds = 5, sweeps_a_round = 2, most_gradient_rounds = 8, most_leaning_sweeps = 10;
+constexpr double close_enough = 2e-6;   // m: no contact moves by more in the last sweep
+constexpr double small_share = 0.05;    // or by this of what the first sweeps did: forces are kept for the next substep
+constexpr double slid_share = 0.02;     // or by this of the farthest way that two slide or close in the substep
+constexpr double not_worth_it = 1e-7;   // m: a contact that would move by less is left as it is
+constexpr double recovery_speed = 0.5;  // m/s: what overlaps is parted no faster
+// Of a contact's own compliance along the normal: where contacts say the same of a place, all bear a part.
+constexpr double softness = 0.01;
+constexpr double farthest = 1e3;           // m: gaps beyond belong to solids whose numbers have broken
+constexpr double reach_beyond_radius = 1;  // contacts farther than this many radii stay out of the sweeps
+
+Vec3 position(const CarriedPoint& point, SolidContacts::Solids solids) {
+    Vec3 sum;
+    for (std::size_t k = 0; k < point.count; ++k)
+        sum += point.weight[k] * solids[point.solid]->nodes().position[point.node[k]];
+    return sum;
+}
+
+Vec3 start_position(const CarriedPoint& point, SolidContacts::Solids solids) {
+    Vec3 sum;
+    for (std::size_t k = 0; k < point.count; ++k) sum += point.weight[k] * solids[point.solid]->start(point.node[k]);
+    return sum;
+}
+
+// The nearest force that Coulomb's cone about the normal allows.
+Vec3 within_cone(Vec3 force, Vec3 normal, double friction) {
+    const double along = std::max(0.0, dot(force, normal)), most = friction * along;
+    const Vec3 across = force - dot(force, normal) * normal;
+    const double sideways = length(across);
+    return along * normal + (sideways > most ? (most / sideways) * across : across);
+}
+
+}  // namespace
+
+void SolidContacts::begin(std::span<const SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies,
+                          double h, double time) {
+    for (const SolidContact& contact : contacts) {
+        if (contact.force == Vec3{}) continue;
+        const auto push = [&](const CarriedPoint& point, double sign) {
+            for (std::size_t k = 0; k < point.count; ++k)
+                solids[point.solid]->push(point.node[k], sign * point.weight[k] * contact.force);
+        };
+        push(contact.point, 1);
+        push(contact.other, -1);
+        if (!contact.has_body()) continue;
+        TouchedBody& body = bodies[contact.body];
+        body.push(-h * contact.force, body.rotation_before(h, time) * contact.anchor, h);
+    }
+}
+
+void SolidContacts::solve(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h,
+                          double time, TaskPool& workers) {
+    gather(contacts, solids, bodies, h, time);
+    for (std::size_t s = 0; s < solids.size(); ++s) touched_[s].complete(*solids[s], workers);
+    for (Active& active : active_) find_give(active, h);
+    find_groups(solids.size(), bodies);
+    probe_forces_.assign(bodies.size(), {});
+    probe_torques_.assign(bodies.size(), {});
+    find_forces(h, workers);
+    for (std::size_t s = 0; s < solids.size(); ++s) {
+        const TouchedNodes& touched = touched_[s];
+        if (!touched.is_pushed()) continue;
+        for (std::size_t k = 0; k < touched.size(); ++k) solids[s]->push(touched.node(k), touched.force(k));
+        solids[s]->settle(workers);
+    }
+}
+
+// A group that is most of the work by all workers together, else each by one.
+void SolidContacts::find_forces(double h, TaskPool& workers) {
+    if (groups_.empty()) return;
+    std::size_t first_shared = 0;
+    if (2 * groups_[0].active.size() > active_.size()) find_forces(groups_[first_shared++], h, workers);
+    std::atomic<std::size_t> next = first_shared;
+    const auto work = [&](int) {
+        TaskPool alone(1);
+        for (std::size_t g = next++; g < groups_.size(); g = next++) find_forces(groups_[g], h, alone);
+    };
+    if (groups_.size() > first_shared + 1 && workers.workers() > 1)
+        workers.run(work);
+    else
+        work(0);
+}
+
+// Solids and bodies are joined by contacts; bodies that do not move join nothing. Larger groups first, so that workers
+// end at about the same time.
+void SolidContacts::find_groups(std::size_t solids, std::span<const TouchedBody> bodies) {
+    std::vector<std::uint32_t> joined(solids + bodies.size());
+    for (std::uint32_t i = 0; i < joined.size(); ++i) joined[i] = i;
+    const auto root_of = [&](std::uint32_t i) {
+        while (joined[i] != i) i = joined[i] = joined[joined[i]];
+        return i;
+    };
+    const auto join = [&](std::uint32_t a, std::uint32_t b) {
+        a = root_of(a);
+        b = root_of(b);
+        joined[std::max(a, b)] = std::min(a, b);
+    };
+    const auto first_body = static_cast<std::uint32_t>(solids);
+    for (const Active& active : active_) {
+        const SolidContact& contact = *active.contact;
+        if (!contact.has_body())
+            join(contact.point.solid, contact.other.solid);
+        else if (bodies[contact.body].is_dynamic)
+            join(contact.point.solid, first_body + contact.body);
+    }
+    std::vector<std::uint32_t> group_of(joined.size(), 0xFFFFFFFF);
+    groups_.clear();
+    for (Active& active : active_) {
+        std::uint32_t& group = group_of[root_of(active.contact->point.solid)];
+        if (group == 0xFFFFFFFF) {
+            group = static_cast<std::uint32_t>(groups_.size());
+            groups_.emplace_back();
+        }
+        groups_[group].active.push_back(&active);
+    }
+    for (std::uint32_t i = 0; i < joined.size(); ++i) {
+        const std::uint32_t group = group_of[root_of(i)];
+        if (group == 0xFFFFFFFF) continue;
+        if (i < first_body)
+            groups_[group].solids.push_back(i);
+        else
+            groups_[group].bodies.push_back(i - first_body);
+    }
+    std::ranges::stable_sort(groups_, std::greater{}, [](const Group& group) { return group.active.size(); });
+}
+
+// Sweeps find which contacts hold, stick and slide; conjugate gradients solve for the forces of these at once
+// (M. Silcowitz, S. Niebe, K. Erleben, "Projected Gauss-Seidel subspace minimization method", 2010), as long as that
+// helps. Where many contacts say nearly the same, sweeps that lean on the last ones go on (by the same, "A nonsmooth
+// nonlinear conjugate gradient method for interactive contact force problems", 2010).
+void SolidContacts::find_forces(const Group& group, double h, TaskPool& workers) {
+    const auto sweeps = [&] {
+        double moved = 0;
+        for (int k = 0; k < sweeps_a_round && (k == 0 || moved > close_enough); ++k)
+            moved = sweep(group, h, k % 2 == 0);
+        return moved;
+    };
+    double moved = sweeps(), best = moved;
+    double slid = 0;
+    for (const Active* active : group.active) slid = std::max(slid, length(active->slid));
+    const double enough = std::max({close_enough, small_share * moved, slid_share * slid});
+    const auto keep = [&] {
+        for (Active* active : group.active) active->best = active->contact->force;
+    };
+    keep();
+    for (int round = 0; round < most_rounds && moved > enough; ++round) {
+        solve_together(group, h, workers);
+        moved = sweeps();
+        if (!(moved < best)) continue;
+        best = moved;
+        keep();
+    }
+    if (moved > best) {
+        for (const Active* active : group.active) apply(*active, active->best - active->contact->force, h);
+        moved = best;
+    }
+    double last = 0;
+    for (int k = 0; k < most_leaning_sweeps && moved > enough; ++k) {
+        for (Active* active : group.active) active->before = active->contact->force;
+        moved = sweep(group, h, k % 2 == 0);
+        double size = 0;
+        for (const Active* active : group.active) size += length_squared(active->contact->force - active->before);
+        const double factor = k > 0 && size < last ? size / last : 0;
+        last = size;
+        if (k + 1 < most_leaning_sweeps && moved > enough) lean_on(group, factor, h);
+    }
+}
+
+// p ← β p + change of the sweep;  force ← force + β p
+void SolidContacts::lean_on(const Group& group, double factor, double h) {
+    for (Active* active : group.active) {
+        const Vec3 along = factor * active->direction;
+        active->direction = along + active->contact->force - active->before;
+        if (along != Vec3{}) apply(*active, along, h);
+    }
+}
+
+// Contacts that touch or nearly do after the free motion; others let go of their forces.
+void SolidContacts::gather(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h,
+                           double time) {
+    active_.clear();
+    touched_.resize(solids.size());
+    for (std::size_t s = 0; s < solids.size(); ++s) touched_[s].begin(*solids[s]);
+    for (SolidContact& contact : contacts) {
+        Active active;
+        active.contact = &contact;
+        const Vec3 at = position(contact.point, solids), was = start_position(contact.point, solids);
+        if (contact.has_body()) {
+            active.body = &bodies[contact.body];
+            place_against_body(active, at, was, h, time);
+        } else {
+            const Vec3 other = position(contact.other, solids);
+            active.normal = contact.normal;
+            active.gap = dot(at - other, contact.normal) - contact.radius;
+            active.slid = at - was - (other - start_position(contact.other, solids));
+        }
+        if (!(std::fabs(active.gap) < farthest && length(active.slid) < farthest)) {
+            contact.force = {};
+            continue;
+        }
+        if (!contact.holds && contact.force == Vec3{} && active.gap > reach_beyond_radius * contact.radius) continue;
+        const double gap_before = active.gap - dot(active.slid, active.normal);
+        active.target = std::min(0.0, gap_before + recovery_speed * h);
+        add_terms(active, contact.point, 1);
+        add_terms(active, contact.other, -1);
+        active_.push_back(active);
+    }
+}
+
+void SolidContacts::place_against_body(Active& active, Vec3 at, Vec3 was, double h, double time) const {
+    const SolidContact& contact = *active.contact;
+    const TouchedBody& body = *active.body;
+    const Mat3 rotation = body.rotation_at(time);
+    active.normal = rotation * contact.normal;
+    active.shift = body.shift;
+    active.turn = body.turn;
+    if (contact.holds) {
+        // By the arm that the substep began with, which no push changes. What it was off then comes back no faster than
+        // overlaps do.
+        active.arm = body.rotation_before(h, time) * contact.anchor;
+        const Vec3 before = was - body.center_before(h, time) - active.arm;
+        const double off = length(before), most = recovery_speed * h;
+        active.slid = at - was - body.way(h, time, active.arm) + (off > most ? (most / off) * before : before);
+        return;
+    }
+    const Vec3 center = body.center_at(time), anchor = rotation * contact.anchor;
+    active.gap = dot(at - center - anchor, active.normal) - contact.radius;
+    // The body's surface under the point, and how far it has gone in the substep.
+    active.arm = at - (contact.radius + active.gap) * active.normal - center;
+    active.slid = at - was - body.way(h, time, active.arm);
+}
+
+void SolidContacts::add_terms(Active& active, const CarriedPoint& point, double sign) {
+    for (std::size_t k = 0; k < point.count; ++k) {
+        active.terms[active.term_count++] = {point.solid, touched_[point.solid].number_of(point.node[k]),
+                                             sign * point.weight[k]};
+    }
+}
+
+void SolidContacts::find_give(Active& active, double h) const {
+    // Of the solids: Σ wₐ w_b W_ab
+    for (std::size_t a = 0; a < active.term_count; ++a) {
+        for (std::size_t b = 0; b < active.term_count; ++b) {
+            const Term &one = active.terms[a], &two = active.terms[b];
+            if (one.solid != two.solid) continue;
+            active.give += (one.weight * two.weight) * touched_[one.solid].block(one.number, two.number);
+        }
+    }
+    if (active.body == nullptr) return;
+    // Of the body: h² (1/m - [arm] I⁻¹ [arm])
+    const Mat3 arm = skew(active.arm);
+    const double inverse_mass = active.body->inverse_mass;
+    active.give += (h * h) * (Mat3::diagonal({inverse_mass, inverse_mass, inverse_mass}) -
+                              arm * active.body->inverse_inertia * arm);
+}
+
+// How far the two have moved from each other by forces of this solve.
+Vec3 SolidContacts::moved(const Active& active) const {
+    Vec3 sum;
+    if (active.body != nullptr)
+        sum = -(active.body->shift - active.shift) - cross(active.body->turn - active.turn, active.arm);
+    for (std::size_t k = 0; k < active.term_count; ++k) {
+        const Term& term = active.terms[k];
+        sum += term.weight * touched_[term.solid].moved(term.number);
+    }
+    return sum;
+}
+
+void SolidContacts::apply(const Active& active, Vec3 force, double h) {
+    for (std::size_t k = 0; k < active.term_count; ++k) {
+        const Term& term = active.terms[k];
+        touched_[term.solid].push(term.number, term.weight * force);
+    }
+    if (active.body != nullptr) active.body->push(-h * force, active.arm, h);
+    active.contact->force += force;
+}
+
+double SolidContacts::sweep(const Group& group, double h, bool forwards) {
+    double moved = 0;
+    const std::size_t count = group.active.size();
+    for (std::size_t k = 0; k < count; ++k)
+        moved = std::max(moved, relax(*group.active[forwards ? k : count - 1 - k], h));
+    return moved;
+}
+
+// One contact to where it wants to be with the others as they are; returns how far it had to move.
+double SolidContacts::relax(Active& active, double h) {
+    const SolidContact& contact = *active.contact;
+    if (contact.holds) {
+        const Vec3 off = active.slid + moved(active) + soft_part(active, contact.force);
+        apply(active, (-1 / (1 + softness)) * embody::solve(active.give, off), h);
+        return length(off);
+    }
+
+    // Along the normal: force where there is no gap, none where there is one.
+    const Vec3 n = active.normal;
+    const double give = dot(n, active.give * n);
+    if (!(give > 0)) return 0;
+    const double before = dot(contact.force, n);
+    Vec3 relative = active.slid + moved(active) + soft_part(active, contact.force);
+    const double missing = active.target - active.gap + dot(n, active.slid - relative);
+    const double after = std::max(0.0, before + missing / ((1 + softness) * give));
+    const Vec3 along = (after - before) * n;
+    relative += active.give * along;
+
+    // Against sliding, within Coulomb's cone. The larger of the two tangential compliances is at most their sum.
+    const double tangential_give = trace(active.give) - give;
+    const Vec3 sliding = relative - dot(relative, n) * n;
+    const Vec3 wanted = within_cone(contact.force + along - sliding / tangential_give, n, contact.friction);
+    const Vec3 change = wanted - contact.force, across = change - dot(change, n) * n;
+    const double moved_by = std::max(std::fabs(after - before) * give, length(across) * tangential_give);
+    if (moved_by > not_worth_it) apply(active, along + across, h);
+    return moved_by;
+}
+
+// By how much a contact gives way to a force beyond what bodies and solids do, m.
+Vec3 SolidContacts::soft_part(const Active& active, Vec3 force) {
+    if (active.contact->holds) return softness * (active.give * force);
+    const Vec3 n = active.normal;
+    return (softness * dot(n, active.give * n) * dot(force, n)) * n;
+}
+
+// What is left of the way to where the contact wants to be, in the directions that its force may change in.
+Vec3 SolidContacts::missing(const Active& active) const {
+    const Vec3 n = active.normal, gone = moved(active) + soft_part(active, active.contact->force);
+    const Vec3 relative = active.slid + gone, along = (active.target - active.gap - dot(n, gone)) * n;
+    switch (active.state) {
+        case State::open:
+            return {};
+        case State::holds:
+            return -relative;
+        case State::sticks:
+            return along - (relative - dot(relative, n) * n);
+        case State::slides:
+            return along;
+    }
+    return {};
+}
+
+void SolidContacts::find_state(Active& active) {
+    const SolidContact& contact = *active.contact;
+    const double along = dot(contact.force, active.normal);
+    const double across = length(contact.force - along * active.normal);
+    active.state = contact.holds                                    ? State::holds
+                   : !(along > 0)                                   ? State::open
+                   : across < (1 - 1e-6) * contact.friction * along ? State::sticks
+                                                                    : State::slides;
+}
+
+// The part of a vector that the contact's state leaves free.
+Vec3 SolidContacts::free_part(const Active& active, Vec3 v) {
+    switch (active.state) {
+        case State::open:
+            return {};
+        case State::slides:
+            return dot(v, active.normal) * active.normal;
+        default:
+            return v;
+    }
+}
+
+void SolidContacts::probe(const Group& group, TaskPool& workers) {
+    constexpr std::size_t worth_sharing = 100;  // contacts
+    struct Part {
+        std::uint32_t solid = 0;
+        std::size_t part = 0;
+    };
+    std::vector<Part> parts;
+    for (const std::uint32_t solid : group.solids) {
+        touched_[solid].begin_probe();
+        for (std::size_t part = 0; part < touched_[solid].probe_parts(); ++part) parts.push_back({solid, part});
+    }
+    share_among(workers, parts.size(), group.active.size() >= worth_sharing, [&](int, Share share) {
+        for (std::size_t k = share.first; k < share.last; ++k) touched_[parts[k].solid].run_probe(parts[k].part);
+    });
+    for (const std::uint32_t solid : group.solids) touched_[solid].end_probe();
+}
+
+// Relative motion of each contact by its `direction` and those of all others, into `response`.
+void SolidContacts::respond(const Group& group, double h, TaskPool& workers) {
+    for (const std::uint32_t solid : group.solids) touched_[solid].clear_probe();
+    for (const std::uint32_t body : group.bodies) probe_forces_[body] = probe_torques_[body] = {};
+    for (Active* const one : group.active) {
+        const Active& active = *one;
+        for (std::size_t k = 0; k < active.term_count; ++k) {
+            const Term& term = active.terms[k];
+            touched_[term.solid].add_to_probe(term.number, term.weight * active.direction);
+        }
+        if (active.body == nullptr || !active.body->is_dynamic) continue;
+        probe_forces_[active.contact->body] -= active.direction;
+        probe_torques_[active.contact->body] -= cross(active.arm, active.direction);
+    }
+    probe(group, workers);
+    for (Active* const one : group.active) {
+        Active& active = *one;
+        Vec3 sum;
+        if (active.body != nullptr && active.body->is_dynamic) {
+            const Vec3 turn = active.body->inverse_inertia * probe_torques_[active.contact->body];
+            sum =
+                -(h * h) * (active.body->inverse_mass * probe_forces_[active.contact->body] + cross(turn, active.arm));
+        }
+        for (std::size_t k = 0; k < active.term_count; ++k) {
+            const Term& term = active.terms[k];
+            sum += term.weight * touched_[term.solid].probe_move(term.number);
+        }
+        active.response = sum + soft_part(active, active.direction);
+    }
+}
+
+// The forces of contacts that hold, stick and slide at once, as if they went on doing so; then as far as each may.
+void SolidContacts::solve_together(const Group& group, double h, TaskPool& workers) {
+    double size = 0;
+    for (Active* const one : group.active) {
+        Active& active = *one;
+        find_state(active);
+        active.residual = missing(active);
+        active.direction = free_part(active, embody::solve(active.give, active.residual));
+        active.change = {};
+        size += dot(active.residual, active.direction);
+    }
+    const double enough = 0.01 * size;
+    for (int round = 0; round < most_gradient_rounds && size > enough; ++round) {
+        respond(group, h, workers);
+        double curvature = 0;
+        for (const Active* active : group.active) curvature += dot(active->direction, active->response);
+        if (!(curvature > 0)) break;
+        double next = 0;
+        for (Active* const one : group.active) {
+            Active& active = *one;
+            active.change += (size / curvature) * active.direction;
+            active.residual -= free_part(active, (size / curvature) * active.response);
+            next += dot(active.residual, free_part(active, embody::solve(active.give, active.residual)));
+        }
+        for (Active* const one : group.active) {
+            Active& active = *one;
+            active.direction =
+                free_part(active, embody::solve(active.give, active.residual)) + (next / size) * active.direction;
+        }
+        size = next;
+    }
+    for (Active* const one : group.active) {
+        Active& active = *one;
+        if (active.state == State::open) continue;
+        const SolidContact& contact = *active.contact;
+        const Vec3 force = contact.force + active.change;
+        apply(active, (contact.holds ? force : within_cone(force, active.normal, contact.friction)) - contact.force, h);
+    }
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "physics/deformable/contact/touched_body.h"
+#include "physics/deformable/solid/solid_contact.h"
+#include "physics/deformable/solid/touched_nodes.h"
+
+namespace embody::physics {
+
+/// Hard contacts with Coulomb friction, and attachments, of all solids with bodies and each other in a substep: forces
+/// p (paper, eqs. (4) and (7)) with
+///
+///   gap = gap of the free motion + W p >= 0,  p >= 0,  gap p = 0,    |p_t| <= μ p_n against the sliding,
+///
+/// W what the solids' metrics say of the touched nodes, and the masses of the bodies (docs/physics/deformables.md).
+class SolidContacts {
+public:
+    using Solids = std::span<SolidDeformable* const>;
+
+    /// Lets the forces that are remembered act on solids and bodies; before the solids' solve().
+    static void begin(std::span<const SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h,
+                      double time);
+    /// Finds the forces for a substep of h seconds that ends `time` (s) after the step began, settles the solids.
+    void solve(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h, double time,
+               TaskPool& workers);
+
+private:
+    enum class State : std::uint8_t { open, sticks, slides, holds };
+    /// A touched node that takes part in a contact.
+    struct Term {
+        std::uint32_t solid = 0, number = 0;
+        double weight = 0;  ///< negative on the other side
+    };
+    /// A contact in this substep, in world axes.
+    struct Active {
+        SolidContact* contact = nullptr;
+        std::array<Term, 6> terms{};
+        std::size_t term_count = 0;
+        TouchedBody* body = nullptr;  ///< none: between solids
+        Vec3 normal, arm;             ///< arm: from the body's centre
+        double gap = 0, target = 0;   ///< of the free motion, and the least allowed, m
+        Vec3 slid;                    ///< relative motion in the substep, free, m
+        Vec3 shift, turn;             ///< of the body when `gap` was taken
+        Mat3 give = Mat3::zero();     ///< relative motion by a force on it, m/N
+        State state = State::open;
+        Vec3 before, best;        ///< force before a sweep, and of the best round, N
+        Vec3 change, direction;   ///< of the force, N: by conjugate gradients
+        Vec3 residual, response;  ///< m
+    };
+    /// Contacts that have to do with each other, and solids and bodies that no other group moves.
+    struct Group {
+        std::vector<Active*> active;
+        std::vector<std::uint32_t> solids, bodies;
+    };
+    void gather(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h, double time);
+    void place_against_body(Active& active, Vec3 at, Vec3 was, double h, double time) const;
+    void add_terms(Active& active, const CarriedPoint& point, double sign);
+    void find_give(Active& active, double h) const;
+    [[nodiscard]] Vec3 moved(const Active& active) const;
+    void apply(const Active& active, Vec3 force, double h);
+    double relax(Active& active, double h);
+    void find_groups(std::size_t solids, std::span<const TouchedBody> bodies);
+    void find_forces(double h, TaskPool& workers);
+    void find_forces(const Group& group, double h, TaskPool& workers);
+    void lean_on(const Group& group, double factor, double h);
+    double sweep(const Group& group, double h, bool forwards);
+    void solve_together(const Group& group, double h, TaskPool& workers);
+    void respond(const Group& group, double h, TaskPool& workers);
+    void probe(const Group& group, TaskPool& workers);
+    [[nodiscard]] static Vec3 soft_part(const Active& active, Vec3 force);
+    [[nodiscard]] Vec3 missing(const Active& active) const;
+    static void find_state(Active& active);
+    [[nodiscard]] static Vec3 free_part(const Active& active, Vec3 v);
+
+    std::vector<Active> active_;
+    std::vector<Group> groups_;
+    std::vector<TouchedNodes> touched_;               // by solid
+    std::vector<Vec3> probe_forces_, probe_torques_;  // by body, N and N m
+};
+
+}  // namespace embody::physics

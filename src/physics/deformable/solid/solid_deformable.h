@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+#include "math/bounds.h"
+#include "physics/definitions/step_report.h"
+#include "physics/deformable/contact/nodes.h"
+#include "physics/deformable/solid/enclosed_gas.h"
+#include "physics/deformable/solid/node_compliance.h"
+#include "physics/deformable/solid/solid_elements.h"
+#include "physics/linear/dissected_cholesky.h"
+
+namespace embody::physics {
+
+/// A soft solid in motion (docs/physics/deformables.md). A substep is begin_substep(), push() with the contact forces
+/// that are guessed, solve(), what contacts make of it with push() and the compliance of nodes, and finish().
+class SolidDeformable {
+public:
+    /// Of a valid definition whose matter is a SoftSolid.
+    explicit SolidDeformable(const DeformableDefinition& definition);
+
+    [[nodiscard]] const Nodes& nodes() const { return nodes_; }
+    /// Outer faces, counter-clockwise from outside; and their nodes, ascending: what collides.
+    [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& surface() const { return surface_; }
+    [[nodiscard]] const std::vector<std::uint32_t>& surface_nodes() const { return surface_nodes_; }
+    /// Mean side of the surface's triangles at rest, m.
+    [[nodiscard]] double mean_side() const { return mean_side_; }
+    [[nodiscard]] Bounds bounds() const;
+
+    /// Begins a substep of h seconds: nodes go on with their velocities. `gravity` in m/s², the body's factor counted.
+    void begin_substep(double h, Vec3 gravity);
+    /// Lets a force (N) act on a node for this substep; counts in the next solve() or settle().
+    void push(std::uint32_t node, Vec3 force);
+    /// Moves the nodes to where elastic, damping and inertial forces balance what acts on them: one round of a
+    /// quasi-Newton method.
+    void solve(TaskPool& workers);
+    /// Moves the nodes by what the pushes since solve() do, as the compliance says.
+    void settle(TaskPool& workers);
+    /// How the nodes would have moved by these forces (N) in this substep, had nothing else held them, m.
+    void find_response(std::span<const Vec3> force, std::span<Vec3> move, TaskPool& workers);
+    /// Whether the moves so far make energy, as one round does where nodes go a large part of the solid in a substep:
+    /// solve() again makes it less.
+    [[nodiscard]] bool gains_energy();
+    /// Velocities of what the substep has come to.
+    void finish();
+    /// After finish(): moves the nodes by what these forces (N) besides do in the substep.
+    void go_on_with(std::span<const Vec3> force, TaskPool& workers);
+
+    /// Where a node was when the substep began, m.
+    [[nodiscard]] Vec3 start(std::uint32_t node) const { return start_[node]; }
+    /// How touched nodes move by forces on each other in this substep, times stretch(): node i turns its move by its
+    /// turn(), j the force against its own.
+    [[nodiscard]] NodeCompliance& compliance() { return compliance_; }
+    void complete_compliance(TaskPool& workers) { compliance_.complete(factor_, is_pinned_, workers); }
+    /// The metric of this substep is so many times that of the factor.
+    [[nodiscard]] double stretch() const { return stretch_; }
+    /// Of the gas within: forces f move the nodes by gas_share() g (g·f) less, g this, m/Pa, world axes; empty: no gas.
+    [[nodiscard]] const std::vector<Vec3>& gas_move() const { return gas_move_; }
+    [[nodiscard]] double gas_share() const { return gas_share_; }
+    [[nodiscard]] Quat turn(std::size_t node) const {
+        return elements_.node_rotations()[node] * conjugate(factor_rotations_[node]);
+    }
+    /// The rotation around a node since it was at rest.
+    [[nodiscard]] Quat rotation(std::uint32_t node) const { return elements_.node_rotations()[node]; }
+
+    /// Places its nodes and gives them these velocities; pinned ones rest. `rotation` is about that of the whole.
+    void set_motion(std::span<const Vec3> positions, std::span<const Vec3> velocities, Quat rotation);
+    /// Goes on as deformed for good as another of as many nodes and tetrahedra.
+    void take_plastic_strain(const SolidDeformable& other) { elements_.take_plastic_strain(other.elements_); }
+    /// Takes all velocities away.
+    void rest();
+    /// Takes it back to where its nodes were, at rest.
+    void stop_at(std::span<const Vec3> positions);
+
+    [[nodiscard]] bool is_finite() const;
+    /// Energy (elastic energy counts as potential) and momenta.
+    [[nodiscard]] Conserved conserved(Vec3 gravity) const;
+
+private:
+    void place_nodes(const DeformableDefinition& definition);
+    void find_surface();
+    void make_factor(double h);
+    void press();
+    void quasi_newton_move(std::span<const Vec3> force, std::span<Vec3> move, TaskPool& workers);
+    void metric_move(std::span<const Vec3> force, std::span<Vec3> move, TaskPool& workers);
+    void find_gas_move(TaskPool& workers);
+    [[nodiscard]] double stiffness_ratio();
+    /// As of a rigid body in a substep.
+    struct RigidMove {
+        Vec3 center, shift;
+        Quat rotation;
+
+        [[nodiscard]] Vec3 at(Vec3 p) const { return center + shift + rotate(rotation, p - center); }
+    };
+    [[nodiscard]] RigidMove move_of_whole() const;
+    void keep_momenta();
+    bool keep_energy();
+    [[nodiscard]] std::optional<double> find_surplus();
+    [[nodiscard]] bool is_too_much(std::optional<double> surplus) const;
+    [[nodiscard]] bool is_let_alone() const;
+    [[nodiscard]] double kinetic_energy() const;
+    [[nodiscard]] double elastic_energy(std::span<const Vec3> positions) const;
+
+    SolidElements elements_;
+    double damping_ = 0;  // s
+    Nodes nodes_;
+    std::vector<Vec3> rest_;
+    std::vector<std::array<std::uint32_t, 3>> surface_;
+    std::vector<std::uint32_t> surface_nodes_;
+    double mean_side_ = 0;
+    bool is_free_ = true;  // no node is pinned
+    bool is_new_ = true;   // has made no substep yet
+    // J: at the end of the last substep, of this one's start; none: not measured; come from nowhere so far
+    std::optional<double> elastic_energy_, energy_at_start_;
+    double kinetic_energy_at_start_ = 0, surplus_ = 0;
+    std::optional<double> found_surplus_;  // by gains_energy(), with no move since: is_measured_
+    bool is_measured_ = false;
+
+    // Of the substep.
+    double h_ = 0;
+    Vec3 gravity_;
+    std::vector<Vec3> start_, pushes_;  // m; N, all of the substep
+    std::vector<Vec3> unsettled_;       // N, since the last solve
+    std::vector<Vec3> force_;           // N
+    std::vector<Vec3> move_;            // m
+    std::vector<Vec3f> turned_, product_;
+    double stretch_ = 1;
+
+    std::optional<EnclosedGas> gas_;
+    std::vector<Vec3> gas_move_;  // P⁻¹ ∂V/∂x, m/Pa
+    double gas_share_ = 0;        // c in (P + k g gᵀ)⁻¹ = P⁻¹ - c (P⁻¹ g)(P⁻¹ g)ᵀ
+
+    // The factor of the matrix at rest, for substeps of factor_h_ seconds, and what is known of its inverse.
+    DissectedCholesky factor_;
+    double factor_h_ = 0;
+    std::vector<Quat> factor_rotations_;   // around the nodes when it was made
+    std::vector<std::uint8_t> is_pinned_;  // by node
+    NodeCompliance compliance_;
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: MIT
+#include "physics/deformable/solid/solid_elements.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "math/rotation_part.h"
+
+namespace embody::physics {
+
+namespace {
+
+// Stress of corotated linear elasticity for a strain ε in the element's axes, turned: R (2 μ ε + λ tr ε).
+Mat3 turned_stress(const Mat3& rotation, const Mat3& strain, double mu, double lambda) {
+    const double pressure = lambda * trace(strain);
+    return rotation * (2 * mu * strain + Mat3::diagonal({pressure, pressure, pressure}));
+}
+
+Mat3 symmetric_part(const Mat3& m) { return 0.5 * (m + transpose(m)); }
+
+double squares(const Mat3& m) { return length_squared(m.x) + length_squared(m.y) + length_squared(m.z); }
+
+// Strain beyond which it is as if it were full: it flows no further, so that nothing is rolled out to nothing.
+constexpr double most_plastic_strain = 0.5;
+
+}  // namespace
+
+SolidElements::SolidElements(const SoftSolid& solid, std::span<const Vec3> rest)
+    : mu_(solid.youngs_modulus / (2 * (1 + solid.poisson_ratio)) + solid.internal_pressure / 2),
+      lambda_(solid.youngs_modulus * solid.poisson_ratio / ((1 + solid.poisson_ratio) * (1 - 2 * solid.poisson_ratio))),
+      damping_(solid.rayleigh_damping),
+      yield_stress_(solid.yield_stress) {
+    for (std::array<std::uint32_t, 4> corners : solid.tetrahedra) {
+        const auto sides = [&] {
+            const Vec3 origin = rest[corners[0]];
+            return Mat3{rest[corners[1]] - origin, rest[corners[2]] - origin, rest[corners[3]] - origin};
+        };
+        if (determinant(sides()) < 0) std::swap(corners[2], corners[3]);
+        const Mat3 shape = sides(), inverse = transpose(inverse_or_zero(shape));
+        corners_.push_back(corners);
+        gradient_.push_back({inverse.x, inverse.y, inverse.z});
+        volume_.push_back(determinant(shape) / 6);
+    }
+    rotation_.resize(size());
+    node_rotation_.resize(rest.size());
+    plastic_.assign(size(), Mat3::zero());
+    node_plastic_.assign(rest.size(), Mat3::zero());
+    find_surroundings(rest.size());
+    find_edges();
+    deformation_.resize(size());
+    start_deformation_.resize(size());
+    start_stretch_.assign(size(), Mat3::zero());
+    node_stress_.resize(rest.size());
+    rotation_f_.resize(size());
+    gradient_f_.resize(size());
+    node_rotation_f_.resize(rest.size());
+    node_stress_f_.resize(rest.size());
+}
+
+void SolidElements::find_surroundings(std::size_t nodes) {
+    first_around_.assign(nodes + 1, 0);
+    node_volume_.assign(nodes, 0);
+    for (std::size_t e = 0; e < size(); ++e) {
+        for (const std::uint32_t node : corners_[e]) {
+            ++first_around_[node + 1];
+            node_volume_[node] += volume_[e] / 4;
+        }
+    }
+    for (std::size_t i = 0; i < nodes; ++i) first_around_[i + 1] += first_around_[i];
+    std::vector<std::uint32_t> next(first_around_.begin(), first_around_.end() - 1);
+    around_.resize(4 * size());
+    for (std::uint32_t e = 0; e < size(); ++e) {
+        for (std::uint32_t k = 0; k < 4; ++k) {
+            const std::uint32_t node = corners_[e][k];
+            around_[next[node]++] = {e, k, volume_[e] / 4 / node_volume_[node]};
+        }
+    }
+}
+
+void SolidElements::find_edges() {
+    for (const auto& corners : corners_) {
+        for (std::size_t a = 0; a < 4; ++a) {
+            for (std::size_t b = a + 1; b < 4; ++b)
+                edges_.push_back({std::min(corners[a], corners[b]), std::max(corners[a], corners[b])});
+        }
+    }
+    std::ranges::sort(edges_);
+    edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+}
+
+void SolidElements::add_stiffness_blocks(double factor, std::span<Mat3> diagonal, std::span<Mat3> blocks) const {
+    for (std::size_t e = 0; e < size(); ++e) {
+        const auto& [g1, g2, g3] = gradient_[e];
+        std::array<Vec3, 4> g{-(g1 + g2 + g3), g1, g2, g3};
+        for (Vec3& slope : g) slope = rotate(rotation_[e], slope);
+        for (std::size_t a = 0; a < 4; ++a) {
+            for (std::size_t b = 0; b < 4; ++b) {
+                const std::uint32_t row = corners_[e][a], column = corners_[e][b];
+                if (row > column) continue;
+                // V (μ (gₐ·g_b 1 + g_b gₐᵀ) + λ gₐ g_bᵀ)
+                const double shear = mu_ * dot(g[a], g[b]);
+                const Mat3 block = (factor * volume_[e]) * (Mat3::diagonal({shear, shear, shear}) +
+                                                            mu_ * outer(g[b], g[a]) + lambda_ * outer(g[a], g[b]));
+                if (row == column) {
+                    diagonal[row] += block;
+                } else {
+                    const std::array<std::uint32_t, 2> edge{row, column};
+                    blocks[static_cast<std::size_t>(std::ranges::lower_bound(edges_, edge) - edges_.begin())] += block;
+                }
+            }
+        }
+    }
+}
+
+// ∇ of what the nodes have, over an element: Σ value gᵀ.
+Mat3 SolidElements::gradient(std::size_t element, std::span<const Vec3> values) const {
+    const auto& corners = corners_[element];
+    const Vec3 origin = values[corners[0]];
+    const auto& g = gradient_[element];
+    return outer(values[corners[1]] - origin, g[0]) + outer(values[corners[2]] - origin, g[1]) +
+           outer(values[corners[3]] - origin, g[2]);
+}
+
+// Elastic and damping stress: the latter of β/h times the change of the stretch Rᵀ F.
+Mat3 SolidElements::stress(const Mat3& deformation, Quat rotation, const Mat3& plastic, const Mat3& start_stretch,
+                           double damping_rate) const {
+    const Mat3 r = to_matrix(rotation), stretch = symmetric_part(transpose(r) * deformation);
+    const Mat3 strain = stretch - Mat3::identity() - plastic + damping_rate * (stretch - start_stretch);
+    return turned_stress(r, strain, mu_, lambda_);
+}
+
+// Rᵀ F at the start of a substep, before it turned to `rotation`. Of small turns the square does not count, as long as
+// the damping does not make much of it.
+Mat3 SolidElements::start_stretch(const Mat3& deformation, Quat before, Quat rotation, double damping_rate) {
+    constexpr double small = 1e-3;  // of the quaternion: half the angle, rad
+    const Vec3 turn{rotation.x - before.x, rotation.y - before.y, rotation.z - before.z};
+    Quat there = rotation;
+    if (length_squared(turn) * (1 + damping_rate) > small * small) {
+        there = before;
+        follow_rotation(deformation, there);
+    }
+    return symmetric_part(transpose(to_matrix(there)) * deformation);
+}
+
+void SolidElements::linearise(std::span<const Vec3> position, std::span<const Vec3> start, double h,
+                              std::span<Vec3> force) {
+    const double damping_rate = damping_ / h;
+    const auto to_single = [](Quat rotation) {
+        const Mat3 r = to_matrix(rotation);
+        Matrix m;
+        for (int c = 0; c < 3; ++c) {
+            for (int row = 0; row < 3; ++row) m.value[3 * c + row] = static_cast<float>(r(row, c));
+        }
+        return m;
+    };
+    for (std::size_t e = 0; e < size(); ++e) {
+        deformation_[e] = gradient(e, position);
+        const Quat before = rotation_[e];
+        follow_rotation(deformation_[e], rotation_[e]);
+        if (damping_ > 0) {
+            start_deformation_[e] = gradient(e, start);
+            start_stretch_[e] = start_stretch(start_deformation_[e], before, rotation_[e], damping_rate);
+        }
+        rotation_f_[e] = to_single(rotation_[e]);
+    }
+    // Means around the nodes.
+    for (std::size_t i = 0; i < node_rotation_.size(); ++i) {
+        const Mat3 deformation = mean_around(i, deformation_);
+        const Quat before = node_rotation_[i];
+        follow_rotation(deformation, node_rotation_[i]);
+        node_rotation_f_[i] = to_single(node_rotation_[i]);
+        const Mat3 at_start =
+            damping_ > 0 ? start_stretch(mean_around(i, start_deformation_), before, node_rotation_[i], damping_rate)
+                         : Mat3::zero();
+        node_stress_[i] = stress(deformation, node_rotation_[i], node_plastic_[i], at_start, damping_rate);
+    }
+    for (std::size_t e = 0; e < size(); ++e) {
+        Mat3 whole =
+            (1 - share_of_nodes) * stress(deformation_[e], rotation_[e], plastic_[e], start_stretch_[e], damping_rate);
+        for (const std::uint32_t node : corners_[e]) whole += (share_of_nodes / 4) * node_stress_[node];
+        whole = volume_[e] * whole;
+        Vec3 sum;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 f = whole * gradient_[e][k];
+            force[corners_[e][k + 1]] -= f;
+            sum += f;
+        }
+        force[corners_[e][0]] += sum;
+    }
+}
+
+void SolidElements::add_stiffness(float factor, std::span<const Vec3f> move, std::span<Vec3f> force) {
+    const auto mu = static_cast<float>(mu_), lambda = static_cast<float>(lambda_);
+    // R (μ (W + Wᵀ) + λ tr W) of a move's gradient G, W = Rᵀ G
+    const auto stress_of = [&](const float* r, const float* g, float* s) {
+        float w[9];
+        for (int c = 0; c < 3; ++c) {
+            for (int row = 0; row < 3; ++row)
+                w[3 * c + row] = r[3 * row] * g[3 * c] + r[3 * row + 1] * g[3 * c + 1] + r[3 * row + 2] * g[3 * c + 2];
+        }
+        const float pressure = lambda * (w[0] + w[4] + w[8]);
+        const float xy = mu * (w[1] + w[3]), xz = mu * (w[2] + w[6]), yz = mu * (w[5] + w[7]);
+        const float e[9] = {2 * mu * w[0] + pressure, xy, xz, xy, 2 * mu * w[4] + pressure, yz, xz, yz,
+                            2 * mu * w[8] + pressure};
+        for (int c = 0; c < 3; ++c) {
+            for (int row = 0; row < 3; ++row)
+                s[3 * c + row] = r[row] * e[3 * c] + r[3 + row] * e[3 * c + 1] + r[6 + row] * e[3 * c + 2];
+        }
+    };
+    for (std::size_t e = 0; e < size(); ++e) {
+        const auto& corners = corners_[e];
+        const Vec3f origin = move[corners[0]];
+        float* g = gradient_f_[e].value;
+        std::fill(g, g + 9, 0.0f);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3f d = move[corners[k + 1]];
+            const Vec3f way{d.x - origin.x, d.y - origin.y, d.z - origin.z};
+            const Vec3f slope = to_vec3f(gradient_[e][k]);
+            const float along[3] = {slope.x, slope.y, slope.z};
+            for (int c = 0; c < 3; ++c) {
+                g[3 * c] += way.x * along[c];
+                g[3 * c + 1] += way.y * along[c];
+                g[3 * c + 2] += way.z * along[c];
+            }
+        }
+    }
+    for (std::size_t i = 0; i < node_rotation_.size(); ++i) {
+        float g[9] = {};
+        for (const Around& a : around(i)) {
+            const auto share = static_cast<float>(a.share);
+            for (int k = 0; k < 9; ++k) g[k] += share * gradient_f_[a.element].value[k];
+        }
+        stress_of(node_rotation_f_[i].value, g, node_stress_f_[i].value);
+    }
+    const auto own_share = static_cast<float>(1 - share_of_nodes), node_share = static_cast<float>(share_of_nodes / 4);
+    for (std::size_t e = 0; e < size(); ++e) {
+        float s[9];
+        stress_of(rotation_f_[e].value, gradient_f_[e].value, s);
+        const float scale = factor * static_cast<float>(volume_[e]);
+        for (int k = 0; k < 9; ++k) {
+            float around_it = 0;
+            for (const std::uint32_t node : corners_[e]) around_it += node_stress_f_[node].value[k];
+            s[k] = scale * (own_share * s[k] + node_share * around_it);
+        }
+        Vec3f sum;
+        const auto add = [](Vec3f& to, float x, float y, float z) { to = {to.x + x, to.y + y, to.z + z}; };
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3f g = to_vec3f(gradient_[e][k]);
+            const float x = s[0] * g.x + s[3] * g.y + s[6] * g.z, y = s[1] * g.x + s[4] * g.y + s[7] * g.z,
+                        z = s[2] * g.x + s[5] * g.y + s[8] * g.z;
+            add(force[corners_[e][k + 1]], x, y, z);
+            add(sum, x, y, z);
+        }
+        add(force[corners_[e][0]], -sum.x, -sum.y, -sum.z);
+    }
+}
+
+double SolidElements::energy(std::span<const Vec3> position) const {
+    const auto density = [&](const Mat3& deformation, Quat rotation, const Mat3& plastic) {
+        follow_rotation(deformation, rotation);
+        const Mat3 off = transpose(to_matrix(rotation)) * deformation - Mat3::identity() - plastic;
+        return mu_ * squares(off) + lambda_ / 2 * trace(off) * trace(off);
+    };
+    double sum = 0;
+    std::vector<Mat3> deformation(size());
+    for (std::size_t e = 0; e < size(); ++e) {
+        deformation[e] = gradient(e, position);
+        sum += (1 - share_of_nodes) * volume_[e] * density(deformation[e], rotation_[e], plastic_[e]);
+    }
+    for (std::size_t i = 0; i < node_rotation_.size(); ++i) {
+        const Mat3 mean = mean_around(i, deformation);
+        sum += share_of_nodes * node_volume_[i] * density(mean, node_rotation_[i], node_plastic_[i]);
+    }
+    return sum;
+}
+
+Mat3 SolidElements::mean_around(std::size_t node, std::span<const Mat3> of_elements) const {
+    Mat3 mean = Mat3::zero();
+    for (const Around& a : around(node)) mean += a.share * of_elements[a.element];
+    return mean;
+}
+
+bool SolidElements::flow(std::span<const Vec3> position) {
+    if (!std::isfinite(yield_stress_)) return false;
+    for (std::size_t e = 0; e < size(); ++e) {
+        deformation_[e] = gradient(e, position);
+        flow(deformation_[e], rotation_[e], plastic_[e]);
+    }
+    for (std::size_t i = 0; i < node_rotation_.size(); ++i)
+        flow(mean_around(i, deformation_), node_rotation_[i], node_plastic_[i]);
+    return true;
+}
+
+// Radial return (J. C. Simo, T. J. R. Hughes, "Computational Inelasticity", 1998, 3.3): stress s = 2 μ dev(ε - εᵖ) is
+// brought back to |s|² 3/2 = Y².
+void SolidElements::flow(const Mat3& deformation, Quat rotation, Mat3& plastic) const {
+    Mat3 elastic = symmetric_part(transpose(to_matrix(rotation)) * deformation) - Mat3::identity() - plastic;
+    const double third = trace(elastic) / 3;
+    elastic = elastic - Mat3::diagonal({third, third, third});
+    const double stress = 2 * mu_ * std::sqrt(1.5 * squares(elastic));
+    if (!(stress > yield_stress_)) return;
+    plastic += (1 - yield_stress_ / stress) * elastic;
+    const double strain = std::sqrt(squares(plastic));
+    if (strain > most_plastic_strain) plastic = (most_plastic_strain / strain) * plastic;
+}
+
+void SolidElements::take_plastic_strain(const SolidElements& other) {
+    plastic_ = other.plastic_;
+    node_plastic_ = other.node_plastic_;
+}
+
+void SolidElements::reset_rotations(Quat rotation) {
+    std::ranges::fill(rotation_, rotation);
+    std::ranges::fill(node_rotation_, rotation);
+}
+
+}  // namespace embody::physics

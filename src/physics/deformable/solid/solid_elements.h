@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+
+#include "math/mat3.h"
+#include "math/quat.h"
+#include "physics/definitions/deformable_definition.h"
+
+namespace embody::physics {
+
+/// The elastic energy of a solid of linear tetrahedra (docs/physics/deformables.md):
+///
+///   Ψ = Σ V (μ |F - R|² + λ/2 tr²(Rᵀ F - 1))
+///
+/// with F = Σ x gᵀ the deformation and R the rotation in it. Above the yield stress (von Mises) it flows: a plastic
+/// strain, taken off Rᵀ F - 1, follows at the end of each substep (flow()). Gas inside under pressure p pulls the
+/// matter taut, which resists a change of form by p/2 more in μ. A part of the volume is told by the tetrahedra, which
+/// alone bend too stiffly, the rest by the means of F around the nodes, which alone bend too softly (G. R. Liu, T.
+/// Nguyen-Thoi, K. Y. Lam, "A novel alpha finite element method", 2008). Damping is proportional to the change of Rᵀ F
+/// in the substep, which no turn makes.
+class SolidElements {
+public:
+    static constexpr double share_of_nodes = 0.7;
+
+    SolidElements(const SoftSolid& solid, std::span<const Vec3> rest);
+
+    [[nodiscard]] std::size_t size() const { return corners_.size(); }
+    /// Nodes of each tetrahedron, turned so that its volume is positive.
+    [[nodiscard]] const std::vector<std::array<std::uint32_t, 4>>& corners() const { return corners_; }
+    /// Volume around each node at rest: a quarter of its tetrahedra's, m³.
+    [[nodiscard]] const std::vector<double>& node_volumes() const { return node_volume_; }
+    /// Pairs of nodes of a common tetrahedron, each once, the smaller first.
+    [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& edges() const { return edges_; }
+    /// Adds the stiffness of the tetrahedra alone as they are turned now, times `factor`: a block a node, and one an
+    /// edge (row: edge[0]).
+    void add_stiffness_blocks(double factor, std::span<Mat3> diagonal, std::span<Mat3> blocks) const;
+
+    /// Linearises at these positions (m), to which the nodes have come from `start` in h seconds: finds the rotations
+    /// and adds elastic and damping forces, N.
+    void linearise(std::span<const Vec3> position, std::span<const Vec3> start, double h, std::span<Vec3> force);
+    /// Adds what K makes of a move: `factor` times the stiffness of the last linearise(), rotations going along.
+    void add_stiffness(float factor, std::span<const Vec3f> move, std::span<Vec3f> force);
+    /// The rotation around each node, of the last linearise().
+    [[nodiscard]] const std::vector<Quat>& node_rotations() const { return node_rotation_; }
+    /// Elastic energy at these positions, J.
+    [[nodiscard]] double energy(std::span<const Vec3> position) const;
+    /// Lets what is stressed beyond its yield stress at these positions flow, with the rotations of the last
+    /// linearise(). Returns whether there is a yield stress.
+    bool flow(std::span<const Vec3> position);
+    /// Goes on with the plastic strain of another of as many nodes and tetrahedra.
+    void take_plastic_strain(const SolidElements& other);
+    /// Rotations for nodes that are somewhere else altogether.
+    void reset_rotations(Quat rotation);
+
+private:
+    struct Matrix {  ///< 3×3 by columns, single precision
+        float value[9] = {};
+    };
+    struct Around {  ///< a tetrahedron at a node
+        std::uint32_t element = 0;
+        std::uint32_t corner = 0;
+        double share = 0;  ///< of the node's volume
+    };
+    [[nodiscard]] std::span<const Around> around(std::size_t node) const {
+        return {around_.data() + first_around_[node], first_around_[node + 1] - first_around_[node]};
+    }
+    [[nodiscard]] Mat3 gradient(std::size_t element, std::span<const Vec3> values) const;
+    [[nodiscard]] Mat3 stress(const Mat3& deformation, Quat rotation, const Mat3& plastic, const Mat3& start_stretch,
+                              double damping_rate) const;
+    void flow(const Mat3& deformation, Quat rotation, Mat3& plastic) const;
+    [[nodiscard]] Mat3 mean_around(std::size_t node, std::span<const Mat3> of_elements) const;
+    static Mat3 start_stretch(const Mat3& deformation, Quat before, Quat rotation, double damping_rate);
+    void find_edges();
+    void find_surroundings(std::size_t nodes);
+
+    double mu_, lambda_, damping_, yield_stress_;
+    std::vector<std::array<std::uint32_t, 4>> corners_;
+    std::vector<std::array<Vec3, 3>> gradient_;  ///< of corners 1 to 3, 1/m; that of corner 0 is minus their sum
+    std::vector<double> volume_;                 ///< m³
+    std::vector<Quat> rotation_, node_rotation_;
+    std::vector<Mat3> plastic_, node_plastic_;  ///< strains in the axes at rest, without a trace
+    std::vector<Around> around_;                ///< of node i those from first_around_[i] to first_around_[i + 1]
+    std::vector<std::uint32_t> first_around_;
+    std::vector<double> node_volume_;
+    std::vector<std::array<std::uint32_t, 2>> edges_;
+
+    // Of the last linearise(), for add_stiffness().
+    std::vector<Mat3> deformation_, start_deformation_, start_stretch_, node_stress_;
+    std::vector<Matrix> rotation_f_, node_rotation_f_, gradient_f_, node_stress_f_;
+};
+
+}  // namespace embody::physics

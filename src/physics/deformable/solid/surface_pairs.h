@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geometry/bounding_volume_tree.h"
+#include "physics/deformable/solid/solid_contact.h"
+#include "physics/deformable/solid/solid_deformable.h"
+
+namespace embody::physics {
+
+/// The way on which one thing leaves another that it lies within.
+struct WayOut {
+    int axis = 0;
+    double sign = 1;
+};
+/// The shortest on which the box of `one` leaves that of `two`; of equal ones the first upwards for the later one.
+[[nodiscard]] WayOut shortest_way(const Bounds& one, const Bounds& two, bool is_later);
+
+inline constexpr double much_within = 0.125;  ///< share of one thing within another: not the work of contact
+
+/// A solid's surface as it lies now.
+class PlacedSurface {
+public:
+    explicit PlacedSurface(const SolidDeformable& solid);
+
+    struct Place {
+        std::array<std::uint32_t, 3> triangle{};
+        std::array<double, 3> weight{};  ///< of its corners in the nearest point
+        Vec3 normal;                     ///< outwards
+        double distance = 0;             ///< negative inside, m
+    };
+    /// The place nearest to p, where it is no farther than `reach` (m).
+    [[nodiscard]] std::optional<Place> find(Vec3 p, double reach) const;
+    /// The place where the line from p along the unit vector of `axis` (0 x, 1 y, 2 z) in the sense of `sign` (±1)
+    /// leaves the surface for good; none where it does not cross it. Its normal is that vector, its distance negative.
+    [[nodiscard]] std::optional<Place> find_exit(Vec3 p, int axis, double sign) const;
+    /// Whether p is inside.
+    [[nodiscard]] bool encloses(Vec3 p) const;
+    /// How deep a point may be inside and still be told where it came from, m.
+    [[nodiscard]] double deepest() const { return deepest_; }
+    /// Which share of points evenly chosen beneath this surface, by `depth` of the mean side, is inside of the other.
+    [[nodiscard]] double share_within(const PlacedSurface& other, double depth) const;
+
+private:
+    [[nodiscard]] Vec3 at(std::uint32_t node) const { return solid_.nodes().position[node]; }
+    /// Calls visit(triangle, weights of its corners, place along the axis) for all that the line along `axis` crosses.
+    template <class Visit>
+    void visit_crossings(Vec3 p, int axis, Visit&& visit) const;
+    const SolidDeformable& solid_;
+    std::vector<Vec3> normal_;  // by node
+    geometry::BoundingVolumeTree tree_;
+    double deepest_ = 0;
+};
+
+/// Appends a contact for every surface node of `one` that may come to the surface of `two` within a step, with the
+/// nearest triangle there. `reach` (m) is what the two may come closer in the step, `radius` the distance that they
+/// keep. `point` and `other` are of the solids with these numbers. Solids of which much lies within each other are
+/// parted along the axis on which their boxes overlap least; `is_parting`: they were in the last step.
+void find_surface_contacts(const SolidDeformable& one, std::uint32_t one_number, const SolidDeformable& two,
+                           std::uint32_t two_number, double reach, double radius, double friction, bool is_parting,
+                           std::vector<SolidContact>& contacts);
+
+}  // namespace embody::physics

@@ -1,4 +1,0 @@
-// SPDX-License-Identifier: MIT
-// Loops of soft solids for 4 lanes; compiled with the flags of its instruction set (src/CMakeLists.txt).
-#define EMBODY_LANES 4
-#include "physics/deformable/solid_kernel_code.h"

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+#include "physics/fluid/grid/faces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "physics/fluid/particles/transfer.h"
+
+namespace embody::physics {
+
+namespace {
+
+struct FaceValue {
+    int axis, cell;
+    float value;
+};
+
+// Where a face's centre is.
+Vec3 face_center(const FluidGrid& grid, int axis, const Cell& c) {
+    Vec3 center = grid.center(c);
+    center[axis] -= grid.cell_size() / 2;
+    return center;
+}
+
+// The flags of a row of eight faces at once.
+std::uint64_t row_of(const std::vector<std::uint8_t>& known, int first) {
+    static_assert(FluidGrid::tile[0] == sizeof(std::uint64_t));
+    std::uint64_t flags = 0;
+    std::memcpy(&flags, &known[static_cast<std::size_t>(first)], sizeof flags);
+    return flags;
+}
+
+// Means of the known neighbours of unknown faces in a tile.
+void list_next_layer(const FluidGrid& grid, const std::array<std::vector<float>, 3>& field, const Cell& corner,
+                     std::vector<FaceValue>& found) {
+    constexpr std::uint64_t all = 0x0101010101010101;
+    const int dy = grid.stride(1), dz = grid.stride(2);
+    const int strides[3] = {1, dy, dz};
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::vector<std::uint8_t>& known = grid.known[axis];
+        grid.for_rows(corner, [&](int first, const Cell&) {
+            // Most rows are wholly known or far from all that is.
+            const std::uint64_t own = row_of(known, first);
+            if (own == all) return;
+            const std::uint64_t beside = row_of(known, first - dy) | row_of(known, first + dy) |
+                                         row_of(known, first - dz) | row_of(known, first + dz);
+            if (own == 0 && beside == 0 && !known[first - 1] && !known[first + FluidGrid::tile[0]]) return;
+            for (int cell = first; cell < first + FluidGrid::tile[0]; ++cell) {
+                if (known[cell]) continue;
+                float sum = 0;
+                int count = 0;
+                for (const int stride : strides) {
+                    for (const int other : {cell - stride, cell + stride}) {
+                        if (!known[other]) continue;
+                        sum += field[axis][other];
+                        ++count;
+                    }
+                }
+                if (count > 0) found.push_back({axis, cell, sum / static_cast<float>(count)});
+            }
+        });
+    }
+}
+
+// Velocity at a shut face that slides along the solid.
+double sliding(const FluidGrid& grid, int axis, int cell, Vec3 center, Vec3 wall) {
+    const float at[3] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)};
+    float gradient[3];
+    sample_center(grid, grid.solid, at, gradient);
+    const Vec3 normal = normalized(Vec3{gradient[0], gradient[1], gradient[2]});
+    const Vec3 velocity = velocity_around(grid, axis, cell);
+    return velocity[axis] + normal[axis] * dot(wall - velocity, normal);
+}
+
+// Velocity at a shut face.
+float followed(const FluidGrid& grid, const FluidSolids& solids, double sticking, const FaceValue& face,
+               const Cell& c) {
+    const int axis = face.axis, cell = face.cell, below = cell - grid.stride(axis);
+    const int nearer = grid.solid[cell] < grid.solid[below] ? cell : below;
+    const Vec3 center = face_center(grid, axis, c);
+    const Vec3 wall = solids.velocity_at(grid.solid_owner[nearer], center);
+    if (grid.thin[cell] & (1 << axis)) return static_cast<float>(wall[axis]);
+    const double slides = sticking < 1 ? sliding(grid, axis, cell, center, wall) : 0;
+
+    // Straight from the velocity one face farther out, through the solid's at its surface.
+    const double inside = std::clamp(-0.5 * (grid.solid[cell] + grid.solid[below]), 0.0, 0.5);
+    const double sticks = wall[axis] - (grid.velocity[axis][cell] - wall[axis]) * inside / (1 - inside);
+    return static_cast<float>(slides + (sticks - slides) * sticking);
+}
+
+}  // namespace
+
+Vec3 velocity_around(const FluidGrid& grid, int axis, int cell) {
+    const int below = cell - grid.stride(axis);
+    Vec3 velocity;
+    for (int other = 0; other < 3; ++other) {
+        const auto& field = grid.velocity[other];
+        const int up = grid.stride(other);
+        velocity[other] =
+            other == axis ? field[cell] : 0.25 * (field[cell] + field[cell + up] + field[below] + field[below + up]);
+    }
+    return velocity;
+}
+
+void extrapolate(FluidGrid& grid, std::array<std::vector<float>, 3>& field, int layers, TaskPool& workers) {
+    const auto tiles = grid.tiles();
+    std::vector<std::vector<FaceValue>> found(static_cast<std::size_t>(workers.workers()));
+    for (int layer = 0; layer < layers; ++layer) {
+        share_among(workers, tiles.size(), tiles.size() > 16, [&](int worker, Share share) {
+            auto& list = found[static_cast<std::size_t>(worker)];
+            list.clear();
+            for (std::size_t i = share.first; i < share.last; ++i) list_next_layer(grid, field, tiles[i], list);
+        });
+        for (auto& list : found) {
+            for (const FaceValue& face : list) {
+                field[face.axis][face.cell] = face.value;
+                grid.known[face.axis][face.cell] = 1;
+            }
+            list.clear();
+        }
+    }
+}
+
+void admit_drops(FluidGrid& grid, TaskPool& workers) {
+    grid.for_tiles(workers, [&](const Cell& corner) {
+        for (int axis = 0; axis < 3; ++axis) {
+            grid.for_cells(corner, [&](int cell, const Cell&) {
+                const bool has_drops = grid.open[axis][cell] > 0 && grid.mass[axis][cell] > 1e-6f;
+                grid.known[axis][cell] = grid.known[axis][cell] || has_drops;
+            });
+        }
+    });
+}
+
+void follow_solids(FluidGrid& grid, const FluidSolids& solids, double sticking, TaskPool& workers) {
+    const auto tiles = grid.tiles();
+    std::vector<std::vector<FaceValue>> found(static_cast<std::size_t>(workers.workers()));
+    share_among(workers, tiles.size(), tiles.size() > 16, [&](int worker, Share share) {
+        auto& list = found[static_cast<std::size_t>(worker)];
+        for (std::size_t i = share.first; i < share.last; ++i) {
+            grid.for_cells(tiles[i], [&](int cell, const Cell& c) {
+                for (int axis = 0; axis < 3; ++axis) {
+                    if (grid.open[axis][cell] > 0 || !grid.known[axis][cell]) continue;
+                    list.push_back({axis, cell, followed(grid, solids, sticking, {axis, cell, 0}, c)});
+                }
+            });
+        }
+    });
+    for (const auto& list : found) {
+        for (const FaceValue& face : list) grid.velocity[face.axis][face.cell] = face.value;
+    }
+}
+
+void outflow(const FluidGrid& grid, const FluidSolids& solids, const PressureSystem& system, std::vector<double>& flow,
+             TaskPool& workers) {
+    flow.resize(system.size());
+    const double area = grid.cell_size() * grid.cell_size();
+    share_among(workers, flow.size(), flow.size() > 2000, [&](int, Share share) {
+        for (std::size_t row = share.first; row < share.last; ++row) {
+            const auto cell = static_cast<int>(system.cell(row));
+            double sum = 0;
+            for (int axis = 0; axis < 3; ++axis) {
+                const int above = cell + grid.stride(axis);
+                const auto &open = grid.open[axis], &velocity = grid.velocity[axis];
+                sum += static_cast<double>(open[above]) * velocity[above];
+                sum -= static_cast<double>(open[cell]) * velocity[cell];
+            }
+            flow[row] = sum * area;
+        }
+    });
+    for (const MovingSolid& solid : solids.moving()) {
+        for (const SolidArea& part : solid.areas) {
+            flow[part.row] += dot(part.area, solid.linear_velocity) + dot(part.moment, solid.angular_velocity);
+        }
+    }
+}
+
+void add_surface_pressure(const FluidGrid& grid, const PressureSystem& system, const SurfacePressure& surface,
+                          std::vector<double>& b, TaskPool& workers) {
+    share_among(workers, b.size(), b.size() > 2000, [&](int, Share share) {
+        for (std::size_t row = share.first; row < share.last; ++row) {
+            const auto cell = static_cast<int>(system.cell(row));
+            for (int axis = 0; axis < 3; ++axis) {
+                const int stride = grid.stride(axis);
+                for (const int other : {cell - stride, cell + stride}) {
+                    const float open = grid.open[axis][std::max(cell, other)];
+                    if (open <= 0 || grid.row[other] >= 0) continue;
+                    const float gap = PressureSystem::gap_share(grid.surface[cell], grid.surface[other]);
+                    b[row] += static_cast<double>(open) / gap * surface.at(cell, other, gap);
+                }
+            }
+        }
+    });
+}
+
+void subtract_gradient(FluidGrid& grid, std::span<const double> x, const SurfacePressure& surface, double scale,
+                       std::array<std::vector<float>, 3>& field, TaskPool& workers) {
+    grid.for_tiles(workers, [&](const Cell& corner) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const int stride = grid.stride(axis);
+            grid.for_cells(corner, [&](int cell, const Cell&) {
+                const int below = cell - stride, upper = grid.row[cell], lower = grid.row[below];
+                std::uint8_t& known = grid.known[axis][cell];
+                if (grid.open[axis][cell] <= 0) {
+                    known = 0;
+                    return;
+                }
+                if (upper < 0 && lower < 0) {
+                    known = 0;
+                    return;
+                }
+                double difference = 0;
+                if (upper >= 0 && lower >= 0) {
+                    difference = x[upper] - x[lower];
+                } else {
+                    const int liquid = upper >= 0 ? cell : below, air = upper >= 0 ? below : cell;
+                    const float gap = PressureSystem::gap_share(grid.surface[liquid], grid.surface[air]);
+                    const double outside = surface.is_none() ? 0 : surface.at(liquid, air, gap);
+                    difference = (x[grid.row[liquid]] - outside) / (upper >= 0 ? gap : -gap);
+                }
+                field[axis][cell] -= static_cast<float>(difference * scale);
+                known = 1;
+            });
+        }
+    });
+}
+
+}  // namespace embody::physics

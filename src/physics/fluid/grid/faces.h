@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "foundation/task_pool.h"
+#include "physics/fluid/grid/grid.h"
+#include "physics/fluid/obstacles/solids.h"
+#include "physics/fluid/pressure/pressure_system.h"
+#include "physics/fluid/pressure/surface_tension.h"
+
+namespace embody::physics {
+
+/// Gives faces without a velocity the mean of their neighbours', `layers` faces far from those that are known.
+void extrapolate(FluidGrid& grid, std::array<std::vector<float>, 3>& field, int layers, TaskPool& workers);
+
+/// Faces that particles reach but that are unknown are known by them.
+void admit_drops(FluidGrid& grid, TaskPool& workers);
+
+/// Velocity at a face; the components across are means of the four nearest faces, m/s.
+Vec3 velocity_around(const FluidGrid& grid, int axis, int cell);
+
+/// Shut faces move as the solid does: along its normal, or wholly where the solid is thin. As far as the liquid sticks
+/// (1: its layer at the wall is thicker than a cell, 0: much thinner) such that the velocity at the surface is the
+/// solid's.
+void follow_solids(FluidGrid& grid, const FluidSolids& solids, double sticking, TaskPool& workers);
+
+/// Volume that flows out of each liquid cell by faces and surfaces of solids, m³/s.
+void outflow(const FluidGrid& grid, const FluidSolids& solids, const PressureSystem& system, std::vector<double>& flow,
+             TaskPool& workers);
+
+/// Adds to the right hand side of the pressure's equation what the pressure at the surface does.
+void add_surface_pressure(const FluidGrid& grid, const PressureSystem& system, const SurfacePressure& surface,
+                          std::vector<double>& b, TaskPool& workers);
+
+/// Adds −`scale` ∂x to the open faces of liquid cells (∂x: difference over the way to the neighbour or the surface, in
+/// cells), with x at the surface as it says. Other faces become unknown.
+void subtract_gradient(FluidGrid& grid, std::span<const double> x, const SurfacePressure& surface, double scale,
+                       std::array<std::vector<float>, 3>& field, TaskPool& workers);
+
+}  // namespace embody::physics

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "physics/fluid/grid/liquid_cells.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace embody::physics {
+
+namespace {
+
+// How far the surface lies above a centre, in cells, if the half space below it fills this share of the tent kernel.
+float height_of_surface(float filled) {
+    if (filled <= 0.5f) return std::sqrt(2 * std::max(filled, 0.0f)) - 1;
+    return 1 - std::sqrt(2 * std::max(1 - filled, 0.0f));
+}
+
+struct MarkedCell {
+    int cell;
+    float surface;
+};
+
+// What the open neighbours make of a cell that is not liquid by itself. Without `and_narrow` narrow ones do not count.
+void look_around(const FluidGrid& grid, int cell, bool and_narrow, std::vector<MarkedCell>& marked) {
+    if (grid.surface[cell] < 0) return;
+    const bool is_narrow = grid.room[cell] < least_room;
+    int liquid = 0, dry = 0;
+    float sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int stride = grid.stride(axis);
+        for (const int side : {-1, 1}) {
+            if (grid.open[axis][side < 0 ? cell : cell + stride] <= 0) continue;
+            const int other = cell + side * stride;
+            const bool counts = and_narrow || grid.room[other] >= least_room;
+            if (grid.surface[other] < 0 && counts) {
+                ++liquid;
+                sum += grid.surface[other];
+            } else if (grid.room[other] >= least_room) {
+                ++dry;
+            }
+        }
+    }
+    if (is_narrow && liquid > 0) marked.push_back({cell, sum / static_cast<float>(liquid)});
+    if (!is_narrow && liquid > 0 && dry == 0) marked.push_back({cell, -0.05f});
+}
+
+void mark(FluidGrid& grid, const std::vector<MarkedCell>& marked) {
+    for (const MarkedCell& cell : marked) grid.surface[cell.cell] = cell.surface;
+}
+
+// Narrow cells are liquid beside liquid, those in corners beside such ones; holes with liquid all around are none.
+void mark_beside_liquid(FluidGrid& grid, TaskPool& workers) {
+    const auto tiles = grid.tiles();
+    struct Found {
+        std::vector<MarkedCell> marked;
+        std::vector<int> narrow;
+    };
+    std::vector<Found> found(static_cast<std::size_t>(workers.workers()));
+    share_among(workers, tiles.size(), tiles.size() > 16, [&](int worker, Share share) {
+        Found& own = found[static_cast<std::size_t>(worker)];
+        for (std::size_t i = share.first; i < share.last; ++i) {
+            grid.for_cells(tiles[i], [&](int cell, const Cell&) {
+                const std::size_t before = own.marked.size();
+                look_around(grid, cell, false, own.marked);
+                const bool is_dry = own.marked.size() == before && grid.surface[cell] >= 0;
+                if (is_dry && grid.room[cell] < least_room && grid.solid[cell] > -1) own.narrow.push_back(cell);
+            });
+        }
+    });
+    for (const Found& own : found) mark(grid, own.marked);
+    constexpr int passes = 2;
+    for (int pass = 0; pass < passes; ++pass) {
+        std::vector<MarkedCell> marked;
+        for (const Found& own : found) {
+            for (const int cell : own.narrow) look_around(grid, cell, true, marked);
+        }
+        mark(grid, marked);
+    }
+}
+
+// Rows in the order of the tiles and of the cells in them.
+void number_rows(FluidGrid& grid, LiquidCells& liquid, TaskPool& workers) {
+    const auto tiles = grid.tiles();
+    std::vector<int>& first = liquid.first_row;
+    first.assign(tiles.size() + 1, 0);
+    share_among(workers, tiles.size(), tiles.size() > 16, [&](int, Share share) {
+        for (std::size_t i = share.first; i < share.last; ++i) {
+            int rows = 0;
+            grid.for_cells(tiles[i], [&](int cell, const Cell&) {
+                grid.row[cell] = -1;
+                if (!(grid.surface[cell] < 0)) return;
+                float open = 0;
+                for (int axis = 0; axis < 3; ++axis) {
+                    open += grid.open[axis][cell] + grid.open[axis][cell + grid.stride(axis)];
+                }
+                if (open > 1e-4f) grid.row[cell] = rows++;
+            });
+            first[i + 1] = rows;
+        }
+    });
+    for (std::size_t i = 0; i < tiles.size(); ++i) first[i + 1] += first[i];
+    liquid.cells.resize(static_cast<std::size_t>(first.back()));
+    share_among(workers, tiles.size(), tiles.size() > 16, [&](int, Share share) {
+        for (std::size_t i = share.first; i < share.last; ++i) {
+            if (first[i] == first[i + 1]) continue;
+            grid.for_cells(tiles[i], [&](int cell, const Cell&) {
+                if (grid.row[cell] < 0) return;
+                grid.row[cell] += first[i];
+                liquid.cells[static_cast<std::size_t>(grid.row[cell])] = static_cast<std::uint32_t>(cell);
+            });
+        }
+    });
+}
+
+}  // namespace
+
+void mark_liquid(FluidGrid& grid, LiquidCells& liquid, TaskPool& workers) {
+    grid.for_tiles(workers, [&](const Cell& corner) {
+        grid.for_cells(corner, [&](int cell, const Cell&) {
+            const float room = grid.room[cell];
+            grid.surface[cell] = room < least_room ? 1 : -height_of_surface(grid.density[cell] / room);
+        });
+    });
+
+    mark_beside_liquid(grid, workers);
+    number_rows(grid, liquid, workers);
+}
+
+}  // namespace embody::physics

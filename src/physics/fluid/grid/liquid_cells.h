@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "foundation/task_pool.h"
+#include "physics/fluid/grid/grid.h"
+
+namespace embody::physics {
+
+/// Cells of which solids leave less have no surface of their own: they take it from their neighbours.
+inline constexpr float least_room = 0.3f;
+
+/// The cells of liquid by row.
+struct LiquidCells {
+    std::vector<std::uint32_t> cells;
+    std::vector<int> first_row;  ///< of each of the grid's active tiles, and how many rows there are
+};
+
+/// Marks the liquid's cells: grid.surface from the density and the room around, grid.row by number.
+void mark_liquid(FluidGrid& grid, LiquidCells& liquid, TaskPool& workers);
+
+}  // namespace embody::physics

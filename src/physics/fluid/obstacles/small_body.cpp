@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// docs/physics/fluids.md, "Bodies smaller than a cell".
+#include "physics/fluid/obstacles/small_body.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "physics/fluid/obstacles/solids.h"
+#include "physics/fluid/particles/transfer.h"
+
+namespace embody::physics {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+}  // namespace
+
+double drag_of_sphere(double radius, double speed, double density, double viscosity) {
+    // C_d |u| = (0.63 √|u| + 4.8 √(μ / (ρ d)))², without a division by the speed.
+    const double root = 0.63 * std::sqrt(speed) + 4.8 * std::sqrt(viscosity / (density * 2 * radius));
+    return density / 2 * pi * radius * radius * root * root;
+}
+
+void drag_small_body(FluidGrid& grid, double density, double viscosity, double particle_mass, double dt,
+                     MovingSolid& moving) {
+    FluidSolid& solid = *moving.solid;
+    if (!moving.is_small || !moving.is_in_reach || !(solid.inverse_mass > 0)) return;
+    const float place[3] = {static_cast<float>(moving.center.x), static_cast<float>(moving.center.y),
+                            static_cast<float>(moving.center.z)};
+    float gradient[3];
+    const double wet = std::clamp<double>(sample_center(grid, grid.density, place, gradient), 0, 1);
+    const double volume = solid.shape->mass_properties().volume, radius = std::cbrt(volume * 0.75 / pi);
+    Vec3 liquid;                             // its velocity around
+    std::array<double, 3> answer{}, mass{};  // what a unit impulse changes that by; the weighed mass at the faces
+    std::array<FaceWeights, 3> around;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        around[axis] = face_weights(grid, place, static_cast<int>(axis));
+        double weights = 0, squares = 0;
+        for (FaceWeight& face : around[axis]) {
+            if (!grid.known[axis][face.cell] || !(grid.mass[axis][face.cell] > 0)) face.weight = 0;
+            weights += face.weight;
+            squares += static_cast<double>(face.weight) * face.weight;
+            mass[axis] += face.weight * (grid.mass[axis][face.cell] * particle_mass);
+            liquid[static_cast<int>(axis)] += static_cast<double>(face.weight) * grid.velocity[axis][face.cell];
+        }
+        if (!(weights > 0)) return;
+        liquid[static_cast<int>(axis)] /= weights;
+        answer[axis] = squares / (weights * mass[axis]);
+    }
+    const Vec3 slip = liquid - moving.linear_velocity;
+    const double drag = wet * dt * drag_of_sphere(radius, length(slip), density, viscosity);
+    if (!(drag > 0)) return;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<int>(axis);
+        const double impulse = slip[a] / (1 / drag + solid.inverse_mass + answer[axis]);
+        solid.impulse[a] += impulse;
+        moving.linear_velocity[a] += impulse * solid.inverse_mass;
+        for (const FaceWeight& face : around[axis]) {
+            grid.velocity[axis][face.cell] -= static_cast<float>(impulse * face.weight / mass[axis]);
+        }
+    }
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "math/bounds.h"
+#include "math/mat3.h"
+#include "physics/collision/shapes/collision_shape.h"
+#include "physics/collision/shapes/convex.h"
+
+namespace embody::physics {
+
+/// How near a solid is: exact next to its faces, else at most the true distance; < 0 inside.
+struct SolidDistance {
+    double distance = 0;  ///< m
+    Vec3 normal;          ///< unit, outwards
+};
+
+/// A placed shape as a fluid asks it: signed distances, shares of small cubes, and whether a way is barred. Of meshes
+/// and heightfields the front of a triangle is outside and what lies behind it within the reach asked for is inside.
+/// The hulls of a compound, which stand for one surface, leave gaps: each is met as a millimetre or so thicker than it
+/// is (its shares of cubes are its own).
+class SolidProbe {
+public:
+    SolidProbe(const CollisionShape& shape, const Transform& pose);
+
+    [[nodiscard]] const Bounds& bounds() const { return bounds_; }
+    /// Chooses the parts within `reach` of the box; the questions below are for points in the box alone. False if there
+    /// are none.
+    bool look_at(const Bounds& box, double reach);
+    /// Farther than the reach: the reach.
+    [[nodiscard]] SolidDistance nearest(Vec3 p) const;
+    /// Shares of the eight octants of the axis-aligned cube around p, of that edge, that are solid: 0 … 1, added to
+    /// `shares`. Bit 0 of an octant's number: its upper half in x, bit 1: in y, bit 2: in z.
+    void add_octants(Vec3 p, double edge, float* shares) const;
+    /// Whether the solid ends within `depth` behind the surface nearest to p, which is inside.
+    [[nodiscard]] bool is_thinner(Vec3 p, Vec3 normal, double depth) const;
+    /// First place of the way from a to b where a surface is met, from either side of triangles, from outside of
+    /// solids: share of the way, and the normal against it.
+    struct Crossing {
+        double share = 0;
+        Vec3 normal;
+    };
+    [[nodiscard]] std::optional<Crossing> crossing(Vec3 a, Vec3 b) const;
+    /// Whether it is triangles, which one may be on either side of.
+    [[nodiscard]] bool is_surface() const;
+
+private:
+    struct Piece {
+        const Convex* convex;
+        Mat3 rotation;
+        Vec3 position;
+        Bounds bounds;
+    };
+    struct Triangle {
+        std::array<Vec3, 3> corners;
+        Vec3 normal;
+    };
+    [[nodiscard]] SolidDistance nearest_triangle(Vec3 p) const;
+    [[nodiscard]] std::optional<Crossing> crossing_of_pieces(Vec3 a, Vec3 direction, double whole) const;
+
+    const CollisionShape* shape_;
+    Transform pose_;
+    Bounds bounds_;
+    double seal_ = 0;  // m: so much thicker are its hulls met
+    std::vector<Piece> pieces_;
+    double reach_ = 0;
+    std::vector<std::uint32_t> near_pieces_;
+    std::vector<Triangle> near_triangles_;
+    std::vector<std::uint32_t> found_;
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+#include "physics/fluid/obstacles/solid_region.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace embody::physics {
+
+namespace {
+
+// A cube that is farther than this from a surface is not cut by it, in half its edges: √3.
+constexpr double half_diagonal = 1.7320508;
+
+// Whether a wall stands between two places, and not the tip of an edge: its sides look away from each other.
+bool is_walled(const SolidProbe& probe, Vec3 a, Vec3 b) {
+    constexpr double least_opposed = -0.5;
+    const auto entry = probe.crossing(a, b);
+    if (!entry) return false;
+    const auto exit = probe.crossing(b, a);
+    return !exit || dot(entry->normal, exit->normal) < least_opposed;
+}
+
+}  // namespace
+
+void SolidRegion::begin(const FluidGrid& grid, const Cell& lower, const Cell& upper) {
+    grid_ = &grid;
+    lower_ = lower;
+    upper_ = upper;
+    std::size_t cells = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        size_[axis] = upper[axis] - lower[axis] + 2;
+        cells *= static_cast<std::size_t>(size_[axis]);
+    }
+    distance_.assign(cells, static_cast<float>(reach));
+    octants_.assign(8 * cells, 0);
+    for (auto& share : share_) share.assign(cells, 0);
+    thin_.assign(cells, 0);
+    is_cut_.assign(cells, 0);
+    any_thin_ = any_cut_ = false;
+}
+
+bool SolidRegion::add(SolidProbe& probe) {
+    const double h = grid_->cell_size();
+    Cell low = lower_, high = upper_;
+    for (int axis = 0; axis < 3; ++axis) --low[axis];
+    const Vec3 half{h / 2, h / 2, h / 2};
+    if (!probe.look_at({grid_->center(low) - half, grid_->center(high) + half}, reach * h)) return false;
+    own_distance_.assign(distance_.size(), static_cast<float>(reach));
+    for (int z = low[2], cell = 0; z <= high[2]; ++z) {
+        for (int y = low[1]; y <= high[1]; ++y) {
+            for (int x = low[0]; x <= high[0]; ++x, ++cell) {
+                const Vec3 center = grid_->center({x, y, z});
+                const double distance = probe.nearest(center).distance;
+                own_distance_[cell] = static_cast<float>(std::clamp(distance / h, -reach, reach));
+                distance_[cell] = std::min(distance_[cell], own_distance_[cell]);
+                if (distance > half_diagonal / 2 * h) continue;
+                if (distance < -half_diagonal / 2 * h) {
+                    std::fill_n(octants_.begin() + 8 * cell, 8, 1.0f);
+                } else {
+                    probe.add_octants(center, h, &octants_[8 * cell]);
+                }
+                is_cut_[cell] = 1;
+                any_cut_ = true;
+            }
+        }
+    }
+    shut_thin(probe);
+    return true;
+}
+
+// What the shares cannot see (docs/physics/fluids.md, "Thin walls"): surfaces between two centres that are both
+// outside, and walls around a centre that end before the next one.
+void SolidRegion::shut_thin(const SolidProbe& probe) {
+    const double h = grid_->cell_size();
+    constexpr double thickness = 1.9;  // cells: nothing is left open of the faces beside a wall of two
+    constexpr float on_surface = 1e-3f;
+    const auto shut = [&](int axis, int cell) {
+        share_[axis][cell] = 1;
+        thin_[cell] |= static_cast<std::uint8_t>(1 << axis);
+        any_thin_ = true;
+    };
+    for (int z = 0, cell = 0; z < size_[2]; ++z) {
+        for (int y = 0; y < size_[1]; ++y) {
+            for (int x = 0; x < size_[0]; ++x, ++cell) {
+                const float here = own_distance_[cell];
+                if (here > 1.05f || here < -1) continue;
+                const Vec3 center = grid_->center({x + lower_[0] - 1, y + lower_[1] - 1, z + lower_[2] - 1});
+                const Cell place{x, y, z};
+                if (here < on_surface) {
+                    // Near its edges the nearest surface may be another than those of the wall's two sides.
+                    const bool is_thin = probe.is_thinner(center, probe.nearest(center).normal, (thickness + here) * h);
+                    for (int axis = 0; axis < 3; ++axis) {
+                        const bool has_both = place[axis] > 0 && place[axis] + 1 < size_[axis];
+                        const bool is_between = has_both && own_distance_[cell - stride(axis)] > on_surface &&
+                                                own_distance_[cell + stride(axis)] > on_surface;
+                        if (!is_thin && !is_between) continue;
+                        shut(axis, cell);
+                        if (place[axis] + 1 < size_[axis]) shut(axis, cell + stride(axis));
+                    }
+                    continue;
+                }
+                for (int axis = 0; axis < 3; ++axis) {
+                    if (place[axis] == 0) continue;
+                    const float there = own_distance_[cell - stride(axis)];
+                    if (there < on_surface || here + there > 1.05f) continue;
+                    Vec3 from = center;
+                    from[axis] -= h;
+                    if (is_walled(probe, from, center)) shut(axis, cell);
+                }
+            }
+        }
+    }
+}
+
+void SolidRegion::mark_near_thin() {
+    const auto mark_around = [&](int x, int y, int z) {
+        for (int dz = std::max(z - 1, 0); dz <= std::min(z + 1, size_[2] - 1); ++dz) {
+            for (int dy = std::max(y - 1, 0); dy <= std::min(y + 1, size_[1] - 1); ++dy) {
+                for (int dx = std::max(x - 1, 0); dx <= std::min(x + 1, size_[0] - 1); ++dx) {
+                    thin_[dx + size_[0] * (dy + size_[1] * dz)] |= near_thin;
+                }
+            }
+        }
+    };
+    for (int z = 0, cell = 0; z < size_[2]; ++z) {
+        for (int y = 0; y < size_[1]; ++y) {
+            for (int x = 0; x < size_[0]; ++x, ++cell) {
+                const int bits = thin_[cell];
+                if (!(bits & (closed_x | closed_y | closed_z))) continue;
+                mark_around(x, y, z);
+                if (bits & closed_x) mark_around(x - 1, y, z);
+                if (bits & closed_y) mark_around(x, y - 1, z);
+                if (bits & closed_z) mark_around(x, y, z - 1);
+            }
+        }
+    }
+}
+
+void SolidRegion::finish() {
+    if (any_thin_) filled_ = share_;
+    for (int z = 1; z < size_[2]; ++z) {
+        for (int y = 1; y < size_[1]; ++y) {
+            for (int x = 1; x < size_[0]; ++x) {
+                const int cell = x + size_[0] * (y + size_[1] * z);
+                for (int axis = 0; axis < 3; ++axis) {
+                    const bool is_shut = share_[axis][cell] == 1;
+                    const int below = cell - stride(axis);
+                    float sum = 0;
+                    if (is_cut_[cell] || is_cut_[below]) {
+                        for (int octant = 0; octant < 8; ++octant) {
+                            const bool is_upper = octant >> axis & 1;
+                            sum += octants_[8 * (is_upper ? below : cell) + octant];
+                        }
+                    }
+                    if (!is_shut) share_[axis][cell] = sum / 8;
+                    if (any_thin_) filled_[axis][cell] = sum / 8;
+                }
+            }
+        }
+    }
+    if (any_thin_) mark_near_thin();
+    measure_room();
+}
+
+// The tent kernel over octants: 1/8, 3/8, 3/8, 1/8 along each axis, one axis after the other.
+void SolidRegion::measure_room() {
+    const auto cells = distance_.size();
+    room_.assign(cells, 1);
+    if (!any_cut_) return;
+    const auto fold = [&](int axis, int octants, const std::vector<float>& from, std::vector<float>& to) {
+        // An eighth, a quarter … of each cell's values is left: those of the other axes' octants.
+        const auto below = static_cast<std::size_t>(stride(axis));
+        const auto width = static_cast<std::size_t>(octants);
+        to.assign(cells * width, 0);
+        for (std::size_t cell = below; cell + below < cells; ++cell) {
+            const float *own = &from[cell * 2 * width], *lower = own - below * 2 * width,
+                        *upper = own + below * 2 * width;
+            for (std::size_t i = 0; i < width; ++i) {
+                to[cell * width + i] =
+                    0.125f * (lower[2 * i + 1] + upper[2 * i]) + 0.375f * (own[2 * i] + own[2 * i + 1]);
+            }
+        }
+    };
+    fold(0, 4, octants_, folded_[0]);
+    fold(1, 2, folded_[0], folded_[1]);
+    fold(2, 1, folded_[1], folded_[0]);
+    for (std::size_t cell = 0; cell < cells; ++cell) room_[cell] = std::max(0.0f, 1 - folded_[0][cell]);
+}
+
+void SolidRegion::spread(Vec3 place, double volume) {
+    const double h = grid_->cell_size();
+    room_.assign(distance_.size(), 1);
+    for (int axis = 0; axis <= 3; ++axis) {  // 3: centres
+        Cell corner{};
+        float upper[3];
+        for (int a = 0; a < 3; ++a) {
+            const double at = place[a] / h - grid_->lower()[a] - (a == axis ? 0.0 : 0.5);
+            corner[a] = static_cast<int>(std::floor(at));
+            upper[a] = static_cast<float>(at - corner[a]);
+        }
+        for (int k = 0; k < 8; ++k) {
+            Cell c = corner;
+            auto weight = static_cast<float>(volume / (h * h * h));
+            for (int a = 0; a < 3; ++a) {
+                const bool is_upper = k >> a & 1;
+                c[a] += is_upper;
+                weight *= is_upper ? upper[a] : 1 - upper[a];
+            }
+            if (axis < 3) {
+                share_[axis][index(c)] += weight;
+            } else {
+                room_[index(c)] -= weight;
+            }
+        }
+    }
+}
+
+float SolidRegion::room(int cell) const {
+    if (distance_[cell] > 1.75f) return room_[cell];
+
+    // Behind a thin wall nothing counts, and what lies before it is taken to the centre (ParticleCollider::place_of).
+    for (int axis = 0; axis < 3 && any_thin_; ++axis) {
+        const int bit = 1 << axis;
+        if ((thin_[cell] & bit) || (thin_[cell + stride(axis)] & bit)) {
+            return std::clamp(0.5f + distance_[cell], 0.0f, 1.5f);
+        }
+    }
+    return room_[cell];
+}
+
+}  // namespace embody::physics

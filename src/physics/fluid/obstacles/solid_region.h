@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "physics/fluid/grid/grid.h"
+#include "physics/fluid/obstacles/solid_probe.h"
+
+namespace embody::physics {
+
+/// Solids measured on a box of cells: how far each centre is from them and which share of each octant (an eighth of a
+/// cell) they fill. From these come the shares of the faces' control volumes and of the density's kernel.
+class SolidRegion {
+public:
+    static constexpr double reach = 2;  ///< cells: farther surfaces are not told apart
+
+    /// Cells from `lower` to below `upper` of the grid; measured is one more all around.
+    void begin(const FluidGrid& grid, const Cell& lower, const Cell& upper);
+    /// Adds a solid; false if it is out of reach.
+    bool add(SolidProbe& probe);
+    /// Faces from octants, once all solids are in.
+    void finish();
+    /// Instead of both: a volume, m³, that is less than a cell and spread by trilinear weights around a place that is
+    /// two cells within the box.
+    void spread(Vec3 place, double volume);
+
+    [[nodiscard]] const Cell& lower() const { return lower_; }
+    [[nodiscard]] const Cell& upper() const { return upper_; }
+    /// Of a cell of the grid, within the box (and one around it for `distance`).
+    [[nodiscard]] int index(const Cell& c) const {
+        return (c[0] - lower_[0] + 1) + size_[0] * ((c[1] - lower_[1] + 1) + size_[1] * (c[2] - lower_[2] + 1));
+    }
+    /// Share of the control volume of the lower face along `axis`; valid from lower() to upper(), that included.
+    [[nodiscard]] float share(int axis, int cell) const { return share_[axis][cell]; }
+    /// The same without what is shut because it is thin.
+    [[nodiscard]] float filled(int axis, int cell) const {
+        return any_thin_ ? filled_[axis][cell] : share_[axis][cell];
+    }
+    [[nodiscard]] float distance(int cell) const { return distance_[cell]; }  ///< cells
+    [[nodiscard]] std::uint8_t thin(int cell) const { return thin_[cell]; }   ///< ThinMark
+    /// Share of the density's kernel around the centre that is free; within the box.
+    [[nodiscard]] float room(int cell) const;
+
+private:
+    void shut_thin(const SolidProbe& probe);
+    void mark_near_thin();
+    void measure_room();
+    [[nodiscard]] int stride(int axis) const { return axis == 0 ? 1 : axis == 1 ? size_[0] : size_[0] * size_[1]; }
+
+    const FluidGrid* grid_ = nullptr;
+    Cell lower_{}, upper_{}, size_{};
+    std::vector<float> distance_, own_distance_;
+    std::vector<float> octants_;                // eight a cell
+    std::array<std::vector<float>, 2> folded_;  // octants summed along axes
+    std::vector<float> room_;
+    std::array<std::vector<float>, 3> share_, filled_;
+    std::vector<std::uint8_t> thin_;
+    std::vector<std::uint8_t> is_cut_;
+    bool any_thin_ = false, any_cut_ = false;
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: MIT
+#include "physics/fluid/obstacles/solids.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace embody::physics {
+
+namespace {
+
+// Faces of which less is open are shut: seams between solids that touch do not leak.
+constexpr float least_open = 0.02f;
+// A body that was put farther away than this from outside was not moved through the fluid, m.
+constexpr double farthest_put = 0.5;
+
+Quat turned(Quat rotation, Vec3 angular_velocity, double dt) {
+    const Vec3 half = angular_velocity * (dt / 2);
+    const Quat change = Quat{half.x, half.y, half.z, 0} * rotation;
+    return normalized({rotation.x + change.x, rotation.y + change.y, rotation.z + change.z, rotation.w + change.w});
+}
+
+Transform moved(const FluidSolid& solid, Vec3 origin, Vec3 center, Quat rotation) {
+    // The body's origin relative to its centre of mass turns along.
+    const Vec3 arm = rotate_inverse(solid.pose.rotation, solid.pose.position - solid.center);
+    return {center - origin + rotate(rotation, arm), rotation};
+}
+
+// The rotation vector that turned() makes of it: exact for one part, and for small ones.
+Vec3 turn_between(Quat from, Quat to) {
+    const Quat turn = to * conjugate(from);
+    return Vec3{turn.x, turn.y, turn.z} * (turn.w < 0 ? -2.0 : 2.0);
+}
+
+// A face that is shut though the solid does not fill it.
+void bind_face(MovingSolid& moving, const FluidGrid& grid, int axis, const Cell& c, float share) {
+    if (share < least_open) return;
+    const Vec3 n{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
+    const Vec3 place = grid.center(c) - n * (grid.cell_size() / 2);
+    moving.bound.push_back(
+        {.axis = axis, .cell = grid.index(c), .share = share, .turn = cross(place - moving.center, n)});
+}
+
+}  // namespace
+
+// Where the last step left a body that it knew and that goes on from there.
+const FluidSolids::LeftBody* FluidSolids::left(const FluidSolid& solid) const {
+    const auto found = std::ranges::lower_bound(left_, solid.body, {}, &LeftBody::body);
+    if (found == left_.end() || found->body != solid.body) return nullptr;
+    if (found->version == solid.version) return &*found;
+    return length(found->center + origin_ - solid.center) < farthest_put ? &*found : nullptr;
+}
+
+void FluidSolids::put_where_it_is(MovingSolid& moving) const {
+    const FluidSolid& solid = *moving.solid;
+    moving.center = solid.center - origin_;
+    moving.rotation = solid.pose.rotation;
+    moving.linear_velocity = solid.linear_velocity;
+    moving.angular_velocity = solid.angular_velocity;
+}
+
+void FluidSolids::begin(std::span<FluidSolid> solids, FluidGrid& grid) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> versions;
+    std::size_t count = 0;
+    for (FluidSolid& solid : solids) {
+        if (solid.is_static) {
+            versions.emplace_back(solid.body, solid.version);
+            continue;
+        }
+        if (count == moving_.size()) {
+            moving_.push_back({.probe = SolidProbe(*solid.shape, solid.pose)});
+        }
+        MovingSolid& moving = moving_[count++];
+        moving.solid = &solid;
+        put_where_it_is(moving);
+        const LeftBody* before = left(solid);
+        moving.kept_center = before != nullptr ? before->center : moving.center;
+        moving.kept_rotation = before != nullptr ? before->rotation : moving.rotation;
+    }
+    moving_.erase(moving_.begin() + static_cast<std::ptrdiff_t>(count), moving_.end());
+    if (versions == fixed_versions_) return;
+    fixed_versions_ = std::move(versions);
+    fixed_.clear();
+    for (const FluidSolid& solid : solids) {
+        if (!solid.is_static) continue;
+        fixed_.emplace_back(*solid.shape, Transform{solid.pose.position - origin_, solid.pose.rotation});
+    }
+    std::fill(grid.is_static_known.begin(), grid.is_static_known.end(), 0);
+}
+
+double FluidSolids::surprise() const {
+    double farthest = 0;
+    for (const MovingSolid& moving : moving_) {
+        const double reach = length(moving.solid->shape->bounds(moving.solid->pose).half_extents());
+        const Vec3 turn = turn_between(moving.kept_rotation, moving.rotation);
+        farthest = std::max(farthest, length(moving.center - moving.kept_center) + length(turn) * reach);
+    }
+    return farthest;
+}
+
+void FluidSolids::begin_catching_up() {
+    for (MovingSolid& moving : moving_) {
+        moving.linear_velocity = moving.center - moving.kept_center;
+        moving.angular_velocity = turn_between(moving.kept_rotation, moving.rotation);
+        moving.center = moving.kept_center;
+        moving.rotation = moving.kept_rotation;
+    }
+}
+
+void FluidSolids::end_catching_up() {
+    for (MovingSolid& moving : moving_) put_where_it_is(moving);
+}
+
+void FluidSolids::measure_static_tile(FluidGrid& grid, const Cell& corner, std::vector<SolidProbe>& probes,
+                                      SolidRegion& region) {
+    Cell upper = corner;
+    for (int axis = 0; axis < 3; ++axis) upper[axis] += FluidGrid::tile[axis];
+    region.begin(grid, corner, upper);
+    for (SolidProbe& probe : probes) region.add(probe);
+    region.finish();
+    grid.for_cells(corner, [&](int cell, const Cell& c) {
+        const int here = region.index(c);
+        for (int axis = 0; axis < 3; ++axis) grid.static_share[axis][cell] = region.share(axis, here);
+        grid.static_distance[cell] = region.distance(here);
+        grid.static_room[cell] = region.room(here);
+        grid.static_thin[cell] = region.thin(here);
+    });
+    grid.is_static_known[grid.tile_of(corner)] = 1;
+    grid.clear_tile(corner);
+}
+
+void FluidSolids::measure_static(FluidGrid& grid, TaskPool& workers) {
+    std::vector<Cell> unknown;
+    for (const Cell& corner : grid.tiles()) {
+        if (!grid.is_static_known[grid.tile_of(corner)]) unknown.push_back(corner);
+    }
+    const auto around_drops = grid.unknown_around_drops();
+    unknown.insert(unknown.end(), around_drops.begin(), around_drops.end());
+    if (unknown.empty()) return;
+    // Neighbours cost alike: every worker takes each so many-th.
+    const auto number = static_cast<std::size_t>(workers.workers());
+    share_among(workers, number, unknown.size() > 4, [&](int, Share share) {
+        std::vector<SolidProbe> probes = fixed_;
+        SolidRegion region;
+        for (std::size_t first = share.first; first < share.last; ++first) {
+            for (std::size_t i = first; i < unknown.size(); i += number) {
+                measure_static_tile(grid, unknown[i], probes, region);
+            }
+        }
+    });
+}
+
+// Shares and distances of one alone.
+void FluidSolids::measure_moving(MovingSolid& moving, const FluidGrid& grid) {
+    // The cells in reach, within the box and away from its rim.
+    const double h = grid.cell_size();
+    const Bounds wide = enlarged(moving.probe.bounds(), SolidRegion::reach * h);
+    Cell lower{}, upper{};
+    const Vec3 extent = moving.probe.bounds().half_extents() * 2;
+    moving.is_small = std::max({extent.x, extent.y, extent.z}) < h && !moving.probe.is_surface();
+    moving.is_in_reach = true;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = std::floor(wide.lower[axis] / h) - grid.lower()[axis];
+        const double high = std::ceil(wide.upper[axis] / h) - grid.lower()[axis];
+        lower[axis] = static_cast<int>(std::clamp(low, 1.0, grid.size()[axis] - 1.0));
+        upper[axis] = static_cast<int>(std::clamp(high, 1.0, grid.size()[axis] - 1.0));
+        moving.is_in_reach = moving.is_in_reach && lower[axis] < upper[axis];
+        // What is spread reaches a cell around the centre.
+        const double at = moving.center[axis] / h;
+        const bool is_inside = at > grid.lower()[axis] + lower[axis] + 1 && at < grid.lower()[axis] + upper[axis] - 1;
+        moving.is_in_reach = moving.is_in_reach && (is_inside || !moving.is_small);
+    }
+    if (!moving.is_in_reach) return;
+    SolidRegion& region = moving.region;
+    region.begin(grid, lower, upper);
+    if (moving.is_small) {
+        region.spread(moving.center, moving.solid->shape->mass_properties().volume);
+        return;
+    }
+    moving.is_in_reach = region.add(moving.probe);
+    if (!moving.is_in_reach) return;
+    region.finish();
+}
+
+// Where solids overlap, the first one has the space.
+void FluidSolids::place_moving(MovingSolid& moving, int owner, FluidGrid& grid) {
+    if (!moving.is_in_reach) return;
+    const SolidRegion& region = moving.region;
+    const Cell &lower = region.lower(), &upper = region.upper();
+    moving.bound.clear();
+    for (auto& share : moving.share) share.assign(static_cast<std::size_t>(region.index(upper)) + 1, 0);
+    for (int z = lower[2]; z < upper[2]; ++z) {
+        for (int y = lower[1]; y < upper[1]; ++y) {
+            for (int x = lower[0]; x < upper[0]; ++x) {
+                const Cell c{x, y, z};
+                if (!grid.is_active(c)) continue;
+                const int cell = grid.index(c), here = region.index(c);
+                for (int axis = 0; axis < 3; ++axis) {
+                    float& open = grid.open[axis][cell];
+                    float share = std::min(region.share(axis, here), open);
+                    if (open - share < least_open) share = open;
+                    moving.share[axis][here] = share;
+                    open -= share;
+                    bind_face(moving, grid, axis, c, share - region.filled(axis, here));
+                }
+                if (region.distance(here) < grid.solid[cell]) {
+                    grid.solid[cell] = region.distance(here);
+                    grid.solid_owner[cell] = static_cast<std::int16_t>(owner);
+                }
+                grid.room[cell] *= region.room(here);
+                grid.thin[cell] |= region.thin(here);
+            }
+        }
+    }
+}
+
+std::vector<Bounds> FluidSolids::in_reach(double dt, double cell_size) const {
+    constexpr double cells = 6;  // as far as a particle goes in a part, and what it asks of its surroundings
+    std::vector<Bounds> boxes;
+    for (const MovingSolid& moving : moving_) {
+        const FluidSolid& solid = *moving.solid;
+        const Bounds bounds = solid.shape->bounds(solid.pose);
+        const double radius = length(bounds.half_extents()) + length(bounds.center() - solid.center);
+        const double way = length(moving.linear_velocity) * dt + length(moving.center - moving.kept_center);
+        boxes.push_back(enlarged(Bounds{moving.center, moving.center}, radius + way + cells * cell_size));
+    }
+    return boxes;
+}
+
+void FluidSolids::place() {
+    for (MovingSolid& moving : moving_) {
+        const FluidSolid& solid = *moving.solid;
+        const Transform placed = moved(solid, origin_, moving.center + origin_, moving.rotation);
+        moving.probe = SolidProbe(*solid.shape, placed);
+    }
+}
+
+void FluidSolids::measure(double dt, FluidGrid& grid, TaskPool& workers) {
+    measure_static(grid, workers);
+    for (const Cell& corner : grid.left()) grid.clear_tile(corner);
+    grid.for_tiles(workers, [&](const Cell& corner) {
+        grid.for_rows(corner, [&](int first, const Cell&) {
+            for (int cell = first; cell < first + FluidGrid::tile[0]; ++cell) {
+                for (int axis = 0; axis < 3; ++axis) {
+                    const float open = 1 - grid.static_share[axis][cell];
+                    grid.open[axis][cell] = open < least_open ? 0 : open;
+                }
+                grid.solid[cell] = grid.static_distance[cell];
+                grid.room[cell] = grid.static_room[cell];
+                grid.thin[cell] = grid.static_thin[cell];
+                grid.solid_owner[cell] = -1;
+            }
+        });
+    });
+    for (MovingSolid& moving : moving_) {
+        moving.center += moving.linear_velocity * (dt / 2);
+        moving.rotation = turned(moving.rotation, moving.angular_velocity, dt / 2);
+    }
+    place();
+    share_among(workers, moving_.size(), moving_.size() > 1, [&](int, Share share) {
+        for (std::size_t i = share.first; i < share.last; ++i) measure_moving(moving_[i], grid);
+    });
+    for (std::size_t i = 0; i < moving_.size(); ++i) place_moving(moving_[i], static_cast<int>(i), grid);
+
+    // A cell that is shut all around is solid, be its centre on the seam of two solids.
+    grid.for_tiles(workers, [&](const Cell& corner) {
+        grid.for_cells(corner, [&](int cell, const Cell&) {
+            if (grid.solid[cell] > 0.5f) return;
+            for (int axis = 0; axis < 3; ++axis) {
+                if (grid.open[axis][cell] > 0 || grid.open[axis][cell + grid.stride(axis)] > 0) return;
+            }
+            grid.solid[cell] = std::min(grid.solid[cell], -0.5f);
+        });
+    });
+}
+
+void FluidSolids::accelerate(double dt) {
+    for (MovingSolid& moving : moving_) {
+        moving.linear_velocity += moving.solid->acceleration * dt;
+        moving.angular_velocity += moving.solid->angular_acceleration * dt;
+    }
+}
+
+void FluidSolids::list_areas(const FluidGrid& grid) {
+    const double h = grid.cell_size();
+    for (MovingSolid& moving : moving_) {
+        moving.areas.clear();
+        if (!moving.is_in_reach) continue;
+        const SolidRegion& region = moving.region;
+        const Cell &low = region.lower(), &high = region.upper();
+        for (int z = low[2]; z < high[2]; ++z) {
+            for (int y = low[1]; y < high[1]; ++y) {
+                for (int x = low[0]; x < high[0]; ++x) {
+                    const Cell c{x, y, z};
+                    if (!grid.is_active(c)) continue;
+                    const int row = grid.row[grid.index(c)];
+                    if (row < 0) continue;
+                    Vec3 area;
+                    for (int axis = 0; axis < 3; ++axis) {
+                        Cell next = c;
+                        ++next[axis];
+                        const double above = next[axis] < high[axis] ? moving.share[axis][region.index(next)] : 0.0f;
+                        area[axis] = (above - moving.share[axis][region.index(c)]) * h * h;
+                    }
+                    if (area == Vec3{}) continue;
+                    moving.areas.push_back({row, area, cross(grid.center(c) - moving.center, area)});
+                }
+            }
+        }
+    }
+}
+
+void FluidSolids::advance(double dt) {
+    for (MovingSolid& moving : moving_) {
+        moving.center += moving.linear_velocity * (dt / 2);
+        moving.rotation = moving.end_rotation(dt);
+        moving.kept_center = moving.center;
+        moving.kept_rotation = moving.rotation;
+    }
+}
+
+void FluidSolids::end() {
+    left_.clear();
+    for (const MovingSolid& moving : moving_) {
+        left_.push_back({moving.solid->body, moving.solid->version, moving.kept_center, moving.kept_rotation});
+    }
+}
+
+Quat MovingSolid::end_rotation(double dt) const { return turned(rotation, angular_velocity, dt / 2); }
+
+}  // namespace embody::physics

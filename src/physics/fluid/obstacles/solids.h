@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "math/transform.h"
+#include "physics/fluid/grid/grid.h"
+#include "physics/fluid/obstacles/solid_probe.h"
+#include "physics/fluid/obstacles/solid_region.h"
+#include "physics/fluid/pressure/bound_liquid.h"
+
+namespace embody::physics {
+
+/// A rigid body as a fluid meets it in a step.
+struct FluidSolid {
+    std::uint32_t body = 0;  ///< caller's number; solids come in its order
+    const CollisionShape* shape = nullptr;
+    std::uint32_t version = 0;  ///< another one after each change from outside
+    bool is_static = false;     ///< never moves: measured once
+    Transform pose;             ///< when the step begins, world
+    Vec3 center;                ///< of mass, world, m
+    Vec3 linear_velocity, angular_velocity;
+    double inverse_mass = 0;  ///< 0: no fluid moves it
+    Mat3 inverse_inertia = Mat3::zero();
+    Vec3 acceleration, angular_acceleration;  ///< by all but the fluid, as far as is known
+
+    Vec3 impulse, angular_impulse;  ///< result: of the fluid on it in this step, about its centre of mass, N s, N m s
+};
+
+/// What a solid's surface in a cell is to the cell's pressure: its area vector, m², into the solid, and the moment of
+/// it about the solid's centre of mass, m³.
+struct SolidArea {
+    int row = 0;
+    Vec3 area, moment;
+};
+
+/// A solid that is or may be in motion, through the parts of a step.
+struct MovingSolid {
+    FluidSolid* solid = nullptr;
+    Vec3 center;  ///< in the fluid's frame, in the middle of the part
+    Quat rotation;
+    Vec3 linear_velocity, angular_velocity;
+    Vec3 kept_center;  ///< where it was when particles were last kept out of it: when the part begins
+    Quat kept_rotation;
+    SolidProbe probe;
+    SolidRegion region;
+    std::array<std::vector<float>, 3> share;  ///< of faces, by the region's index: what other solids left
+    std::vector<SolidArea> areas;
+    std::vector<BoundFace> bound;
+    SolidResponse response;
+    bool is_in_reach = false;
+    bool is_small = false;  ///< smaller than a cell: what it fills is spread around its centre
+
+    [[nodiscard]] Vec3 velocity_at(Vec3 p) const { return linear_velocity + cross(angular_velocity, p - center); }
+    /// Rotation at the end of the part.
+    [[nodiscard]] Quat end_rotation(double dt) const;
+};
+
+/// Measures the solids on the grid: static ones once for each tile, the others in each part of a step.
+class FluidSolids {
+public:
+    explicit FluidSolids(Vec3 origin) : origin_(origin) {}
+
+    /// Before the parts of a step.
+    void begin(std::span<FluidSolid> solids, FluidGrid& grid);
+    /// How far the solids are from where the last step left them, m: what they met there was not expected.
+    [[nodiscard]] double surprise() const;
+    /// Puts the solids where the last step left them, with velocities that bring them where they are in a second; then
+    /// back to where and as fast as they are.
+    void begin_catching_up();
+    void end_catching_up();
+    /// Boxes that hold what the moving ones may meet in a part of that length, in the fluid's frame.
+    [[nodiscard]] std::vector<Bounds> in_reach(double dt, double cell_size) const;
+    /// Puts the probes of the moving ones where they are.
+    void place();
+    /// Measures with the poses in the middle of the part.
+    void measure(double dt, FluidGrid& grid, TaskPool& workers);
+    /// Forces but the fluid's change velocities.
+    void accelerate(double dt);
+    /// Once rows are known.
+    void list_areas(const FluidGrid& grid);
+    /// Moves on to the end of the part.
+    void advance(double dt);
+    /// After the parts of a step.
+    void end();
+
+    [[nodiscard]] std::vector<MovingSolid>& moving() { return moving_; }
+    [[nodiscard]] const std::vector<MovingSolid>& moving() const { return moving_; }
+    /// A solid's velocity at a point by its number in the grid's solid_owner.
+    [[nodiscard]] Vec3 velocity_at(int owner, Vec3 p) const {
+        return owner < 0 ? Vec3{} : moving_[static_cast<std::size_t>(owner)].velocity_at(p);
+    }
+    /// Static solids as they stand in the fluid's frame.
+    [[nodiscard]] const std::vector<SolidProbe>& fixed() const { return fixed_; }
+
+private:
+    void measure_static(FluidGrid& grid, TaskPool& workers);
+    void measure_static_tile(FluidGrid& grid, const Cell& corner, std::vector<SolidProbe>& probes, SolidRegion& region);
+    static void measure_moving(MovingSolid& moving, const FluidGrid& grid);
+    static void place_moving(MovingSolid& moving, int owner, FluidGrid& grid);
+
+    /// Where a step left a body.
+    struct LeftBody {
+        std::uint32_t body, version;
+        Vec3 center;
+        Quat rotation;
+    };
+    [[nodiscard]] const LeftBody* left(const FluidSolid& solid) const;
+    void put_where_it_is(MovingSolid& moving) const;
+
+    Vec3 origin_;
+    std::vector<MovingSolid> moving_;
+    std::vector<LeftBody> left_;
+    std::vector<SolidProbe> fixed_;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> fixed_versions_;
+};
+
+}  // namespace embody::physics

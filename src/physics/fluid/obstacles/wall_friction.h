@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "foundation/task_pool.h"
+#include "physics/fluid/grid/grid.h"
+#include "physics/fluid/obstacles/solids.h"
+
+namespace embody::physics {
+
+/// Turbulent stress of a smooth wall over the density, m²/s², on liquid of kinematic viscosity ν (m²/s) that slides at
+/// `speed` (m/s) along it at the distance y (m), beyond ν speed/y, the laminar one; 0 where that is all (docs/physics/
+/// fluids.md, "Walls").
+double turbulent_stress(double speed, double y, double kinematic_viscosity);
+
+/// The faces next to solids that liquid does not move are slowed by the layer at the wall, which is thinner than a
+/// cell, and pull at them; on small bodies that move freely no such layer comes about. `particle_mass` in kg.
+void rub_along_walls(FluidGrid& grid, FluidSolids& solids, double density, double viscosity, double particle_mass,
+                     double dt, TaskPool& workers);
+
+}  // namespace embody::physics

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// Bodies that are elsewhere than the last step left them (docs/physics/fluids.md, "With rigid bodies").
+#include <algorithm>
+#include <cmath>
+
+#include "physics/fluid/grid/faces.h"
+#include "physics/fluid/particles/collide_particles.h"
+#include "physics/fluid/particles/transfer.h"
+#include "physics/fluid/solver.h"
+
+namespace embody::physics {
+
+namespace {
+
+constexpr double least_way = 0.005;  // cells: less does not bring a particle into a solid
+constexpr double single_way = 0.25;  // cells: of less the particles are kept out one by one
+constexpr double longest_way = 1.5;  // cells, of a part
+constexpr int most_parts = 16;
+
+}  // namespace
+
+FluidSolver::Followed FluidSolver::follow(std::span<FluidSolid> solids, TaskPool& workers) {
+    Followed followed;
+    if (particles_.empty()) return followed;
+    solids_.begin(solids, grid_);
+    const double way = solids_.surprise() / grid_.cell_size();
+    if (way > single_way) {
+        const double parts = std::clamp(std::ceil(way / longest_way), 1.0, static_cast<double>(most_parts));
+        solids_.begin_catching_up();
+        for (int i = 0; i < static_cast<int>(parts) && !particles_.empty(); ++i) displace(1 / parts, followed, workers);
+        solids_.end_catching_up();
+    }
+    if (way > least_way) keep_out(workers);
+    solids_.end();
+    return followed;
+}
+
+// Out of thin solids by their true shapes; the particles keep their velocities: the next pressure stops them.
+void FluidSolver::keep_out(TaskPool& workers) {
+    solids_.place();
+    share_among(workers, particles_.size(), particles_.size() > few_particles, [&](int, Share part) {
+        ParticleCollider collider(grid_, solids_, 0);
+        for (std::size_t i = part.first; i < part.last; ++i) {
+            if (!collider.is_near_thin(particles_[i].position)) continue;
+            FluidParticle moved = particles_[i];
+            collider.move(moved, particles_[i].position);
+            std::copy_n(moved.position, 3, particles_[i].position);
+        }
+    });
+    solids_.advance(0);
+}
+
+// The displacement of least Σ |d|² that lets the solids through and keeps the liquid's volume: d = −∇q, ∇·d = 0, as the
+// pressure moves liquid at rest.
+void FluidSolver::displace(double share, Followed& followed, TaskPool& workers) {
+    constexpr double allowed_change = 1e-3;  // of a cell's volume
+    constexpr int most_iterations = 300;
+    const double h = grid_.cell_size();
+    followed.lost += grid_.cover(particles_, workers);
+    if (particles_.empty()) return;
+    grid_.sort(particles_, particle_share(), solids_.in_reach(share, h), workers);
+    solids_.measure(share, grid_, workers);
+    if (grid_.on_grid() == 0) return solids_.advance(share);
+    find_places(share, workers);
+    particles_to_grid(grid_, particles_, places_, particle_share(), workers);
+    grid_.for_tiles(workers, [&](const Cell& corner) {
+        grid_.for_rows(corner, [&](int first, const Cell&) {
+            for (auto& field : grid_.velocity) std::fill_n(field.begin() + first, FluidGrid::tile[0], 0.0f);
+        });
+    });
+    system_.build(grid_, workers);
+    solids_.list_areas(grid_);
+    outflow(grid_, solids_, system_, flow_, workers);
+    for (double& flow : flow_) flow *= -1 / h;
+    potential_.assign(system_.size(), 0);
+    system_.set_bodies({}, 0);
+    const int iterations = system_.solve(flow_, potential_, allowed_change * h * h / share, most_iterations, workers);
+    subtract_gradient(grid_, potential_, {}, 1 / h, grid_.velocity, workers);
+    extrapolate(grid_, grid_.velocity, 1, workers);
+    admit_drops(grid_, workers);
+    extrapolate(grid_, grid_.velocity, 2, workers);
+    follow_solids(grid_, solids_, 0, workers);
+
+    const std::size_t count = grid_.on_grid();
+    share_among(workers, count, count > few_particles, [&](int, Share part) {
+        ParticleCollider collider(grid_, solids_, share);
+        for (std::size_t i = part.first; i < part.last; ++i) {
+            FluidParticle moved = particles_[i];
+            float way[3], end[3];
+            sample_value(grid_, grid_.velocity, places_[i].data(), way);
+            for (int axis = 0; axis < 3; ++axis)
+                end[axis] = moved.position[axis] + static_cast<float>(share) * way[axis];
+            collider.move(moved, end);
+            std::copy_n(moved.position, 3, particles_[i].position);
+        }
+    });
+    solids_.advance(share);
+    followed.is_solved = followed.is_solved && iterations <= most_iterations;
+}
+
+}  // namespace embody::physics

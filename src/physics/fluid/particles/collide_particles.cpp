@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: MIT
+#include "physics/fluid/particles/collide_particles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/fluid/particles/transfer.h"
+
+namespace embody::physics {
+
+namespace {
+
+// Particles come no nearer to a solid than this, in cells.
+constexpr float least_distance = 0.02f;
+// They go no farther in a part of a step than this, in cells.
+constexpr double longest_way = 4;
+
+Vec3 to_vec(const float* p) { return {p[0], p[1], p[2]}; }
+
+void set_position(FluidParticle& particle, Vec3 p) {
+    for (int axis = 0; axis < 3; ++axis) particle.position[axis] = static_cast<float>(p[axis]);
+}
+
+Cell cell_at(const FluidGrid& grid, const float* position) {
+    Cell cell{};
+    for (int axis = 0; axis < 3; ++axis) {
+        cell[axis] = std::clamp(static_cast<int>(grid.in_cells(position[axis], axis)), 1, grid.size()[axis] - 2);
+    }
+    return cell;
+}
+
+}  // namespace
+
+ParticleCollider::ParticleCollider(const FluidGrid& grid, const FluidSolids& solids, double dt)
+    : grid_(grid), solids_(solids), fixed_(solids.fixed()) {
+    for (const MovingSolid& moving : solids.moving()) {
+        Mover mover{moving.probe, &moving, {}, {}};
+        mover.before = mover.posed(moving.kept_center, moving.kept_rotation);
+        mover.end = mover.posed(moving.center + moving.linear_velocity * (dt / 2), moving.end_rotation(dt));
+        for (const Pose& pose : {mover.before, mover.end}) {
+            const Quat turn = moving.rotation * conjugate(pose.rotation);
+            mover.shift = std::max(mover.shift, length(pose.center - moving.center));
+            mover.turn = std::max(mover.turn, 2 * length(Vec3{turn.x, turn.y, turn.z}));
+        }
+        moving_.push_back(std::move(mover));
+    }
+}
+
+ParticleCollider::Pose ParticleCollider::Mover::posed(Vec3 center, Quat rotation) const {
+    return {center, rotation, solid->center, to_matrix(solid->rotation * conjugate(rotation))};
+}
+
+ParticleCollider::Pose ParticleCollider::Mover::at(double share) const {
+    if (share == 0) return before;
+    if (share == 1) return end;
+    const Pose middle{solid->center, solid->rotation, {}, {}};
+    const Pose &from = share < 0.5 ? before : middle, &to = share < 0.5 ? middle : end;
+    const double t = share < 0.5 ? 2 * share : 2 * share - 1;
+    const double other = dot(from.rotation, to.rotation) < 0 ? -t : t;
+    const Quat &a = from.rotation, &b = to.rotation;
+    const Quat between = normalized({a.x * (1 - t) + b.x * other, a.y * (1 - t) + b.y * other,
+                                     a.z * (1 - t) + b.z * other, a.w * (1 - t) + b.w * other});
+    return posed(from.center + (to.center - from.center) * t, between);
+}
+
+bool ParticleCollider::is_near_thin(const float* position) const {
+    return (grid_.thin[grid_.index(cell_at(grid_, position))] & near_thin) != 0;
+}
+
+// Particles come by cells: the probes look at what is around several of them at once.
+void ParticleCollider::look_around(const Bounds& way) {
+    if (contains(seen_, way)) return;
+    const double h = grid_.cell_size(), gap = least_distance * h;
+    seen_ = enlarged(way, h);
+    near_fixed_.clear();
+    near_moving_.clear();
+    for (std::size_t i = 0; i < fixed_.size(); ++i) {
+        if (fixed_[i].look_at(enlarged(seen_, gap), gap)) near_fixed_.push_back(i);
+    }
+    for (std::size_t i = 0; i < moving_.size(); ++i) {
+        Mover& mover = moving_[i];
+        if (!mover.is_met()) continue;
+        // Wherever in the part a place is seen from, it is no farther from where it is than this.
+        const double arm = length(seen_.center() - mover.solid->center) + length(seen_.half_extents());
+        const double aside = mover.shift + mover.turn * (arm + mover.shift);
+        if (mover.probe.look_at(enlarged(seen_, gap + aside), gap)) near_moving_.push_back(i);
+    }
+}
+
+bool ParticleCollider::sees(Vec3 from, Vec3 to) {
+    Bounds box;
+    box.add(from);
+    box.add(to);
+    look_around(box);
+    return std::ranges::none_of(near_fixed_, [&](std::size_t i) { return fixed_[i].crossing(from, to).has_value(); }) &&
+           std::ranges::none_of(near_moving_,
+                                [&](std::size_t i) { return moving_[i].probe.crossing(from, to).has_value(); });
+}
+
+std::array<float, 3> ParticleCollider::place_of(const FluidParticle& particle) {
+    std::array<float, 3> place{particle.position[0], particle.position[1], particle.position[2]};
+    if (!is_near_thin(particle.position)) return place;
+
+    // The cell whose centre it sees: its own, or the nearest one beside it. One that is shut all around holds nothing:
+    // its centre lies in a wall, or on its surface.
+    const Vec3 p = to_vec(particle.position);
+    Cell cell = cell_at(grid_, particle.position);
+    const auto is_shut = [&](const Cell& c) {
+        constexpr int all = closed_x | closed_y | closed_z;
+        const int index = grid_.index(c);
+        bool shut = (grid_.thin[index] & all) == all;
+        for (int axis = 0; axis < 3; ++axis) shut = shut && (grid_.thin[index + grid_.stride(axis)] & (1 << axis)) != 0;
+        return shut;
+    };
+    if (is_shut(cell) || !sees(p, grid_.center(cell))) {
+        double nearest = 1e300;
+        Cell found = cell;
+        for (int k = 0; k < 6; ++k) {
+            Cell other = cell;
+            other[k / 2] += k % 2 == 0 ? -1 : 1;
+            const double distance = length_squared(grid_.center(other) - p);
+            if (distance >= nearest || is_shut(other) || !sees(p, grid_.center(other))) continue;
+            nearest = distance;
+            found = other;
+        }
+        if (nearest == 1e300) return place;
+        cell = found;
+    }
+
+    // Towards what is shut it reaches no farther than the centre.
+    const int index = grid_.index(cell);
+    const Vec3 center = grid_.center(cell);
+    for (int axis = 0; axis < 3; ++axis) {
+        const int bit = 1 << axis;
+        const auto middle = static_cast<float>(center[axis]);
+        if (grid_.thin[index] & bit) place[axis] = std::max(place[axis], middle);
+        if (grid_.thin[index + grid_.stride(axis)] & bit) place[axis] = std::min(place[axis], middle);
+    }
+    return place;
+}
+
+// What goes into the wall stops.
+void ParticleCollider::stop_at(FluidParticle& particle, const Wall& wall) const {
+    const double inwards = std::min(0.0, dot(to_vec(particle.velocity) - wall.velocity, wall.normal));
+    for (int axis = 0; axis < 3; ++axis) particle.velocity[axis] -= static_cast<float>(wall.normal[axis] * inwards);
+}
+
+void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span& when) const {
+    constexpr float deep = -0.1f;  // cells
+    // The grid has a moving solid where it is in the middle of the part.
+    const int owner = grid_.solid_owner[grid_.index(cell_at(grid_, particle.position))];
+    const Mover* mover = owner >= 0 ? &moving_[static_cast<std::size_t>(owner)] : nullptr;
+    const Pose pose = mover != nullptr ? mover->at(when.last) : Pose{};
+    float gradient[3];
+    const auto distance_at = [&](Vec3 p) {
+        const float at[3] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+        return sample_center(grid_, grid_.solid, at, gradient);
+    };
+    const Vec3 inside = pose.seen(to_vec(particle.position));
+    const float distance = distance_at(inside);
+    if (distance >= least_distance) return;
+    const Vec3 normal = normalized(Vec3{gradient[0], gradient[1], gradient[2]});
+    const Vec3 outside = inside + normal * ((least_distance - distance) * grid_.cell_size());
+    const Vec3 wall = solids_.velocity_at(owner, outside);
+    set_position(particle, pose.back(outside));
+    stop_at(particle, {normal, wall});
+
+    // Where that leads nowhere (the seam of two solids) it does not go on.
+    const float now = distance_at(outside);
+    if (now > deep) return;
+    const Vec3 stayed = mover != nullptr ? mover->at(when.first).seen(before) : before;
+    if (distance_at(stayed) < now) return;
+    set_position(particle, pose.back(stayed));
+    for (int axis = 0; axis < 3; ++axis) particle.velocity[axis] = static_cast<float>(wall[axis]);
+}
+
+// Shortens the way from `from` to `to` where the probe bars it, and slides on along what bars it.
+bool ParticleCollider::bar(const SolidProbe& probe, Vec3 from, Vec3& to, Vec3& normal) const {
+    constexpr int most_slides = 3;
+    const double gap = least_distance * grid_.cell_size();
+    bool is_barred = false;
+    Vec3 start = from;
+    for (int slide = 0; slide < most_slides; ++slide) {
+        const auto hit = probe.crossing(start, to);
+        if (!hit) break;
+        is_barred = true;
+        normal = hit->normal;
+        const Vec3 place = start + (to - start) * hit->share + normal * gap, rest = to - place;
+        start = place;
+        to = slide + 1 < most_slides ? place + rest - normal * std::min(0.0, dot(rest, normal)) : place;
+    }
+    // Too near without having gone through, or inside since the start.
+    const SolidDistance near = probe.nearest(to);
+    const bool is_behind = probe.is_surface() && near.distance < 0;
+    const double distance = is_behind ? -near.distance : near.distance;
+    if (distance >= gap) return is_barred;
+    normal = is_behind ? -near.normal : near.normal;
+    to += normal * (gap - distance);
+    // At a seam of two pieces that led from one into the other.
+    if (!probe.is_surface() && probe.nearest(to).distance < 0 && probe.nearest(from).distance >= 0) to = from;
+    return true;
+}
+
+// By the true shapes; a moving one is seen from the middle of its way.
+void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to, const Span& when) {
+    constexpr int rounds = 2;
+    Bounds way;
+    way.add(from);
+    way.add(to);
+    look_around(way);
+    Vec3 normal;
+    for (int round = 0; round < rounds; ++round) {
+        bool any = false;
+        for (const std::size_t i : near_fixed_) {
+            if (!bar(fixed_[i], from, to, normal)) continue;
+            any = true;
+            stop_at(particle, {normal, {}});
+        }
+        for (const std::size_t i : near_moving_) {
+            const Mover& mover = moving_[i];
+            const MovingSolid& moving = *mover.solid;
+            const Pose before = mover.at(when.first), after = mover.at(when.last);
+            Vec3 seen_to = after.seen(to);
+            if (!bar(mover.probe, before.seen(from), seen_to, normal)) continue;
+            any = true;
+            to = after.back(seen_to);
+            stop_at(particle, {normal, moving.velocity_at(seen_to)});
+        }
+        if (!any) break;
+    }
+    set_position(particle, to);
+}
+
+void ParticleCollider::move(FluidParticle& particle, const float* end) {
+    // Nothing goes farther than the tiles around the particles' reach, nor two cells at once.
+    const auto longest = static_cast<float>(longest_way * grid_.cell_size());
+    float way[3], size = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        way[axis] = std::clamp(end[axis] - particle.position[axis], -longest, longest);
+        if (!std::isfinite(way[axis])) return;  // its velocity tells the solver
+        size = std::max(size, std::fabs(way[axis]));
+    }
+    const int strides = 1 + static_cast<int>(size / (1.5f * static_cast<float>(grid_.cell_size())));
+    const double piece = 1.0 / strides;
+    for (int i = 0; i < strides; ++i) {
+        float to[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            to[axis] = particle.position[axis] + way[axis] / static_cast<float>(strides);
+        }
+        stride(particle, to, {i * piece, i + 1 < strides ? (i + 1) * piece : 1});
+    }
+}
+
+void ParticleCollider::stride(FluidParticle& particle, const float* to, const Span& when) {
+    if (is_near_thin(particle.position) || is_near_thin(to)) {
+        sweep(particle, to_vec(particle.position), to_vec(to), when);
+        return;
+    }
+    const Vec3 before = to_vec(particle.position);
+    std::copy_n(to, 3, particle.position);
+    if (grid_.solid[grid_.index(cell_at(grid_, to))] < 1.5f) push_out(particle, before, when);
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/fluid/grid/grid.h"
+#include "physics/fluid/obstacles/solids.h"
+
+namespace embody::physics {
+
+struct FluidProperties;
+
+/// Whether neither the cell of a place nor those beside it are liquid: a particle there is a drop by itself.
+bool is_drop(const FluidGrid& grid, const float* place);
+
+/// Takes from the velocity (m/s) of a drop at `place` what a wall beside it takes in dt (docs/physics/fluids.md,
+/// "Drops").
+void slow_at_wall(const FluidGrid& grid, const FluidSolids& solids, const FluidProperties& liquid, double dt,
+                  const float* place, float* velocity);
+
+}  // namespace embody::physics

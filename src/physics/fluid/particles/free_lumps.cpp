@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#include "physics/fluid/particles/free_lumps.h"
+
+#include <algorithm>
+
+namespace embody::physics {
+
+namespace {
+
+Vec3 to_vec(const float* p) { return {p[0], p[1], p[2]}; }
+
+// The row of the cell that a place lies in or, where that is air, of one beside it; −1: none.
+std::int32_t row_near(const FluidGrid& grid, const float* place) {
+    Cell c{};
+    for (int axis = 0; axis < 3; ++axis) c[axis] = static_cast<int>(grid.in_cells(place[axis], axis));
+    const int cell = grid.index(c);
+    std::int32_t row = grid.row[cell];
+    for (int axis = 0; axis < 3 && row < 0; ++axis) {
+        const int stride = grid.stride(axis);
+        row = std::max(grid.row[cell - stride], grid.row[cell + stride]);
+    }
+    return row;
+}
+
+// Whether any of the liquid touches what does not move freely: looked for first, since most does.
+bool touches_fixed(const FluidGrid& grid, const PressureSystem& system, const FluidSolids& solids) {
+    for (std::size_t row = 0; row < system.size(); ++row) {
+        const auto cell = static_cast<int>(system.cell(row));
+        const int owner = grid.solid_owner[cell];
+        if (owner >= 0 && solids.moving()[static_cast<std::size_t>(owner)].solid->inverse_mass > 0) continue;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (grid.open[axis][cell] < 1 || grid.open[axis][cell + grid.stride(axis)] < 1) return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+void FreeLumps::Lump::add(Vec3 x, Vec3 v) {
+    ++count;
+    place += x;
+    velocity += v;
+    turn += cross(x, v);
+    squares += outer(x, x);
+}
+
+// A thousandth more in all directions: lumps may be flat.
+Mat3 FreeLumps::Lump::inertia() const {
+    const Mat3 central = squares - outer(place, place) * (1 / count);
+    return Mat3::identity() * (1.001 * trace(central)) - central;
+}
+
+std::int32_t FreeLumps::joined(std::int32_t lump) const {
+    while (joined_[static_cast<std::size_t>(lump)] != lump) lump = joined_[static_cast<std::size_t>(lump)];
+    return lump;
+}
+
+// A lump that touches what does not move freely is not free; one that shares a body with another is one with it.
+void FreeLumps::touch(const FluidGrid& grid, const FluidSolids& solids, int cell, std::int32_t lump) {
+    const int owner = grid.solid_owner[cell];
+    if (owner < 0 || !(solids.moving()[static_cast<std::size_t>(owner)].solid->inverse_mass > 0)) {
+        lumps_[static_cast<std::size_t>(lump)].is_free = false;
+        return;
+    }
+    Touched& body = bodies_[static_cast<std::size_t>(owner)];
+    if (body.lump < 0) body.lump = lump;
+    const std::int32_t a = joined(body.lump), b = joined(lump);
+    joined_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+}
+
+// Of the cell that a place lies in or is next to; a drop at a body is with what touches the body.
+std::int32_t FreeLumps::lump_at(const FluidGrid& grid, const float* place) const {
+    constexpr float next_to = 1.5f;  // cells
+    const std::int32_t row = row_near(grid, place);
+    if (row >= 0) return lump_of_row_[static_cast<std::size_t>(row)];
+    Cell c{};
+    for (int axis = 0; axis < 3; ++axis) c[axis] = static_cast<int>(grid.in_cells(place[axis], axis));
+    const int cell = grid.index(c), owner = grid.solid_owner[cell];
+    return owner >= 0 && grid.solid[cell] < next_to ? bodies_[static_cast<std::size_t>(owner)].lump : -1;
+}
+
+// Rows that are neighbours are of one lump.
+void FreeLumps::find(const FluidGrid& grid, const PressureSystem& system, const FluidSolids& solids) {
+    lumps_.clear();
+    joined_.clear();
+    bodies_.clear();
+    for (const MovingSolid& moving : solids.moving())
+        bodies_.push_back({-1, moving.solid->impulse, moving.solid->angular_impulse});
+    lump_of_row_.assign(system.size(), -1);
+    std::vector<std::size_t> to_visit;
+    for (std::size_t first = 0; first < system.size(); ++first) {
+        if (lump_of_row_[first] >= 0) continue;
+        const auto lump = static_cast<std::int32_t>(lumps_.size());
+        lumps_.push_back({.squares = Mat3::zero()});
+        joined_.push_back(lump);
+        lump_of_row_[first] = lump;
+        to_visit.push_back(first);
+        while (!to_visit.empty()) {
+            const auto cell = static_cast<int>(system.cell(to_visit.back()));
+            to_visit.pop_back();
+            for (int axis = 0; axis < 3; ++axis) {
+                const int stride = grid.stride(axis);
+                for (const int other : {cell - stride, cell + stride}) {
+                    if (grid.open[axis][std::max(cell, other)] < 1) touch(grid, solids, cell, lump);
+                    if (grid.row[other] < 0) continue;
+                    std::int32_t& its = lump_of_row_[static_cast<std::size_t>(grid.row[other])];
+                    if (its >= 0) continue;
+                    its = lump;
+                    to_visit.push_back(static_cast<std::size_t>(grid.row[other]));
+                }
+            }
+        }
+    }
+    for (std::int32_t lump = 0; lump < static_cast<std::int32_t>(lumps_.size()); ++lump) {
+        const bool is_free = lumps_[static_cast<std::size_t>(lump)].is_free;
+        if (!is_free) lumps_[static_cast<std::size_t>(joined(lump))].is_free = false;
+    }
+    for (std::int32_t& lump : lump_of_row_) lump = joined(lump);
+    for (Touched& body : bodies_) body.lump = body.lump < 0 ? -1 : joined(body.lump);
+}
+
+void FreeLumps::begin(const FluidGrid& grid, const PressureSystem& system, const FluidSolids& solids,
+                      const std::vector<FluidParticle>& particles, bool all) {
+    lumps_.clear();
+    lump_of_particle_.clear();
+    if (!all && touches_fixed(grid, system, solids)) return;
+    find(grid, system, solids);
+    lump_of_particle_.assign(particles.size(), -1);
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        const std::int32_t lump = lump_at(grid, particles[i].position);
+        if (lump < 0) continue;
+        Lump& its = lumps_[static_cast<std::size_t>(lump)];
+        if (!its.is_free) continue;
+        lump_of_particle_[i] = lump;
+        its.add(to_vec(particles[i].position), to_vec(particles[i].velocity));
+    }
+}
+
+void FreeLumps::end(Vec3 change, const FluidSolids& solids, double particle_mass,
+                    std::vector<FluidParticle>& particles) const {
+    if (lumps_.empty()) return;
+    constexpr double fewest = 64;  // that are turned
+    struct Correction {
+        Vec3 linear, angular, center;
+    };
+    std::vector<Lump> now(lumps_.size(), Lump{.squares = Mat3::zero()});
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        if (lump_of_particle_[i] < 0) continue;
+        now[static_cast<std::size_t>(lump_of_particle_[i])].add(to_vec(particles[i].position),
+                                                                to_vec(particles[i].velocity));
+    }
+    std::vector<Correction> corrections(lumps_.size());  // as momenta by particle mass so far
+    for (std::size_t lump = 0; lump < lumps_.size(); ++lump) {
+        const Lump &before = lumps_[lump], &after = now[lump];
+        if (after.count == 0) continue;
+        corrections[lump] = {before.velocity - after.velocity + after.count * change,
+                             before.angular_momentum() - after.angular_momentum(), after.center()};
+    }
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        if (bodies_[i].lump < 0 || now[static_cast<std::size_t>(bodies_[i].lump)].count == 0) continue;
+        Correction& correction = corrections[static_cast<std::size_t>(bodies_[i].lump)];
+        const MovingSolid& moving = solids.moving()[i];
+        const Vec3 given = (moving.solid->impulse - bodies_[i].impulse) / particle_mass;
+        const Vec3 turned = (moving.solid->angular_impulse - bodies_[i].angular_impulse) / particle_mass;
+        correction.linear -= given;
+        correction.angular -= turned + cross(moving.center - correction.center, given);
+    }
+    for (std::size_t lump = 0; lump < lumps_.size(); ++lump) {
+        const Lump& after = now[lump];
+        if (after.count == 0) continue;
+        corrections[lump].linear = corrections[lump].linear / after.count;
+        corrections[lump].angular = after.count < fewest ? Vec3{} : solve(after.inertia(), corrections[lump].angular);
+    }
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        if (lump_of_particle_[i] < 0) continue;
+        const Correction& by = corrections[static_cast<std::size_t>(lump_of_particle_[i])];
+        const Vec3 more = by.linear + cross(by.angular, to_vec(particles[i].position) - by.center);
+        for (int axis = 0; axis < 3; ++axis) particles[i].velocity[axis] += static_cast<float>(more[axis]);
+    }
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "math/mat3.h"
+#include "math/vec3.h"
+#include "physics/fluid/grid/grid.h"
+#include "physics/fluid/obstacles/solids.h"
+#include "physics/fluid/pressure/pressure_system.h"
+
+namespace embody::physics {
+
+/// Lumps of liquid that touch nothing, or only bodies that move freely; those that share a body are one. What the cells
+/// do to a lump has a resultant and a moment that it must not have: the tension of its surface would push and turn it,
+/// and what a body gives it would not arrive, since the faces' masses are not the particles'.
+class FreeLumps {
+public:
+    /// Finds them, and what momentum their particles and the bodies have. Unless `all`, only where the whole fluid is
+    /// free. Rows are known, and nothing has been done to the bodies in this part of the step.
+    void begin(const FluidGrid& grid, const PressureSystem& system, const FluidSolids& solids,
+               const std::vector<FluidParticle>& particles, bool all);
+    /// The same particles after they moved: each lump gets the momentum that it had, less what its bodies were given,
+    /// and so it does with the angular momentum about its centre. `change`: of all velocities by gravity, m/s.
+    void end(Vec3 change, const FluidSolids& solids, double particle_mass, std::vector<FluidParticle>& particles) const;
+
+private:
+    /// Sums over its particles, m and m/s.
+    struct Lump {
+        bool is_free = true;
+        double count = 0;
+        Vec3 place, velocity, turn;  // of x, v, x × v
+        Mat3 squares;                // of x xᵀ
+        void add(Vec3 x, Vec3 v);
+        [[nodiscard]] Vec3 center() const { return place / count; }
+        [[nodiscard]] Vec3 angular_momentum() const { return turn - cross(place, velocity) / count; }
+        [[nodiscard]] Mat3 inertia() const;
+    };
+    /// A body that a lump touches, with what it was given before.
+    struct Touched {
+        std::int32_t lump = -1;
+        Vec3 impulse, angular_impulse;
+    };
+    void find(const FluidGrid& grid, const PressureSystem& system, const FluidSolids& solids);
+    void touch(const FluidGrid& grid, const FluidSolids& solids, int cell, std::int32_t lump);
+    [[nodiscard]] std::int32_t joined(std::int32_t lump) const;
+    [[nodiscard]] std::int32_t lump_at(const FluidGrid& grid, const float* place) const;
+
+    std::vector<std::int32_t> lump_of_row_, lump_of_particle_;  // −1: a drop of its own
+    std::vector<std::int32_t> joined_;                          // by lump: an earlier one that it is part of, or itself
+    std::vector<Lump> lumps_;
+    std::vector<Touched> bodies_;  // as solids.moving()
+};
+
+}  // namespace embody::physics

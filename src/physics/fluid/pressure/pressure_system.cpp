@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: MIT
+// Preconditioned conjugate gradients; the preconditioner is the modified incomplete Cholesky factor of level zero (R.
+// Bridson, "Fluid Simulation for Computer Graphics", 2nd edition 2015, 5.8). Workers
+// sweep strips of tiles side by side, each a layer behind the one before: what is computed is the same as row by row.
+// Sums are taken by blocks, whose number depends on the rows alone.
+#include "physics/fluid/pressure/pressure_system.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/fluid/grid/liquid_cells.h"
+#include "physics/linear/dot_product.h"
+
+namespace embody::physics {
+
+namespace {
+
+constexpr std::size_t rows_of_block = 512, most_blocks = 16;
+
+std::span<const double> part_of(const std::vector<double>& all, Share block) {
+    return std::span(all).subspan(block.first, block.last - block.first);
+}
+
+double largest_of(std::span<const double> values) {
+    double largest = 0;
+    for (const double value : values) largest = std::fabs(value) > largest ? std::fabs(value) : largest;
+    return largest;
+}
+
+}  // namespace
+
+float PressureSystem::gap_share(float inside, float outside) {
+    constexpr float least = 0.005f;  // nearer surfaces would make the matrix stiff
+    return std::clamp(inside / (inside - std::max(outside, 0.0f)), least, 1.0f);
+}
+
+void PressureSystem::build_row(const FluidGrid& grid, std::size_t row) {
+    const auto cell = static_cast<int>(liquid_.cells[row]), none = static_cast<int>(size());
+    Row& own = rows_[row];
+    own = {};
+    double sum = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int stride = grid.stride(static_cast<int>(axis));
+        for (const bool up : {false, true}) {
+            const int other = up ? cell + stride : cell - stride;
+            const float open = grid.open[axis][up ? other : cell];
+            std::int32_t& neighbour = (up ? own.upper : own.lower)[axis];
+            neighbour = none;
+            if (open <= 0) continue;
+            if (grid.row[other] < 0) {
+                sum += static_cast<double>(open) / gap_share(grid.surface[cell], grid.surface[other]);
+                continue;
+            }
+            neighbour = grid.row[other];
+            (up ? own.to_upper : own.to_lower)[axis] = open;
+            sum += open;
+        }
+    }
+    // A trace of compressibility: a body of liquid without any surface has a pressure too.
+    diagonal_[row] = sum * (1 + 1e-8) + 1e-9;
+}
+
+void PressureSystem::build(FluidGrid& grid, TaskPool& workers) {
+    mark_liquid(grid, liquid_, workers);
+    const std::size_t count = size();
+    blocks_ = std::clamp<std::size_t>(count / rows_of_block, 1, most_blocks);
+    rows_.resize(count + 1);
+    const auto none = static_cast<std::int32_t>(count);
+    rows_[count] = Row{{none, none, none}, {none, none, none}, {}, {}, {}, {}};
+    diagonal_.resize(count);
+    scaling_.resize(count);
+    for (auto* vector : {&r_, &z_, &p_, &ap_, &q_}) vector->assign(count + 1, 0);
+    share_among(workers, blocks_, blocks_ > 1, [&](int, Share share) {
+        for (std::size_t block = share.first; block < share.last; ++block) {
+            const Share rows = block_of(block);
+            for (std::size_t row = rows.first; row < rows.last; ++row) build_row(grid, row);
+        }
+    });
+    factor();
+    make_strips(grid, blocks_ > 1 ? workers.workers() : 1);
+    bodies_.clear();
+}
+
+// Two strips of tiles along one axis, layers along another: those in which there are most tiles.
+void PressureSystem::make_strips(const FluidGrid& grid, int workers) {
+    strips_.assign(static_cast<std::size_t>(workers), {});
+    if (workers == 1) {
+        strips_[0].layers = {{Share{0, size()}}};
+        return;
+    }
+    const auto tiles = grid.tiles();
+    std::array<std::vector<std::size_t>, 3> rows;  // by axis and tile along it
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int unit = FluidGrid::tile[axis];
+        rows[axis].assign(static_cast<std::size_t>(grid.size()[axis] / unit), 0);
+        for (std::size_t i = 0; i < tiles.size(); ++i) {
+            rows[axis][static_cast<std::size_t>(tiles[i][axis] / unit)] +=
+                static_cast<std::size_t>(liquid_.first_row[i + 1] - liquid_.first_row[i]);
+        }
+    }
+    const auto extent = [&](std::size_t axis) {
+        return rows[axis].size() - static_cast<std::size_t>(std::count(rows[axis].begin(), rows[axis].end(), 0u));
+    };
+    std::array<std::size_t, 3> axes{0, 1, 2};
+    std::stable_sort(axes.begin(), axes.end(), [&](std::size_t a, std::size_t b) { return extent(a) > extent(b); });
+    const std::size_t along = axes[0], across = axes[1];
+
+    // Strips of as equal numbers of rows as tiles allow.
+    std::vector<std::size_t> strip_of(rows[across].size());
+    for (std::size_t i = 0, before = 0; i < strip_of.size(); before += rows[across][i++]) {
+        const std::size_t middle = before + rows[across][i] / 2;
+        strip_of[i] = std::min(strips_.size() - 1, middle * strips_.size() / std::max<std::size_t>(size(), 1));
+    }
+    for (Strip& strip : strips_) strip.layers.resize(rows[along].size());
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+        const auto first = static_cast<std::size_t>(liquid_.first_row[i]),
+                   last = static_cast<std::size_t>(liquid_.first_row[i + 1]);
+        if (first == last) continue;
+        const std::size_t strip = strip_of[static_cast<std::size_t>(tiles[i][across] / FluidGrid::tile[across])];
+        strips_[strip].layers[static_cast<std::size_t>(tiles[i][along] / FluidGrid::tile[along])].push_back(
+            {first, last});
+    }
+}
+
+// L Lᵀ with L = (D − lower part) / D, D = 1 / scaling²; rows are scaled such that L has ones on its diagonal.
+void PressureSystem::factor() {
+    constexpr double modification = 0.97, safety = 0.25;
+    const auto none = static_cast<std::int32_t>(size());
+    for (std::size_t i = 0; i < size(); ++i) {
+        Row& row = rows_[i];
+        double e = diagonal_[i];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (row.lower[axis] == none) continue;
+            const auto j = static_cast<std::size_t>(row.lower[axis]);
+            const auto& upper = rows_[j].to_upper;
+            const double s = scaling_[j], a = upper[axis], all = static_cast<double>(upper[0]) + upper[1] + upper[2];
+            e -= a * s * s * (a + modification * (all - a));
+        }
+        if (e < safety * diagonal_[i]) e = diagonal_[i];
+        scaling_[i] = 1 / std::sqrt(e);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (row.lower[axis] == none) continue;
+            const auto j = static_cast<std::size_t>(row.lower[axis]);
+            row.factor_lower[axis] = static_cast<float>(row.to_lower[axis] * (scaling_[i] * scaling_[j]));
+            rows_[j].factor_upper[axis] = row.factor_lower[axis];
+        }
+    }
+}
+
+void PressureSystem::substitute_forward(Share rows) {
+    for (std::size_t i = rows.first; i < rows.last; ++i) {
+        const Row& row = rows_[i];
+        // The row before last: it is what takes time.
+        double t = r_[i] * scaling_[i];
+        t += row.factor_lower[2] * q_[row.lower[2]];
+        t += row.factor_lower[1] * q_[row.lower[1]];
+        q_[i] = t + row.factor_lower[0] * q_[row.lower[0]];
+    }
+}
+
+void PressureSystem::substitute_backward(Share rows) {
+    for (std::size_t i = rows.last; i-- > rows.first;) {
+        const Row& row = rows_[i];
+        double t = q_[i];
+        t += row.factor_upper[2] * q_[row.upper[2]];
+        t += row.factor_upper[1] * q_[row.upper[1]];
+        t += row.factor_upper[0] * q_[row.upper[0]];
+        q_[i] = t;
+        z_[i] = t * scaling_[i];
+    }
+}
+
+void PressureSystem::multiply(Share block, std::span<const double> x, std::span<double> y) const {
+    for (std::size_t i = block.first; i < block.last; ++i) {
+        const Row& row = rows_[i];
+        double sum = diagonal_[i] * x[i];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            sum -= row.to_lower[axis] * x[row.lower[axis]];
+            sum -= row.to_upper[axis] * x[row.upper[axis]];
+        }
+        y[i] = sum;
+    }
+}
+
+void PressureSystem::set_bodies(std::span<const MovingSolid> bodies, double scale) {
+    scale_ = scale;
+    bodies_.clear();
+    parts_.clear();
+    for (const MovingSolid& body : bodies) {
+        if (body.solid->inverse_mass <= 0 || body.areas.empty()) continue;
+        for (const SolidArea& area : body.areas) {
+            parts_.push_back({area.row, static_cast<std::int32_t>(bodies_.size()), area.area, area.moment});
+        }
+        bodies_.push_back(&body);
+    }
+    velocities_.resize(bodies_.size());
+    std::stable_sort(parts_.begin(), parts_.end(), [](const BodyPart& a, const BodyPart& b) { return a.row < b.row; });
+    first_part_.clear();
+    for (std::size_t block = 0, part = 0; block <= blocks_; ++block) {
+        const std::size_t row = block < blocks_ ? block_of(block).first : size();
+        while (part < parts_.size() && static_cast<std::size_t>(parts_[part].row) < row) ++part;
+        first_part_.push_back(static_cast<std::uint32_t>(part));
+    }
+}
+
+// What the pressure x does to the velocity of a body.
+void PressureSystem::move_body(std::size_t body, std::span<const double> x) {
+    Vec3 impulse, moment;
+    for (const SolidArea& area : bodies_[body]->areas) {
+        impulse += area.area * x[area.row];
+        moment += area.moment * x[area.row];
+    }
+    const SolidResponse& response = bodies_[body]->response;
+    velocities_[body] = {response.linear_change(impulse, moment) * scale_,
+                         response.angular_change(impulse, moment) * scale_};
+}
+
+/// A solve while its workers run.
+struct PressureSystem::Run {
+    std::span<const double> b;
+    std::vector<double>& x;
+    double tolerance;
+    int most, workers;
+    Barrier barrier;
+    struct Sum {
+        double product = 0, largest = 0;
+    };
+    std::array<Sum, most_blocks> curvature{}, residual{};  // by block
+    std::vector<Progress> progress;                        // by worker
+};
+
+// z = (L Lᵀ)⁻¹ r. `time`: how often it has been done before.
+void PressureSystem::precondition(Run& run, int worker, std::uint64_t time) {
+    const auto own = static_cast<std::size_t>(worker);
+    const auto& layers = strips_[own].layers;
+    std::uint64_t done = 2 * time * layers.size();
+    for (std::size_t layer = 0; layer < layers.size(); ++layer) {
+        ++done;
+        if (own > 0) run.progress[own - 1].wait_for(done);
+        for (const Share rows : layers[layer]) substitute_forward(rows);
+        run.progress[own].reach(done);
+    }
+    for (std::size_t layer = layers.size(); layer-- > 0;) {
+        ++done;
+        if (own + 1 < strips_.size()) run.progress[own + 1].wait_for(done);
+        for (std::size_t i = layers[layer].size(); i-- > 0;) substitute_backward(layers[layer][i]);
+        run.progress[own].reach(done);
+    }
+}
+
+int PressureSystem::iterate(Run& run, int worker) {
+    const Share blocks = share_of(blocks_, worker, run.workers), bodies = share_of(bodies_.size(), worker, run.workers);
+    const auto for_blocks = [&](auto work) {
+        for (std::size_t block = blocks.first; block < blocks.last; ++block) work(block, block_of(block));
+    };
+    // y = A x; x is known to all workers, y is not yet when it returns.
+    const auto apply = [&](const std::vector<double>& x, std::vector<double>& y) {
+        for (std::size_t i = bodies.first; i < bodies.last; ++i) move_body(i, x);
+        if (!bodies_.empty()) run.barrier.wait();
+        for_blocks([&](std::size_t block, Share rows) {
+            multiply(rows, x, y);
+            for (std::uint32_t i = first_part_[block]; i < first_part_[block + 1]; ++i) {
+                const BodyPart& part = parts_[i];
+                const BodyVelocity& v = velocities_[static_cast<std::size_t>(part.body)];
+                y[part.row] += dot(part.area, v.linear) + dot(part.moment, v.angular);
+            }
+        });
+    };
+    // Sums over all blocks, the same for each worker.
+    const auto total = [&](const std::array<Run::Sum, most_blocks>& sums) {
+        run.barrier.wait();
+        Run::Sum all;
+        for (std::size_t block = 0; block < blocks_; ++block) {
+            all.product += sums[block].product;
+            all.largest = sums[block].largest > all.largest ? sums[block].largest : all.largest;
+        }
+        return all;
+    };
+    std::uint64_t times = 0;
+    const auto look_at_residual = [&] {
+        run.barrier.wait();
+        precondition(run, worker, times++);
+        run.barrier.wait();
+        for_blocks([&](std::size_t block, Share rows) {
+            run.residual[block] = {dot_product(part_of(r_, rows), part_of(z_, rows)), largest_of(part_of(r_, rows))};
+        });
+        return total(run.residual);
+    };
+
+    apply(run.x, ap_);
+    for_blocks([&](std::size_t, Share rows) {
+        for (std::size_t i = rows.first; i < rows.last; ++i) r_[i] = run.b[i] - ap_[i];
+    });
+    Run::Sum rz = look_at_residual();
+    double beta = 0;
+    for (int iteration = 0; iteration <= run.most; ++iteration) {
+        if (rz.largest <= run.tolerance) return iteration;
+        if (iteration == run.most) break;
+        for_blocks([&](std::size_t, Share rows) {
+            for (std::size_t i = rows.first; i < rows.last; ++i) p_[i] = z_[i] + beta * p_[i];
+        });
+        run.barrier.wait();
+        apply(p_, ap_);
+        for_blocks([&](std::size_t block, Share rows) {
+            run.curvature[block].product = dot_product(part_of(p_, rows), part_of(ap_, rows));
+        });
+        const double curvature = total(run.curvature).product;
+        if (!(curvature > 0)) break;
+        const double alpha = rz.product / curvature;
+        for_blocks([&](std::size_t, Share rows) {
+            for (std::size_t i = rows.first; i < rows.last; ++i) {
+                run.x[i] += alpha * p_[i];
+                r_[i] -= alpha * ap_[i];
+            }
+        });
+        const Run::Sum next = look_at_residual();
+        beta = next.product / rz.product;
+        rz = next;
+    }
+    return run.most + 1;
+}
+
+int PressureSystem::solve(std::span<const double> b, std::vector<double>& x, double tolerance, int most,
+                          TaskPool& workers) {
+    const int number = static_cast<int>(strips_.size());
+    Run run{b, x, tolerance, most, number, Barrier(number), {}, {}, std::vector<Progress>(strips_.size())};
+    x.push_back(0);
+    std::fill(p_.begin(), p_.end(), 0);
+    int iterations = 0;
+    const auto work = [&](int worker) {
+        const int own = iterate(run, worker);
+        if (worker == 0) iterations = own;
+    };
+    if (number == 1) {
+        work(0);
+    } else {
+        workers.run(work);
+    }
+    x.pop_back();
+    return iterations;
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "physics/fluid/pressure/surface_tension.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "physics/fluid/particles/transfer.h"
+
+namespace embody::physics {
+
+namespace {
+
+// The density is smoothed once more by (1, 4, 1)/6 along each axis. (1, 2, 1)/4 takes waves of two cells away wholly:
+// nothing holds them then, and drops fall to pieces within seconds.
+constexpr float side_weight = 1.0f / 6;
+// Where the liquid's share changes by less a cell there is no surface; nothing is more curved than this, in 1/cells.
+constexpr float least_slope = 0.02f, most_curved = 1;
+
+// Along an axis over the active tiles; elsewhere `field` stays as it is.
+void smooth(const FluidGrid& grid, int axis, std::vector<float>& field, std::vector<float>& scratch,
+            TaskPool& workers) {
+    const int stride = grid.stride(axis);
+    grid.for_tiles(workers, [&](const Cell& corner) {
+        grid.for_cells(corner, [&](int cell, const Cell&) {
+            const float beside = field[cell - stride] + field[cell + stride];
+            scratch[cell] = side_weight * beside + (1 - 2 * side_weight) * field[cell];
+        });
+    });
+    grid.for_tiles(workers, [&](const Cell& corner) {
+        grid.for_rows(corner, [&](int first, const Cell&) {
+            std::copy_n(scratch.begin() + first, FluidGrid::tile[0], field.begin() + first);
+        });
+    });
+}
+
+// −∇·(∇c/|∇c|), in 1/cells, by central differences.
+float curvature_at(const FluidGrid& grid, const std::vector<float>& c, int cell) {
+    const int strides[3] = {grid.stride(0), grid.stride(1), grid.stride(2)};
+    float g[3], second[3][3];
+    for (int a = 0; a < 3; ++a) {
+        const int s = strides[a];
+        g[a] = 0.5f * (c[cell + s] - c[cell - s]);
+        second[a][a] = c[cell + s] - 2 * c[cell] + c[cell - s];
+        for (int b = 0; b < a; ++b) {
+            const int t = strides[b];
+            second[a][b] = 0.25f * (c[cell + s + t] - c[cell + s - t] - c[cell - s + t] + c[cell - s - t]);
+        }
+    }
+    const float squared = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
+    if (squared < least_slope * least_slope) return 0;
+    const float along = g[0] * g[0] * second[0][0] + g[1] * g[1] * second[1][1] + g[2] * g[2] * second[2][2] +
+                        2 * (g[0] * g[1] * second[1][0] + g[0] * g[2] * second[2][0] + g[1] * g[2] * second[2][1]);
+    const float trace = second[0][0] + second[1][1] + second[2][2];
+    return std::clamp((along / squared - trace) / std::sqrt(squared), -most_curved, most_curved);
+}
+
+}  // namespace
+
+bool is_tense(double tension, double density, double gravity, double h) {
+    constexpr double coarsest = 2;  // capillary lengths
+    return tension > 0 && density * gravity * h * h < coarsest * coarsest * tension;
+}
+
+double steady_tension(double density, double h, double dt) {
+    return density * h * h * h / (4 * std::numbers::pi * dt * dt);
+}
+
+void SurfacePressure::measure(double impulse, const FluidGrid& grid, TaskPool& workers) {
+    impulse_ = impulse;
+    const std::size_t cells = grid.row.size();
+    filled_.assign(cells, 0);
+    room_.assign(cells, 1);
+    scratch_.resize(cells);
+    curvature_.assign(cells, 0);
+    grid.for_tiles(workers, [&](const Cell& corner) {
+        grid.for_cells(corner, [&](int cell, const Cell&) {
+            room_[cell] = grid.room[cell];
+            filled_[cell] = std::min(grid.density[cell], grid.room[cell]);
+        });
+    });
+    for (int axis = 0; axis < 3; ++axis) {
+        smooth(grid, axis, filled_, scratch_, workers);
+        smooth(grid, axis, room_, scratch_, workers);
+    }
+    // Shares of what is not solid, so that a wall curves nothing: the surface meets it at a right angle.
+    grid.for_tiles(workers, [&](const Cell& corner) {
+        grid.for_cells(corner, [&](int cell, const Cell&) {
+            filled_[cell] = room_[cell] > 1e-3f ? filled_[cell] / room_[cell] : 0;
+        });
+    });
+    const auto per_cell = static_cast<float>(1 / grid.cell_size());
+    grid.for_tiles(workers, [&](const Cell& corner) {
+        grid.for_cells(corner,
+                       [&](int cell, const Cell&) { curvature_[cell] = curvature_at(grid, filled_, cell) * per_cell; });
+    });
+}
+
+void SurfacePressure::draw_in(const FluidGrid& grid, const float* place, float* shift) const {
+    constexpr float nearest = 0.1f, rate = 0.2f, flattest = 0.01f;
+    float slope[3];
+    const float outside = sample_center(grid, grid.surface, place, slope);
+    if (outside < nearest) return;
+    (void)sample_center(grid, filled_, place, slope);
+    const float steepness = std::sqrt(slope[0] * slope[0] + slope[1] * slope[1] + slope[2] * slope[2]);
+    if (steepness < flattest) return;
+    const float way = rate * (outside - nearest) * static_cast<float>(grid.cell_size()) / steepness;
+    for (int axis = 0; axis < 3; ++axis) shift[axis] += way * slope[axis];
+}
+
+}  // namespace embody::physics

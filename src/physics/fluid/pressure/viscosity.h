@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "physics/fluid/grid/grid.h"
+#include "physics/fluid/obstacles/solids.h"
+
+namespace embody::physics {
+
+/// A liquid's resistance to shear.
+struct Viscosity {
+    double density = 998;     ///< kg/m³
+    double viscosity = 0;     ///< Pa s
+    double yield_stress = 0;  ///< Pa
+};
+
+/// Whether it is more than rounding in a step of dt on cells of h.
+bool is_viscous(const Viscosity& liquid, double h, double dt);
+
+/// How far a liquid sticks to walls on cells of h, 0 … 1: by the Reynolds number of a cell at `speed`, m/s. Layers at
+/// walls that are thinner than a cell cannot be told, and it slides.
+double sticking_of(const Viscosity& liquid, double h, double speed);
+
+/// Implicit viscous step of the face velocities, with no slip at solids, no stress at the surface, and the bodies that
+/// it moves as unknowns (docs/physics/fluids.md, "Viscosity").
+class ViscositySystem {
+public:
+    /// Changes the velocities of faces and of moving solids, and adds to the solids' impulses. Returns the iterations;
+    /// most + 1 where they did not suffice.
+    int solve(const Viscosity& liquid, double dt, int most, FluidGrid& grid, FluidSolids& solids);
+
+private:
+    /// A rate of strain: signed sum of up to four velocities, and its weight.
+    struct Strain {
+        std::int32_t face[4];  // −1: none
+        double weight;
+    };
+    struct FixedFace {
+        int axis, owner;
+        Vec3 arm;  // from the owner's centre, m
+    };
+    void number_faces(const FluidGrid& grid, const FluidSolids& solids);
+    std::int32_t fixed_face(const FluidGrid& grid, const FluidSolids& solids, int axis, int cell, const Cell& c);
+    void measure_rates(const Viscosity& liquid, double dt, const FluidGrid& grid);
+    void list_strains(const FluidGrid& grid, const FluidSolids& solids, double scale);
+    void add_edge(const FluidGrid& grid, const FluidSolids& solids, int a, int b, int cell, const Cell& c,
+                  double scale);
+    void list_bodies(const Viscosity& liquid, const FluidGrid& grid, const FluidSolids& solids);
+    void multiply(std::vector<double>& x, std::vector<double>& y);
+    void set_fixed(std::vector<double>& x) const;
+    void start_from(const FluidGrid& grid, const FluidSolids& solids);
+    void fill_diagonal();
+    void fill_residual();
+    int iterate(int most);
+    void write_back(const Viscosity& liquid, FluidGrid& grid, FluidSolids& solids);
+
+    /// A body that the liquid moves: its six unknowns come after the faces'.
+    struct Body {
+        int owner;
+        double mass;
+        Mat3 inertia;
+        Vec3 linear_before, angular_before;
+    };
+    std::array<std::vector<std::int32_t>, 3> number_;  // of faces by cell; −1: none
+    std::vector<float> viscosity_;                     // by cell, Pa s; 0: no liquid
+    std::vector<std::pair<int, int>> faces_;           // axis, cell
+    std::vector<FixedFace> fixed_;
+    std::vector<Strain> strains_;
+    std::vector<Body> bodies_;
+    std::vector<std::int32_t> body_of_;  // by owner; −1: none
+    std::vector<double> inertia_;        // of free faces, in volumes of a cell
+    std::vector<double> x_, r_, z_, p_, ap_, diagonal_;
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: MIT
+// Factors of blocked matrices for 16 lanes; compiled with the flags of its instruction set (src/CMakeLists.txt).
+#define EMBODY_LANES 16
+#include "physics/linear/block_kernel_code.h"

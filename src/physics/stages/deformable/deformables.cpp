@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: MIT
+// Deformables after the rigid bodies (docs/physics/deformables.md): in substeps of their own, while the bodies that
+// they touch go along their paths of this step and give way to the nodes.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "physics/dynamic/equations_of_motion.h"
+#include "physics/stages/deformable/solid_contact_search.h"
+#include "physics/stages/deformable/solid_ties.h"
+#include "physics/stages/deformable/thin_groups.h"
+#include "physics/stages/stages.h"
+
+namespace embody::physics {
+
+namespace {
+
+constexpr double quiet_speed = 0.02;     // m/s: all nodes slower than this may sleep
+constexpr double quiet_way = 1e-3;       // m: or a sheet or rope that only trembles, none of whose nodes goes so far
+constexpr double noticed_change = 0.05;  // of a sleeping body's weight: a push that differs by more wakes it
+constexpr int most_corrections = 3;      // rounds besides the first
+constexpr double noticed_speed = 0.05;   // m/s: a body as fast as this wakes what it is near
+
+template <class Visit>
+void for_each_body_near(const WorldState& world, const DeformableRecord& record, Visit visit) {
+    world.broad_phase.query(enlarged(record.bounds(), reach_of(world, record)), [&](std::uint32_t slot) {
+        if (world.record(slot).shape && may_collide(record.definition, world.record(slot).definition)) visit(slot);
+    });
+}
+
+// A body with the path that it has gone in this step; one that sleeps or is fixed stands where it is.
+TouchedBody touched(const WorldState& world, std::uint32_t slot) {
+    const BodyRecord& record = world.record(slot);
+    const BodyState& state = world.motion[slot];
+    const double dt = world.settings.time_step;
+    const bool moves = record.definition.kind != BodyKind::static_body && !world.is_asleep(slot);
+    TouchedBody body;
+    body.body = slot;
+    body.shape = record.shape;
+    body.is_dynamic = world.is_dynamic(slot);
+    body.friction = record.definition.material.friction_dynamic;
+    body.start_center = moves ? state.start_center : state.center;
+    const Quat rotation = moves ? state.start_rotation : state.rotation;
+    body.start = {body.start_center - rotate(rotation, world.constants[slot].local_center), rotation};
+    if (!moves) return body;
+    const Quat turn = state.rotation * conjugate(rotation);
+    const Vec3 half_sine = (turn.w < 0 ? -1.0 : 1.0) * Vec3{turn.x, turn.y, turn.z};
+    const double half_cosine = std::fabs(turn.w), sine = length(half_sine);
+    body.step_time = dt;
+    if (world.is_dynamic(slot)) {
+        body.path_acceleration = (state.linear_velocity - record.start_linear_velocity) / dt;
+        body.path_spin_up = (state.angular_velocity - record.start_angular_velocity) / dt;
+    }
+    body.path_velocity = (state.center - body.start_center) / dt;
+    body.path_spin = sine > 0 ? (2 * std::asin(std::min(sine, 1.0)) / (sine * dt)) * half_sine : Vec3{};
+    body.path_turn = (2 / (std::max(half_cosine, 1e-3) * dt)) * half_sine;
+    body.inverse_mass = state.inverse_mass;
+    body.inverse_inertia = state.inverse_inertia;
+    body.expected_force = record.deformable_force;
+    body.expected_torque = record.deformable_torque;
+    body.expected_late_force = record.late_force;
+    body.expected_late_torque = record.late_torque;
+    return body;
+}
+
+double fastest_node(const DeformableRecord& record) {
+    double fastest = 0;
+    for (const Vec3 v : record.nodes().velocity) fastest = std::max(fastest, length(v));
+    return fastest;
+}
+
+// Whether somebody moves it by hand, however slowly.
+bool is_led(const WorldState& world, std::uint32_t slot) {
+    const BodyState& state = world.motion[slot];
+    return world.record(slot).definition.kind == BodyKind::kinematic_body && !world.is_asleep(slot) &&
+           (state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{});
+}
+
+// Whether something has happened around a sleeping deformable.
+bool is_disturbed(const WorldState& world, const DeformableRecord& record) {
+    for (const DeformableRecord::Support& support : record.supports) {
+        const std::uint32_t slot = support.body.index;
+        if (world.bodies.find(support.body) == nullptr || world.record(slot).version != support.version) return true;
+        if (world.is_dynamic(slot) ? !world.is_asleep(slot) : is_led(world, slot)) return true;
+    }
+    for (const std::uint32_t slot : record.touched_deformables) {
+        if (!world.deformables.used(slot) || !world.deformables.at(slot).is_asleep) return true;
+    }
+    for (const Attachment& attachment : record.definition.attachments) {
+        if (world.bodies.find(attachment.body) != nullptr && is_led(world, attachment.body.index)) return true;
+    }
+    bool is_disturbed = false;
+    for_each_body_near(world, record, [&](std::uint32_t slot) {
+        if (world.record(slot).definition.kind == BodyKind::static_body || world.is_asleep(slot)) return;
+        const BodyState& state = world.motion[slot];
+        is_disturbed = is_disturbed || length(state.linear_velocity) > noticed_speed ||
+                       length(state.angular_velocity) * world.record(slot).reach > noticed_speed;
+    });
+    for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
+        if (!world.deformables.used(slot)) continue;
+        const DeformableRecord& other = world.deformables.at(slot);
+        is_disturbed = is_disturbed || (other.definition.enabled && !other.is_asleep &&
+                                        may_collide(record.definition, other.definition) &&
+                                        overlaps(enlarged(record.bounds(), reach_of(world, other)), other.bounds()) &&
+                                        fastest_node(other) > noticed_speed);
+    }
+    return is_disturbed;
+}
+
+// Whether any was: it may disturb others.
+bool wake_disturbed(WorldState& world) {
+    bool has_woken = false;
+    for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
+        if (!world.deformables.used(slot)) continue;
+        DeformableRecord& record = world.deformables.at(slot);
+        if (!record.definition.enabled || !record.is_asleep || !is_disturbed(world, record)) continue;
+        record.is_asleep = false;
+        record.quiet_time = 0;
+        has_woken = true;
+    }
+    return has_woken;
+}
+
+/// All deformables that move in this step, with the bodies that they may touch.
+struct MovingDeformables {
+    std::vector<DeformableRecord*> records;
+    std::vector<DeformableRecord*> solid_records;  ///< those of solids
+    std::vector<SolidDeformable*> solids;          ///< of these, in their order
+    std::vector<ThinDeformable> thin;              ///< sheets and ropes
+    std::vector<ThinGroup> groups;                 ///< of these
+    std::vector<TouchedBody> bodies;               ///< by slot
+    std::vector<SolidContact> contacts;            ///< solid after solid
+    [[nodiscard]] std::uint32_t index_of(std::uint32_t slot) const {
+        return static_cast<std::uint32_t>(std::ranges::lower_bound(bodies, slot, {}, &TouchedBody::body) -
+                                          bodies.begin());
+    }
+};
+
+void gather_bodies(const WorldState& world, MovingDeformables& moving) {
+    std::vector<std::uint32_t> slots;
+    for (const DeformableRecord* record : moving.records) {
+        for_each_body_near(world, *record, [&](std::uint32_t slot) { slots.push_back(slot); });
+        for (const Attachment& attachment : record->definition.attachments) {
+            if (world.bodies.find(attachment.body) != nullptr) slots.push_back(attachment.body.index);
+        }
+    }
+    for (const std::uint32_t slot : world.pushed_bodies) {
+        if (world.is_used(slot) && !world.is_asleep(slot)) slots.push_back(slot);
+    }
+    std::ranges::sort(slots);
+    slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
+    for (const std::uint32_t slot : slots) moving.bodies.push_back(touched(world, slot));
+}
+
+// What a sheet or rope may touch.
+void find_contacts_of(const WorldState& world, const MovingDeformables& moving, ThinDeformable& thin) {
+    std::vector<bool> colliding;
+    for (const TouchedBody& body : moving.bodies) {
+        colliding.push_back(body.shape && may_collide(thin.record->definition, world.record(body.body).definition));
+    }
+    thin.attachments = thin.record->definition.attachments;
+    for (const Attachment& attachment : thin.attachments) {
+        const bool is_there = world.bodies.find(attachment.body) != nullptr;
+        thin.attachment_bodies.push_back(is_there ? moving.index_of(attachment.body.index) : no_body);
+    }
+    find_thin_contacts(moving.bodies, colliding, world.settings.time_step, world.settings.gravity, thin,
+                       *world.workers);
+}
+
+// What sheets and ropes pushed the solids in their last substep.
+void push_solids(WorldState& world, MovingDeformables& moving) {
+    for (DeformableRecord* record : moving.solid_records) SolidTies::push(world, record->slot, *record->solid);
+    for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
+        if (!world.deformables.used(slot) || !world.deformables.at(slot).definition.enabled) continue;
+        for (const SurfacePush& push : world.deformables.at(slot).surface_pushes) {
+            const auto record = std::ranges::lower_bound(moving.solid_records, push.slot, {}, &DeformableRecord::slot);
+            if (record == moving.solid_records.end() || (*record)->slot != push.slot) continue;
+            for (std::size_t k = 0; k < 3; ++k) (*record)->solid->push(push.triangle[k], push.weight[k] * push.force);
+        }
+    }
+}
+
+// Several solids each by one worker, a single one by all.
+void share_solids(const WorldState& world, const MovingDeformables& moving, const auto& work) {
+    const std::size_t count = moving.solids.size();
+    if (count <= 1 || world.workers->workers() == 1) {
+        for (std::size_t i = 0; i < count; ++i) work(i, *world.workers);
+        return;
+    }
+    std::atomic<std::size_t> next = 0;
+    world.workers->run([&](int) {
+        TaskPool alone(1);
+        for (std::size_t i = next++; i < count; i = next++) work(i, alone);
+    });
+}
+
+// A further round for solids whose moves make energy; returns whether there is any.
+bool correct_solids(const WorldState& world, const MovingDeformables& moving) {
+    std::atomic<bool> is_any = false;
+    share_solids(world, moving, [&](std::size_t i, TaskPool& workers) {
+        if (!moving.solids[i]->gains_energy()) return;
+        moving.solids[i]->solve(workers);
+        is_any = true;
+    });
+    return is_any;
+}
+
+void run_substeps(WorldState& world, MovingDeformables& moving) {
+    const int substeps = world.settings.deformable_substeps;
+    const double h = world.settings.time_step / substeps;
+    for (int k = 1; k <= substeps; ++k) {
+        share_solids(world, moving, [&](std::size_t i, TaskPool&) {
+            moving.solids[i]->begin_substep(h, moving.solid_records[i]->acceleration(world.settings.gravity));
+        });
+        push_solids(world, moving);
+        for (TouchedBody& body : moving.bodies) body.enter_substep(h);
+        SolidContacts::begin(moving.contacts, moving.solids, moving.bodies, h, k * h);
+        share_solids(world, moving, [&](std::size_t i, TaskPool& workers) { moving.solids[i]->solve(workers); });
+        int corrections = 0;
+        do {
+            world.solid_contacts.solve(moving.contacts, moving.solids, moving.bodies, h, k * h, *world.workers);
+        } while (corrections++ < most_corrections && correct_solids(world, moving));
+        share_solids(world, moving, [&](std::size_t i, TaskPool&) { moving.solids[i]->finish(); });
+        advance_thin_groups(world, moving.groups, moving.thin, moving.bodies, k);
+    }
+}
+
+// The bodies where the pushes have brought them; what the rigid bodies will feel in their next step. Sleepers wake if
+// they are pushed otherwise than when they fell asleep.
+void put_back_bodies(WorldState& world, const MovingDeformables& moving) {
+    const double dt = world.settings.time_step;
+    std::erase_if(world.pushed_bodies,
+                  [&](std::uint32_t slot) { return !world.is_used(slot) || !world.is_asleep(slot); });
+    for (const TouchedBody& body : moving.bodies) {
+        BodyRecord& record = world.record(body.body);
+        if (!world.is_dynamic(body.body)) continue;
+        const Vec3 force = body.impulse / dt, torque = body.angular_impulse / dt;
+        if (world.is_asleep(body.body)) {
+            const double mass = 1 / world.motion[body.body].inverse_mass;
+            const double weight = mass * length(world.settings.gravity);
+            const double more = std::max(length(force - record.deformable_force),
+                                         length(torque - record.deformable_torque) / std::max(record.reach, 1e-6));
+            if (more > noticed_change * weight) world.to_wake.push_back(body.body);
+            continue;
+        }
+        record.deformable_force = force;
+        record.deformable_torque = torque;
+        record.late_force = body.late_impulse / dt;
+        record.late_torque = body.late_angular_impulse / dt;
+        if (force != Vec3{} || torque != Vec3{}) world.pushed_bodies.push_back(body.body);
+        if (force == Vec3{} && body.expected_force == Vec3{} && torque == Vec3{} && body.expected_torque == Vec3{})
+            continue;
+        BodyState& state = world.motion[body.body];
+        state.center += body.shift;
+        state.rotation = normalized(cayley(body.turn) * state.rotation);
+        state.linear_velocity += body.velocity;
+        state.angular_velocity += body.spin;
+        refresh_inertia(state, world.constants[body.body]);
+    }
+}
+
+// Slots without repetition.
+void sort_out(std::vector<std::uint32_t>& slots) {
+    std::ranges::sort(slots);
+    slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
+}
+
+// What each solid remembers of its contacts.
+void keep_contacts(WorldState& world, MovingDeformables& moving) {
+    for (DeformableRecord* record : moving.records) {
+        record->contacts.clear();
+        record->touched_bodies.clear();
+        record->touched_deformables.clear();
+    }
+    for (const SolidContact& contact : moving.contacts) {
+        if (contact.force == Vec3{}) continue;
+        DeformableRecord& record = *moving.solid_records[contact.point.solid];
+        record.contacts.push_back(contact);
+        if (contact.has_body()) {
+            record.touched_bodies.push_back(static_cast<std::uint32_t>(contact.partner));
+        } else {
+            DeformableRecord& other = *moving.solid_records[contact.other.solid];
+            record.touched_deformables.push_back(other.slot);
+            other.touched_deformables.push_back(record.slot);
+        }
+    }
+    for (DeformableRecord* record : moving.records) {
+        if (!record->solid) record->touched_bodies = bodies_pushed_by(*record, moving.bodies);
+        for (const SurfacePush& push : record->surface_pushes) {
+            record->touched_deformables.push_back(push.slot);
+            world.deformables.at(push.slot).touched_deformables.push_back(record->slot);
+        }
+    }
+    for (DeformableRecord* record : moving.records) {
+        for (const Tie& tie : record->definition.ties) {
+            DeformableRecord* other = world.deformables.find(tie.other);
+            if (other == nullptr || !other->definition.enabled) continue;
+            record->touched_deformables.push_back(tie.other.index);
+            other->touched_deformables.push_back(record->slot);
+        }
+    }
+    for (const auto& [slots, contacts] : world.thin_contacts) {
+        if (world.deformables.at(slots.first).is_asleep) continue;  // it keeps what it touched
+        if (std::ranges::none_of(contacts, [](const ThinContact& contact) { return contact.push > 0; })) continue;
+        world.deformables.at(slots.first).touched_deformables.push_back(slots.second);
+        world.deformables.at(slots.second).touched_deformables.push_back(slots.first);
+    }
+    for (DeformableRecord* record : moving.records) {
+        sort_out(record->touched_bodies);
+        sort_out(record->touched_deformables);
+        record->supports.clear();
+        for (const std::uint32_t slot : record->touched_bodies)
+            record->supports.push_back({world.bodies.handle_at(slot), world.record(slot).version});
+    }
+}
+
+// Those whose numbers are none are stopped where they last were.
+void freeze_broken(WorldState& world, MovingDeformables& moving) {
+    for (DeformableRecord* record : moving.records) {
+        if (!record->is_finite()) {
+            record->stop_at(record->last_positions);
+            record->definition.enabled = false;
+            world.report.limits |= static_cast<std::uint32_t>(StepLimit::not_finite_deformable_frozen);
+        }
+        record->last_positions = record->nodes().position;
+    }
+}
+
+// Whether it and all that it touches, directly or by others, are ready to sleep: bodies asleep, deformables quiet.
+bool may_sleep(const WorldState& world, const DeformableRecord& record, std::vector<std::uint32_t>& seen) {
+    seen.push_back(record.slot);
+    if (record.quiet_time < world.settings.time_to_sleep) return false;
+    for (const std::uint32_t slot : record.touched_bodies) {
+        if (world.is_used(slot) && world.is_dynamic(slot) && !world.is_asleep(slot)) return false;
+    }
+    return std::ranges::all_of(record.touched_deformables, [&](std::uint32_t slot) {
+        return std::ranges::find(seen, slot) != seen.end() || !world.deformables.used(slot) ||
+               may_sleep(world, world.deformables.at(slot), seen);
+    });
+}
+
+// Where contacts of layers and bodies hold a node in turns it trembles for good.
+bool is_quiet(DeformableRecord& record) {
+    if (fastest_node(record) < quiet_speed) return true;
+    if (record.solid) return false;
+    const std::vector<Vec3>& places = record.nodes().position;
+    const auto has_stayed = [](Vec3 a, Vec3 b) { return length(a - b) < quiet_way; };
+    if (std::ranges::equal(places, record.quiet_places, has_stayed)) return true;
+    record.quiet_places = places;
+    return false;
+}
+
+// Bodies that they touch stay awake while they are not quiet.
+void note_quiet(WorldState& world, MovingDeformables& moving) {
+    for (DeformableRecord* record : moving.records) {
+        const bool is_blown = record->cloth && world.wind().is_gusty();
+        record->quiet_time = !is_blown && is_quiet(*record) ? record->quiet_time + world.settings.time_step : 0;
+        for (const std::uint32_t slot : record->touched_bodies) {
+            if (!world.is_used(slot) || !world.is_dynamic(slot)) continue;
+            world.sleep[slot].quiet_time = std::min(world.sleep[slot].quiet_time, record->quiet_time);
+        }
+    }
+}
+
+// Deformables sleep when they are quiet and so is all that they touch: at once with the bodies, for forces found while
+// these stand as if fixed would be no longer those that they were held by.
+void let_deformables_sleep(WorldState& world) {
+    if (!world.settings.sleeping) return;
+    std::vector<DeformableRecord*> ready;
+    for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
+        if (!world.deformables.used(slot)) continue;
+        DeformableRecord& record = world.deformables.at(slot);
+        if (!record.definition.enabled || record.is_asleep) continue;
+        std::vector<std::uint32_t> seen;
+        if (may_sleep(world, record, seen)) ready.push_back(&record);
+    }
+    for (DeformableRecord* record : ready) {
+        record->is_asleep = true;
+        record->rest();
+    }
+}
+
+}  // namespace
+
+void advance_deformables(WorldState& world) {
+    MovingDeformables moving;
+    let_deformables_sleep(world);
+    while (wake_disturbed(world) || wake_touched_thin(world)) {
+    }
+    for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
+        if (!world.deformables.used(slot)) continue;
+        DeformableRecord& record = world.deformables.at(slot);
+        if (!record.definition.enabled || record.is_asleep) continue;
+        record.slot = slot;
+        moving.records.push_back(&record);
+        if (record.solid) {
+            moving.solid_records.push_back(&record);
+            moving.solids.push_back(record.solid.get());
+        } else {
+            moving.thin.push_back({.record = &record});
+        }
+    }
+    gather_bodies(world, moving);
+    moving.contacts = find_solid_contacts(world, moving.solid_records, moving.bodies);
+    for (ThinDeformable& thin : moving.thin) find_contacts_of(world, moving, thin);
+    moving.groups = find_thin_groups(world, moving.thin);
+    run_substeps(world, moving);
+    put_back_bodies(world, moving);
+    if (!moving.records.empty()) limit_speeds(world);
+    keep_contacts(world, moving);
+    freeze_broken(world, moving);
+    note_quiet(world, moving);
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/state/world_state.h"
+
+namespace embody::physics {
+
+/// Whether a deformable and a body, or another deformable, see each other.
+bool may_collide(const DeformableDefinition& deformable, const BodyDefinition& body);
+bool may_collide(const DeformableDefinition& a, const DeformableDefinition& b);
+/// How far its nodes may come within a step, and a little more, m.
+double reach_of(const WorldState& world, const DeformableRecord& record);
+
+/// All contacts and attachments of soft solids for this step, record after record, with what is remembered of their
+/// forces. `bodies` by slot.
+std::vector<SolidContact> find_solid_contacts(const WorldState& world, std::span<DeformableRecord* const> records,
+                                              std::span<const TouchedBody> bodies);
+
+/// A contact's `partner` where that is another deformable.
+inline constexpr std::uint64_t first_deformable_partner = std::uint64_t{1} << 32;
+
+}  // namespace embody::physics

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/state/deformable_record.h"
+
+namespace embody {
+class TaskPool;
+}
+
+namespace embody::physics {
+
+/// A sheet or rope in a step.
+struct ThinDeformable {
+    DeformableRecord* record = nullptr;
+    std::vector<NodeContact> contacts;
+    std::vector<SegmentContact> segment_contacts;  ///< of ropes
+    std::vector<SheetContact> sheet_contacts;      ///< of sheets, between their nodes
+    std::vector<Attachment> attachments;           ///< its own, then its ties to solids while these hold it
+    std::vector<std::uint32_t> attachment_bodies;  ///< index of each one's body, no_body where it is gone
+};
+
+/// What it may touch in a step of `time_step` seconds. `may_collide`: for each of `bodies`, those of the step.
+void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide, double time_step,
+                        Vec3 gravity, ThinDeformable& thin, TaskPool& workers);
+/// One substep of it; pushes the bodies.
+void advance_thin(ThinDeformable& thin, const Substep& substep, std::span<TouchedBody> bodies, TaskPool& workers);
+/// Its contacts and attachments in the last substep.
+std::span<const TouchSpring> springs_of(const DeformableRecord& record);
+/// Slots of the bodies that it pushed in the last substep, ascending.
+std::vector<std::uint32_t> bodies_pushed_by(const DeformableRecord& record, std::span<const TouchedBody> bodies);
+
+}  // namespace embody::physics

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: MIT
+#include "physics/stages/deformable/thin_group_part.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace embody::physics {
+
+ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<std::uint32_t, 2>>& segments) {
+    ThinSurface surface;
+    surface.nodes = &record.nodes();
+    surface.radius = record.definition.contact_radius;
+    surface.friction = record.definition.friction;
+    if (record.cloth) {
+        const Cloth& cloth = std::get<Cloth>(record.definition.matter);
+        surface.triangles = cloth.triangles;
+        surface.edges = record.cloth->edges();
+        surface.edge_length = record.cloth->edge_length();
+        surface.radius = std::max(surface.radius, cloth.thickness / 2);
+        return surface;
+    }
+    double sum = 0;
+    segments.clear();
+    const std::vector<Vec3>& nodes = surface.nodes->position;
+    for (std::uint32_t s = 0; s + 1 < nodes.size(); ++s) {
+        sum += length(nodes[s + 1] - nodes[s]);
+        // By its number; of a broken one no more than a node.
+        segments.push_back({s, record.rope->is_broken(s) ? s : s + 1});
+    }
+    surface.edges = segments;
+    surface.edge_length = std::max(sum / static_cast<double>(nodes.size() - 1), 1e-6);
+    return surface;
+}
+
+Substep substep_of(const WorldState& world, const DeformableRecord& record, double h, double time) {
+    Substep substep{.h = h, .time = time};
+    substep.gravity = record.acceleration(world.settings.gravity);
+    substep.wind = world.wind();
+    substep.air_density = world.settings.air_density;
+    return substep;
+}
+
+void note_breaks(WorldState& world, const DeformableRecord& record) {
+    const std::vector<Vec3>& nodes = record.nodes().position;
+    for (const auto& [segment, tension] : record.rope->new_breaks()) {
+        const DeformableHandle rope = world.deformables.handle_at(record.slot);
+        world.rope_break_events.push_back(
+            {rope, record.definition.user_data, segment, tension, (nodes[segment] + nodes[segment + 1]) / 2});
+    }
+}
+
+ThinGroupPart::ThinGroupPart(WorldState& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h,
+                             double time)
+    : world_(world), group_(group), h_(h), place_(group.members.size()) {
+    for (const bool is_sheet : {true, false}) {
+        for (std::size_t i = 0; i < group.members.size(); ++i) {
+            ThinDeformable& one = thin[group.members[i]];
+            if ((one.record->cloth != nullptr) != is_sheet) continue;
+            place_[i] = static_cast<std::uint32_t>(members_.size());
+            Member& member = members_.emplace_back();
+            member.thin = &one;
+            member.substep = substep_of(world, *one.record, h, time);
+            member.first = moves_.size();
+            member.count = one.record->nodes().size();
+            for (const Vec3 velocity : one.record->nodes().mean_velocity) moves_.push_back(h * velocity);
+        }
+        if (is_sheet) sheets_ = members_.size();
+    }
+}
+
+void ThinGroupPart::begin_members(std::span<const TouchedBody> bodies, std::span<ThinMember> seen) {
+    for (std::size_t m = 0; m < members_.size(); ++m) {
+        Member& member = members_[m];
+        const ThinDeformable& thin = *member.thin;
+        DeformableRecord& record = member.record();
+        if (record.cloth) {
+            record.cloth->set_attachments(thin.attachments);
+            record.cloth->begin(member.substep, thin.contacts, thin.sheet_contacts, thin.attachment_bodies, bodies,
+                                *world_.workers);
+            member.touch = record.cloth->touch();
+            member.layers = record.cloth->layers();
+        } else {
+            record.rope->set_attachments(thin.attachments);
+            record.rope->set_clamps(record.definition.clamps);
+            record.rope->begin(member.substep, thin.contacts, thin.segment_contacts, thin.attachment_bodies, bodies);
+            member.touch = record.rope->touch();
+        }
+        seen[m] = {surface_of(record, member.segments), record.slot, static_cast<std::uint32_t>(member.first),
+                   std::vector<double>(member.count, 0)};
+    }
+}
+
+// What bodies weigh on each node, as if evenly spread over all nodes that they may touch.
+void ThinGroupPart::load_nodes(std::span<const TouchedBody> bodies, std::span<ThinMember> seen) const {
+    std::vector<double> touched(bodies.size(), 0);
+    const auto bears = [&](const TouchSpring& spring) {
+        return !spring.is_attachment && spring.body < bodies.size() && bodies[spring.body].inverse_mass > 0;
+    };
+    for (const Member& member : members_) {
+        for (const TouchSpring& spring : member.touch.springs()) {
+            if (bears(spring)) touched[spring.body] += spring.count;
+        }
+    }
+    for (std::size_t m = 0; m < members_.size(); ++m) {
+        for (const TouchSpring& spring : members_[m].touch.springs()) {
+            if (!bears(spring)) continue;
+            const double load = 1 / (bodies[spring.body].inverse_mass * touched[spring.body]);
+            for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
+                seen[m].load[spring.node[k]] = std::max(seen[m].load[spring.node[k]], load);
+        }
+    }
+}
+
+void ThinGroupPart::begin_pairs(std::span<const ThinMember> seen) {
+    const double gravity = length(world_.settings.gravity);
+    double pull = gravity;  // the strongest
+    for (const Member& member : members_) pull = std::max(pull, length(member.substep.gravity));
+    std::vector<ThinPair> pairs = group_.pairs;
+    for (ThinPair& pair : pairs) {
+        pair.a = place_[pair.a];
+        pair.b = place_[pair.b];
+    }
+    pairs_.begin(seen, pairs, world_.thin_contacts, h_, pull);
+    std::vector<PlacedTie> ties;
+    for (const ThinTie& tie : group_.ties) {
+        const Member &own = members_[place_[tie.member]], &other = members_[place_[tie.other]];
+        DeformableRecord& record = own.record();
+        ties.push_back({&record.nodes(), &other.record().nodes(), static_cast<std::uint32_t>(own.first),
+                        static_cast<std::uint32_t>(other.first), &record.definition.ties[tie.index],
+                        &record.tie_pulls[tie.index]});
+    }
+    ties_.begin(ties, h_, gravity);
+}
+
+void ThinGroupPart::begin(std::span<const TouchedBody> bodies) {
+    body_moves_.assign(bodies.size(), {});
+    std::vector<ThinMember> seen(members_.size());
+    begin_members(bodies, seen);
+    load_nodes(bodies, seen);
+    begin_pairs(seen);
+    for (Member& member : members_) {
+        member.touch.choose(part(moves_, member), body_moves_, true);
+        member.layers.choose(part(moves_, member), true);
+    }
+    pairs_.choose(moves_, true);
+    // From rest or from inertia, whichever is nearer to the end, as RopeLine does.
+    for (const Member& member : ropes()) {
+        const std::span<Vec3> moves = part(moves_, member);
+        const std::vector<Vec3> rest(moves.size());
+        const RopeLine& rope = *member.record().rope;
+        if (rope.energy(member.substep, rest) < rope.energy(member.substep, moves))
+            std::ranges::copy(rest, moves.begin());
+    }
+}
+
+void ThinGroupPart::gather_springs() {
+    springs_.clear();
+    for (const Member& member : members_) {
+        for (const std::span<const TouchSpring> springs : {member.touch.springs(), member.layers.springs()}) {
+            for (TouchSpring spring : springs) {
+                for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
+                    spring.node[k] += static_cast<std::uint32_t>(member.first);
+                springs_.push_back(spring);
+            }
+        }
+    }
+    springs_.insert(springs_.end(), pairs_.springs().begin(), pairs_.springs().end());
+    springs_.insert(springs_.end(), ties_.springs().begin(), ties_.springs().end());
+}
+
+// True where what acts has changed. The last solve's springs stay as they were in it, so that what one feels is what
+// the other felt.
+bool ThinGroupPart::choose_again() {
+    bool has_changed = false;
+    std::vector<TouchSprings> touch;
+    std::vector<PairSprings> layers;
+    for (const Member& member : members_) {
+        touch.push_back(member.touch);
+        layers.push_back(member.layers);
+        has_changed |= touch.back().choose(part(moves_, member), body_moves_, false);
+        has_changed |= layers.back().choose(part(moves_, member), false);
+    }
+    PairSprings pairs = pairs_;
+    has_changed |= pairs.choose(moves_, false);
+    if (!has_changed) return false;
+    for (std::size_t m = 0; m < members_.size(); ++m) {
+        members_[m].touch = std::move(touch[m]);
+        members_[m].layers = std::move(layers[m]);
+    }
+    pairs_ = std::move(pairs);
+    return true;
+}
+
+// What the solves minimise: inertia, elastic energy, damping and springs of the moves, J.
+double ThinGroupPart::energy(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias) {
+    double sum = 0;
+    for (std::size_t m = 0; m < sheets_; ++m) sum += energy_of(sheets[m], part(moves_, members_[m]));
+    for (const Member& member : ropes()) sum += member.record().rope->energy(member.substep, part(moves_, member));
+    for (std::size_t b = 0; b < inertias.size(); ++b) sum += energy_of(inertias[b], body_moves_[b]);
+    for (const TouchSpring& spring : springs_) sum += energy_of(spring, moves_, body_moves_);
+    return sum;
+}
+
+// Ropes are not linear: from the moves before towards those of the solve as far as the energy falls. Returns how far
+// the fastest node of a rope has gone, over a segment's length.
+double ThinGroupPart::go_as_far_as_it_pays(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias) {
+    constexpr double rounding = 1e-6, least_share = 1e-3;  // sheets are solved in floats
+    const std::vector<Vec3> full = std::exchange(moves_, from_);
+    const std::vector<BodyMove> body_full = std::exchange(body_moves_, body_from_);
+    const double before = energy(sheets, inertias), enough = before + rounding * std::fabs(before);
+    for (double share = 1; share > least_share; share /= 2) {
+        for (std::size_t i = 0; i < moves_.size(); ++i) moves_[i] = from_[i] + share * (full[i] - from_[i]);
+        for (std::size_t b = 0; b < body_moves_.size(); ++b) {
+            const BodyMove& from = body_from_[b];
+            body_moves_[b] = {from.shift + share * (body_full[b].shift - from.shift),
+                              from.turn + share * (body_full[b].turn - from.turn)};
+        }
+        if (energy(sheets, inertias) <= enough) break;
+    }
+    double way = 0;
+    for (const Member& member : ropes()) {
+        member.record().rope->foretell(member.substep, part(from_, member), part(moves_, member));
+        for (std::size_t i = member.first; i < member.first + member.count; ++i)
+            way = std::max(way, length(moves_[i] - from_[i]) / member.record().rope->segment_length());
+    }
+    return way;
+}
+
+// Ropes about their last moves, as in Newton's method.
+bool ThinGroupPart::solve(std::span<const TouchedBody> bodies) {
+    constexpr double small = 1e-3;  // of a segment's length
+    const int most_solves = has_ropes() ? 12 : 4;
+    const std::vector<BodyInertia> inertias = inertias_of(bodies, h_);
+    std::vector<SheetSystem> sheets;
+    for (std::size_t m = 0; m < sheets_; ++m) sheets.push_back(members_[m].record().cloth->system());
+    for (int solves = 1;; ++solves) {
+        std::vector<LineSystem> lines;
+        for (const Member& member : ropes())
+            lines.push_back(member.record().rope->linearize(member.substep, part(moves_, member)));
+        gather_springs();
+        from_ = moves_;
+        body_from_ = body_moves_;
+        const int rounds =
+            world_.pair_solver.solve(sheets, lines, springs_, inertias, moves_, body_moves_, *world_.workers);
+        if (rounds == ClothSolver::not_finite) return false;
+        const double way = has_ropes() ? go_as_far_as_it_pays(sheets, inertias) : 0;
+        if (solves == most_solves || (!choose_again() && way < small)) break;
+    }
+    return std::ranges::all_of(moves_, [](Vec3 move) { return is_finite(move); }) &&
+           std::ranges::all_of(body_moves_,
+                               [](const BodyMove& move) { return is_finite(move.shift) && is_finite(move.turn); });
+}
+
+// What others hold of it, who go by the moves that were found.
+std::vector<TouchSpring> ThinGroupPart::springs_of_others(const Member& member) const {
+    std::vector<TouchSpring> held;
+    for (const std::span<const TouchSpring> springs : {pairs_.springs(), ties_.springs()}) {
+        for (const TouchSpring& spring : springs) {
+            if (!spring.acts) continue;
+            TouchSpring own{.count = 0, .acts = true, .matrix = spring.matrix, .load = spring.load};
+            for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k) {
+                const std::uint32_t node = spring.node[k];
+                if (node < member.first || node >= member.first + member.count) {
+                    own.load -= spring.weight[k] * (spring.matrix * moves_[node]);
+                    continue;
+                }
+                const auto at = static_cast<std::size_t>(own.count++);
+                own.node[at] = node - static_cast<std::uint32_t>(member.first);
+                own.weight[at] = spring.weight[k];
+            }
+            if (own.count > 0) held.push_back(own);
+        }
+    }
+    return held;
+}
+
+// A clamped rope goes once more on its own: the solve knew nothing of its twist.
+void ThinGroupPart::end(std::span<TouchedBody> bodies) {
+    given_.assign(moves_.size(), {});
+    const std::vector<double> shares = shares_of(springs_, moves_, body_moves_, inertias_of(bodies, h_), h_);
+    pairs_.finish(moves_, given_, world_.thin_contacts);
+    ties_.finish(moves_, given_);
+    for (Member& member : members_) {
+        DeformableRecord& record = member.record();
+        const std::span<const Vec3> moves = part(moves_, member), given = part(given_, member);
+        if (record.cloth) {
+            record.cloth->touch() = std::move(member.touch);
+            record.cloth->layers() = std::move(member.layers);
+            record.cloth->end(member.substep, moves, body_moves_, given, bodies, *world_.workers);
+        } else if (record.rope->has_clamps()) {
+            record.rope->advance(member.substep, member.thin->contacts, member.thin->segment_contacts,
+                                 member.thin->attachment_bodies, bodies, springs_of_others(member));
+        } else {
+            record.rope->touch() = std::move(member.touch);
+            record.rope->end(member.substep, moves, body_moves_, given, bodies, shares);
+        }
+        if (record.rope) note_breaks(world_, record);
+    }
+}
+
+void ThinGroupPart::advance(std::span<TouchedBody> bodies) {
+    begin(bodies);
+    if (solve(bodies)) return end(bodies);
+    // What is broken freezes on its own.
+    for (Member& member : members_) {
+        advance_thin(*member.thin, member.substep, bodies, *world_.workers);
+        if (member.record().rope) note_breaks(world_, member.record());
+    }
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: MIT
+#include "physics/stages/deformable/thin_groups.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "physics/stages/deformable/solid_contact_search.h"
+#include "physics/stages/deformable/solid_ties.h"
+#include "physics/stages/deformable/thin_group_part.h"
+#include "physics/stages/deformable/thin_on_solids.h"
+
+namespace embody::physics {
+
+namespace {
+
+// The nodes of `own` that a tie between the two holds.
+std::vector<bool> tied_nodes(const WorldState& world, const DeformableRecord& own, const DeformableRecord& other) {
+    std::vector<bool> is_tied(own.nodes().size(), false);
+    for (const Tie& tie : own.definition.ties) {
+        if (world.deformables.find(tie.other) == &other) is_tied[tie.node] = true;
+    }
+    for (const Tie& tie : other.definition.ties) {
+        if (world.deformables.find(tie.other) != &own) continue;
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (tie.weight[k] > 0) is_tied[tie.other_nodes[k]] = true;
+        }
+    }
+    return is_tied;
+}
+
+// What holds the two together does not push them apart as well.
+void leave_out_tied(const WorldState& world, const DeformableRecord& a, const ThinSurface& on_a,
+                    const DeformableRecord& b, const ThinSurface& on_b, std::vector<ThinCandidate>& candidates) {
+    if (a.definition.ties.empty() && b.definition.ties.empty()) return;
+    const std::vector<bool> tied_a = tied_nodes(world, a, b), tied_b = tied_nodes(world, b, a);
+    std::erase_if(candidates, [&](const ThinCandidate& candidate) {
+        const bool is_swapped = candidate.is_swapped;
+        const ThinSurface &one = is_swapped ? on_b : on_a, &two = is_swapped ? on_a : on_b;
+        const std::vector<bool>&tied_one = is_swapped ? tied_b : tied_a, &tied_two = is_swapped ? tied_a : tied_b;
+        const auto is_tied_one = [&](std::uint32_t node) { return tied_one[node]; };
+        const auto is_tied_two = [&](std::uint32_t node) { return tied_two[node]; };
+        const bool first = candidate.kind == ThinFeature::edge_on_edge
+                               ? std::ranges::any_of(one.edges[candidate.first], is_tied_one)
+                               : tied_one[candidate.first];
+        return first || (candidate.kind == ThinFeature::node_on_triangle
+                             ? std::ranges::any_of(two.triangles[candidate.second], is_tied_two)
+                             : std::ranges::any_of(two.edges[candidate.second], is_tied_two));
+    });
+}
+
+// What gravity and its constant force give it, m/s².
+double pull_on(const WorldState& world, const DeformableRecord& record) {
+    return length(record.acceleration(world.settings.gravity));
+}
+
+// What may touch of two whose bounds, as far as each may go, overlap.
+std::vector<ThinCandidate> candidates_of(const WorldState& world, const DeformableRecord& a,
+                                         const DeformableRecord& b) {
+    std::vector<ThinCandidate> candidates;
+    std::vector<std::array<std::uint32_t, 2>> segments_a, segments_b;
+    const ThinSurface on_a = surface_of(a, segments_a), on_b = surface_of(b, segments_b);
+    find_thin_candidates(on_a, on_b, world.settings.time_step, std::max(pull_on(world, a), pull_on(world, b)),
+                         *world.workers, candidates);
+    leave_out_tied(world, a, on_a, b, on_b, candidates);
+    return candidates;
+}
+
+bool is_thin(const DeformableRecord& record) { return !record.solid && record.definition.enabled; }
+
+// What is wider than this has broken numbers, m: it will freeze, and nothing else is to know of it.
+constexpr double widest = 1e5;
+
+bool may_touch_others(const Bounds& bounds) {
+    const Vec3 size = bounds.size();
+    return size.x < widest && size.y < widest && size.z < widest;
+}
+
+// The group that member i belongs to: that of its first member.
+std::uint32_t root_of(std::vector<std::uint32_t>& group, std::uint32_t i) {
+    while (group[i] != i) i = group[i] = group[group[i]];
+    return i;
+}
+
+void advance_alone(WorldState& world, ThinDeformable& thin, double h, double time, std::vector<TouchedBody>& bodies) {
+    advance_thin(thin, substep_of(world, *thin.record, h, time), bodies, *world.workers);
+    if (thin.record->rope) note_breaks(world, *thin.record);
+}
+
+void advance_group(WorldState& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h, double time,
+                   std::vector<TouchedBody>& bodies, ThinOnSolids::Surfaces& surfaces) {
+    const std::size_t first = bodies.size();
+    std::vector<ThinOnSolids> solids(group.members.size(), ThinOnSolids(world, surfaces));
+    std::vector<SolidTies> ties(group.members.size(), SolidTies(world));
+    for (std::size_t i = 0; i < group.members.size(); ++i) {
+        solids[i].add(thin[group.members[i]], bodies, h);
+        ties[i].add(thin[group.members[i]], bodies, h);
+    }
+    if (group.members.size() == 1) {
+        advance_alone(world, thin[group.members[0]], h, time, bodies);
+    } else {
+        int parts = 1;
+        for (const std::uint32_t member : group.members) {
+            ClothSheet* sheet = thin[member].record->cloth.get();
+            if (sheet != nullptr) parts = std::max(parts, sheet->parts_of(h, *world.workers));
+        }
+        const PartPushes pushes(bodies);
+        for (int k = 0; k < parts; ++k) {
+            if (k > 0) pushes.go_on(bodies, h / parts);
+            ThinGroupPart(world, group, thin, h / parts, time + k * h / parts).advance(bodies);
+        }
+    }
+    for (std::size_t i = 0; i < group.members.size(); ++i) {
+        solids[i].take(thin[group.members[i]], bodies, first);
+        ties[i].take(thin[group.members[i]]);
+    }
+    bodies.resize(first);
+}
+
+// By index in `thin`; those to what is gone, or does not move, hold nothing.
+std::vector<ThinTie> find_ties(const WorldState& world, std::span<const ThinDeformable> thin) {
+    std::vector<ThinTie> ties;
+    for (std::uint32_t i = 0; i < thin.size(); ++i) {
+        DeformableRecord& record = *thin[i].record;
+        record.tie_pulls.resize(record.definition.ties.size());
+        for (std::size_t t = 0; t < record.definition.ties.size(); ++t) {
+            const DeformableRecord* other = world.deformables.find(record.definition.ties[t].other);
+            const auto found = std::ranges::find(thin, other, &ThinDeformable::record);
+            if (found != thin.end()) ties.push_back({i, static_cast<std::uint32_t>(found - thin.begin()), t});
+        }
+    }
+    return ties;
+}
+
+// What is tied to what is awake is awake.
+bool wake_tied(WorldState& world) {
+    bool has_woken_any = false;
+    for (bool has_woken = true; has_woken; has_woken_any |= has_woken) {
+        has_woken = false;
+        for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
+            if (!world.deformables.used(slot)) continue;
+            DeformableRecord& own = world.deformables.at(slot);
+            if (!own.definition.enabled) continue;
+            for (const Tie& tie : own.definition.ties) {
+                DeformableRecord* other = world.deformables.find(tie.other);
+                if (other == nullptr || !other->definition.enabled || other->is_asleep == own.is_asleep) continue;
+                own.is_asleep = other->is_asleep = false;
+                own.quiet_time = other->quiet_time = 0;
+                has_woken = true;
+            }
+        }
+    }
+    return has_woken_any;
+}
+
+// Contacts of a pair that has parted, or of what is gone, are forgotten; sleepers keep theirs.
+void forget_parted(WorldState& world, std::span<const ThinGroup> groups, std::span<const ThinDeformable> thin) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> together;
+    for (const ThinGroup& group : groups) {
+        for (const ThinPair& pair : group.pairs)
+            together.emplace_back(thin[group.members[pair.a]].record->slot, thin[group.members[pair.b]].record->slot);
+    }
+    std::ranges::sort(together);
+    const auto sleeps = [&](std::uint32_t slot) {
+        return world.deformables.used(slot) && world.deformables.at(slot).is_asleep;
+    };
+    std::erase_if(world.thin_contacts, [&](const auto& memory) {
+        return !std::ranges::binary_search(together, memory.first) &&
+               !(sleeps(memory.first.first) && sleeps(memory.first.second));
+    });
+}
+
+}  // namespace
+
+bool wake_touched_thin(WorldState& world) {
+    const double h = world.settings.time_step;
+    const std::uint32_t count = world.deformables.slot_count();
+    bool has_woken = wake_tied(world);
+    for (std::uint32_t slot = 0; slot < count; ++slot) {
+        if (!world.deformables.used(slot)) continue;
+        DeformableRecord& sleeper = world.deformables.at(slot);
+        if (!is_thin(sleeper) || !sleeper.is_asleep) continue;
+        const Bounds bounds = enlarged(sleeper.bounds(), reach_of(world, sleeper));
+        for (std::uint32_t other = 0; other < count && sleeper.is_asleep; ++other) {
+            if (!world.deformables.used(other)) continue;
+            const DeformableRecord& awake = world.deformables.at(other);
+            if (!is_thin(awake) || awake.is_asleep || !may_collide(awake.definition, sleeper.definition)) continue;
+            const Bounds reach = enlarged(awake.bounds(), reach_of(world, awake));
+            if (!overlaps(bounds, reach) || !may_touch_others(reach)) continue;
+            std::vector<std::array<std::uint32_t, 2>> segments_a, segments_b;
+            const ThinSurface a = surface_of(awake, segments_a), b = surface_of(sleeper, segments_b);
+            const double pull = std::max(pull_on(world, awake), pull_on(world, sleeper));
+            if (!will_touch(a, b, candidates_of(world, awake, sleeper), h, pull)) continue;
+            sleeper.is_asleep = false;
+            sleeper.quiet_time = 0;
+            has_woken = true;
+        }
+    }
+    return has_woken;
+}
+
+std::vector<ThinGroup> find_thin_groups(WorldState& world, std::span<const ThinDeformable> thin) {
+    std::vector<std::uint32_t> group(thin.size());
+    std::iota(group.begin(), group.end(), 0u);
+    std::vector<Bounds> bounds;
+    for (const ThinDeformable& one : thin)
+        bounds.push_back(enlarged(one.record->bounds(), reach_of(world, *one.record)));
+    std::vector<ThinPair> pairs;
+    for (std::uint32_t a = 0; a < thin.size(); ++a) {
+        for (std::uint32_t b = a + 1; b < thin.size(); ++b) {
+            const DeformableRecord &one = *thin[a].record, &two = *thin[b].record;
+            if (!overlaps(bounds[a], bounds[b]) || !may_collide(one.definition, two.definition)) continue;
+            if (!may_touch_others(bounds[a]) || !may_touch_others(bounds[b])) continue;
+            ThinPair pair{a, b, candidates_of(world, one, two)};
+            if (pair.candidates.empty()) continue;
+            pairs.push_back(std::move(pair));
+            const std::uint32_t i = root_of(group, a), k = root_of(group, b);
+            group[std::max(i, k)] = std::min(i, k);
+        }
+    }
+    std::vector<ThinTie> ties = find_ties(world, thin);
+    for (const ThinTie& tie : ties) {
+        const std::uint32_t i = root_of(group, tie.member), k = root_of(group, tie.other);
+        group[std::max(i, k)] = std::min(i, k);
+    }
+    std::vector<ThinGroup> groups;
+    std::vector<std::uint32_t> number(thin.size()), place(thin.size());  // of the group; in it
+    for (std::uint32_t i = 0; i < thin.size(); ++i) {
+        const std::uint32_t root = root_of(group, i);
+        if (root == i) {
+            number[i] = static_cast<std::uint32_t>(groups.size());
+            groups.emplace_back();
+        }
+        ThinGroup& own = groups[number[root]];
+        number[i] = number[root];
+        place[i] = static_cast<std::uint32_t>(own.members.size());
+        own.members.push_back(i);
+        own.in_substeps |= thin[i].record->rope != nullptr || has_solid_ties(world, *thin[i].record);
+    }
+    for (ThinPair& pair : pairs) {
+        ThinGroup& own = groups[number[pair.a]];
+        own.pairs.push_back({place[pair.a], place[pair.b], std::move(pair.candidates)});
+    }
+    for (const ThinTie& tie : ties)
+        groups[number[tie.member]].ties.push_back({place[tie.member], place[tie.other], tie.index});
+    forget_parted(world, groups, thin);
+    return groups;
+}
+
+void advance_thin_groups(WorldState& world, std::span<const ThinGroup> groups, std::span<ThinDeformable> thin,
+                         std::vector<TouchedBody>& bodies, int k) {
+    const int substeps = world.settings.deformable_substeps;
+    const double step = world.settings.time_step, h = step / substeps;
+    ThinOnSolids::Surfaces surfaces;
+    for (const ThinGroup& group : groups) {
+        if (group.in_substeps) advance_group(world, group, thin, h, (k - 1) * h, bodies, surfaces);
+    }
+    if (k < substeps) return;
+    for (TouchedBody& body : bodies) {
+        body.enter_whole_step(substeps);
+        body.late_impulse = body.impulse;
+        body.late_angular_impulse = body.angular_impulse;
+    }
+    for (const ThinGroup& group : groups) {
+        if (!group.in_substeps) advance_group(world, group, thin, step, 0, bodies, surfaces);
+    }
+    for (TouchedBody& body : bodies) {
+        body.late_impulse = body.impulse - body.late_impulse;
+        body.late_angular_impulse = body.angular_impulse - body.late_angular_impulse;
+    }
+}
+
+void forget_thin_contacts(WorldState& world, std::uint32_t slot) {
+    std::erase_if(world.thin_contacts,
+                  [&](const auto& memory) { return memory.first.first == slot || memory.first.second == slot; });
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/deformable/contact/pair_springs.h"
+#include "physics/stages/deformable/thin_deformables.h"
+#include "physics/state/world_state.h"
+
+namespace embody::physics {
+
+/// A tie between two of a group, by index in its members.
+struct ThinTie {
+    std::uint32_t member = 0, other = 0;
+    std::size_t index = 0;  ///< among the ties of `member`
+};
+
+/// Sheets and ropes that may touch each other in a step, or are tied: they are solved together (docs/physics/cloth.md).
+struct ThinGroup {
+    std::vector<std::uint32_t> members;  ///< indices in the list of all that move, ascending; often one alone
+    std::vector<ThinPair> pairs;         ///< by index in `members`
+    std::vector<ThinTie> ties;
+    bool in_substeps = false;  ///< goes in each substep: has a rope, or is tied to a solid
+};
+
+/// Wakes sleeping sheets and ropes that one that is awake is going to touch, and what is tied to what is awake. Whether
+/// any was.
+bool wake_touched_thin(WorldState& world);
+/// Each of `thin` in one group; forgets contacts of pairs that have parted. Ascending by first member.
+std::vector<ThinGroup> find_thin_groups(WorldState& world, std::span<const ThinDeformable> thin);
+/// Substep k (1 …) of the deformables' substeps for all groups: groups with ropes or tied to solids in each, sheets
+/// alone once for the whole step, in the last. Pushes the bodies, notes ropes that break.
+void advance_thin_groups(WorldState& world, std::span<const ThinGroup> groups, std::span<ThinDeformable> thin,
+                         std::vector<TouchedBody>& bodies, int k);
+/// What the deformable of that slot has touched of others is no more.
+void forget_thin_contacts(WorldState& world, std::uint32_t slot);
+
+}  // namespace embody::physics

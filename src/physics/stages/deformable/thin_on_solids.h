@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <utility>
+
+#include "physics/deformable/solid/surface_pairs.h"
+#include "physics/stages/deformable/thin_deformables.h"
+#include "physics/state/world_state.h"
+
+namespace embody::physics {
+
+/// Sheets and ropes on soft solids that have made their substep already (docs/physics/cloth.md). For the sheet each is
+/// a body that cannot be moved; what the sheet pushes acts on the solid from its next substep on.
+class ThinOnSolids {
+public:
+    /// Surfaces of solids as they lie now, by slot, found when they are asked for.
+    using Surfaces = std::map<std::uint32_t, PlacedSurface>;
+    /// All enabled solids of the world as they lie now, asleep or not.
+    ThinOnSolids(WorldState& world, Surfaces& surfaces) : world_(world), surfaces_(surfaces) {}
+
+    /// Appends the solids near `thin` to the bodies that it touches, and contacts of its nodes with them. `h` is its
+    /// substep, s.
+    void add(ThinDeformable& thin, std::vector<TouchedBody>& bodies, double h);
+    /// After its substep: remembers what it pushes the solids, which are those of `bodies` from `first` on, and takes
+    /// the contacts away again.
+    void take(ThinDeformable& thin, std::span<const TouchedBody> bodies, std::size_t first);
+
+private:
+    // Beyond all slots of bodies.
+    static constexpr std::uint32_t first_solid_slot = 0x80000000u;
+    struct Held {
+        std::uint32_t body = 0, node = 0;
+        PlacedSurface::Place place;
+        double following = 1;  ///< share of a new push that the solid takes on
+    };
+    static std::pair<std::uint32_t, std::uint32_t> touch_of(const SurfacePush& push);
+    static std::pair<std::uint32_t, std::uint32_t> key(const Held& held) { return {held.body, held.node}; }
+    const PlacedSurface& surface(std::uint32_t slot);
+    void add_solid(ThinDeformable& thin, std::uint32_t slot, std::vector<TouchedBody>& bodies, double h);
+    void uncover(ThinDeformable& thin, std::uint32_t solid, double distance) const;
+    void find_following(SolidDeformable& solid, const Nodes& sheet, double h, std::span<Held> held);
+
+    WorldState& world_;
+    Surfaces& surfaces_;
+    std::vector<Held> held_;                // of the sheet at hand, in the order of its contacts
+    std::vector<NodeContact> with_bodies_;  // its contacts without solids
+    std::vector<SheetContact> between_;     // likewise
+    std::vector<Vec3> push_, move_;
+};
+
+}  // namespace embody::physics

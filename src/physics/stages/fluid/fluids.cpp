@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: MIT
+// Fluids before the rigid bodies (docs/physics/fluids.md, "With rigid bodies"): what their pressure does to a body in
+// this step is a force on it through the rigid solver's substeps, so that its contacts answer to it.
+#include <algorithm>
+#include <cmath>
+
+#include "physics/stages/fluid/fluids.h"
+#include "physics/stages/rigid/wake.h"
+#include "physics/stages/stages.h"
+
+namespace embody::physics {
+
+namespace {
+
+constexpr double quiet_speed = 0.01;     // m/s: a fluid whose particles are slower, but for a few drops, may sleep
+constexpr double time_to_sleep = 1;      // s
+constexpr double quiet_sinking = 0.02;   // cells a second: a fluid whose middle sinks faster does not sleep
+constexpr double noticed_change = 0.05;  // of a sleeping body's weight: another force by more wakes it
+constexpr double most_support = 1.5;     // of the weight of a body and of its volume of the fluid, or what it carries
+constexpr double farthest_jump = 0.5;    // m: a body that was put farther away was not moved through the fluid
+
+Vec3 angular_momentum_of(const WorldState& world, std::uint32_t slot, Vec3 angular_velocity) {
+    const Quat rotation = world.motion[slot].rotation;
+    return rotate(rotation, world.constants[slot].inertia * rotate_inverse(rotation, angular_velocity));
+}
+
+Vec3 at_most(Vec3 v, double most) {
+    const double size = length(v);
+    return size > most ? v * (most / size) : v;
+}
+
+/// What holds a body besides the forces that are known, as impulses.
+struct Support {
+    Vec3 linear, angular;
+};
+
+// Contacts and joints of this step will do what they did in the last one, as far as that was no impact.
+Support support_of(const WorldState& world, std::uint32_t slot, double density) {
+    const FluidTouch& touch = world.fluid_touches[slot];
+    if (touch.step + 1 != world.report.step) return {};
+    const double dt = world.settings.time_step;
+    const BodyState& state = world.motion[slot];
+    const BodyRecord& record = world.record(slot);
+    const double mass = world.constants[slot].mass;
+    const Vec3 linear = (state.linear_velocity - touch.linear_velocity - touch.acceleration * dt) * mass;
+    const Vec3 angular =
+        angular_momentum_of(world, slot, state.angular_velocity - touch.angular_velocity) - touch.torque * dt;
+    const double gravity = length(world.settings.gravity), volume = record.shape->mass_properties().volume;
+    const double most = most_support * (mass * gravity + std::max(density * volume * gravity, touch.carried)) * dt;
+    return {at_most(linear, most), at_most(angular, most * record.reach)};
+}
+
+Vec3 turn_between(Quat from, Quat to) {
+    const Quat turn = to * conjugate(from);
+    return Vec3{turn.x, turn.y, turn.z} * (turn.w < 0 ? -2.0 : 2.0);
+}
+
+// A body that nothing but the user moves. One that was put somewhere else goes there in this step.
+FluidSolid fixed_solid(const WorldState& world, const FluidRecord& fluid, std::uint32_t slot) {
+    const BodyRecord& record = world.record(slot);
+    const BodyState& state = world.motion[slot];
+    const double dt = world.settings.time_step;
+    FluidSolid solid;
+    solid.body = slot;
+    solid.shape = record.shape;
+    solid.version = record.version;
+    solid.pose = world.pose(slot);
+    solid.center = state.center;
+    solid.linear_velocity = state.linear_velocity;
+    solid.angular_velocity = state.angular_velocity;
+    solid.is_static = record.definition.kind == BodyKind::static_body;
+    const auto seen = fluid.seen.find(slot);
+    if (seen == fluid.seen.end() || seen->second.version == record.version) return solid;
+    const Vec3 local_center = world.constants[slot].local_center;
+    const Vec3 last_center = transform_point(seen->second.pose, local_center);
+    const Vec3 way = state.center - last_center, turn = turn_between(seen->second.pose.rotation, solid.pose.rotation);
+    if (way == Vec3{} && turn == Vec3{}) return solid;
+    if (length(way) + length(turn) * record.reach > farthest_jump) return solid;
+    solid.is_static = false;
+    solid.pose = seen->second.pose;
+    solid.center = last_center;
+    solid.linear_velocity = way / dt;
+    solid.angular_velocity = turn / dt;
+    return solid;
+}
+
+FluidSolid dynamic_solid(WorldState& world, std::uint32_t slot, double density) {
+    const BodyState& state = world.motion[slot];
+    FluidSolid solid;
+    solid.body = slot;
+    solid.shape = world.record(slot).shape;
+    solid.version = world.record(slot).version;
+    solid.pose = world.pose(slot);
+    solid.center = state.center;
+    if (world.is_asleep(slot)) return solid;
+    const double dt = world.settings.time_step;
+    const Support support = support_of(world, slot, density);
+    solid.linear_velocity = state.linear_velocity;
+    solid.angular_velocity = state.angular_velocity;
+    solid.inverse_mass = state.inverse_mass;
+    solid.inverse_inertia = state.inverse_inertia;
+    solid.acceleration = world.constants[slot].acceleration + support.linear * (state.inverse_mass / dt);
+    solid.angular_acceleration = state.inverse_inertia * (world.constants[slot].torque + support.angular / dt);
+    return solid;
+}
+
+// Slots of the bodies that the fluid may meet in this step, ascending.
+std::vector<std::uint32_t> bodies_near(const WorldState& world, const FluidRecord& fluid) {
+    const double dt = world.settings.time_step, h = fluid.definition.cell_size;
+    const double way = (fluid.fastest + length(world.settings.gravity) * dt) * dt;
+    std::vector<std::uint32_t> slots;
+    world.broad_phase.query(enlarged(fluid.bounds, 4 * h + way), [&](std::uint32_t slot) {
+        if (world.record(slot).shape && world.record(slot).definition.enabled) slots.push_back(slot);
+    });
+    return slots;
+}
+
+// Whether anything has happened around a sleeping fluid.
+bool is_disturbed(const WorldState& world, const FluidRecord& fluid, const std::vector<std::uint32_t>& slots) {
+    if (slots.size() != fluid.seen.size()) return true;
+    for (const std::uint32_t slot : slots) {
+        const auto seen = fluid.seen.find(slot);
+        if (seen == fluid.seen.end() || seen->second.version != world.record(slot).version) return true;
+        const BodyState& state = world.motion[slot];
+        if (state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{}) return true;
+        if (world.is_dynamic(slot) && !world.is_asleep(slot)) return true;
+    }
+    return false;
+}
+
+// Forces of this step on the bodies, and what is remembered of them.
+void push_bodies(WorldState& world, FluidRecord& fluid, std::span<const FluidSolid> solids) {
+    const double dt = world.settings.time_step;
+    fluid.seen.clear();
+    for (const FluidSolid& solid : solids) {
+        const BodyRecord& record = world.record(solid.body);
+        fluid.seen[solid.body] = {record.version, world.pose(solid.body), solid.impulse / dt,
+                                  solid.angular_impulse / dt};
+    }
+}
+
+void add_forces(WorldState& world, const FluidRecord& fluid) {
+    for (const auto& [slot, seen] : fluid.seen) {
+        if (seen.force == Vec3{} && seen.torque == Vec3{}) continue;
+        world.record(slot).fluid_force += seen.force;
+        world.record(slot).fluid_torque += seen.torque;
+        world.pushed_by_fluids.push_back(slot);
+    }
+}
+
+// Bodies that sleep and feel another force than when they fell asleep wake.
+void wake_pushed(WorldState& world) {
+    for (const std::uint32_t slot : world.pushed_by_fluids) {
+        if (!world.is_dynamic(slot) || !world.is_asleep(slot)) continue;
+        const Vec3 change = world.record(slot).fluid_force - world.fluid_touches[slot].force_asleep;
+        const double weight = world.constants[slot].mass * length(world.settings.gravity);
+        if (length(change) > noticed_change * weight) wake_group_of(world, slot);
+    }
+}
+
+void note_touches(WorldState& world) {
+    for (const std::uint32_t slot : world.pushed_by_fluids) {
+        if (!world.is_dynamic(slot) || world.is_asleep(slot)) continue;
+        const BodyState& state = world.motion[slot];
+        const FluidTouch& before = world.fluid_touches[slot];
+        if (before.step == world.report.step) continue;  // pushed by several
+        const double last = before.step + 1 == world.report.step ? length(before.force_asleep) : 0;
+        const double carried = std::min(length(world.record(slot).fluid_force), last);
+        world.fluid_touches[slot] = {world.report.step,
+                                     state.linear_velocity,
+                                     state.angular_velocity,
+                                     world.constants[slot].acceleration,
+                                     world.constants[slot].torque,
+                                     world.record(slot).fluid_force,
+                                     carried};
+    }
+}
+
+void report_limit(WorldState& world, StepLimit limit) { world.report.limits |= static_cast<std::uint32_t>(limit); }
+
+void note_outcome(WorldState& world, FluidRecord& fluid, const FluidOutcome& outcome) {
+    fluid.lost += outcome.lost;
+    if (outcome.lost > 0) report_limit(world, StepLimit::fluid_particles_lost);
+    if (outcome.is_slowed) report_limit(world, StepLimit::fluid_too_fast);
+    if (!outcome.is_solved) report_limit(world, StepLimit::fluid_unsolved);
+    if (!outcome.is_finite) {
+        report_limit(world, StepLimit::not_finite_fluid_frozen);
+        fluid.is_frozen = true;
+        fluid.solver->put_at_rest(fluid.positions, fluid.ids);
+    }
+}
+
+// Of all particles' middle, against gravity, m.
+double height_of(const FluidSolver& solver, Vec3 gravity) {
+    if (solver.particles().empty() || gravity == Vec3{}) return 0;
+    const Vec3 up = -normalized(gravity);
+    double sum = 0;
+    for (const FluidParticle& particle : solver.particles()) {
+        const auto& [x, y, z] = particle.position;
+        sum += dot(up, {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+    }
+    return sum / static_cast<double>(solver.particles().size());
+}
+
+// Honey that runs is slower than water at rest trembles: what still sinks as a whole does not sleep.
+bool has_sunk(const WorldState& world, const FluidRecord& fluid) {
+    const double sunk = fluid.quiet_height - height_of(*fluid.solver, world.settings.gravity);
+    return sunk > quiet_sinking * fluid.definition.cell_size * fluid.quiet_time;
+}
+
+void fall_asleep_if_quiet(WorldState& world, FluidRecord& fluid) {
+    const bool is_quiet = fluid.solver->particles().empty() || fluid.solver->usual_speed(*world.workers) < quiet_speed;
+    if (is_quiet && fluid.quiet_time == 0) fluid.quiet_height = height_of(*fluid.solver, world.settings.gravity);
+    fluid.quiet_time = is_quiet ? fluid.quiet_time + world.settings.time_step : 0;
+    if (fluid.quiet_time >= time_to_sleep && has_sunk(world, fluid)) fluid.quiet_time = 0;
+    if (!is_quiet) {
+        // What floats is quiet at its turning points, too: it waits for the liquid.
+        for (const auto& [slot, seen] : fluid.seen) {
+            if (seen.force != Vec3{}) world.sleep[slot].quiet_time = 0;
+        }
+    }
+    if (fluid.quiet_time < time_to_sleep || !world.settings.sleeping || !fluid.definition.allow_sleep) return;
+    for (const auto& [slot, seen] : fluid.seen) {
+        const BodyState& state = world.motion[slot];
+        if (world.is_dynamic(slot) && !world.is_asleep(slot)) return;
+        if (state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{}) return;
+    }
+    fluid.is_asleep = true;
+    fluid.solver->stop();
+    read_particles(fluid, *world.workers);
+}
+
+std::vector<FluidSolid> solids_near(WorldState& world, const FluidRecord& fluid,
+                                    const std::vector<std::uint32_t>& slots) {
+    std::vector<FluidSolid> solids;
+    solids.reserve(slots.size());
+    for (const std::uint32_t slot : slots) {
+        solids.push_back(world.is_dynamic(slot) ? dynamic_solid(world, slot, fluid.definition.density)
+                                                : fixed_solid(world, fluid, slot));
+    }
+    return solids;
+}
+
+void advance_fluid(WorldState& world, FluidRecord& fluid) {
+    const std::vector<std::uint32_t> slots = bodies_near(world, fluid);
+    if (fluid.is_asleep && !is_disturbed(world, fluid, slots)) return;
+    if (fluid.is_asleep) fluid.quiet_time = 0;
+    fluid.is_asleep = false;
+    const TaskPool::StayAwake stay_awake(*world.workers);
+    std::vector<FluidSolid> solids = solids_near(world, fluid, slots);
+    const FluidOutcome outcome = fluid.solver->advance(
+        world.settings.time_step, world.settings.gravity * fluid.definition.gravity_factor, solids, *world.workers);
+    note_outcome(world, fluid, outcome);
+    push_bodies(world, fluid, solids);
+    if (fluid.is_frozen) read_particles(fluid, *world.workers);
+    fall_asleep_if_quiet(world, fluid);
+}
+
+// Particles stay outside of the bodies where these came to.
+void follow_bodies(WorldState& world, FluidRecord& fluid) {
+    std::vector<std::uint32_t> slots;
+    for (const auto& [slot, seen] : fluid.seen) {
+        if (world.is_used(slot)) slots.push_back(slot);
+    }
+    std::vector<FluidSolid> solids = solids_near(world, fluid, slots);
+    const FluidSolver::Followed followed = fluid.solver->follow(solids, *world.workers);
+    fluid.lost += followed.lost;
+    if (followed.lost > 0) report_limit(world, StepLimit::fluid_particles_lost);
+    if (!followed.is_solved) report_limit(world, StepLimit::fluid_unsolved);
+    read_particles(fluid, *world.workers);
+}
+
+}  // namespace
+
+void prepare_fluid(WorldState& world, FluidRecord& fluid) {
+    world.fluid_touches.resize(world.bodies.slot_count());
+    std::vector<FluidSolid> solids = solids_near(world, fluid, bodies_near(world, fluid));
+    fluid.solver->prepare(solids, *world.workers);
+}
+
+void advance_fluids(WorldState& world) {
+    for (const std::uint32_t slot : world.pushed_by_fluids) {
+        if (world.is_used(slot)) world.record(slot).fluid_force = world.record(slot).fluid_torque = {};
+    }
+    const bool had_pushed = !world.pushed_by_fluids.empty();
+    world.pushed_by_fluids.clear();
+    if (world.fluids.count() == 0 && !had_pushed) return;
+    world.fluid_touches.resize(world.bodies.slot_count());
+    for (std::uint32_t slot = 0; slot < world.fluids.slot_count(); ++slot) {
+        if (!world.fluids.used(slot) || world.fluids.at(slot).is_frozen) continue;
+        gather_awake(world);
+        advance_fluid(world, world.fluids.at(slot));
+        add_forces(world, world.fluids.at(slot));
+    }
+    wake_pushed(world);
+    gather_awake(world);
+    note_touches(world);
+}
+
+void settle_fluids(WorldState& world) {
+    for (std::uint32_t slot = 0; slot < world.fluids.slot_count(); ++slot) {
+        if (!world.fluids.used(slot)) continue;
+        FluidRecord& fluid = world.fluids.at(slot);
+        if (fluid.is_frozen || fluid.is_asleep) continue;
+        const TaskPool::StayAwake stay_awake(*world.workers);
+        follow_bodies(world, fluid);
+    }
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+#include "physics/stages/impact/impact_paths.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "physics/dynamic/equations_of_motion.h"
+#include "physics/state/share_awake.h"
+
+namespace embody::physics {
+
+ImpactPaths::ImpactPaths(WorldState& world, const BodyPaths& bodies)
+    : world_(world),
+      bodies_(bodies),
+      memory_(world.impact_memory),
+      step_(world.settings.time_step),
+      substep_(step_ / world.settings.substeps),
+      most_heap_bounces_(500 + world.awake.size() / 8) {
+    memory_.heap_bounces = 0;
+    const std::size_t count = world.motion.size();
+    memory_.last_time.assign(count, 0);
+    memory_.liveliness.assign(count, 1);
+
+    // What the end of a free path can be faster than its start.
+    memory_.speed_gain.assign(count, 0);
+    for_each_awake(world, [&](std::uint32_t body) {
+        const double turning = length_squared(world.motion[body].angular_velocity) * world.record(body).reach;
+        memory_.speed_gain[body] = static_cast<float>(step_ * (length(bodies.free_acceleration(body)) + turning));
+    });
+}
+
+double ImpactPaths::earliest_time(const Contact& contact) const {
+    return std::max(memory_.last_time[contact.a], memory_.last_time[contact.b]);
+}
+
+Material ImpactPaths::material_of(const Contact& contact) const {
+    return combine(world_.record(contact.a).definition.material, world_.record(contact.b).definition.material,
+                   world_.surface_pairs);
+}
+
+bool ImpactPaths::bounces(const Contact& contact) const {
+    if (memory_.heap_bounces >= most_heap_bounces_ && hits_heap(contact)) return false;
+    return contact.bounces && memory_.liveliness[contact.a] > least_liveliness &&
+           memory_.liveliness[contact.b] > least_liveliness;
+}
+
+void ImpactPaths::note_bounce(const Contact& contact) {
+    if (hits_heap(contact) && ++memory_.heap_bounces == most_heap_bounces_) {
+        world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
+    }
+    const double restitution = material_of(contact).restitution;
+    for (const std::uint32_t body : {contact.a, contact.b}) {
+        if (world_.motion[body].inverse_mass > 0) memory_.liveliness[body] *= restitution;
+    }
+}
+
+bool ImpactPaths::hits_heap(const Contact& contact) const {
+    const auto is_carried = [&](std::uint32_t body) {
+        return memory_.is_supported[body] && world_.motion[body].inverse_mass > 0;
+    };
+    return is_carried(contact.a) || is_carried(contact.b);
+}
+
+// Classification (paper, eq. 4): slower contacts rest. Loaded ones and ones that do not bounce must be far faster to
+// count as a collision: the contact solver stops them as well. If they also touch already there is none to come.
+double ImpactPaths::slowest_speed(const Contact& contact) const {
+    const bool can_bounce = bounces(contact);
+    if (contact.was_touching && !can_bounce) return never;
+    const double acceleration = dot(contact.normal, world_.settings.gravity);
+    const double slowest = std::max(slowest_impact, 2 * std::fabs(acceleration) * substep_);
+    return contact.was_loaded || !can_bounce ? 5 * slowest : slowest;
+}
+
+bool ImpactPaths::is_surely_slow(const ContactGlance& glance) const {
+    if (glance.was_touching && !glance.bounces) return true;
+    const double slowest = glance.was_loaded || !glance.bounces ? 5 * slowest_impact : slowest_impact;
+    return glance.approach_speed + memory_.speed_gain[glance.a] + memory_.speed_gain[glance.b] < slowest;
+}
+
+// Prediction needs no more of a path than half a millimetre; what turns slowly turns evenly for that.
+ImpactPaths::Motion ImpactPaths::motion_at(std::uint32_t body, double time) const {
+    const auto with_tilt = [](const BodyPaths::Motion& motion) {
+        const Quat& turn = motion.turn;
+        return Motion{motion, (turn.w < 0 ? -2 : 2) * Vec3{turn.x, turn.y, turn.z}};
+    };
+    const BodyState& now = world_.motion[body];
+    BodyPaths::Motion motion{now.center - now.start_center, now.linear_velocity, now.angular_velocity, now.turn};
+    if (time <= 0) return with_tilt(motion);
+    if (turns_far(body)) return with_tilt(bodies_.motion_about(body, time));
+    const Vec3 acceleration = bodies_.free_acceleration(body);
+    motion.shift += (now.linear_velocity + acceleration * (time / 2)) * time;
+    motion.velocity += acceleration * time;
+    if (now.angular_velocity != Vec3{}) motion.turn = cayley(now.angular_velocity * time) * now.turn;
+    return with_tilt(motion);
+}
+
+bool ImpactPaths::turns_far(std::uint32_t body) const {
+    const TouchBody& touch = world_.touch_memory.bodies[body];
+    const Vec3 turn = world_.motion[body].angular_velocity * step_;
+    return !touch.is_ball && length_squared(turn) * touch.size / 2 > patch_gap;
+}
+
+namespace {
+
+// Way and velocity of the surface point at `arm`.
+template <class Motion>
+void move_point(const Motion& motion, Vec3 arm, bool is_round, Vec3& way, Vec3& velocity) {
+    const Vec3 turned = is_round ? arm : rotate(motion.turn, arm);
+    way = motion.shift + (is_round ? cross(motion.tilt, arm) : turned - arm);
+    velocity = motion.velocity + cross(motion.spin, turned);
+}
+
+template <class Motion>
+ImpactPaths::Gap gap_between(const Contact& contact, const ContactPoint& point, const Motion& a, const Motion& b) {
+    Vec3 way_a, way_b, velocity_a, velocity_b;
+    move_point(a, point.arm_a, contact.a_is_round, way_a, velocity_a);
+    move_point(b, point.arm_b, contact.b_is_round, way_b, velocity_b);
+    return {point.separation + dot(contact.normal, way_b - way_a), dot(contact.normal, velocity_b - velocity_a)};
+}
+
+// Whether the point closes as fast as an impact now and is still apart at the end of the step: the next step's impact.
+void mark_open(ContactPoint& point, bool stays_open, double step) {
+    const auto to_the_end = static_cast<float>(step);
+    if (stays_open) {
+        point.inactive_until = to_the_end;
+    } else if (point.inactive_until >= to_the_end) {
+        point.inactive_until = 0;
+    }
+}
+
+}  // namespace
+
+ImpactPaths::Gap ImpactPaths::gap_at(const Contact& contact, const ContactPoint& point, double time) const {
+    return gap_between(contact, point, motion_at(contact.a, time), motion_at(contact.b, time));
+}
+
+ImpactPaths::Gaps ImpactPaths::gaps_at(const Contact& contact, double time) const {
+    const Motion a = motion_at(contact.a, time), b = motion_at(contact.b, time);
+    Gaps gaps;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(contact.count); ++i) {
+        gaps[i] = gap_between(contact, contact.points[i], a, b);
+    }
+    return gaps;
+}
+
+// The first time from `start` on at which a point touches whose gap is `first` then and `last` at the end of the step;
+// `never` if it does not.
+double ImpactPaths::touch_time(const Contact& contact, const ContactPoint& point, double start, Gap first,
+                               Gap last) const {
+    if (first.size <= touch_gap) return start;
+    if (last.size > 0) {
+        // Open at both ends; a parabola that opens upwards may dip through in between.
+        const double acceleration = step_ > start ? (last.rate - first.rate) / (step_ - start) : 0;
+        const double discriminant = first.rate * first.rate - 2 * acceleration * first.size;
+        if (first.rate >= 0 || discriminant < 0) return never;
+        const double time = start + 2 * first.size / (-first.rate + std::sqrt(discriminant));
+        return time <= step_ ? time : never;
+    }
+
+    // Closed at the end: the root between, by the regula falsi (Illinois).
+    double low = start, high = step_, at_low = first.size, at_high = last.size;
+    double time = high;
+    for (int i = 0; i < 8; ++i) {
+        time = low + (high - low) * at_low / (at_low - at_high);
+        const double gap = gap_at(contact, point, time).size;
+        if (std::fabs(gap) < touch_gap) break;
+        (gap > 0 ? low : high) = time;
+        (gap > 0 ? at_low : at_high) = gap;
+        (gap > 0 ? at_high : at_low) /= 2;
+    }
+    return time;
+}
+
+ImpactPaths::Prediction ImpactPaths::predict_straight(Contact& contact) {
+    const double slowest = slowest_speed(contact);
+    if (slowest == never) return {};
+
+    const Motion a = motion_at(contact.a, 0), b = motion_at(contact.b, 0);
+    const Deviation deviation = deviation_of(contact, a, b);
+    const double start = earliest_time(contact);
+    Prediction first{.is_open = true};
+    for (int i = 0; i < contact.count; ++i) {
+        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        const Gap now = gap_between(contact, point, a, b);
+        const double end = now.size + now.rate * step_;
+        const bool may_meet = now.size <= touch_gap || std::min(now.size, end) < deviation.distance;
+        if (may_meet && now.rate - deviation.speed < -slowest) first.is_certain = false;
+        const bool parts = start > 0 && now.rate > deviation.speed && end > deviation.distance;
+        if (may_meet && !parts) first.is_open = false;
+        mark_open(point, now.rate < -slowest && now.size > 0 && end > 0, step_);
+        if (now.rate < -slowest && end <= 0) first.time = std::min(first.time, std::max(start, now.size / -now.rate));
+    }
+    const bool is_enough = hits_heap(contact) && !bounces(contact);
+    if (first.is_certain && !is_enough) first.time = never;
+    first.is_certain = first.is_certain || is_enough;
+    return first;
+}
+
+ImpactPaths::Deviation ImpactPaths::deviation_of(const Contact& contact, const Motion& a, const Motion& b) const {
+    double arm_a = 0, arm_b = 0;
+    for (int i = 0; i < contact.count; ++i) {
+        const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        arm_a = std::max<double>(arm_a, length_squared(point.arm_a));
+        arm_b = std::max<double>(arm_b, length_squared(point.arm_b));
+    }
+    const double acceleration = length_squared(a.spin) * std::sqrt(arm_a) + length_squared(b.spin) * std::sqrt(arm_b) +
+                                length(bodies_.free_acceleration(contact.a) - bodies_.free_acceleration(contact.b));
+    return {acceleration * step_ * step_ / 2, acceleration * step_};
+}
+
+ImpactPaths::Prediction ImpactPaths::predict_exactly(Contact& contact) {
+    struct Motions {
+        Motion a, b;
+    };
+    const double slowest = slowest_speed(contact);
+    const auto at = [&](double time) { return Motions{motion_at(contact.a, time), motion_at(contact.b, time)}; };
+    const double start = earliest_time(contact);
+    const Motions now = at(0), end = at(step_), begin = start > 0 ? at(start) : now;
+    Motions at_first;
+    double first = never, nearest = never;
+    for (int i = 0; i < contact.count; ++i) {
+        ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        const auto gap = [&](const Motions& m) { return gap_between(contact, point, m.a, m.b); };
+        const Gap gap_now = gap(now), gap_end = gap(end);
+        mark_open(point, gap_now.rate < -slowest && gap_now.size > 0 && gap_end.size > 0, step_);
+        nearest = std::min(nearest, std::min(gap_now.size, gap_end.size));
+
+        // Whatever is still apart when an earlier point touches comes later.
+        if (first < never && gap(at_first).size > touch_gap) continue;
+        const double time = touch_time(contact, point, start, start > 0 ? gap(begin) : gap_now, gap_end);
+        if (time >= first) continue;
+        const Motions then = at(time);
+        if (gap(then).rate >= -slowest) continue;
+        first = time;
+        at_first = then;
+    }
+    if (first < never) return {.time = first};
+    const double farthest_turn = widest_followed_turn / step_;
+    const auto is_fast = [&](std::uint32_t body, const Motion& m) {
+        return !world_.touch_memory.bodies[body].is_ball && length_squared(m.spin) > farthest_turn * farthest_turn;
+    };
+    const bool is_clear = start == 0 && nearest > deviation_of(contact, now.a, now.b).distance;
+    return {.is_open = is_clear || keeps_apart(contact, start),
+            .may_hide = is_fast(contact.a, now.a) || is_fast(contact.b, now.b)};
+}
+
+// Whether the surfaces part at `start` or are apart then, and stay so: told at the ends of the substeps.
+bool ImpactPaths::keeps_apart(const Contact& contact, double start) const {
+    for (int k = 0; k <= world_.settings.substeps; ++k) {
+        const double time = k == 0 ? start : k * substep_;
+        if (k > 0 && time <= start) continue;
+        const Gaps gaps = gaps_at(contact, time);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(contact.count); ++i) {
+            const bool parts = k == 0 && gaps[i].rate > slowest_impact;
+            if (gaps[i].size <= touch_gap && !parts) return false;
+        }
+    }
+    return true;
+}
+
+void ImpactPaths::leave_open(Contact& contact) {
+    const double slowest = slowest_speed(contact);
+    if (slowest == never) return;
+    const Gaps now = gaps_at(contact, 0);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(contact.count); ++i) {
+        mark_open(contact.points[i], now[i].rate < -slowest && now[i].size > 0, step_);
+    }
+}
+
+}  // namespace embody::physics

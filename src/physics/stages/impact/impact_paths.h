@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "physics/stages/impact/body_paths.h"
+
+namespace embody::physics {
+
+/// Which contacts close as fast as an impact does, and when, on the paths that their bodies take through the step. A
+/// view of the world, made anew each step; its memory is the world's.
+class ImpactPaths {
+public:
+    using Prediction = ImpactPrediction;
+    static constexpr double never = Prediction::never;
+    static constexpr double touch_gap = 1e-6;  ///< m: bodies this near touch
+    static constexpr double patch_gap = 5e-4;  ///< m: corners this near to the first one collide together with it
+    static constexpr double widest_followed_turn =
+        0.25;                                       ///< rad in a step: farther, other corners than known may touch
+    static constexpr double slowest_impact = 0.02;  ///< m/s: slower contacts rest
+    static constexpr double least_liveliness = 0.05;
+
+    ImpactPaths(WorldState& world, const BodyPaths& bodies);
+
+    /// The last impact of either body in this step, s.
+    [[nodiscard]] double earliest_time(const Contact& contact) const;
+    /// Gap of a point and its rate, the turning of the bodies included: a foot of a spinning chair does not move
+    /// straight. m, m/s.
+    struct Gap {
+        double size = 0, rate = 0;
+    };
+    using Gaps = std::array<Gap, Manifold::max_points>;
+    /// Of the contact's points, in their order.
+    [[nodiscard]] Gaps gaps_at(const Contact& contact, double time) const;
+
+    [[nodiscard]] Material material_of(const Contact& contact) const;
+    /// Whether the contact has a bounce, and neither body has bounced so often in this step that hardly any speed is
+    /// left of the first one (Zeno's ball).
+    [[nodiscard]] bool bounces(const Contact& contact) const;
+    void note_bounce(const Contact& contact);
+    [[nodiscard]] std::size_t most_heap_bounces() const { return most_heap_bounces_; }
+    /// Whether it hits what others carry: one of many contacts that stop it together.
+    [[nodiscard]] bool hits_heap(const Contact& contact) const;
+    /// Whether no point can close as fast as an impact does: most contacts of a heap at rest, told by what the touch
+    /// stage noted of them. Holds for bodies that had no impact in this step.
+    [[nodiscard]] bool is_surely_slow(const ContactGlance& glance) const;
+
+    /// Along straight paths: certain for what keeps away or is slow, and enough for what hits a heap. Points that close
+    /// as fast as an impact but meet after the step are the next step's impact: they are left open, so that the
+    /// substeps do not brake them before.
+    Prediction predict_straight(Contact& contact);
+    Prediction predict_exactly(Contact& contact);
+    Prediction predict(Contact& contact) {
+        const Prediction straight = predict_straight(contact);
+        return straight.is_certain ? straight : predict_exactly(contact);
+    }
+    /// Whether the body turns so far in the step that its path must be known exactly for a prediction.
+    [[nodiscard]] bool turns_far(std::uint32_t body) const;
+    /// The surfaces `pass` each other in this step: leaves open all points that are apart now.
+    void leave_open(Contact& contact);
+
+private:
+    struct Motion : BodyPaths::Motion {
+        Vec3 tilt;  ///< twice its imaginary part, rad: all that a round body's turning does to its contacts
+    };
+    [[nodiscard]] Motion motion_at(std::uint32_t body, double time) const;
+    [[nodiscard]] double slowest_speed(const Contact& contact) const;
+    [[nodiscard]] Gap gap_at(const Contact& contact, const ContactPoint& point, double time) const;
+    [[nodiscard]] double touch_time(const Contact& contact, const ContactPoint& point, double start, Gap first,
+                                    Gap last) const;
+    /// How far the true paths of the contact's points can leave the straight ones, m, and how much faster they can
+    /// become, m/s.
+    struct Deviation {
+        double distance, speed;
+    };
+    [[nodiscard]] Deviation deviation_of(const Contact& contact, const Motion& a, const Motion& b) const;
+    [[nodiscard]] bool keeps_apart(const Contact& contact, double start) const;
+
+    WorldState& world_;
+    const BodyPaths& bodies_;
+    ImpactMemory& memory_;
+    const double step_, substep_;
+    const std::size_t most_heap_bounces_;  ///< in a step; the collapse of a large heap of bouncing bodies has no end
+};
+
+}  // namespace embody::physics

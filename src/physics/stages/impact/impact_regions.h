@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+#include "physics/stages/impact/impact_paths.h"
+
+namespace embody::physics {
+
+/// Where two bodies meet at the moment of an impact, and the sites of the group that collides there. Like ImpactPaths a
+/// view of the world for one step.
+class ImpactRegions {
+public:
+    ImpactRegions(WorldState& world, BodyPaths& bodies, const ImpactPaths& paths)
+        : world_(world),
+          memory_(world.impact_memory),
+          bodies_(bodies),
+          paths_(paths),
+          step_(world.settings.time_step) {}
+
+    /// Whether the region found at the start of the step is still right at `time`: the bodies have hardly moved on.
+    [[nodiscard]] bool is_near(const Contact& contact, double time) const;
+    /// The contact region at the moment of impact, found at the bodies' places then, and that moment: the prediction
+    /// used the normal of the start of the step. False: they pass each other.
+    bool refine(const Contact& contact, double& time, Manifold& manifold);
+    /// When the regions found at the ends of the substeps first overlap, s; `never` if they do not. For what turns so
+    /// fast that other corners come down than those that were near at the step's start.
+    double first_touch(const Contact& contact);
+    /// Whether the bodies are apart at the end of the step, if nothing else happens to them.
+    bool is_open_at_end(const Contact& contact);
+
+    // Each appends to the sites of the present impact.
+    void add_manifold_sites(const Contact& contact, const Manifold& manifold, double time, bool may_bounce);
+    void add_point_sites(const Contact& contact, double time);
+    /// Of the other regions of the two bodies that close as well and are as near as corners of one region may be: the
+    /// other feet of a table that comes down flat, be it micrometres later. `first`, found by refine() just now, began
+    /// the impact. A contact collides with a bounce if `may_bounce(contact)`.
+    template <class MayBounce>
+    void add_sites_beside(std::uint32_t contact, const Manifold& first, double time, const MayBounce& may_bounce) {
+        const double nearest = least_separation(first);
+        for (const Manifold& other : memory_.manifolds) {
+            if (!is_beside(first, nearest, other, world_.contacts[contact], time)) continue;
+            const auto found = find_contact(contact, other);
+            if (!found) continue;
+            add_manifold_sites(world_.contacts[*found], other, time, may_bounce(*found));
+            memory_.site_contact.resize(memory_.sites.size(), *found);
+        }
+    }
+    /// Of these bodies. Needs the lists of each body's contacts.
+    void add_loaded_neighbours(std::span<const std::uint32_t> bodies, double time);
+
+private:
+    /// Of those that collide_at() found, the contact's; nullptr if it has none.
+    [[nodiscard]] const Manifold* find_region(const Contact& contact) const;
+    static double least_separation(const Manifold& manifold);
+    bool is_beside(const Manifold& first, double nearest, const Manifold& other, const Contact& contact, double time);
+    /// Of the same two bodies, the contact of this region.
+    [[nodiscard]] std::optional<std::uint32_t> find_contact(std::uint32_t beside, const Manifold& manifold) const;
+    double closing_speed(const Contact& contact, const Manifold& manifold, double time, double gap);
+    [[nodiscard]] bool passes_on(const Contact& contact) const;
+    /// The gaps of the contact's points on straight paths, m.
+    using PointGaps = std::array<double, Manifold::max_points>;
+    [[nodiscard]] PointGaps straight_gaps(const Contact& contact, double time) const;
+    void add_points_below(const Contact& contact, const PointGaps& gaps, double highest, double time);
+    void collide_at(const Contact& contact, double time);
+    struct SitePlace {
+        Vec3 arm_a, arm_b, normal;  ///< as in ImpactSite
+    };
+    void add_site(const Contact& contact, const SitePlace& place, double time, bool may_bounce);
+
+    WorldState& world_;
+    ImpactMemory& memory_;
+    BodyPaths& bodies_;
+    const ImpactPaths& paths_;
+    const double step_;
+};
+
+}  // namespace embody::physics

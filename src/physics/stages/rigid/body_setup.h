@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+
+#include "physics/state/world_state.h"
+
+namespace embody::physics {
+
+/// What a definition becomes: checked and computed before anything in the world changes.
+struct BodySetup {
+    BodyRecord record;
+    BodyConstants constants;
+    BodyState state;
+    SleepRecord sleep;
+};
+
+/// Fails where the definition is out of range, the shape handle is stale, a movable body has a static-only shape, or
+/// the mass is unknown.
+Result<BodySetup> set_up_body(const WorldState& world, const BodyDefinition& definition);
+
+/// Puts a set-up body into the slot's arrays and the broad phase.
+void place_body(WorldState& world, std::uint32_t body, BodySetup setup);
+
+/// Takes them (each once) out of the broad phase, their sleeping groups and the contact lists; wakes what touched them.
+void lift_bodies(WorldState& world, std::span<const std::uint32_t> bodies);
+
+/// The width of the contact solver; 0: the widest. Fails where the processor cannot.
+Result<void> choose_lanes(WorldState& world, int lanes);
+
+/// Start of the constraint of a joint record.
+Result<Joint> set_up_joint(const WorldState& world, const JointDefinition& definition);
+
+/// Rebuilds the list of pairs that joints keep from colliding.
+void list_jointed_pairs(WorldState& world);
+/// Adds the pair of a new joint.
+void add_jointed_pair(WorldState& world, const JointDefinition& joint);
+
+/// The definition as it stands now.
+BodyDefinition current_definition(const WorldState& world, std::uint32_t body);
+
+}  // namespace embody::physics

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+// Bodies that move or turn by more than their thickness in a step are swept over their whole way, and put back to where
+// they first touch what they would pass. Their velocities stay: the next step finds the touch and solves it as an
+// impact, so momentum is kept whatever is hit. Nothing else of the world is looked at, so slow worlds pay one
+// comparison a body.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "physics/dynamic/equations_of_motion.h"
+#include "physics/stages/stages.h"
+#include "physics/state/share_awake.h"
+
+namespace embody::physics {
+
+namespace {
+
+// So near to each other the contact solver has them already, m.
+constexpr double touch_gap = 1e-3;
+
+/// A body on its way through the step, and how much of the way it may go.
+struct FastBody {
+    std::uint32_t body = 0;
+    double share = 1;
+};
+
+/// Two fast bodies that meet on their ways.
+struct Meeting {
+    double time = 1;
+    std::size_t first = 0, second = 0;  ///< among the fast bodies
+};
+
+// How far it may move without passing through another body unseen, m.
+double thickness_of(const BodyRecord& record) {
+    return (record.definition.continuous ? 0.25 : 1.0) * record.inner_radius;
+}
+
+// Whether a body turns so far that points outside of its inner ball sweep its thickness; by less than a quarter of a
+// radian the contacts themselves follow it.
+bool turns_fast(const BodyRecord& record, const BodyState& state) {
+    constexpr double least_half_sine = 0.125;
+    const double half_sine = length(Vec3{state.turn.x, state.turn.y, state.turn.z});
+    return half_sine > least_half_sine && 2 * half_sine * (record.reach - record.inner_radius) > thickness_of(record);
+}
+
+bool may_tunnel(const WorldState& world, std::uint32_t body) {
+    const BodyRecord& record = world.record(body);
+    if (!record.shape || !record.definition.enabled || !world.is_dynamic(body)) return false;
+    const BodyState& state = world.motion[body];
+    const double thickness = thickness_of(record);
+    return length_squared(state.center - state.start_center) > thickness * thickness || turns_fast(record, state);
+}
+
+// Things that fly side by side do not pass through each other.
+bool may_pass(const WorldState& world, std::uint32_t a, std::uint32_t b) {
+    const BodyRecord &ra = world.record(a), &rb = world.record(b);
+    const BodyState &sa = world.motion[a], &sb = world.motion[b];
+    const Vec3 way = (sa.center - sa.start_center) - (sb.center - sb.start_center);
+    const double thickness = std::min(thickness_of(ra), thickness_of(rb));
+    return length_squared(way) > thickness * thickness || turns_fast(ra, sa) || turns_fast(rb, sb);
+}
+
+bool may_meet(const WorldState& world, std::uint32_t a, std::uint32_t b) {
+    const BodyDefinition &da = world.record(a).definition, &db = world.record(b).definition;
+    if (!db.enabled || !(da.collision_group & db.collision_mask) || !(db.collision_group & da.collision_mask))
+        return false;
+    return !world.jointed_pairs.contains({std::min(a, b), std::max(a, b)});
+}
+
+Sweep sweep_of(const WorldState& world, std::uint32_t body) {
+    BodyState start = world.motion[body];
+    start.center = start.start_center;
+    start.rotation = start.start_rotation;
+    const Vec3 center = world.constants[body].local_center;
+    return {body_pose(start, center), world.pose(body), center};
+}
+
+// All places of the body on its way: balls around its centre where it turns much.
+Bounds swept_bounds(const WorldState& world, std::uint32_t body, const Sweep& sweep) {
+    const BodyRecord& record = world.record(body);
+    Bounds swept = record.shape->bounds(sweep.start);
+    swept.add(record.shape->bounds(sweep.end));
+    const BodyState& state = world.motion[body];
+    if (length(Vec3{state.turn.x, state.turn.y, state.turn.z}) < 0.05) return swept;
+    const Vec3 reach{record.reach, record.reach, record.reach};
+    swept.add(Bounds{state.start_center - reach, state.start_center + reach});
+    swept.add(Bounds{state.center - reach, state.center + reach});
+    return swept;
+}
+
+std::optional<double> meeting_time(const WorldState& world, std::uint32_t a, std::uint32_t b, const Sweep& path_a,
+                                   const Sweep& path_b) {
+    // Sliding and rolling along a thing ends no deeper in it than this.
+    const BodyRecord& record = world.record(a);
+    const double harmless = record.definition.continuous ? 0 : 0.25 * record.inner_radius;
+    return time_of_impact(*record.shape, path_a, *world.record(b).shape, path_b, {touch_gap / 2, touch_gap, harmless});
+}
+
+// The velocity with which a body that has `velocity` under the constant `acceleration` was at the place `back` from
+// here: what the forces did on the way since is taken back, ½ |v|² − a·x stays. Else each stop of a falling body would
+// lift it for nothing.
+Vec3 velocity_before(Vec3 velocity, Vec3 acceleration, Vec3 back) {
+    // ½ |v − a t|² = ½ |v|² + a·back, the smaller t; where there is none, the slowest v − a t.
+    const double squared = length_squared(acceleration), along = dot(velocity, acceleration);
+    if (squared == 0) return velocity;
+    const double root = std::sqrt(std::max(0.0, along * along + 2 * squared * dot(acceleration, back)));
+    return velocity - acceleration * ((along < 0 ? along + root : along - root) / squared);
+}
+
+// Puts a body back to a share of its way. The spin stays as the body's axes see it: in the world's, the inertia that
+// turns back would take or give energy.
+void put_back(WorldState& world, std::uint32_t body, double share) {
+    if (share >= 1) return;
+    BodyState& state = world.motion[body];
+    const Vec3 spin = rotate_inverse(state.rotation, state.angular_velocity);
+    const Vec3 back = (state.start_center - state.center) * (1 - share);
+    state.linear_velocity = velocity_before(state.linear_velocity, world.constants[body].acceleration, back);
+    state.center += back;
+    const Quat end = dot(state.rotation, state.start_rotation) < 0
+                         ? Quat{-state.rotation.x, -state.rotation.y, -state.rotation.z, -state.rotation.w}
+                         : state.rotation;
+    const Quat& begin = state.start_rotation;
+    state.rotation = normalized(Quat{begin.x + share * (end.x - begin.x), begin.y + share * (end.y - begin.y),
+                                     begin.z + share * (end.z - begin.z), begin.w + share * (end.w - begin.w)});
+    state.angular_velocity = rotate(state.rotation, spin);
+    refresh_inertia(state, world.constants[body]);
+}
+
+// Calls visit(other, its place among the fast ones or their number) for what a body may meet on its way.
+template <class Visit>
+void for_each_met(const WorldState& world, std::uint32_t body, const Sweep& sweep, const std::vector<FastBody>& fast,
+                  Visit&& visit) {
+    world.broad_phase.query(swept_bounds(world, body, sweep), [&](std::uint32_t other) {
+        if (other == body || !may_meet(world, body, other)) return;
+        const auto found =
+            std::lower_bound(fast.begin(), fast.end(), other,
+                             [](const FastBody& each, std::uint32_t index) { return each.body < index; });
+        const bool is_fast = found != fast.end() && found->body == other;
+        visit(other, is_fast ? static_cast<std::size_t>(found - fast.begin()) : fast.size());
+    });
+}
+
+// Those that may tunnel, in the order of the bodies.
+std::vector<FastBody> list_fast(WorldState& world) {
+    thread_local std::vector<std::vector<FastBody>> kept;
+    std::vector<std::vector<FastBody>>& found = kept;  // of this thread, for all workers
+    found.resize(static_cast<std::size_t>(world.workers->workers()));
+    for (std::vector<FastBody>& of_worker : found) of_worker.clear();
+    share_awake(world, [&](int worker, Share share) {
+        for (std::size_t i = share.first; i < share.last; ++i) {
+            const std::uint32_t body = world.awake[i];
+            if (may_tunnel(world, body)) found[static_cast<std::size_t>(worker)].push_back({body});
+        }
+    });
+    std::vector<FastBody> fast = std::move(found[0]);
+    for (std::size_t worker = 1; worker < found.size(); ++worker) {
+        fast.insert(fast.end(), found[worker].begin(), found[worker].end());
+    }
+    return fast;
+}
+
+// Fast bodies that meet each other stop where they do, the earliest first; whoever stopped is met no more.
+void stop_at_meetings(WorldState& world, std::vector<FastBody>& fast) {
+    std::vector<Meeting> meetings;
+    for (std::size_t i = 0; i < fast.size(); ++i) {
+        const std::uint32_t body = fast[i].body;
+        const Sweep sweep = sweep_of(world, body);
+        for_each_met(world, body, sweep, fast, [&](std::uint32_t other, std::size_t place) {
+            if (place <= i || place == fast.size() || !may_pass(world, body, other)) return;
+            const auto time = meeting_time(world, body, other, sweep, sweep_of(world, other));
+            if (time) meetings.push_back({*time, i, place});
+        });
+    }
+    std::stable_sort(meetings.begin(), meetings.end(),
+                     [](const Meeting& m, const Meeting& n) { return m.time < n.time; });
+    for (const Meeting& meeting : meetings) {
+        FastBody &first = fast[meeting.first], &second = fast[meeting.second];
+        if (first.share < 1 || second.share < 1) continue;
+        first.share = second.share = meeting.time;
+    }
+    for (const FastBody& each : fast) put_back(world, each.body, each.share);
+}
+
+// The share of what is left of its way after which a body first touches something that is not fast itself.
+double first_touch(const WorldState& world, std::uint32_t body, const std::vector<FastBody>& fast) {
+    const Sweep sweep = sweep_of(world, body);
+    double first = 1;
+    for_each_met(world, body, sweep, fast, [&](std::uint32_t other, std::size_t place) {
+        if (place < fast.size()) return;
+        const Transform pose = world.pose(other);
+        if (const auto time = meeting_time(world, body, other, sweep, {pose, pose, {}})) first = std::min(first, *time);
+    });
+    return first;
+}
+
+}  // namespace
+
+void stop_tunnelling(WorldState& world) {
+    std::vector<FastBody> fast = list_fast(world);
+    if (fast.empty()) return;
+    stop_at_meetings(world, fast);
+    for (const FastBody& each : fast) put_back(world, each.body, first_touch(world, each.body, fast));
+}
+
+}  // namespace embody::physics

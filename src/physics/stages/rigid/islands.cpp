@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "physics/optimization/islands.h"
+
+#include <numeric>
+
+#include "physics/dynamic/equations_of_motion.h"
+#include "physics/stages/stages.h"
+
+namespace embody::physics {
+
+namespace {
+
+bool is_active(const WorldState& world, const JointDefinition& joint) {
+    const auto moves = [&](std::uint32_t body) {
+        return world.record(body).definition.enabled && world.is_dynamic(body) && !world.is_asleep(body);
+    };
+    const auto is_there = [&](std::uint32_t body) { return world.record(body).definition.enabled; };
+    if (!is_there(joint.body_b.index)) return false;
+    if (joint.body_a.is_null()) return moves(joint.body_b.index);
+    return is_there(joint.body_a.index) && (moves(joint.body_a.index) || moves(joint.body_b.index));
+}
+
+// Contacts that need no solver: the paths of the impact stage say that the surfaces keep apart. What spins then flies
+// free, exactly, instead of sharing the contact solver's approximate turns, if nothing else holds either body; and
+// joints without contacts keep their energy, which those that take turns with contacts do not.
+void set_idle_contacts(WorldState& world) {
+    const ImpactMemory& memory = world.impact_memory;
+    std::vector<std::uint8_t>& is_held = world.impact_memory.is_held;
+    is_held.assign(world.motion.size(), 0);
+    for (std::size_t i = 0; i < world.contacts.size(); ++i) {
+        const ContactGlance& contact = world.contact_glances[i];
+        if (!memory.is_open[i]) is_held[contact.a] = is_held[contact.b] = 1;
+    }
+    for (const Joint& joint : world.active_joints) {
+        is_held[joint.b] = 1;
+        if (!joint.a_is_world) is_held[joint.a] = 1;
+    }
+    const auto is_free = [&](std::uint32_t body) { return world.motion[body].inverse_mass == 0 || !is_held[body]; };
+    const auto spins = [&](std::uint32_t body) {
+        return has_gyroscopic_torque(world.motion[body], world.constants[body], world.settings.time_step);
+    };
+    const auto has_path = [&](std::uint32_t body) {
+        return !memory.has_jointed_path.empty() && memory.has_jointed_path[body];
+    };
+    for (std::size_t i = 0; i < world.contacts.size(); ++i) {
+        ContactGlance& contact = world.contact_glances[i];
+        const bool a_has_path = has_path(contact.a), b_has_path = has_path(contact.b);
+        contact.is_idle = memory.is_open[i] && (a_has_path || is_free(contact.a)) &&
+                          (b_has_path || is_free(contact.b)) &&
+                          (a_has_path || b_has_path || spins(contact.a) || spins(contact.b));
+        if (contact.is_idle) contact.touches = is_touching(world.contacts[i]);
+    }
+}
+
+// Union-find with path halving.
+std::uint32_t root_of(std::vector<std::uint32_t>& parents, std::uint32_t body) {
+    while (parents[body] != body) body = parents[body] = parents[parents[body]];
+    return body;
+}
+
+// The bodies that active joints hold, but where one that is connected with them has a limit or a motor: that may stop
+// them within a step, so that nothing is known of their paths.
+void mark_jointed_paths(WorldState& world) {
+    std::vector<std::uint8_t>& has_path = world.impact_memory.has_jointed_path;
+    has_path.clear();
+    if (world.active_joints.empty()) return;
+    has_path.resize(world.motion.size());
+    std::vector<std::uint32_t>& parents = world.impact_memory.assembly_parent;
+    parents.resize(world.motion.size());
+    std::iota(parents.begin(), parents.end(), 0U);
+    const auto moves = [&](std::uint32_t body) { return world.motion[body].inverse_mass > 0; };
+    for (const Joint& joint : world.active_joints) {
+        if (moves(joint.b)) has_path[joint.b] = 1;
+        if (joint.a_is_world || !moves(joint.a)) continue;
+        has_path[joint.a] = 1;
+        if (moves(joint.b)) parents[root_of(parents, joint.a)] = root_of(parents, joint.b);
+    }
+    for (const Joint& joint : world.active_joints) {
+        if (!has_motor(joint) && !has_limit(joint)) continue;
+        if (moves(joint.b)) has_path[root_of(parents, joint.b)] = 0;
+        if (!joint.a_is_world && moves(joint.a)) has_path[root_of(parents, joint.a)] = 0;
+    }
+    for (std::uint32_t body = 0; body < has_path.size(); ++body) {
+        has_path[body] = has_path[body] && has_path[root_of(parents, body)] ? 1 : 0;
+    }
+}
+
+}  // namespace
+
+void list_active_joints(WorldState& world) {
+    // Joints between sleepers stay where they are.
+    world.active_joints.clear();
+    world.active_joint_slots.clear();
+    for (std::uint32_t slot = 0; slot < world.joints.slot_count(); ++slot) {
+        if (!world.joints.used(slot)) continue;
+        JointRecord& record = world.joints.at(slot);
+        if (!is_active(world, record.definition)) continue;
+        record.constraint.total_linear = record.constraint.total_angular = {};
+        world.active_joints.push_back(record.constraint);
+        world.active_joint_slots.push_back(slot);
+    }
+    mark_jointed_paths(world);
+}
+
+void find_islands(WorldState& world) {
+    set_idle_contacts(world);
+
+    // Kinematic bodies are awake, but no island holds them.
+    std::vector<std::uint32_t>& movable = world.movable;
+    movable.clear();
+    for (const std::uint32_t body : world.awake) {
+        if (world.motion[body].inverse_mass > 0) movable.push_back(body);
+    }
+    build_islands(movable, world.motion, world.contact_glances, world.active_joints, world.islands);
+    world.report.islands = static_cast<std::uint32_t>(world.islands.list.size());
+}
+
+}  // namespace embody::physics

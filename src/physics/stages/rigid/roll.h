@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/state/world_state.h"
+
+namespace embody::physics {
+
+/// A point of the contacts.
+struct DeepestPoint {
+    std::uint32_t contact = 0;  ///< index
+    std::size_t point = 0;
+};
+
+/// Takes an island of one body through the step where that rolls on something flat that stands still and turns far in a
+/// step, or its axis turns: coins that lean, cones on their side, tops on their tip, fast wheels. The contact solver
+/// holds the place of contact fast for a step, and each step's new place would cost (Ω dt)² of the energy. False: the
+/// island is left to the others.
+bool roll_alone(WorldState& world, const Island& island);
+
+/// All of the ground's impulse (N s, on the contact's b) at that point of an island's contacts, in the sweeps' measure.
+void note_load(WorldState& world, std::span<const std::uint32_t> contacts, const DeepestPoint& deepest, Vec3 impulse);
+
+}  // namespace embody::physics

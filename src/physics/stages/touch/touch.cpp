@@ -1,0 +1,486 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <atomic>
+
+#include "physics/stages/rigid/wake.h"
+#include "physics/stages/stages.h"
+#include "physics/stages/touch/pair_watch.h"
+#include "physics/stages/touch/reachable_points.h"
+
+namespace embody::physics {
+
+namespace {
+
+// Points that are farther apart than this and will not meet within the step are not looked for, m.
+constexpr double base_margin = 0.005;
+// A sleeper is woken by what comes as near as this, m.
+constexpr double wake_gap = 1e-4;
+
+bool may_collide(const WorldState& world, std::uint32_t a, std::uint32_t b) {
+    const TouchBody &ta = world.touch_memory.bodies[a], &tb = world.touch_memory.bodies[b];
+    if (!(ta.group & tb.mask) || !(tb.group & ta.mask)) return false;
+    return world.jointed_pairs.empty() || !world.jointed_pairs.contains({a, b});
+}
+
+// Whether the body moves by itself: an awake dynamic body, or a kinematic one with a velocity.
+bool is_moving(const WorldState& world, std::uint32_t body) {
+    const BodyKind kind = world.record(body).definition.kind;
+    if (kind == BodyKind::dynamic_body) return !world.is_asleep(body);
+    return kind == BodyKind::kinematic_body &&
+           (world.motion[body].linear_velocity != Vec3{} || world.motion[body].angular_velocity != Vec3{});
+}
+
+// A ball has one point of contact, which does not jump to another corner: a part of its size is far enough. Grains of
+// millimetres would have most of their contacts with others that they do not touch.
+double within_ball(double distance, const TouchBody& a, const TouchBody& b) {
+    constexpr double part_of_ball = 0.1;
+    if (a.is_ball) distance = std::min(distance, part_of_ball * a.size);
+    if (b.is_ball) distance = std::min(distance, part_of_ball * b.size);
+    return distance;
+}
+
+// How near surfaces are looked at whatever their speed, m.
+double base_margin_of(const WorldState& world, const BroadPhase::Pair& pair) {
+    return within_ball(base_margin, world.touch_memory.bodies[pair.a], world.touch_memory.bodies[pair.b]);
+}
+
+// How far the surfaces can approach each other within the step: the margin of the narrow phase.
+double margin_of(const WorldState& world, std::uint32_t a, std::uint32_t b) {
+    const double dt = world.settings.time_step;
+    const TouchBody &ta = world.touch_memory.bodies[a], &tb = world.touch_memory.bodies[b];
+    const Vec3 velocity = world.motion[b].linear_velocity - world.motion[a].linear_velocity;
+    const double travel =
+        (length(velocity) + (ta.turning + tb.turning)) * dt + length(tb.acceleration - ta.acceleration) * dt * dt / 2;
+
+    // Beyond the size of the movable body a contact normal says little; the continuous stage takes over there.
+    double size = 1e300;
+    if (ta.yields) size = std::min(size, ta.size);
+    if (tb.yields) size = std::min(size, tb.size);
+    return within_ball(base_margin, ta, tb) + std::min(travel, 2 * size);
+}
+
+void collide_pair(const WorldState& world, std::uint32_t a, std::uint32_t b, std::vector<Manifold>& manifolds) {
+    manifolds.clear();
+    collide(*world.record(a).shape, world.pose(a), *world.record(b).shape, world.pose(b), margin_of(world, a, b),
+            manifolds);
+}
+
+// Whether some point of the contact is or comes within wake_gap in this step.
+bool meets_in_step(const WorldState& world, const Contact& contact) {
+    for (int i = 0; i < contact.count; ++i) {
+        const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
+        const double approach = -dot(relative_velocity(contact, point, world.motion), contact.normal);
+        if (point.separation - std::max(0.0, approach) * world.settings.time_step < wake_gap) return true;
+    }
+    return false;
+}
+
+// Wakes the sleeping one of two bodies, with its group, if the other one is about to touch it.
+bool wake_if_touched(WorldState& world, const BroadPhase::Pair& pair, std::vector<Manifold>& manifolds) {
+    const bool a_sleeps = world.is_asleep(pair.a), b_sleeps = world.is_asleep(pair.b);
+    if (a_sleeps == b_sleeps || !is_moving(world, a_sleeps ? pair.b : pair.a)) return false;
+    if (!may_collide(world, pair.a, pair.b)) return false;
+    collide_pair(world, pair.a, pair.b, manifolds);
+    for (const Manifold& manifold : manifolds) {
+        if (!meets_in_step(world, make_contact(pair.a, pair.b, manifold, world.motion))) continue;
+        wake_group_of(world, a_sleeps ? pair.a : pair.b);
+        return true;
+    }
+    return false;
+}
+
+// Wakes every sleeping group that an awake body is about to touch.
+void wake_touched(WorldState& world, std::vector<Manifold>& manifolds) {
+    if (world.sleepers.empty()) return;
+    const std::vector<BroadPhase::Pair>& pairs = *world.pairs;
+    for (const std::uint32_t live : world.touch_memory.live) {
+        if (!wake_if_touched(world, pairs[live], manifolds)) continue;
+
+        // What woke may wake more: any later pair counts now.
+        for (std::size_t i = live + 1; i < pairs.size(); ++i) wake_if_touched(world, pairs[i], manifolds);
+        gather_awake(world);
+        update_watches(world);
+        start_motion(world);
+        return;
+    }
+}
+
+// Contacts follow their bodies for as long as the pair has moved less than this since it was compared, m. Every corner
+// that was within the margin then is among the contacts: whatever else comes near had been farther away by this.
+constexpr double follow_window = Manifold::whole_way;
+// Where corners had to be left out (a foot of a chair whose four points lie on the three others) they sink unseen, so
+// the pair is compared again before that matters.
+constexpr double short_follow_window = 1e-3;
+// The point of contact of what rolls does not stay on it; after so short a way the gap is right to a hundredth of it.
+constexpr double round_follow_window = 2e-5;
+
+/// A pair seen from its larger body: turning that one moves surface points the least. A ball's own turn does not count:
+/// it is seen from the other body, and two balls in the world's axes.
+struct RelativePose {
+    Vec3 center;
+    Quat rotation;
+    SeenFrom seen;
+    bool has_ball = false;
+};
+
+RelativePose relative_pose(const WorldState& world, const BroadPhase::Pair& pair) {
+    const TouchBody &a = world.touch_memory.bodies[pair.a], &b = world.touch_memory.bodies[pair.b];
+    const bool from_b = a.is_ball != b.is_ball ? a.is_ball : b.size > a.size;
+    const BodyState& larger = world.motion[from_b ? pair.b : pair.a];
+    const BodyState& smaller = world.motion[from_b ? pair.a : pair.b];
+    if (a.is_ball && b.is_ball) return {smaller.center - larger.center, {}, {{}, from_b}, true};
+    const Vec3 center = rotate_inverse(larger.rotation, smaller.center - larger.center);
+    const bool has_ball = a.is_ball || b.is_ball;
+    const Quat rotation = has_ball ? Quat{} : conjugate(larger.rotation) * smaller.rotation;
+    return {center, rotation, {larger.rotation, from_b}, has_ball};
+}
+
+// Farthest that a surface point of the smaller body has moved relative to the larger one since they were compared.
+double moved_since(const WorldState& world, const BroadPhase::Pair& pair, const PairRecord& record,
+                   const RelativePose& now) {
+    if (now.has_ball) return distance(now.center, record.relative_center);
+    const double reach = std::min(world.touch_memory.bodies[pair.a].size, world.touch_memory.bodies[pair.b].size);
+    const Quat turn = now.rotation * conjugate(record.relative_rotation);
+    const double sine = length(Vec3{turn.x, turn.y, turn.z});
+    return distance(now.center, record.relative_center) + 2 * sine * reach;
+}
+
+// Lists of contacts are most of a world's memory. They grow by half: by less, what they leave behind adds up to more.
+template <class Item>
+void resize_list(std::vector<Item>& list, std::size_t size) {
+    if (size > list.capacity()) list.reserve(size + size / 2);
+    list.resize(size);
+}
+
+// How far a pair may move while its contacts follow it, m.
+double follow_window_of(const TouchBody& a, const TouchBody& b, bool is_whole) {
+    // A ball over a face is followed exactly; elsewhere its normal turns with every step.
+    const bool is_exact = is_whole && (a.is_ball || b.is_ball);
+    if ((a.is_round || b.is_round) && !is_exact) return round_follow_window;
+    return is_whole ? follow_window : short_follow_window;
+}
+
+/// The contacts of one pair in the last step.
+using OldContacts = std::span<const Contact>;
+
+/// A pair as it is in this step.
+struct PairNow {
+    BroadPhase::Pair pair;
+    RelativePose pose;
+    double margin = 0;  ///< how near the surfaces must be to meet within the step, m
+    double moved = 0;   ///< since the pair was compared, m
+    OldContacts old;
+};
+
+// Whether the last comparison still tells all: same bodies, hardly moved, and searched as far as now needed.
+bool may_follow(const WorldState& world, const PairRecord& record, const PairNow& now) {
+    const TouchBody &a = world.touch_memory.bodies[now.pair.a], &b = world.touch_memory.bodies[now.pair.b];
+    if (record.version_a != a.version || record.version_b != b.version) return false;
+    if (record.contact_count != now.old.size()) return false;
+    if (now.margin + now.moved > record.margin) return false;
+    return now.old.empty() || now.moved <= follow_window_of(a, b, record.is_whole);
+}
+
+// A contact with a mesh is named by a triangle, and another one comes under a sliding body all the time: what is new by
+// name goes on from an old contact of nearly the same normal that nobody else goes on from.
+void match_by_normal(OldContacts old, std::span<Contact> contacts, bool a_is_surface) {
+    constexpr double same_direction = 0.98;
+    const auto piece_of = [&](const Contact& c) { return a_is_surface ? c.piece_b : c.piece_a; };
+    const auto is_named = [](const Contact& c, std::span<const Contact> others) {
+        return std::any_of(others.begin(), others.end(),
+                           [&](const Contact& o) { return contact_key(o) == contact_key(c); });
+    };
+    std::uint64_t taken = 0;
+    const std::size_t count = std::min<std::size_t>(old.size(), 64);
+    for (std::size_t i = 0; i < count; ++i) taken |= std::uint64_t{is_named(old[i], contacts)} << i;
+    for (Contact& contact : contacts) {
+        if (is_named(contact, old)) continue;
+        double best = same_direction;
+        std::size_t chosen = count;
+        for (std::size_t i = 0; i < count; ++i) {
+            if ((taken >> i & 1u) != 0 || piece_of(old[i]) != piece_of(contact)) continue;
+            const double cosine = dot(old[i].normal, contact.normal);
+            if (cosine <= best) continue;
+            best = cosine;
+            chosen = i;
+        }
+        if (chosen == count) continue;
+        taken |= std::uint64_t{1} << chosen;
+        match_points(old[chosen], contact);
+    }
+}
+
+// Takes the coefficients that the pair's contacts had in the last step.
+void take_material(const Contact& old, Contact& contact) {
+    contact.friction_static = old.friction_static;
+    contact.friction_dynamic = old.friction_dynamic;
+    contact.friction_torsional = old.friction_torsional;
+    contact.friction_rolling = old.friction_rolling;
+    contact.bounces = old.bounces;
+}
+
+// Finds the contacts of a pair anew and hands them the impulses of the old ones.
+void compare_pair(const WorldState& world, PairRecord& record, const PairNow& now, TouchMemory::Worker& worker) {
+    const BroadPhase::Pair pair = now.pair;
+    const OldContacts old = now.old;
+    const BodyRecord &a = world.record(pair.a), &b = world.record(pair.b);
+    const bool is_known = record.version_a == a.version && record.version_b == b.version;
+    if (!is_known) record.memory = {};
+    worker.manifolds.clear();
+    const TouchMemory& memory = world.touch_memory;
+    const double searched = now.margin + within_ball(follow_window, memory.bodies[pair.a], memory.bodies[pair.b]);
+    collide(*a.shape, world.pose(pair.a), *b.shape, world.pose(pair.b), searched, record.memory, worker.manifolds);
+    record.version_a = a.version;
+    record.version_b = b.version;
+    record.contact_count = static_cast<std::uint32_t>(worker.manifolds.size());
+    record.margin = searched;
+    record.is_whole = std::all_of(worker.manifolds.begin(), worker.manifolds.end(),
+                                  [](const Manifold& manifold) { return manifold.is_whole; });
+    record.relative_center = now.pose.center;
+    record.relative_rotation = now.pose.rotation;
+    if (worker.manifolds.empty()) {
+        const bool is_apart = record.memory.kind == PairMemory::Kind::apart;
+        if (is_apart) record.margin = std::max(searched, record.memory.gap);
+        return;
+    }
+    if (a.is_round || b.is_round) {
+        record.margin = std::min(searched, leave_out_unreachable(world, pair, base_margin, worker.manifolds));
+    }
+
+    const auto first = static_cast<std::ptrdiff_t>(worker.found.size());
+    const bool has_material = is_known && !old.empty();
+    const Material material =
+        has_material ? Material{} : combine(a.definition.material, b.definition.material, world.surface_pairs);
+    const std::size_t wanted = worker.found.size() + worker.manifolds.size();
+    if (wanted > worker.found.capacity()) worker.found.reserve(wanted + wanted / 2);
+    for (const Manifold& manifold : worker.manifolds) {
+        worker.found.push_back(make_contact(pair.a, pair.b, manifold, world.motion, now.pose.seen));
+        Contact& contact = worker.found.back();
+        has_material ? take_material(old.front(), contact) : set_material(contact, material);
+    }
+
+    // Both are sorted by key.
+    std::sort(worker.found.begin() + first, worker.found.end(),
+              [](const Contact& c, const Contact& d) { return contact_key(c) < contact_key(d); });
+    auto old_contact = old.begin();
+    for (auto contact = worker.found.begin() + first; contact != worker.found.end(); ++contact) {
+        while (old_contact != old.end() && contact_key(*old_contact) < contact_key(*contact)) ++old_contact;
+        if (old_contact != old.end() && contact_key(*old_contact) == contact_key(*contact)) {
+            match_points(*old_contact, *contact);
+        }
+    }
+    const bool a_is_surface = a.reach == 0;
+    if (!old.empty() && (a_is_surface || b.reach == 0)) {
+        match_by_normal(old, std::span(worker.found).subspan(static_cast<std::size_t>(first)), a_is_surface);
+    }
+}
+
+FollowedPair followed_pair(const WorldState& world, const PairRecord& record, const PairNow& pair) {
+    const BodyState &a = world.motion[pair.pair.a], &b = world.motion[pair.pair.b];
+    const RelativePose& now = pair.pose;
+    const Quat turn = now.rotation * conjugate(record.relative_rotation);
+    const double sign = turn.w < 0 ? -1 : 1;
+    const Mat3 axes = to_matrix(now.seen.axes);
+    return {.shift = to_vec3f(now.center - record.relative_center),
+            .turn = to_vec3f(sign * Vec3{turn.x, turn.y, turn.z}),
+            .turn_w = static_cast<float>(sign * turn.w),
+            .axes = {to_vec3f(axes.x), to_vec3f(axes.y), to_vec3f(axes.z)},
+            .apart = to_vec3f(b.center - a.center),
+            .velocity = to_vec3f(b.linear_velocity - a.linear_velocity),
+            .spin_a = to_vec3f(a.angular_velocity),
+            .spin_b = to_vec3f(b.angular_velocity),
+            .has_ball = now.has_ball};
+}
+
+// A bouncing contact whose load changes no velocity by more than rounding carries none: bodies that only touch, as the
+// balls of a rack do, are as free as those apart.
+void clear_rounding_load(const WorldState& world, Contact& contact) {
+    constexpr double slightest_load = 1e-6;  // m/s
+    if (!contact.was_loaded || !contact.bounces) return;
+    const double inverse_masses = world.motion[contact.a].inverse_mass + world.motion[contact.b].inverse_mass;
+    contact.was_loaded = load_of(contact) * inverse_masses > slightest_load;
+}
+
+void write_glance(WorldState& world, std::uint32_t index) {
+    Contact& contact = world.contacts[index];
+    clear_rounding_load(world, contact);
+    world.contact_glances[index] = glance_at(contact);
+}
+
+// Puts a pair's newly found contacts in the place of as many old ones.
+void replace_contacts(WorldState& world, PairTouch& touch, TouchMemory::Worker& worker) {
+    for (std::uint32_t k = 0; k < touch.count; ++k) {
+        world.contacts[touch.first + k] = worker.found[touch.found_first + k];
+        write_glance(world, touch.first + k);
+    }
+    worker.found.resize(touch.found_first);
+    touch.finder = PairTouch::keeps;
+}
+
+void follow_contacts(WorldState& world, const PairTouch& touch, const FollowedPair& followed) {
+    for (std::uint32_t i = touch.first; i < touch.first + touch.count; ++i) {
+        follow_bodies(world.contacts[i], followed);
+        write_glance(world, i);
+    }
+}
+
+// Whether the pair's contacts are where they were in the last step, since its bodies are.
+bool may_keep(const WorldState& world, const PairWatch& watch, const PairRecord& record) {
+    const TouchBody &a = world.touch_memory.bodies[watch.pair.a], &b = world.touch_memory.bodies[watch.pair.b];
+    return a.stands && b.stands && watch.count > 0 && record.contact_count == watch.count &&
+           record.version_a == a.version && record.version_b == b.version;
+}
+
+void keep_contacts(WorldState& world, const PairTouch& touch) {
+    for (std::uint32_t i = touch.first; i < touch.first + touch.count; ++i) {
+        begin_step(world.contacts[i]);
+        write_glance(world, i);
+        world.contact_glances[i].is_kept = true;
+    }
+}
+
+// One of the two must be able to answer an impulse, and neither may sleep.
+bool may_touch(const WorldState& world, const BroadPhase::Pair& pair) {
+    const std::vector<TouchBody>& bodies = world.touch_memory.bodies;
+    if (!bodies[pair.a].yields && !bodies[pair.b].yields) return false;
+    const bool may_sleep = !world.sleepers.empty();
+    if (may_sleep && (world.is_asleep(pair.a) || world.is_asleep(pair.b))) return false;
+    return may_collide(world, pair.a, pair.b);
+}
+
+// Decides what a pair has in this step: what it had follows its bodies, or is found anew.
+void touch_pair(WorldState& world, PairTouch& touch, std::uint8_t finder, TouchMemory::Worker& worker) {
+    PairWatch& watch = world.touch_memory.watches[touch.watch];
+    if (!may_touch(world, watch.pair)) return;
+    PairRecord& record = world.touch_memory.records[watch.record];
+    if (may_keep(world, watch, record)) {
+        touch.next_count = touch.count;
+        return keep_contacts(world, touch);
+    }
+    PairNow now{.pair = watch.pair,
+                .pose = relative_pose(world, watch.pair),
+                .margin = margin_of(world, watch.pair.a, watch.pair.b),
+                .old = OldContacts(world.contacts).subspan(touch.first, touch.count)};
+    now.moved = moved_since(world, watch.pair, record, now.pose);
+    if (may_follow(world, record, now)) {
+        touch.next_count = touch.count;
+        if (touch.count > 0) return follow_contacts(world, touch, followed_pair(world, record, now));
+        return leave_alone(world, watch, record.margin - now.moved - base_margin_of(world, watch.pair));
+    }
+
+    touch.finder = finder;
+    touch.found_first = static_cast<std::uint32_t>(worker.found.size());
+    compare_pair(world, record, now, worker);
+    touch.next_count = static_cast<std::uint32_t>(worker.found.size()) - touch.found_first;
+    if (touch.next_count == touch.count) replace_contacts(world, touch, worker);
+    watch.look_again = 0;
+    if (touch.next_count == 0) leave_alone(world, watch, record.margin - base_margin_of(world, watch.pair));
+}
+
+// Moves the contacts that a pair keeps to their next place.
+void move_kept(WorldState& world, const PairTouch& touch) {
+    const auto move = [&](auto& list) {
+        const auto from = list.begin() + touch.first, to = list.begin() + touch.next_first;
+        touch.next_first < touch.first ? std::copy(from, from + touch.count, to)
+                                       : std::copy_backward(from, from + touch.count, to + touch.count);
+    };
+    move(world.contacts);
+    move(world.contact_glances);
+}
+
+// Gives each pair's contacts their place in the order of the pairs, which does not depend on who found them. All move
+// within one list: those that move down in ascending order, then those that move up in descending order, never come to
+// lie on one that has yet to move.
+void lay_out(WorldState& world) {
+    std::vector<PairTouch>& pairs = world.touch_memory.pairs;
+    std::uint32_t total = 0;
+    bool is_same = true;
+    for (PairTouch& touch : pairs) {
+        touch.next_first = total;
+        total += touch.next_count;
+        is_same = is_same && touch.next_count == touch.count;
+    }
+    if (is_same) return;
+    resize_list(world.contacts, std::max<std::size_t>(world.contacts.size(), total));
+    world.contact_glances.resize(world.contacts.size());
+    const auto keeps = [](const PairTouch& t) { return t.finder == PairTouch::keeps && t.next_count > 0; };
+    for (auto t = pairs.begin(); t != pairs.end(); ++t) {
+        if (keeps(*t) && t->next_first < t->first) move_kept(world, *t);
+    }
+    for (auto t = pairs.rbegin(); t != pairs.rend(); ++t) {
+        if (keeps(*t) && t->next_first > t->first) move_kept(world, *t);
+    }
+
+    // What is new fills the places between.
+    for (const PairTouch& touch : pairs) {
+        if (touch.next_count == touch.count) continue;
+        world.touch_memory.watches[touch.watch].count = touch.next_count;
+        for (std::uint32_t k = 0; k < touch.next_count; ++k) {
+            const Contact& contact = world.touch_memory.workers[touch.finder].found[touch.found_first + k];
+            world.contacts[touch.next_first + k] = contact;
+            write_glance(world, touch.next_first + k);
+        }
+    }
+    world.contacts.resize(total);
+    world.contact_glances.resize(total);
+}
+
+// Calls work(worker, share) for shares of the pairs to look at, on all workers where there are enough of them. Some
+// pairs take a hundred times as long as others, so each worker takes the next few when it is done: first of its own
+// part, whose contacts it had in the last step, then of the others'.
+template <class Work>
+void share_pairs(WorldState& world, Work work) {
+    constexpr std::size_t fewest_shared = 200, pairs_in_share = 32;
+    const std::size_t count = world.touch_memory.pairs.size();
+    const int workers = world.workers->workers();
+    if (count < fewest_shared || workers == 1) return work(0, Share{0, count});
+    struct alignas(64) Part {
+        std::atomic<std::size_t> next{0};
+    };
+    std::vector<Part> parts(static_cast<std::size_t>(workers));
+    world.workers->run([&](int worker) {
+        for (int turn = 0; turn < workers; ++turn) {
+            const int owner = (worker + turn) % workers;
+            const Share part = share_of(count, owner, workers);
+            std::atomic<std::size_t>& next = parts[static_cast<std::size_t>(owner)].next;
+            while (true) {
+                const std::size_t first = part.first + next.fetch_add(pairs_in_share, std::memory_order_relaxed);
+                if (first >= part.last) break;
+                work(worker, Share{first, std::min(first + pairs_in_share, part.last)});
+            }
+        }
+    });
+}
+
+// Records lie anywhere: they are asked for while the pairs before are looked at.
+constexpr std::size_t fetched_ahead = 4;
+void fetch(const TouchMemory& memory, const PairTouch& touch) {
+    const PairRecord& record = memory.records[memory.watches[touch.watch].record];
+    __builtin_prefetch(&record.version_a);
+    __builtin_prefetch(&record.memory);
+}
+
+}  // namespace
+
+void find_contacts(WorldState& world) {
+    TouchMemory& memory = world.touch_memory;
+    memory.workers.resize(static_cast<std::size_t>(world.workers->workers()));
+    update_watches(world);
+    start_motion(world);
+    wake_touched(world, memory.workers[0].manifolds);
+
+    // What each near pair has.
+    list_near_pairs(world);
+    world.contact_glances.resize(world.contacts.size());
+    for (TouchMemory::Worker& worker : memory.workers) worker.found.clear();
+    share_pairs(world, [&](int worker, Share share) {
+        TouchMemory::Worker& own = memory.workers[static_cast<std::size_t>(worker)];
+        for (std::size_t i = share.first; i < share.last; ++i) {
+            if (i + fetched_ahead < share.last) fetch(memory, memory.pairs[i + fetched_ahead]);
+            touch_pair(world, memory.pairs[i], static_cast<std::uint8_t>(worker), own);
+        }
+    });
+    lay_out(world);
+}
+
+}  // namespace embody::physics

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "physics/state/deformable_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace embody::physics {
+
+namespace {
+
+// Segments of ropes collide as capsules of their length at rest; equal lengths share one.
+Result<void> make_capsules(DeformableRecord& record) {
+    const DeformableDefinition& definition = record.definition;
+    const double stretch = 1 + std::get<Rope>(definition.matter).slack;
+    std::vector<double> lengths;
+    for (std::size_t s = 0; s + 1 < definition.nodes.size(); ++s) {
+        const double own = stretch * length(definition.nodes[s + 1] - definition.nodes[s]);
+        const auto same = std::ranges::find_if(lengths, [&](double l) { return std::fabs(l - own) < 1e-6 * own; });
+        record.segment_capsule.push_back(static_cast<std::uint32_t>(same - lengths.begin()));
+        if (same != lengths.end()) continue;
+        lengths.push_back(own);
+        auto capsule = CollisionShape::create(CapsuleShape{definition.contact_radius, own / 2});
+        if (!capsule) return capsule.error();
+        record.capsules.push_back(std::move(*capsule));
+    }
+    return {};
+}
+
+double elastic_energy(const DeformableRecord& record) {
+    return record.cloth ? record.cloth->elastic_energy() : record.rope->elastic_energy();
+}
+
+}  // namespace
+
+Result<DeformableRecord> make_deformable_record(const DeformableDefinition& definition) {
+    DeformableRecord record;
+    record.definition = definition;
+    auto ball = CollisionShape::create(SphereShape{definition.contact_radius});
+    if (!ball) return ball.error();
+    record.node_ball = std::move(*ball);
+    if (std::holds_alternative<Cloth>(definition.matter)) {
+        record.cloth = std::make_unique<ClothSheet>(definition);
+    } else if (std::holds_alternative<Rope>(definition.matter)) {
+        record.rope = std::make_unique<RopeLine>(definition);
+        if (auto made = make_capsules(record); !made) return made.error();
+    } else {
+        record.solid = std::make_unique<SolidDeformable>(definition);
+    }
+    record.last_positions = record.nodes().position;
+    return record;
+}
+
+const Nodes& DeformableRecord::nodes() const {
+    return solid ? solid->nodes() : cloth ? std::as_const(*cloth).nodes() : std::as_const(*rope).nodes();
+}
+
+Bounds DeformableRecord::bounds() const {
+    if (solid) return solid->bounds();
+    Bounds box;
+    for (const Vec3 position : nodes().position) box.add(position);
+    return box;
+}
+
+bool DeformableRecord::is_finite() const {
+    return solid ? solid->is_finite() : !(cloth ? cloth->is_frozen() : rope->is_frozen());
+}
+
+Vec3 DeformableRecord::acceleration(Vec3 gravity) const {
+    const Vec3 pull = definition.gravity_factor * gravity;
+    if (definition.force == Vec3{}) return pull;
+    double mass = 0;
+    for (const double own : nodes().mass) mass += own;
+    return pull + definition.force / mass;
+}
+
+Conserved DeformableRecord::conserved(Vec3 gravity) const {
+    if (solid) return solid->conserved(gravity);
+    Conserved sum;
+    const Nodes& all = nodes();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!(all.inverse_mass[i] > 0)) continue;
+        const Vec3 momentum = all.mass[i] * all.velocity[i];
+        sum.kinetic_energy += dot(momentum, all.velocity[i]) / 2;
+        sum.potential_energy -= all.mass[i] * dot(gravity, all.position[i]);
+        sum.linear_momentum += momentum;
+        sum.angular_momentum += cross(all.position[i], momentum);
+    }
+    sum.potential_energy += elastic_energy(*this);
+    return sum;
+}
+
+bool DeformableRecord::has_tetrahedra_of(const DeformableRecord& other) const {
+    const auto* own = std::get_if<SoftSolid>(&definition.matter);
+    const auto* others = std::get_if<SoftSolid>(&other.definition.matter);
+    return own != nullptr && others != nullptr && own->tetrahedra == others->tetrahedra;
+}
+
+Quat DeformableRecord::rotation() const { return solid ? solid->rotation(0) : definition.pose.rotation; }
+
+void DeformableRecord::set_motion(std::span<const Vec3> positions, std::span<const Vec3> velocities, Quat rotation) {
+    if (solid) return solid->set_motion(positions, velocities, rotation);
+    Nodes& all = cloth ? cloth->nodes() : rope->nodes();
+    std::ranges::copy(positions, all.position.begin());
+    for (std::size_t i = 0; i < all.size(); ++i)
+        all.velocity[i] = all.mean_velocity[i] = all.inverse_mass[i] > 0 ? velocities[i] : Vec3{};
+}
+
+void DeformableRecord::rest() {
+    if (solid) return solid->rest();
+    Nodes& all = cloth ? cloth->nodes() : rope->nodes();
+    std::ranges::fill(all.mean_velocity, Vec3{});
+    std::ranges::fill(all.velocity, Vec3{});
+}
+
+void DeformableRecord::stop_at(std::span<const Vec3> positions) {
+    if (solid) return solid->stop_at(positions);
+    rest();
+    Nodes& all = cloth ? cloth->nodes() : rope->nodes();
+    std::ranges::copy(positions, all.position.begin());
+}
+
+}  // namespace embody::physics

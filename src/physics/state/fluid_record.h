@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "physics/definitions/fluid_definition.h"
+#include "physics/fluid/solver.h"
+
+namespace embody::physics {
+
+/// A body as a fluid last saw it.
+struct SeenBody {
+    std::uint32_t version = 0;
+    Transform pose;
+    Vec3 force, torque;  ///< of the fluid on it in that step, N, N m
+};
+
+/// A fluid with what drawing it and its sleep need.
+struct FluidRecord {
+    FluidDefinition definition;
+    std::unique_ptr<FluidSolver> solver;
+    Bounds bounds;       ///< of the particles, world
+    double fastest = 0;  ///< m/s
+    std::vector<Vec3f> positions, velocities;
+    std::vector<std::uint32_t> ids;
+    std::map<std::uint32_t, SeenBody> seen;  ///< by slot: bodies near it in the last step
+    double quiet_time = 0;                   ///< s
+    double quiet_height = 0;                 ///< of its middle when that began, m
+    bool is_asleep = false, is_frozen = false;
+    std::uint64_t version = 0;  ///< of what is read
+    std::uint64_t lost = 0;     ///< particles that flew out of reach
+};
+
+/// A dynamic body in a fluid: what the next step expects of its contacts and joints (docs/physics/fluids.md).
+struct FluidTouch {
+    std::uint64_t step = 0;                  ///< last one in which a fluid saw it
+    Vec3 linear_velocity, angular_velocity;  ///< when that step began
+    Vec3 acceleration, torque;               ///< in that step, with the fluids'
+    Vec3 force_asleep;                       ///< of the fluids in that step, the last one before it fell asleep, N
+    double carried = 0;                      ///< force of the fluids in that step and the one before, the lesser one, N
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "physics/constraint/impact/impact_group.h"
+#include "physics/definitions/step_account.h"
+
+namespace embody::physics {
+
+struct Contact;
+struct Island;
+struct Joint;
+struct WorldState;
+
+/// Keeps the account of energy and momenta of one step after the other, by double entry: what the stages say of their
+/// forces and impulses, and what became of the bodies' states (docs/physics/energy.md). Reads the world, changes
+/// nothing. The steps of a world call these in the order of its stages.
+class Ledger {
+public:
+    void begin(const WorldState& world);
+    void close_wake(const WorldState& world);
+    void begin_impacts(const WorldState& world);
+    /// A group that eq. (3) has solved, its bodies at the place and time of the impact.
+    void note_impact(std::span<const ImpactSite> sites, double energy_change, const WorldState& world);
+    void close_impacts(const WorldState& world);
+    /// Of the impulses that its contacts report, the share that a body was given.
+    void note_kept_share(std::uint32_t body, double share) { motions_[body].kept_share = share; }
+    /// Its velocities were scaled to this share, which keeps energy from growing.
+    void note_scaled(const WorldState& world, std::uint32_t body, double share);
+    /// It was taken through the step by the equations of pure rolling.
+    void note_rolled(std::uint32_t body) { motions_[body].rolls = true; }
+    /// An island was solved through the next `time`, s: a substep where there are joints, else the step.
+    void close_island(const WorldState& world, const Island& island, double time);
+    void close_substeps(const WorldState& world);
+    void close_limits(const WorldState& world);
+    void close_continuous(const WorldState& world);
+    void close_deformables(const WorldState& world);
+    void close_sleep(const WorldState& world);
+    [[nodiscard]] StepAccount finish();
+
+private:
+    /// Of a body, when the running stage began, and its means over the stage.
+    struct Motion {
+        Vec3 center, velocity, spin;
+        Quat rotation;
+        Vec3 mean_center, mean_velocity, mean_spin;
+        Vec3 moment;                         ///< of its contacts over the stage, about the centre of mass, N m s
+        Vec3 scaled_impulse, scaled_moment;  ///< by note_scaled(), N s, N m s
+        double kept_share = 1;               ///< of its contacts' impulses
+        bool rolls = false;                  ///< purely, through the whole step: its contacts do no work
+    };
+    /// What contacts and joints had done before the running part of the step.
+    struct ContactTotals {
+        std::array<float, 4> normal{};
+        std::array<float, 3> friction{};
+    };
+    struct JointTotals {
+        Vec3 linear, angular;
+    };
+    /// An impulse of body a on body b at one place.
+    struct Push {
+        std::uint32_t a = 0, b = 0;
+        Vec3 arm_a, arm_b;  ///< from the centres of mass
+        Vec3 impulse, moment;
+    };
+    void remember(const WorldState& world, std::uint32_t body);
+    void remember_totals(const WorldState& world, std::uint32_t contact);
+    void set_means(const WorldState& world, std::uint32_t body);
+    void set_spins(const WorldState& world, const Island& island);
+    void add_displaced(const WorldState& world, std::uint32_t body);
+    void add_forces(const WorldState& world, std::uint32_t body);
+    void add_damping(const WorldState& world, std::uint32_t body);
+    void add_scaling(std::uint32_t body);
+    void add_correction(const WorldState& world, std::uint32_t body);
+    template <class Visit>
+    void for_each_push(const WorldState& world, const Island& island, Visit visit) const;
+    void add_push(const WorldState& world, const Push& push, StepCause cause);
+    void note_blow(const WorldState& world, const Joint& joint);
+    void add_joint(const WorldState& world, std::uint32_t index);
+    void add(StepCause cause, double work, Vec3 linear, Vec3 angular);
+    void measure(const WorldState& world, StepCause cause);
+
+    StepAccount account_;
+    Conserved last_;                             // sums when a measured stage began
+    std::vector<Motion> motions_;                // by slot
+    double time_ = 0;                            // s, of the running part
+    std::vector<ContactTotals> contact_totals_;  // by contact
+    std::vector<JointTotals> joint_totals_;      // by active joint
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "physics/constraint/joint/joint_system.h"
+#include "physics/constraint/sweeps/contact_solver.h"
+#include "physics/constraint/sweeps/wide_contact_solver.h"
+#include "physics/dynamic/body_state.h"
+#include "physics/optimization/islands.h"
+
+namespace embody::physics {
+
+/// Islands by the solver that takes them through the substeps (docs/physics/wide-solver.md).
+struct IslandsBySolver {
+    /// Islands of contacts only that share a plan.
+    struct Wide {
+        ContactPlan plan;
+        std::vector<Island> islands;  ///< empty: the plan was used in an earlier step
+    };
+    std::vector<std::uint32_t> free;  ///< bodies that nothing holds
+    std::vector<Island> one_by_one;   ///< joints and contacts, or too many joints
+    std::vector<Island> jointed;      ///< joints only, all at once
+    std::vector<Wide> wide;           ///< contacts only; the finest plan first
+
+    void clear() {
+        free.clear();
+        one_by_one.clear();
+        jointed.clear();
+        for (Wide& group : wide) group.islands.clear();
+    }
+    void add(const Island& island, const ContactPlan& plan) {
+        auto group = std::find_if(wide.begin(), wide.end(),
+                                  [&](const Wide& known) { return known.plan.substeps <= plan.substeps; });
+        if (group == wide.end() || group->plan.substeps != plan.substeps) group = wide.insert(group, {plan, {}});
+        if (group->islands.empty()) group->plan = plan;
+        group->islands.push_back(island);
+    }
+};
+
+/// Memory of the substeps, so that a steady step allocates nothing. Nothing in it outlives a step.
+struct SubstepMemory {
+    IslandsBySolver islands;
+
+    // Of the islands that the wide solver takes together.
+    std::vector<std::uint32_t> wide_contacts, wide_bodies, wide_carriers;
+    std::vector<WideContactSolver::Group> wide_groups;
+
+    std::vector<std::pair<std::uint32_t, BodyState>> carriers;  ///< of one jointed island, at the step's start
+
+    /// What an island of joints and contacts may have of kinetic energy, J, and to mend its joints.
+    struct EnergyBound {
+        Island island;
+        const JointSystem* system;
+        double energy, mending;
+    };
+    std::vector<EnergyBound> energy_bounds;
+
+    /// What joints hold, at the step's start.
+    struct HeldStart {
+        std::uint32_t body;
+        Vec3 linear_velocity, angular_velocity;
+    };
+    std::vector<HeldStart> held_starts;
+};
+
+}  // namespace embody::physics

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/state/world_state.h"
+
+namespace embody::physics {
+
+/// The last stage: contact events, counts and energies of the step. What was told for one step only is forgotten.
+void write_report(WorldState& world);
+
+}  // namespace embody::physics
