@@ -18,6 +18,7 @@ namespace {
 
 using namespace embody;
 using namespace embody::physics;
+using namespace embody::physics::collision;
 
 constexpr double margin = 0.01;
 constexpr std::size_t poses_a_pair = 256;

@@ -11,6 +11,8 @@
 namespace embody::physics {
 namespace {
 
+using namespace deformable;
+
 BodyHandle add_body(World& world, const ShapeDefinition& shape, Vec3 position, double mass = 0, Quat rotation = {}) {
     BodyDefinition body{.kind = mass > 0 ? BodyKind::dynamic_body : BodyKind::static_body,
                         .shape = world.create_shape(shape).value(),

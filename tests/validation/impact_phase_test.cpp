@@ -13,6 +13,8 @@
 namespace embody::physics {
 namespace {
 
+using namespace constraint;
+
 constexpr double step = 1.0 / 60;
 constexpr int phases = 16;
 

@@ -7,6 +7,8 @@
 namespace embody::physics {
 namespace {
 
+using namespace constraint;
+
 // The micro-collision of eq. (3) against an independent integration of high order.
 class ImpactByEquationThree : public testing::TestWithParam<const char*> {};
 

@@ -11,6 +11,8 @@
 namespace embody::physics {
 namespace {
 
+using namespace deformable;
+
 constexpr double g = 9.81;
 
 DeformableDefinition brick(Vec3 size, std::array<int, 3> cells, double density, double youngs_modulus,

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "math/transform.h"
+#include "physics/dynamic/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::dynamic {
 
 /// What moves: the paper's state vector (q, R, v, ω) of section III.A, and what the constraints need to know about the
 /// body's inertia. One a body, indexed by the body's slot. Immovable and kinematic bodies have zero inverse masses.
@@ -57,4 +58,4 @@ inline void apply_angular_impulse(BodyState& state, Vec3 impulse) {
     state.angular_velocity += state.inverse_inertia * impulse;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::dynamic

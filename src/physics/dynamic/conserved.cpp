@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "physics/dynamic/conserved.h"
 
-namespace embody::physics {
+namespace embody::physics::dynamic {
 
 namespace {
 
@@ -25,4 +25,4 @@ void add_conserved(Conserved& sum, const BodyState& state, const BodyConstants& 
     sum.angular_momentum += cross(state.center, momentum) + spin_momentum(state, constants);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::dynamic

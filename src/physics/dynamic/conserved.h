@@ -3,8 +3,9 @@
 
 #include "physics/definitions/step_report.h"
 #include "physics/dynamic/body_state.h"
+#include "physics/dynamic/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::dynamic {
 
 /// T = ½ m v² + ½ ω·Iω (paper, III.A), J.
 double kinetic_energy(const BodyState& state, const BodyConstants& constants);
@@ -12,4 +13,4 @@ double kinetic_energy(const BodyState& state, const BodyConstants& constants);
 /// Adds one body's energies and momenta; `gravity` with the body's gravity factor applied, m/s².
 void add_conserved(Conserved& sum, const BodyState& state, const BodyConstants& constants, Vec3 gravity);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::dynamic

@@ -16,7 +16,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::dynamic {
 
 Quat cayley(Vec3 angle) { return normalized(Quat{angle.x / 2, angle.y / 2, angle.z / 2, 1}); }
 
@@ -210,4 +210,4 @@ void drift_kinematic(BodyState& state, double time) {
     state.turn = state.rotation * conjugate(state.start_rotation);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::dynamic

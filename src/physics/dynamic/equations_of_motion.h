@@ -2,8 +2,9 @@
 #pragma once
 
 #include "physics/dynamic/body_state.h"
+#include "physics/dynamic/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::dynamic {
 
 // One substep of a free body is kick(h/2), split_gyroscopic(h), drift(h), kick(h/2). Constraints act between the kick
 // and the drift, where the velocity is the substep's mean, and again after the last kick.
@@ -47,4 +48,4 @@ void refresh_inertia(BodyState& state, const BodyConstants& constants);
 /// Rotation by the Cayley transform of `angle` (rad; 2 tan(θ/2) for the angle θ), as a unit quaternion.
 Quat cayley(Vec3 angle);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::dynamic

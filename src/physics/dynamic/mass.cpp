@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::dynamic {
 
 namespace {
 
@@ -48,4 +48,4 @@ Result<void> resolve_mass(const MassDefinition& definition, const geometry::Mass
     return {};
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::dynamic

@@ -8,7 +8,7 @@
 
 #include "foundation/random.h"
 
-namespace embody::physics {
+namespace embody::physics::dynamic {
 
 namespace {
 
@@ -70,4 +70,4 @@ Vec3 Wind::at(Vec3 position) const {
                       (noise(0, gust) * along + across * noise(1, gust) * side + upwards * noise(2, gust) * up);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::dynamic

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "math/vec3.h"
+#include "physics/dynamic/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::dynamic {
 
 /// The air at one moment: its mean velocity, changed by smooth noise whose root mean square along the wind is
 /// `gustiness` of its speed, across it and upwards 0.8 and 0.52 of that, as measured over flat land (H. A. Panofsky,
@@ -22,4 +23,4 @@ struct Wind {
     [[nodiscard]] Vec3 at(Vec3 position) const;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::dynamic

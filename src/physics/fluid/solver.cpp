@@ -11,7 +11,7 @@
 #include "physics/fluid/particles/drops.h"
 #include "physics/fluid/particles/transfer.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -372,4 +372,4 @@ double FluidSolver::pressure_at(Vec3 p) const {
     return sample_center(grid_, grid_.pressure, at, gradient);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -7,13 +7,14 @@
 #include "physics/definitions/fluid_definition.h"
 #include "physics/definitions/step_report.h"
 #include "physics/fluid/grid/grid.h"
+#include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/solids.h"
 #include "physics/fluid/particles/free_lumps.h"
 #include "physics/fluid/pressure/pressure_system.h"
 #include "physics/fluid/pressure/surface_tension.h"
 #include "physics/fluid/pressure/viscosity.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 struct FluidProperties {
     double density = 998;        ///< kg/m³
@@ -114,4 +115,4 @@ private:
     bool is_tense_ = false;  // its surface has tension in this step
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

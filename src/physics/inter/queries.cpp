@@ -6,6 +6,8 @@
 
 namespace embody::physics {
 
+using namespace state;
+
 std::optional<RayHit> cast_ray(const WorldState& world, Vec3 origin, Vec3 direction, double max_distance,
                                BodyHandle ignore) {
     const Vec3 unit = normalized(direction);

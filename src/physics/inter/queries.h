@@ -10,14 +10,14 @@
 namespace embody::physics {
 
 /// The nearest body that the ray meets; see World::cast_ray().
-std::optional<RayHit> cast_ray(const WorldState& world, Vec3 origin, Vec3 direction, double max_distance,
+std::optional<RayHit> cast_ray(const state::WorldState& world, Vec3 origin, Vec3 direction, double max_distance,
                                BodyHandle ignore);
 
 /// Bodies whose shapes overlap the box; see World::overlap_box().
-std::vector<BodyHandle> overlap_box(const WorldState& world, const Bounds& box);
+std::vector<BodyHandle> overlap_box(const state::WorldState& world, const Bounds& box);
 
 /// How far a body can move down; see World::drop_distance().
-std::optional<double> drop_distance(const WorldState& world, std::uint32_t body, double max_distance,
+std::optional<double> drop_distance(const state::WorldState& world, std::uint32_t body, double max_distance,
                                     const std::function<bool(BodyHandle)>& ignores);
 
 }  // namespace embody::physics

@@ -9,6 +9,9 @@
 
 namespace embody::physics {
 
+using namespace state;
+using namespace stages;
+
 World::World() : state_(std::make_unique<WorldState>()) {}
 World::~World() = default;
 
@@ -121,13 +124,13 @@ World::JointReaction World::joint_reaction(JointHandle joint) const {
 
 double World::joint_coordinate(JointHandle joint) const {
     const JointRecord* record = state_->joints.find(joint);
-    return record ? physics::joint_coordinate(record->constraint, state_->motion) : 0;
+    return record ? constraint::joint_coordinate(record->constraint, state_->motion) : 0;
 }
 
 // Stepping and what came of it.
 
 const StepReport& World::step() {
-    physics::step(*state_);
+    step::step(*state_);
     return state_->report;
 }
 

@@ -22,7 +22,9 @@
 
 namespace embody::physics {
 
+namespace state {
 struct WorldState;
+}
 
 /// The paper's Inter module: how a user and every other part talk to the physics. Owns shapes, bodies, joints and
 /// advances them. One thread at a time; several worlds are independent. Setters that are given a bad number or a stale
@@ -193,7 +195,7 @@ public:
 
 private:
     World();
-    std::unique_ptr<WorldState> state_;
+    std::unique_ptr<state::WorldState> state_;
 };
 
 }  // namespace embody::physics

@@ -9,6 +9,9 @@
 
 namespace embody::physics {
 
+using namespace state;
+using namespace stages;
+
 namespace {
 
 Error stale_body() { return {"body", "is not a body of this world"}; }
@@ -196,7 +199,7 @@ Result<void> World::apply_impulse(BodyHandle body, Vec3 impulse, std::optional<V
     BodyState& motion = state_->motion[body.index];
     const Vec3 arm = at_world_point ? *at_world_point - motion.center : Vec3{};
     wake_group_of(*state_, body.index);
-    physics::apply_impulse(motion, impulse, arm);
+    dynamic::apply_impulse(motion, impulse, arm);
     return {};
 }
 
@@ -204,7 +207,7 @@ Result<void> World::apply_angular_impulse(BodyHandle body, Vec3 impulse) {
     if (!contains(body)) return stale_body();
     if (auto result = check_vector("impulse", impulse, largest_force, "N m s"); !result) return result;
     wake_group_of(*state_, body.index);
-    physics::apply_angular_impulse(state_->motion[body.index], impulse);
+    dynamic::apply_angular_impulse(state_->motion[body.index], impulse);
     return {};
 }
 

@@ -13,6 +13,9 @@
 
 namespace embody::physics {
 
+using namespace state;
+using namespace stages;
+
 namespace {
 
 Result<void> check_attachments(const World& world, const std::vector<Attachment>& attachments) {

@@ -9,6 +9,9 @@
 
 namespace embody::physics {
 
+using namespace state;
+using namespace stages;
+
 namespace {
 
 // Volumes of particles that differ by no more are equal: a mean of as many as there are.

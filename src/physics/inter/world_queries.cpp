@@ -6,6 +6,8 @@
 
 namespace embody::physics {
 
+using namespace state;
+
 std::optional<RayHit> World::cast_ray(Vec3 origin, Vec3 direction, double max_distance, BodyHandle ignore) const {
     return physics::cast_ray(*state_, origin, direction, max_distance, ignore);
 }

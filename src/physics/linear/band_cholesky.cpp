@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::linear {
 
 void BandCholesky::reset(std::size_t blocks) { rows_.assign(3 * blocks, Row{}); }
 
@@ -64,4 +64,4 @@ void BandCholesky::solve(std::span<Vec3> rhs) const {
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "math/mat3.h"
+#include "physics/linear/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::linear {
 
 /// Symmetric positive definite matrix of 3 × 3 blocks in which row i has blocks up to column i ± 2, and its factor L
 /// Lᵀ.
@@ -35,4 +36,4 @@ private:
     std::vector<Row> rows_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

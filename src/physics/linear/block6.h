@@ -5,8 +5,9 @@
 
 #include "math/mat3.h"
 #include "physics/linear/block_kernels.h"
+#include "physics/linear/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::linear {
 
 /// Six numbers of a body: of its linear, then of its angular motion.
 struct alignas(16) Vec6 {
@@ -60,4 +61,4 @@ inline double dot(const Column6& x, const Column6& y) {
     return sum[0] + sum[1];
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace embody::physics {
+namespace embody::physics::linear {
 
 void BlockCholesky::analyse(std::size_t nodes, std::span<const Edge> edges) {
     pattern_.analyse(nodes, edges);
@@ -68,4 +68,4 @@ void BlockCholesky::solve(std::span<Vec6> x) const {
     for (std::size_t place = 0; place < nodes; ++place) x[pattern_.node_at(place)] = work_[place];
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

@@ -7,8 +7,9 @@
 
 #include "physics/linear/block6.h"
 #include "physics/linear/block_pattern.h"
+#include "physics/linear/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::linear {
 
 /// Factors L D Lᵀ of a sparse symmetric positive definite matrix of 6×6 blocks: one row of blocks a node of a graph,
 /// one block an edge. The same bits on every processor.
@@ -41,4 +42,4 @@ private:
     mutable std::vector<Vec6> work_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

@@ -8,9 +8,9 @@
 namespace embody::EMBODY_WIDE {
 namespace {
 
-using physics::block_stride;
-using physics::BlockFactors;
-using physics::column_stride;
+using physics::linear::block_stride;
+using physics::linear::BlockFactors;
+using physics::linear::column_stride;
 
 constexpr double stuck_pivot = 1e100;
 
@@ -93,7 +93,7 @@ void subtract_product(double* target, const double* rows, const double* columns)
 
 }  // namespace
 
-extern const physics::BlockKernels block_kernels;
-const physics::BlockKernels block_kernels{factor, subtract_product};
+extern const physics::linear::BlockKernels block_kernels;
+const physics::linear::BlockKernels block_kernels{factor, subtract_product};
 
 }  // namespace embody::EMBODY_WIDE

@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace embody::physics {
+#include "physics/linear/namespace.h"
+
+namespace embody::physics::linear {
 
 /// Of a block: numbers from one column to the next, of which the first six count and the others are 0, and all.
 inline constexpr std::size_t column_stride = 8, block_stride = 6 * column_stride;
@@ -38,4 +40,4 @@ const BlockKernels* block_kernels(int lanes);
 /// The widest that this processor has.
 const BlockKernels& widest_block_kernels();
 
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

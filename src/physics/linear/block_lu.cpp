@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::linear {
 
 namespace {
 
@@ -111,4 +111,4 @@ void BlockLu::solve(std::span<Vec6> x) {
     for (std::size_t place = 0; place < nodes; ++place) x[pattern_.node_at(place)] = work_[place];
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

@@ -7,8 +7,9 @@
 
 #include "physics/linear/block6.h"
 #include "physics/linear/block_pattern.h"
+#include "physics/linear/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::linear {
 
 /// Factors L D U of a sparse matrix of 6×6 blocks whose pattern is symmetric, its numbers are not: two blocks an edge.
 /// No pivot is looked for: bodies must have a definite diagonal block, and a multiplier's rows must differ. The same
@@ -40,4 +41,4 @@ private:
     std::vector<Vec6> work_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

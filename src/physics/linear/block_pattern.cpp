@@ -6,7 +6,7 @@
 
 #include "foundation/assert.h"
 
-namespace embody::physics {
+namespace embody::physics::linear {
 
 void BlockPattern::analyse(std::size_t nodes, std::span<const Edge> edges, std::size_t multipliers) {
     EMBODY_ASSERT(nodes <= most_nodes);
@@ -101,4 +101,4 @@ void BlockPattern::place_blocks(std::span<const Edge> edges) {
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
-namespace embody::physics {
+#include "physics/linear/namespace.h"
+
+namespace embody::physics::linear {
 
 /// In which order the nodes of a graph are eliminated from a sparse matrix, one row of blocks a node and one block an
 /// edge, and which blocks that takes. Source: A. George, J. Liu, "Computer solution of large sparse positive definite
@@ -66,4 +68,4 @@ private:
     std::vector<Neighbours> columns_;  // scratch
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

@@ -8,7 +8,7 @@
 namespace embody::EMBODY_WIDE {
 namespace {
 
-constexpr std::size_t width = lanes, sums = physics::column_multiple, registers = sums / width;
+constexpr std::size_t width = lanes, sums = physics::linear::column_multiple, registers = sums / width;
 
 void add_moves(float* moves, const float* compliance, std::size_t stride, float x, float y, float z) {
     const Wide by_x = broadcast(x), by_y = broadcast(y), by_z = broadcast(z);
@@ -128,8 +128,8 @@ void add_all_moves(float* moves, const float* compliance, const float* forces, s
 
 }  // namespace
 
-extern const physics::ColumnKernels column_kernels;
-const physics::ColumnKernels column_kernels{add_moves,  subtract_columns, dot_columns,
-                                            dot_blocks, subtract_scaled,  add_all_moves};
+extern const physics::linear::ColumnKernels column_kernels;
+const physics::linear::ColumnKernels column_kernels{add_moves,  subtract_columns, dot_columns,
+                                                    dot_blocks, subtract_scaled,  add_all_moves};
 
 }  // namespace embody::EMBODY_WIDE

@@ -6,7 +6,9 @@
 
 #include <cstddef>
 
-namespace embody::physics {
+#include "physics/linear/namespace.h"
+
+namespace embody::physics::linear {
 
 /// Rows of numbers are filled up with zeros to a multiple of this.
 inline constexpr std::size_t column_multiple = 16;
@@ -40,4 +42,4 @@ const ColumnKernels* column_kernels(int lanes);
 /// The widest that this processor has.
 const ColumnKernels& widest_column_kernels();
 
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

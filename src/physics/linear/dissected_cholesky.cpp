@@ -6,7 +6,7 @@
 
 #include "physics/linear/column_kernels.h"
 
-namespace embody::physics {
+namespace embody::physics::linear {
 
 namespace {
 
@@ -305,4 +305,4 @@ Mat3 DissectedCholesky::inverse_block(const Columns& i, const Columns& j) const 
     return block;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

@@ -3,9 +3,10 @@
 
 #include "foundation/task_pool.h"
 #include "math/mat3.h"
+#include "physics/linear/namespace.h"
 #include "physics/linear/nested_dissection.h"
 
-namespace embody::physics {
+namespace embody::physics::linear {
 
 /// The factor L Lᵀ of a sparse symmetric positive definite matrix with a 3×3 block a pair of joined nodes, by fronts
 /// (I. Duff, J. Reid, "The multifrontal solution of indefinite sparse symmetric linear equations", 1983). Factored in
@@ -58,4 +59,4 @@ private:
     int shared_among_ = 0;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

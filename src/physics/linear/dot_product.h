@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <span>
 
-namespace embody::physics {
+#include "physics/linear/namespace.h"
+
+namespace embody::physics::linear {
 
 /// Four sums that do not wait for each other, always in this order.
 inline double dot_product(std::span<const double> a, std::span<const double> b) {
@@ -17,4 +19,4 @@ inline double dot_product(std::span<const double> a, std::span<const double> b) 
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace embody::physics {
+namespace embody::physics::linear {
 
 namespace {
 
@@ -126,4 +126,4 @@ NestedDissection dissect(std::span<const Vec3> positions, std::span<const std::a
     return Dissector(positions, edges).run();
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

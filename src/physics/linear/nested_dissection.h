@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "math/vec3.h"
+#include "physics/linear/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::linear {
 
 /// A piece of a graph that is eliminated at once: a separator, or what is left between separators.
 struct Front {
@@ -33,4 +34,4 @@ struct NestedDissection {
 /// `edges` join nodes; each once or more often, both ends differ.
 NestedDissection dissect(std::span<const Vec3> positions, std::span<const std::array<std::uint32_t, 2>> edges);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

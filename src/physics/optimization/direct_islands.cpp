@@ -7,7 +7,7 @@
 
 #include "physics/constraint/direct/direct_contact_solver.h"
 
-namespace embody::physics {
+namespace embody::physics::optimization {
 
 namespace {
 
@@ -107,4 +107,4 @@ DirectUse direct_use_of(const Island& island, const Islands& islands, std::span<
     return DirectUse::while_slow;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::optimization

@@ -5,8 +5,9 @@
 
 #include "physics/constraint/contact/contact.h"
 #include "physics/optimization/islands.h"
+#include "physics/optimization/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::optimization {
 
 /// When an island's contacts should be solved directly (docs/physics/direct-solver.md).
 enum class DirectUse {
@@ -17,4 +18,4 @@ enum class DirectUse {
 DirectUse direct_use_of(const Island& island, const Islands& islands, std::span<const Contact> contacts,
                         std::span<const BodyState> bodies);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::optimization

@@ -16,7 +16,7 @@
 
 #include "physics/dynamic/conserved.h"
 
-namespace embody::physics {
+namespace embody::physics::optimization {
 
 namespace {
 
@@ -52,4 +52,4 @@ bool may_sleep(std::span<const std::uint32_t> bodies, std::span<const SleepRecor
                        [&](std::uint32_t body) { return records[body].quiet_time >= time_to_sleep; });
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::optimization

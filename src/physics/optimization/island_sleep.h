@@ -7,8 +7,9 @@
 #include "physics/definitions/body_definition.h"
 #include "physics/dynamic/body_state.h"
 #include "physics/optimization/islands.h"
+#include "physics/optimization/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::optimization {
 
 /// A body's way to sleep.
 struct SleepRecord {
@@ -36,4 +37,4 @@ void track_quietness(SleepRecord& record, const BodyState& state, const BodyCons
 /// Whether all bodies of an island have been quiet for `time_to_sleep` (s) and may sleep.
 bool may_sleep(std::span<const std::uint32_t> bodies, std::span<const SleepRecord> records, double time_to_sleep);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::optimization

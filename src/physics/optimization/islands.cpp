@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace embody::physics {
+namespace embody::physics::optimization {
 
 namespace {
 
@@ -199,4 +199,4 @@ void build_islands(std::span<const std::uint32_t> awake, std::span<const BodySta
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::optimization

@@ -8,8 +8,9 @@
 
 #include "physics/constraint/contact/contact.h"
 #include "physics/constraint/joint/joint.h"
+#include "physics/optimization/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::optimization {
 
 /// Bodies that constraints connect, directly or through other movable bodies. Ranges into the arrays of Islands.
 struct Island {
@@ -51,4 +52,4 @@ inline constexpr std::uint32_t no_level = 0xFFFFFFFFu;  ///< hangs in the air
 void build_islands(std::span<const std::uint32_t> awake, std::span<const BodyState> bodies,
                    std::span<const ContactGlance> contacts, std::span<const Joint> joints, Islands& islands);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::optimization

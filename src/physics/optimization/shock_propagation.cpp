@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-namespace embody::physics {
+namespace embody::physics::optimization {
 
 namespace {
 
@@ -51,4 +51,4 @@ void propagate_shock(const Island& island, const Islands& islands, std::span<con
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::optimization

@@ -4,8 +4,9 @@
 #include <span>
 
 #include "physics/optimization/islands.h"
+#include "physics/optimization/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::optimization {
 
 /// Takes out the penetration that the solver left in a deep island (beyond the sag of its soft contacts), in one sweep
 /// from the ground up, in which a lower body is immovable for the ones above it. Changes positions only, never a
@@ -13,4 +14,4 @@ namespace embody::physics {
 void propagate_shock(const Island& island, const Islands& islands, std::span<const Contact> contacts,
                      const ContactSoftness& softness, std::span<BodyState> bodies);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::optimization

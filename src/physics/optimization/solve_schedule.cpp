@@ -8,7 +8,7 @@
 #include <array>
 #include <bit>
 
-namespace embody::physics {
+namespace embody::physics::optimization {
 
 namespace {
 
@@ -89,4 +89,4 @@ void build_schedule(std::span<const std::uint32_t> order, std::span<const Contac
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::optimization

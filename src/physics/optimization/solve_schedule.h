@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "physics/constraint/contact/contact.h"
+#include "physics/optimization/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::optimization {
 
 /// In which order contacts are solved, and which of them at once (docs/physics/wide-solver.md).
 struct SolveSchedule {
@@ -34,4 +35,4 @@ struct SolveSchedule {
 void build_schedule(std::span<const std::uint32_t> order, std::span<const ContactGlance> contacts,
                     std::span<const BodyState> bodies, int lanes, SolveSchedule& schedule);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::optimization

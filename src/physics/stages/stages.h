@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/stages/namespace.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 // The stages of a step, in their order; each in the file of its name.
 void wake_bodies(WorldState& world);
@@ -22,4 +23,4 @@ void settle_fluids(WorldState& world);
 /// Slows awake bodies to the settings' greatest speeds; before a step, for what users did, and after its substeps.
 void limit_speeds(WorldState& world);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -7,8 +7,9 @@
 #include "physics/collision/queries/ball_touch.h"
 #include "physics/constraint/rolling/rolling_ball.h"
 #include "physics/dynamic/body_state.h"
+#include "physics/state/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::state {
 
 /// Where a ball that rolls alone ends the step.
 struct RolledBall {
@@ -47,4 +48,4 @@ struct BallMemory {
     std::vector<RolledBall> rolled;      ///< ascending by body
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::state

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace embody::physics {
+namespace embody::physics::state {
 
 namespace {
 
@@ -120,4 +120,4 @@ void DeformableRecord::stop_at(std::span<const Vec3> positions) {
     std::ranges::copy(positions, all.position.begin());
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::state

@@ -8,8 +8,9 @@
 #include "physics/deformable/cloth/cloth_sheet.h"
 #include "physics/deformable/rope/rope_line.h"
 #include "physics/deformable/solid/solid_contacts.h"
+#include "physics/state/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::state {
 
 /// What a node of a sheet or rope pushes a triangle of a solid.
 struct SurfacePush {
@@ -67,4 +68,4 @@ struct DeformableRecord {
 /// Of a valid definition. Fails where a shape for its contacts cannot be made.
 Result<DeformableRecord> make_deformable_record(const DeformableDefinition& definition);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::state

@@ -8,8 +8,9 @@
 
 #include "physics/definitions/fluid_definition.h"
 #include "physics/fluid/solver.h"
+#include "physics/state/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::state {
 
 /// A body as a fluid last saw it.
 struct SeenBody {
@@ -43,4 +44,4 @@ struct FluidTouch {
     double carried = 0;                      ///< force of the fluids in that step and the one before, the lesser one, N
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::state

@@ -6,8 +6,9 @@
 
 #include "physics/collision/pairs/manifold.h"
 #include "physics/constraint/impact/impact_group.h"
+#include "physics/state/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::state {
 
 /// A predicted impact. Outdated once one of the bodies has had another one (the contact's version has moved on).
 struct ImpactEvent {
@@ -102,4 +103,4 @@ struct ImpactMemory {
     ImpactGroupMemory group;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::state

@@ -13,7 +13,7 @@
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::state {
 
 namespace {
 
@@ -425,4 +425,4 @@ StepAccount Ledger::finish() {
     return account_;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::state

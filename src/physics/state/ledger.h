@@ -6,14 +6,15 @@
 #include <span>
 #include <vector>
 
+#include "physics/constraint/contact/contact.h"
 #include "physics/constraint/impact/impact_group.h"
+#include "physics/constraint/joint/joint.h"
 #include "physics/definitions/step_account.h"
+#include "physics/optimization/islands.h"
+#include "physics/state/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::state {
 
-struct Contact;
-struct Island;
-struct Joint;
 struct WorldState;
 
 /// Keeps the account of energy and momenta of one step after the other, by double entry: what the stages say of their
@@ -92,4 +93,4 @@ private:
     std::vector<JointTotals> joint_totals_;      // by active joint
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::state

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/state/namespace.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::state {
 
 /// Calls work(worker, share) for shares of the awake bodies, on all workers where there are many. What comes of it must
 /// not depend on who does what.
@@ -21,4 +22,4 @@ void for_each_awake(WorldState& world, Work work) {
     });
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::state

@@ -11,8 +11,9 @@
 #include "physics/constraint/sweeps/wide_contact_solver.h"
 #include "physics/dynamic/body_state.h"
 #include "physics/optimization/islands.h"
+#include "physics/state/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::state {
 
 /// Islands by the solver that takes them through the substeps (docs/physics/wide-solver.md).
 struct IslandsBySolver {
@@ -67,4 +68,4 @@ struct SubstepMemory {
     std::vector<HeldStart> held_starts;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::state

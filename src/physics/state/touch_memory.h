@@ -9,8 +9,9 @@
 #include "physics/collision/pairs/manifold.h"
 #include "physics/collision/pairs/pair_memory.h"
 #include "physics/constraint/contact/contact.h"
+#include "physics/state/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::state {
 
 /// What the touch stage must know of a body besides its state, in one cache line.
 struct alignas(64) TouchBody {
@@ -76,4 +77,4 @@ struct TouchMemory {
     std::vector<Worker> workers;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::state

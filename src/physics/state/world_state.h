@@ -29,10 +29,11 @@
 #include "physics/state/fluid_record.h"
 #include "physics/state/impact_memory.h"
 #include "physics/state/ledger.h"
+#include "physics/state/namespace.h"
 #include "physics/state/substep_memory.h"
 #include "physics/state/touch_memory.h"
 
-namespace embody::physics {
+namespace embody::physics::state {
 
 struct ShapeRecord {
     std::unique_ptr<CollisionShape> shape;
@@ -166,4 +167,4 @@ struct WorldState {
     [[nodiscard]] bool is_asleep(std::uint32_t body) const { return sleep[body].state == SleepState::asleep; }
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::state

@@ -5,7 +5,7 @@
 
 #include "physics/state/share_awake.h"
 
-namespace embody::physics {
+namespace embody::physics::step {
 
 namespace {
 
@@ -107,4 +107,4 @@ void write_report(WorldState& world) {
                    [&](std::uint32_t body) { world.record(body).next_force = world.record(body).next_torque = {}; });
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::step

@@ -2,10 +2,11 @@
 #pragma once
 
 #include "physics/state/world_state.h"
+#include "physics/step/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::step {
 
 /// The last stage: contact events, counts and energies of the step. What was told for one step only is forgotten.
 void write_report(WorldState& world);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::step

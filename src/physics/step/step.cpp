@@ -8,7 +8,7 @@
 #include "physics/stages/stages.h"
 #include "physics/step/report.h"
 
-namespace embody::physics {
+namespace embody::physics::step {
 
 namespace {
 
@@ -70,4 +70,4 @@ void step(WorldState& world) {
     world.report.milliseconds = milliseconds_since(start);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::step

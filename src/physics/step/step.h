@@ -2,10 +2,11 @@
 #pragma once
 
 #include "physics/state/world_state.h"
+#include "physics/step/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::step {
 
 /// Advances the world by one time step.
 void step(WorldState& world);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::step

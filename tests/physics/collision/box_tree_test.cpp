@@ -5,7 +5,7 @@
 
 #include <bit>
 
-namespace embody::physics {
+namespace embody::physics::collision {
 namespace {
 
 FloatBox box_at(double x) { return FloatBox(Bounds{{x, 0, 0}, {x + 0.5, 1, 1}}); }
@@ -36,4 +36,4 @@ TEST(BoxTree, BoxesPutBackWithoutAQueryTakeNoMoreRoom) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -9,7 +9,7 @@
 
 #include "physics/collision/collision_probe.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 namespace {
 
 Bounds cube_at(Vec3 p, double half) { return enlarged(Bounds{p, p}, half); }
@@ -175,4 +175,4 @@ TEST(BroadPhase, four_thousand_bodies_in_one_point_keep_a_bounded_number_of_pair
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

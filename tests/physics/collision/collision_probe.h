@@ -10,7 +10,7 @@
 #include "foundation/random.h"
 #include "physics/collision/shapes/collision_shape.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 inline std::unique_ptr<CollisionShape> make_shape(const ShapeDefinition& definition) {
     auto shape = CollisionShape::create(definition);
@@ -68,4 +68,4 @@ inline double deepest(const std::vector<Manifold>& manifolds) {
     return least;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -6,7 +6,7 @@
 
 #include "physics/collision/collision_probe.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 namespace {
 
 TEST(ContactPairs, spheres_touch_on_the_line_of_their_centres) {
@@ -139,4 +139,4 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -9,7 +9,7 @@
 #include "physics/collision/collision_probe.h"
 #include "physics/collision/shapes/collision_shape_data.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 namespace {
 
 struct Solid {
@@ -220,4 +220,4 @@ INSTANTIATE_TEST_SUITE_P(EachWithAll, ConvexFuzz, testing::Range(0, 8), [](const
 });
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

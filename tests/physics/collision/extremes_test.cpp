@@ -6,7 +6,7 @@
 
 #include "physics/collision/collision_probe.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 namespace {
 
 std::vector<ShapeDefinition> sized(double s) {
@@ -85,4 +85,4 @@ TEST(Extremes, a_hull_of_all_vertices_it_may_have_rests_on_itself) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

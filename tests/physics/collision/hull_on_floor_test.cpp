@@ -8,7 +8,7 @@
 
 #include "physics/collision/shapes/collision_shape.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 namespace {
 
 const HullShape bed{{{-0.5254526734352112, 0.6372571587562561, -0.9890000224113464},
@@ -96,4 +96,4 @@ TEST(HullOnFloor, EveryFootOfAChairIsSeen) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -7,7 +7,7 @@
 
 #include "physics/collision/collision_probe.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 namespace {
 
 struct Solid {
@@ -145,4 +145,4 @@ INSTANTIATE_TEST_SUITE_P(EachWithAll, PairMemoryOf, testing::Range(0, 8), [](con
 });
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -9,7 +9,7 @@
 
 #include "foundation/random.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 namespace {
 
 constexpr std::size_t count = 48;
@@ -97,4 +97,4 @@ TEST_P(PolytopeKernelsOf, find_nothing_farther_than_all_among_no_vectors) {
 INSTANTIATE_TEST_SUITE_P(EachWidth, PolytopeKernelsOf, testing::Values(4, 8, 16));
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

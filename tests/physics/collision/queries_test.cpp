@@ -6,7 +6,7 @@
 
 #include "physics/collision/collision_probe.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 namespace {
 
 std::vector<ShapeDefinition> solids() {
@@ -147,4 +147,4 @@ TEST(TimeOfImpact, counts_the_turning_end_of_a_bar) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -8,7 +8,7 @@
 #include "physics/collision/collision_probe.h"
 #include "physics/collision/shapes/collision_shape_data.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
@@ -164,4 +164,4 @@ TEST(ShapeBounds, hold_every_surface_point_and_touch_the_farthest) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

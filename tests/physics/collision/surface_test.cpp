@@ -7,7 +7,7 @@
 
 #include "physics/collision/collision_probe.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 namespace {
 
 std::vector<std::pair<const char*, ShapeDefinition>> sliders() {
@@ -222,4 +222,4 @@ TEST(Surface, triangles_without_area_are_passed_over) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -5,7 +5,7 @@
 
 #include "physics/collision/collision_probe.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 namespace {
 
 constexpr double margin = 0.0075;
@@ -87,4 +87,4 @@ TEST(WholeRegions, crossing_edges_are_whole_where_no_other_corner_is_near) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -9,7 +9,7 @@
 
 #include "foundation/random.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 namespace {
 
 /// Unit cubes one above the other, held by nothing but each other.
@@ -193,4 +193,4 @@ TEST(ContactNewton, GuessOfTheLastSubstepIsExactTheSecondTime) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

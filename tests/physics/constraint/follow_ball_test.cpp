@@ -4,7 +4,7 @@
 #include "physics/collision/shapes/collision_shape.h"
 #include "physics/constraint/contact/contact.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 namespace {
 
 constexpr double radius = 0.3, half_height = 0.5;
@@ -64,4 +64,4 @@ TEST(FollowBall, ContactOverAHullsFaceIsWholeOnlyWellWithinIt) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

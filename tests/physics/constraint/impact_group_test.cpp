@@ -7,7 +7,7 @@
 #include "physics/constraint/contact/contact.h"
 #include "physics/constraint/impact/impact_group.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 namespace {
 
 TEST(FrictionalImpact, SphereNeverChangesItsDirectionOfSliding) {
@@ -111,4 +111,4 @@ TEST(ImpactGroup, ConservesMomentumOfTwoFreeBodies) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

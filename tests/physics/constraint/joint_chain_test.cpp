@@ -4,7 +4,7 @@
 
 #include "physics/inter/world.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 namespace {
 
 // Five rods hung on each other; each has a velocity that the joints forbid at least in part.
@@ -44,4 +44,4 @@ TEST(JointChain, KeepsItsEnergyOrLosesIt) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

@@ -3,7 +3,7 @@
 
 #include "physics/inter/world.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 namespace {
 
 // A hinge pressed against its limit, then let go and pushed off: the limit must not push after it.
@@ -22,4 +22,4 @@ TEST(JointLimit, LetsGoOfWhatLeavesIt) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

@@ -9,7 +9,7 @@
 #include "physics/definitions/deformable_primitives.h"
 #include "physics/deformable/contact/nearest_points.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 namespace {
 
 // A rectangle of 0.3 x 0.1 m rolled up along X, turns `gap` apart, about an axis along Z.
@@ -81,4 +81,4 @@ TEST(ClothLayers, OfAFlatSheetNothingIsNear) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -11,7 +11,7 @@
 #include "foundation/random.h"
 #include "physics/deformable/cloth/cloth_matrix.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 namespace {
 
 struct Element {
@@ -171,4 +171,4 @@ INSTANTIATE_TEST_SUITE_P(Sheets, ClothRowKernelTest,
                                          SheetCase{9, 9, true, true, false}));
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

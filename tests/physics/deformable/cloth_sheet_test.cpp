@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "physics/definitions/deformable_primitives.h"
-#include "physics/deformable_scene.h"
+#include "physics/deformable/deformable_scene.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 namespace {
 
 using Bench = DeformableScene<ClothSheet>;
@@ -274,4 +274,4 @@ TEST(ClothSheet, LayersDoNotPassThroughEachOther) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "physics/definitions/deformable_primitives.h"
-#include "physics/deformable_scene.h"
+#include "physics/deformable/deformable_scene.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -173,4 +173,4 @@ TEST(RopeLine, GripsADrumAsACapstan) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

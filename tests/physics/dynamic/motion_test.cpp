@@ -5,7 +5,7 @@
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/dynamic/mass.h"
 
-namespace embody::physics {
+namespace embody::physics::dynamic {
 namespace {
 
 TEST(Motion, GyroscopicDriftKeepsEnergyAndMomentumEvenInHugeSteps) {
@@ -45,4 +45,4 @@ TEST(Mass, GivenCentreShiftsTheInertiaByTheParallelAxisTheorem) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::dynamic

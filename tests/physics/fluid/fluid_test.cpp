@@ -11,8 +11,11 @@
 #include "physics/stages/stages.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 namespace {
+
+using namespace state;
+using namespace stages;
 
 std::unique_ptr<World> make_world(const WorldSettings& settings = {}) {
     return std::move(World::create(settings)).value();
@@ -265,4 +268,4 @@ TEST(Fluid, CalmWaterSleepsAndWakesWhenSomethingFallsIn) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

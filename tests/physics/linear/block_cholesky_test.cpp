@@ -8,7 +8,7 @@
 
 #include "foundation/random.h"
 
-namespace embody::physics {
+namespace embody::physics::linear {
 namespace {
 
 using Edges = std::vector<BlockCholesky::Edge>;
@@ -137,4 +137,4 @@ TEST(BlockCholesky, AnyWidthGivesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

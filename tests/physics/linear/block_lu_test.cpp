@@ -9,7 +9,7 @@
 
 #include "foundation/random.h"
 
-namespace embody::physics {
+namespace embody::physics::linear {
 namespace {
 
 using Edges = std::vector<BlockLu::Edge>;
@@ -122,4 +122,4 @@ TEST(BlockLu, MultipliersWaitForANeighbour) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

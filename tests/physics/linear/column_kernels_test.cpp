@@ -8,7 +8,7 @@
 
 #include "foundation/random.h"
 
-namespace embody::physics {
+namespace embody::physics::linear {
 namespace {
 
 std::vector<float> numbers(std::size_t count, std::uint64_t seed) {
@@ -114,4 +114,4 @@ TEST(ColumnKernels, SumsAreThoseOfDoubles) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::linear

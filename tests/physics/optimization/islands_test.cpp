@@ -4,7 +4,7 @@
 #include "physics/optimization/island_sleep.h"
 #include "physics/optimization/islands.h"
 
-namespace embody::physics {
+namespace embody::physics::optimization {
 namespace {
 
 ContactGlance between(std::uint32_t a, std::uint32_t b) {
@@ -75,4 +75,4 @@ TEST(Sleep, WhatMovesOnSlowlyIsNotQuietForLong) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::optimization

@@ -9,7 +9,7 @@
 
 #include "foundation/random.h"
 
-namespace embody::physics {
+namespace embody::physics::optimization {
 namespace {
 
 struct Graph {
@@ -90,4 +90,4 @@ TEST(SolveSchedule, IsEmptyWithoutContacts) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::optimization

@@ -8,7 +8,7 @@
 
 #include "physics/inter/world.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 namespace {
 
 std::unique_ptr<World> make_world(Vec3 gravity) { return std::move(World::create({.gravity = gravity})).value(); }
@@ -169,4 +169,4 @@ TEST(Continuous, a_wheel_rolls_on_over_triangles) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -7,7 +7,7 @@
 
 #include "physics/inter/world.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 namespace {
 
 constexpr Material smooth{.friction_static = 0, .friction_dynamic = 0};
@@ -91,4 +91,4 @@ TEST(MeshSlide, down_a_faceted_hill_it_only_gets_faster) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -5,7 +5,7 @@
 
 #include "physics/inter/world.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 namespace {
 
 // Without gravity and sleep, a ball of 0.1 m at rest in the origin.
@@ -62,4 +62,4 @@ TEST(PairsApart, ALargerBodyInTheSamePlaceTouchesABall) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

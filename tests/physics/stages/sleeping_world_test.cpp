@@ -7,7 +7,7 @@
 #include "physics/stages/rigid/wake.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 namespace {
 
 /// Three columns of two cubes, five metres apart, run until all sleep.
@@ -103,4 +103,4 @@ TEST(ToWake, RemembersEachBodyToWakeABoundedNumberOfTimes) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

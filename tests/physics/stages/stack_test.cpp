@@ -5,7 +5,7 @@
 
 #include "physics/inter/world.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 namespace {
 
 // A floor and a column of cubes of side `side`, each `gap` above the one below.
@@ -82,4 +82,4 @@ TEST(Stack, CubesAsleepWakeWhenTheLowestIsRemoved) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -28,7 +28,7 @@ void operator delete[](void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 
-namespace embody::physics {
+namespace embody::physics::stages {
 namespace {
 
 std::unique_ptr<World> make_world(const WorldSettings& settings) { return std::move(World::create(settings)).value(); }
@@ -114,4 +114,4 @@ TEST(SteadyAllocation, ImpactsOfTwoJointedAssembliesNeedNone) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -6,7 +6,7 @@
 
 #include "physics/inter/world.h"
 
-namespace embody::physics {
+namespace embody::physics::state {
 namespace {
 
 constexpr double g = 9.81;
@@ -241,4 +241,4 @@ TEST(StepAccount, ChangesNoBit) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::state

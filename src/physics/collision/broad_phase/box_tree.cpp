@@ -7,7 +7,7 @@
 
 #include "foundation/assert.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -252,4 +252,4 @@ void BoxTree::place_sorted() {
     sorted_area_ = total_area_;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

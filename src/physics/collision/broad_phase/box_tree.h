@@ -11,8 +11,9 @@
 #endif
 
 #include "math/bounds.h"
+#include "physics/collision/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// Box in floats that holds a box in doubles: 10 km from the origin it is a millimetre larger.
 struct FloatBox {
@@ -193,4 +194,4 @@ inline std::uint32_t BoxNode::overlap_mask(const FloatBox& box) const {
 #endif
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -8,7 +8,7 @@
 #include "foundation/assert.h"
 #include "physics/collision/broad_phase/box_tree.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -424,4 +424,4 @@ void BroadPhase::query_ray(Vec3 origin, Vec3 direction, double max_distance,
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

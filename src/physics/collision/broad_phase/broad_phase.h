@@ -8,8 +8,9 @@
 
 #include "foundation/task_pool.h"
 #include "math/bounds.h"
+#include "physics/collision/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// Finds the pairs of bodies whose bounds overlap. Bounds are kept enlarged by a margin, so that a body that moves
 /// little costs nothing; pairs persist until their enlarged bounds part. Movable and immovable bodies have a tree each.
@@ -54,4 +55,4 @@ private:
     std::unique_ptr<State> state_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

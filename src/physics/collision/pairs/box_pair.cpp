@@ -11,7 +11,7 @@
 #include "physics/collision/pairs/choose_four.h"
 #include "physics/collision/pairs/round_features.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -420,4 +420,4 @@ BoxMeeting collide_boxes(const ConvexPair& pair, double margin, PairMemory& memo
     return manifold.count > 0 ? BoxMeeting::region : BoxMeeting::undecided;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/collision/namespace.h"
 #include "physics/collision/pairs/convex_pair.h"
 #include "physics/collision/pairs/manifold.h"
 #include "physics/collision/pairs/pair_memory.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// How two boxes met.
 enum class BoxMeeting {
@@ -17,4 +18,4 @@ enum class BoxMeeting {
 /// Contact of two boxes in world axes with the origin at a's.
 BoxMeeting collide_boxes(const ConvexPair& pair, double margin, PairMemory& memory, Manifold& manifold);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -139,4 +139,4 @@ bool leaves_unseen(const FlatPoint* points, int count, const ChosenPoints& chose
     return false;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -3,7 +3,9 @@
 
 #include <array>
 
-namespace embody::physics {
+#include "physics/collision/namespace.h"
+
+namespace embody::physics::collision {
 
 /// A corner of a contact region in its plane: coordinates along two unit axes, and its depth, m.
 struct FlatPoint {
@@ -31,4 +33,4 @@ ChosenPoints choose_four(const FlatPoint* points, int count);
 /// m: it would sink unseen before they do.
 bool leaves_unseen(const FlatPoint* points, int count, const ChosenPoints& chosen, double tolerance);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -10,7 +10,7 @@
 #include "physics/collision/shapes/collision_shape.h"
 #include "physics/collision/shapes/collision_shape_data.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -210,4 +210,4 @@ void collide_capsule(Vec3 from, Vec3 to, double radius, const CollisionShape& b,
                  manifolds);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <span>
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -270,4 +270,4 @@ void append_manifolds(ContactRegion& region, const Mat3& turn, Vec3 origin, std:
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

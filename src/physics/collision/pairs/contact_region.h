@@ -4,11 +4,12 @@
 #include <initializer_list>
 #include <vector>
 
+#include "physics/collision/namespace.h"
 #include "physics/collision/pairs/choose_four.h"
 #include "physics/collision/pairs/manifold.h"
 #include "physics/collision/shapes/convex.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// What a shape offers to a contact: a polygon (counter-clockwise seen from outside), a segment or a point, in the
 /// frame of the pair. `ids` name the corners; edge i runs from corner i to the next.
@@ -80,4 +81,4 @@ void cross_segments(const ContactFeature& a, const ContactFeature& b, double rad
 /// nothing for an empty region.
 void append_manifolds(ContactRegion& region, const Mat3& turn, Vec3 origin, std::vector<Manifold>& manifolds);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -2,9 +2,10 @@
 #pragma once
 
 #include "math/quat.h"
+#include "physics/collision/namespace.h"
 #include "physics/collision/shapes/convex.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// The matrix of a unit quaternion, by products alone.
 inline Mat3 turn_of(Quat q) {
@@ -39,4 +40,4 @@ struct ConvexPair {
     [[nodiscard]] PlacedConvex placed_b() const { return {b, turn, place}; }
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/collision/namespace.h"
 #include "physics/collision/pairs/contact_region.h"
 #include "physics/collision/pairs/convex_pair.h"
 #include "physics/collision/pairs/pair_memory.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 // Each finds the contact region of one family of pairs in an empty ContactRegion; its normal is set where there are
 // points. The frame is that of a.
@@ -37,4 +38,4 @@ bool collide_polytopes(const ConvexPair& pair, double margin, PairMemory& memory
 void collide_round(const PlacedConvex& a, const PlacedConvex& b, double margin, PairMemory& memory,
                    ContactRegion& region);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -6,7 +6,7 @@
 
 #include "physics/collision/shapes/rim.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -267,4 +267,4 @@ bool cross_curves(const PlacedConvex& a, const PlacedConvex& b, Vec3 direction, 
     return true;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

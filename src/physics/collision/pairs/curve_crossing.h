@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/collision/namespace.h"
 #include "physics/collision/shapes/convex.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// Where a corner, edge, rim or smooth side of one solid is nearest to one of the other.
 struct CurveCrossing {
@@ -20,4 +21,4 @@ struct CurveCrossing {
 /// run side by side, and at the side of a cone. Whether the solids do touch there the caller has to measure.
 bool cross_curves(const PlacedConvex& a, const PlacedConvex& b, Vec3 direction, CurveCrossing& crossing);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -133,4 +133,4 @@ void thin_out_cap(const ContactFeature& reference, ContactFeature& cap) {
     cap.points.resize(4);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -5,8 +5,9 @@
 #include <cstdint>
 
 #include "math/vec3.h"
+#include "physics/collision/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// One corner of a contact region (paper, III.B: the contact area is a polygon, not one point).
 struct ManifoldPoint {
@@ -32,4 +33,4 @@ struct Manifold {
     std::array<ManifoldPoint, max_points> points;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -4,8 +4,9 @@
 #include <cstdint>
 
 #include "math/vec3.h"
+#include "physics/collision/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// What the narrow phase keeps of a pair from one step to the next (40 bytes). Value-initialised: nothing known. It
 /// belongs to one ordered pair of shapes; clear it when a shape changes. Poses may jump: whatever is remembered is only
@@ -38,4 +39,4 @@ struct PairMemory {
 };
 static_assert(sizeof(PairMemory) <= 40);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -18,7 +18,7 @@
 #include "physics/collision/pairs/round_features.h"
 #include "physics/collision/queries/gjk.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -404,4 +404,4 @@ PartingAxis find_parting_axis(const PlacedConvex& a, const PlacedConvex& b, doub
     return s.axis;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/collision/namespace.h"
 #include "physics/collision/pairs/pair_memory.h"
 #include "physics/collision/shapes/convex.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// The normal along which a pair parts soonest, or is farthest apart.
 struct PartingAxis {
@@ -21,4 +22,4 @@ PartingAxis find_parting_axis(const PlacedConvex& a, const PlacedConvex& b, doub
 /// The smaller one's largest extent: what lengths are compared with.
 double smaller_size(const PlacedConvex& a, const PlacedConvex& b);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -6,7 +6,7 @@
 #include "physics/collision/pairs/convex_pairs.h"
 #include "physics/collision/shapes/rim.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -92,4 +92,4 @@ void collide_plane(const PlacedConvex& a, const PlacedPlane& plane, double margi
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

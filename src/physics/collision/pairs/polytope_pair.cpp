@@ -14,7 +14,7 @@
 #include "physics/collision/queries/gjk.h"
 #include "physics/collision/shapes/polytope_query.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -335,4 +335,4 @@ bool collide_polytopes(const ConvexPair& pair, double margin, PairMemory& memory
     return true;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

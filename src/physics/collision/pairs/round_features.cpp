@@ -8,7 +8,7 @@
 #include "physics/collision/shapes/polytope_query.h"
 #include "physics/collision/shapes/rim.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -283,4 +283,4 @@ bool span_face(const PlacedConvex& owner, bool is_owner_a, const ContactFeature&
     return false;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/collision/namespace.h"
 #include "physics/collision/pairs/contact_region.h"
 #include "physics/collision/shapes/convex.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 // What a convex offers to a contact in a given direction (unit, frame of the pair, pointing out of it). Rims become
 // polygons of rim_corners points, one of which is the farthest along the direction.
@@ -47,4 +48,4 @@ bool is_span(double deepest, double separation);
 bool span_face(const PlacedConvex& owner, bool is_owner_a, const ContactFeature& line, double lift, double separation,
                double margin, ContactFeature& face, ContactRegion& region);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -9,7 +9,7 @@
 #include "physics/collision/pairs/parting_axis.h"
 #include "physics/collision/pairs/round_features.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -96,4 +96,4 @@ void collide_round(const PlacedConvex& a, const PlacedConvex& b, double margin, 
     if (region.points.empty()) add_point(a, b, axis, !is_line_a, region);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

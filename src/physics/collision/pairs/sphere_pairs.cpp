@@ -8,7 +8,7 @@
 #include "physics/collision/pairs/convex_pairs.h"
 #include "physics/collision/shapes/polytope_query.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -190,4 +190,4 @@ void collide_sphere(const PlacedConvex& a, const PlacedConvex& b, double margin,
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

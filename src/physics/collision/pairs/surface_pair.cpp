@@ -12,7 +12,7 @@
 #include "physics/collision/shapes/near_triangles.h"
 #include "physics/collision/shapes/polytope_query.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -159,4 +159,4 @@ void collide_surface(const ConvexPiece& piece, std::uint32_t piece_index, const 
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -3,9 +3,10 @@
 
 #include <vector>
 
+#include "physics/collision/namespace.h"
 #include "physics/collision/shapes/collision_shape_data.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 struct PlacedSurface {
     const TriangleSurface& surface;
@@ -17,4 +18,4 @@ struct PlacedSurface {
 void collide_surface(const ConvexPiece& piece, std::uint32_t piece_index, const Transform& pose,
                      const PlacedSurface& placed, double margin, std::vector<Manifold>& manifolds);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

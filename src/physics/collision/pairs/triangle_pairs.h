@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/collision/namespace.h"
 #include "physics/collision/pairs/contact_region.h"
 #include "physics/collision/shapes/convex.h"
 #include "physics/collision/shapes/placed_triangle.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 // A convex against one triangle of a surface, in the convex's own frame. Each fills an empty region with what of the
 // two is within the margin and is this triangle's business; its normal is set where there are points.
@@ -16,4 +17,4 @@ bool collide_polytope_triangle(const Convex& convex, const PlacedTriangle& trian
 /// A sphere, capsule, cylinder or cone.
 void collide_round_triangle(const Convex& convex, const PlacedTriangle& triangle, double margin, ContactRegion& region);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

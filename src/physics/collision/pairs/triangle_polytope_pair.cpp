@@ -14,7 +14,7 @@
 #include "physics/collision/queries/gjk.h"
 #include "physics/collision/shapes/polytope_query.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -291,4 +291,4 @@ bool collide_polytope_triangle(const Convex& convex, const PlacedTriangle& trian
     return false;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

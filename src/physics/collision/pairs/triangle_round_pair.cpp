@@ -7,7 +7,7 @@
 #include "physics/collision/pairs/round_features.h"
 #include "physics/collision/pairs/triangle_pairs.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -67,4 +67,4 @@ void collide_round_triangle(const Convex& convex, const PlacedTriangle& t, doubl
     collide_along_normal(placed, t, margin, region);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

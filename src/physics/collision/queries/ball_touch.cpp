@@ -8,7 +8,7 @@
 #include "physics/collision/shapes/near_triangles.h"
 #include "physics/collision/shapes/placed_triangle.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -107,4 +107,4 @@ void find_ball_touches(const CollisionShape& ball, double radius, Vec3 center, c
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "math/mat3.h"
+#include "physics/collision/namespace.h"
 #include "physics/collision/shapes/collision_shape.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// By how much the normal may turn at an edge of what approximates a curved surface, rad (16 degrees): a circle of 24
 /// sides (15 degrees each) still counts as round. Tessellators allow more (OpenCASCADE: 0.5 rad, Blender's smooth
@@ -29,4 +30,4 @@ struct BallTouch {
 void find_ball_touches(const CollisionShape& ball, double radius, Vec3 center, const CollisionShape& ground,
                        const Transform& pose, double margin, std::vector<BallTouch>& touches);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

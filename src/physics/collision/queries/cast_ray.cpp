@@ -6,7 +6,7 @@
 #include "physics/collision/queries/cast_at_convex.h"
 #include "physics/collision/shapes/collision_shape_data.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -205,4 +205,4 @@ std::optional<ShapeRayHit> cast_ray(const CollisionShape& shape, const Transform
     return best;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -7,7 +7,7 @@
 
 #include "physics/collision/queries/gjk.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -167,4 +167,4 @@ bool penetration_normal(const Core& a, const Core& b, const CoreDistance& overla
     return length_squared(normal) > 0;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -187,4 +187,4 @@ CoreDistance core_distance(const Core& a, const Core& b, double enough, Vec3 sta
     return state;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

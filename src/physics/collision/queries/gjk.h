@@ -3,9 +3,10 @@
 
 #include <array>
 
+#include "physics/collision/namespace.h"
 #include "physics/collision/shapes/convex.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// A corner of the Minkowski difference b - a and the two points it comes from.
 struct DifferencePoint {
@@ -31,4 +32,4 @@ CoreDistance core_distance(const Core& a, const Core& b, double enough = 1e300, 
 /// Direction in which overlapping cores part soonest, unit, from a to b; false if no volume was found to search.
 bool penetration_normal(const Core& a, const Core& b, const CoreDistance& overlap, Vec3& normal);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

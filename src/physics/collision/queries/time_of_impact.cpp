@@ -10,7 +10,7 @@
 #include "physics/collision/shapes/collision_shape.h"
 #include "physics/collision/shapes/collision_shape_data.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -235,4 +235,4 @@ std::optional<double> time_of_impact(const CollisionShape& a, const Transform& p
     return time_of_impact(a, {pose_a_start, pose_a_end, {}}, b, {pose_b, pose_b, {}}, {target_separation});
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -11,7 +11,7 @@
 #include "physics/collision/shapes/polytope_query.h"
 #include "physics/collision/shapes/shape_mass.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -222,4 +222,4 @@ PlacedConvex place(const ConvexPiece& piece, const Transform& pose, Vec3 origin)
     return {&piece.convex, turn_of(pose.rotation * piece.local.rotation), at};
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

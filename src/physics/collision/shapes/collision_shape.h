@@ -8,11 +8,12 @@
 #include "foundation/result.h"
 #include "geometry/mass_properties.h"
 #include "math/bounds.h"
+#include "physics/collision/namespace.h"
 #include "physics/collision/pairs/manifold.h"
 #include "physics/collision/pairs/pair_memory.h"
 #include "physics/definitions/shape_definition.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// A shape as the collision stages need it: hulls with faces and planes, meshes with a bounding volume tree. Immutable.
 class CollisionShape {
@@ -90,4 +91,4 @@ std::optional<double> time_of_impact(const CollisionShape& a, const Transform& p
 double separation(const CollisionShape& a, const Transform& pose_a, const CollisionShape& b, const Transform& pose_b,
                   double enough);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

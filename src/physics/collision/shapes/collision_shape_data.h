@@ -4,11 +4,12 @@
 #include <memory>
 #include <vector>
 
+#include "physics/collision/namespace.h"
 #include "physics/collision/shapes/collision_shape.h"
 #include "physics/collision/shapes/convex.h"
 #include "physics/collision/shapes/triangle_surface.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// A convex of a shape and where it stands in the shape's frame.
 struct ConvexPiece {
@@ -33,4 +34,4 @@ struct CollisionShape::Data {
 /// Poses a piece for comparison in the frame of world axes at `origin`.
 PlacedConvex place(const ConvexPiece& piece, const Transform& pose, Vec3 origin);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -7,7 +7,7 @@
 
 #include "physics/collision/shapes/polytope_query.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -259,4 +259,4 @@ ConeSlope cone_slope(const Convex& cone) {
     return {2 * cone.half_height / slant, cone.radius / slant};
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -7,8 +7,9 @@
 
 #include "math/bounds.h"
 #include "math/mat3.h"
+#include "physics/collision/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// Vectors by components, in lanes: filled up to a multiple of the widest register with copies of the first, so that
 /// loops over them need no rest and a maximum stays one of the originals.
@@ -156,4 +157,4 @@ struct ConeSlope {
 };
 ConeSlope cone_slope(const Convex& cone);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -7,7 +7,7 @@
 
 #include "physics/collision/shapes/triangle_surface.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -101,4 +101,4 @@ void find_near_triangles(const TriangleSurface& surface, std::span<const std::ui
               [](const NearTriangle& a, const NearTriangle& b) { return a.index < b.index; });
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "math/vec3.h"
+#include "physics/collision/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 class TriangleSurface;
 
@@ -24,4 +25,4 @@ struct NearTriangle {
 void find_near_triangles(const TriangleSurface& surface, std::span<const std::uint32_t> triangles, Vec3 point,
                          double reach, std::vector<NearTriangle>& found);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 bool PlacedTriangle::leans_too_far(Vec3 outwards, Vec3 at) const {
     constexpr double on_edge = 1e-4;  // in shares of the edge's length
@@ -46,4 +46,4 @@ Vec3 PlacedTriangle::nearest_to(Vec3 p) const {
     return nearest;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

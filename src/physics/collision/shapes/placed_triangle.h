@@ -6,8 +6,9 @@
 #include <cstdint>
 
 #include "math/vec3.h"
+#include "physics/collision/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// Lean that still counts as none, in radians: what floats leave of a flat surface.
 inline constexpr double flat_sine = 1e-3;
@@ -60,4 +61,4 @@ struct PrismSide {
     [[nodiscard]] double beyond(Vec3 p) const { return dot(outwards, p) - offset; }
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -9,9 +9,9 @@ namespace embody::EMBODY_WIDE {
 
 namespace {
 
-using physics::Extent;
-using physics::Extreme;
-using physics::VectorLanes;
+using physics::collision::Extent;
+using physics::collision::Extreme;
+using physics::collision::VectorLanes;
 
 /// Dot products of vectors with one vector.
 struct Products {
@@ -114,8 +114,8 @@ std::uint32_t find_low(const VectorLanes<double>& vectors, const double* d, doub
 
 }  // namespace
 
-extern const physics::PolytopeKernels polytope_kernels;
-const physics::PolytopeKernels polytope_kernels{farthest,           extent,       farthest_roughly,
-                                                heights_over_faces, lower_bounds, find_low};
+extern const physics::collision::PolytopeKernels polytope_kernels;
+const physics::collision::PolytopeKernels polytope_kernels{farthest,           extent,       farthest_roughly,
+                                                           heights_over_faces, lower_bounds, find_low};
 
 }  // namespace embody::EMBODY_WIDE

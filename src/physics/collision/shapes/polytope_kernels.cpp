@@ -4,19 +4,19 @@
 #include "math/kernel_width.h"
 
 namespace embody::lanes_4 {
-extern const physics::PolytopeKernels polytope_kernels;
+extern const physics::collision::PolytopeKernels polytope_kernels;
 }
 namespace embody::lanes_8 {
-extern const physics::PolytopeKernels polytope_kernels;
+extern const physics::collision::PolytopeKernels polytope_kernels;
 }
 namespace embody::lanes_16 {
-extern const physics::PolytopeKernels polytope_kernels;
+extern const physics::collision::PolytopeKernels polytope_kernels;
 }
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 const PolytopeKernels* polytope_kernels(int lanes) {
     return of_width(lanes, lanes_4::polytope_kernels, lanes_8::polytope_kernels, lanes_16::polytope_kernels);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace embody::physics {
+#include "physics/collision/namespace.h"
+
+namespace embody::physics::collision {
 
 /// One of many and its value.
 struct Extreme {
@@ -39,4 +41,4 @@ struct PolytopeKernels {
 /// Of 4, 8 or 16 floats side by side; nothing where this processor has none of that width.
 const PolytopeKernels* polytope_kernels(int lanes);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

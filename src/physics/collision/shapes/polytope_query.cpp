@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "physics/collision/shapes/polytope_query.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -48,4 +48,4 @@ std::uint32_t find_low(const Lanes& lanes, Vec3 direction, double limit, std::ui
     return kernels.find_low(view(lanes), d, limit, found);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -3,10 +3,11 @@
 
 #include <cstdint>
 
+#include "physics/collision/namespace.h"
 #include "physics/collision/shapes/convex.h"
 #include "physics/collision/shapes/polytope_kernels.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 // Loops over all vertices or faces of a polytope, as many side by side as the processor takes: the same bits on every
 // one and with every compiler.
@@ -31,4 +32,4 @@ Extreme lower_bounds(const Polytope& polytope, Vec3 point, double* bounds);
 /// lanes may be among them, at the end. `found` has room for all lanes. Returns how many.
 std::uint32_t find_low(const Lanes& lanes, Vec3 direction, double limit, std::uint32_t* found);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

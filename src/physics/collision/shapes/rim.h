@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include "math/vec3.h"
+#include "physics/collision/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// Two unit directions in the plane of a rim (local, axis Y), from which its points are counted.
 struct RimStart {
@@ -21,4 +22,4 @@ inline RimStart rim_start(Vec3 direction) {
     return {along, cross(along, {0, 1, 0})};
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -6,7 +6,7 @@
 
 #include <numbers>
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 namespace {
 
@@ -84,4 +84,4 @@ geometry::MassProperties mass_of(const Convex& convex) {
     return polytope_mass(convex.polytope);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

@@ -10,7 +10,7 @@
 #include "geometry/bounding_volume_tree.h"
 #include "physics/collision/shapes/placed_triangle.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 struct TriangleSurface::Tree {
     geometry::BoundingVolumeTree tree;
@@ -248,4 +248,4 @@ void TriangleSurface::find_along_ray(Vec3 origin, Vec3 direction, double max_dis
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

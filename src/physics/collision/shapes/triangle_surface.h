@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "math/bounds.h"
+#include "physics/collision/namespace.h"
 #include "physics/definitions/shape_definition.h"
 
-namespace embody::physics {
+namespace embody::physics::collision {
 
 /// The triangles of a mesh or a heightfield, how they bend at their edges, and a way to find those near a box or a ray.
 /// A heightfield keeps its samples only: corners follow from a triangle's number.
@@ -78,4 +79,4 @@ private:
     Bounds bounds_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::collision

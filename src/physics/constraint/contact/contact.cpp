@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 namespace {
 
@@ -267,4 +267,4 @@ Mat3 inverse_mass_at(const BodyState& a, Vec3 arm_a, const BodyState& b, Vec3 ar
     return Mat3::identity() * (a.inverse_mass + b.inverse_mass) - angular;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

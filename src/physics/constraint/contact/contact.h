@@ -6,10 +6,11 @@
 #include <span>
 
 #include "physics/collision/pairs/manifold.h"
+#include "physics/constraint/namespace.h"
 #include "physics/definitions/material.h"
 #include "physics/dynamic/body_state.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 /// What friction does over a contact region: a force along the two tangents at its anchor and a moment about the
 /// normal, both times the substep.
@@ -165,4 +166,4 @@ bool is_touching(const Contact& contact);
 /// velocity, 1/kg.
 Mat3 inverse_mass_at(const BodyState& a, Vec3 arm_a, const BodyState& b, Vec3 arm_b);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

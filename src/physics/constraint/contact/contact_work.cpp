@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 ContactWork contact_work(const BodyConstants& constants, Quat rotation, const VelocityPair& free,
                          const VelocityPair& change) {
@@ -22,4 +22,4 @@ double share_without_gain(const ContactWork& work) {
     return work.linear < 0 ? std::min(1.0, -work.linear / work.quadratic) : 0;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

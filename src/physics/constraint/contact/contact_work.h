@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/constraint/namespace.h"
 #include "physics/dynamic/body_state.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 /// What contacts did to the kinetic energy of bodies, J, had they done the share s of it: linear · s + quadratic · s².
 struct ContactWork {
@@ -27,4 +28,4 @@ ContactWork contact_work(const BodyConstants& constants, Quat rotation, const Ve
 /// is kept.
 double share_without_gain(const ContactWork& work);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

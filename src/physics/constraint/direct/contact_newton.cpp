@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 namespace {
 
@@ -318,7 +318,7 @@ bool ContactNewton::evaluate_after(double share, std::span<DirectPatch> patches)
 }
 
 void ContactNewton::drop_friction(std::span<DirectPatch> patches) {
-    for (DirectPatch& patch : patches) physics::drop_friction(patch, stiffness_);
+    for (DirectPatch& patch : patches) physics::constraint::drop_friction(patch, stiffness_);
     factor(patches);
 }
 
@@ -339,4 +339,4 @@ void ContactNewton::find_shifts(std::span<const DirectPatch> patches, double sha
     if (!std::all_of(shifts.begin(), shifts.end(), is_finite)) std::fill(shifts.begin(), shifts.end(), Vec6{});
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "physics/constraint/direct/direct_patch.h"
+#include "physics/constraint/namespace.h"
 #include "physics/linear/block_cholesky.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 /// A movable body of a direct solve.
 struct NewtonBody {
@@ -90,4 +91,4 @@ private:
     Structure* structure_ = nullptr;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

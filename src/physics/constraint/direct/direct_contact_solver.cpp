@@ -8,7 +8,7 @@
 
 #include "physics/dynamic/equations_of_motion.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 namespace {
 
@@ -324,4 +324,4 @@ void DirectContactSolver::mend_positions(double share, double most, std::span<co
     measure_gaps(contacts);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

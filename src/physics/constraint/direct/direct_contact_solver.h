@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "physics/constraint/direct/contact_newton.h"
+#include "physics/constraint/namespace.h"
 #include "physics/dynamic/body_state.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 /// Contacts of few bodies without joints, all at once by a sparse direct solve (docs/physics/direct-solver.md). Knows
 /// no island: it is given lists. Keeps its memory from step to step.
@@ -87,4 +88,4 @@ private:
     std::vector<std::int32_t> number_of_slot_;  // valid where motion_ agrees
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

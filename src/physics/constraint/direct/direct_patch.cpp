@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 namespace {
 
@@ -452,4 +452,4 @@ void add_impulse(const DirectPatch& patch, const PatchTwist& impulse, std::span<
     if (patch.a >= 0) add(bodies[static_cast<std::size_t>(patch.a)], -force, -(torque + cross(patch.arm_a, force)));
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

@@ -6,9 +6,10 @@
 #include <span>
 
 #include "physics/constraint/contact/contact.h"
+#include "physics/constraint/namespace.h"
 #include "physics/linear/block_cholesky.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 /// What goes with each other in a contact's frame (n, t1, t2) at its anchor: a relative velocity, or an impulse on b.
 struct PatchTwist {
@@ -115,4 +116,4 @@ PatchTwist relative_twist(const DirectPatch& patch, std::span<const Vec6> bodies
 /// Adds the impulse on b, and its opposite on a, to the bodies' right sides.
 void add_impulse(const DirectPatch& patch, const PatchTwist& impulse, std::span<Vec6> bodies);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

@@ -27,7 +27,7 @@
 #include <cmath>
 #include <limits>
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 namespace {
 
@@ -275,4 +275,4 @@ ImpactOutcome solve_frictional_impact(const Mat3& inverse_mass, Vec3 velocity, c
     return outcome;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "math/mat3.h"
+#include "physics/constraint/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 // Vectors and matrices here are in the contact frame (t1, t2, n): x and y tangential, z along the normal.
 
@@ -47,4 +48,4 @@ void release(const Mat3& inverse_mass, const ImpactCoefficients& coefficients, d
 /// One point's collision from start to end. `inverse_mass` is A = J M⁻¹ Jᵀ, symmetric and positive definite (1/kg).
 ImpactOutcome solve_frictional_impact(const Mat3& inverse_mass, Vec3 velocity, const ImpactCoefficients& coefficients);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

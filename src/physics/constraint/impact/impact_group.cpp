@@ -18,7 +18,7 @@
 
 #include "physics/constraint/contact/contact.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 namespace {
 
@@ -426,4 +426,4 @@ ImpactReport solve_impact_group(std::span<ImpactSite> sites, std::span<BodyState
     return report;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

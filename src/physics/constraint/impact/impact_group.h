@@ -7,9 +7,10 @@
 
 #include "physics/constraint/impact/frictional_impact.h"
 #include "physics/constraint/impact/impact_joints.h"
+#include "physics/constraint/namespace.h"
 #include "physics/dynamic/body_state.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 /// One place where two bodies collide or rest on each other while a neighbour collides.
 struct ImpactSite {
@@ -63,4 +64,4 @@ struct ImpactGroupMemory {
 ImpactReport solve_impact_group(std::span<ImpactSite> sites, std::span<BodyState> bodies, ImpactGroupMemory& memory,
                                 SlidePath path = SlidePath::followed);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

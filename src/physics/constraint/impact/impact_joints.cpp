@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 namespace {
 
@@ -154,4 +154,4 @@ void ImpactJoints::add_to_totals(std::span<const Push> pushes, const View& view)
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

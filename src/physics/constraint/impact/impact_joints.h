@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "physics/constraint/joint/joint_system.h"
+#include "physics/constraint/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 /// How joints pass an impact on, in the same instant: an impulse f on jointed bodies changes their velocities by the Δv
 /// of
@@ -76,4 +77,4 @@ private:
     std::vector<Vec6> unknowns_;  // changes of the bodies' velocities, impulses of the joints
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

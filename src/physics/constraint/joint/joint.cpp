@@ -15,7 +15,7 @@
 #include "math/arc_tangent.h"
 #include "physics/dynamic/equations_of_motion.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 JointImpulses& impulses_of(Joint& joint, SolvePhase phase) {
     return phase == SolvePhase::position ? joint.position_phase : joint.velocity_phase;
@@ -430,4 +430,4 @@ double joint_coordinate(const Joint& joint, std::span<const BodyState> bodies) {
     return coordinate_of(joint, frames_now(joint, bodies));
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

@@ -5,10 +5,11 @@
 #include <cstdint>
 #include <span>
 
+#include "physics/constraint/namespace.h"
 #include "physics/constraint/sweeps/contact_solver.h"
 #include "physics/definitions/joint_definition.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 /// One scalar row of a joint's Jacobian: speed = linear·(v_b − v_a) + angular_b·ω_b − angular_a·ω_a.
 struct JointRow {
@@ -109,4 +110,4 @@ void add_to_totals(Joint& joint, SolvePhase phase);
 /// Hinge angle in (−π, π] or slider displacement; 0 for the others.
 double joint_coordinate(const Joint& joint, std::span<const BodyState> bodies);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

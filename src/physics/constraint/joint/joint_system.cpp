@@ -17,7 +17,7 @@
 
 #include "physics/dynamic/equations_of_motion.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 namespace {
 
@@ -560,4 +560,4 @@ void JointSystem::end_position_phase(const View& view) {
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

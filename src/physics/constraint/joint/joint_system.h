@@ -9,9 +9,10 @@
 
 #include "physics/constraint/joint/joint.h"
 #include "physics/constraint/joint/own_spin.h"
+#include "physics/constraint/namespace.h"
 #include "physics/linear/block_lu.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 /// Bodies that joints connect: slots of the movable ones, ascending, and indices of the joints.
 struct JointedList {
@@ -145,4 +146,4 @@ private:
     double last_error_ = 0;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

@@ -5,7 +5,7 @@
 #include "physics/constraint/joint/joint_system.h"
 #include "physics/dynamic/equations_of_motion.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 // Bodies that joints hold on one axis of symmetry only.
 void JointSystem::find_spin_axes(const View& view) {
@@ -63,4 +63,4 @@ void JointSystem::drift_spinning(Body& body, const View& view) {
     body.own_spin = {};
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

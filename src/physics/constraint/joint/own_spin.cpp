@@ -5,7 +5,7 @@
 
 #include "physics/dynamic/equations_of_motion.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 namespace {
 
@@ -42,4 +42,4 @@ OwnSpin own_spin_of(const BodyState& state, const BodyConstants& constants, Vec3
     return {rate, rotate(state.rotation, constants.inertia * axis * rate), turn_by(axis * (rate * time))};
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

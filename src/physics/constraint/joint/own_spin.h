@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/constraint/namespace.h"
 #include "physics/dynamic/body_state.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 /// The spin of a body about its own axis of symmetry where every joint holds it on that axis and leaves it free about
 /// it: it changes nothing that the joints see, so they are solved for the rest of the motion, with the spin's angular
@@ -25,4 +26,4 @@ bool is_on_axis(Vec3 point, Vec3 axis);
 /// The body's spin about the axis and its turn in `time`, s; no spin where the axis is zero.
 OwnSpin own_spin_of(const BodyState& state, const BodyConstants& constants, Vec3 axis, double time);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

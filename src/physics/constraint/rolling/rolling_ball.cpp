@@ -14,7 +14,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 double BallMotion::energy() const {
     return (length_squared(velocity) + inertia * radius * radius * length_squared(spin)) / 2;
@@ -91,4 +91,4 @@ bool set_energy(BallMotion& ball, Vec3 normal, double energy, bool rolls) {
     return has_energy;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

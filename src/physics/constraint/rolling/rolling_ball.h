@@ -2,8 +2,9 @@
 #pragma once
 
 #include "math/vec3.h"
+#include "physics/constraint/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 /// A ball on a surface, of unit mass: `inertia` is I/(m r²), 2/5 of a solid one.
 struct BallMotion {
@@ -41,4 +42,4 @@ void turn_with_normal(BallMotion& ball, Vec3 from, Vec3 to, bool rolls);
 /// for that about the normal. False where it has none left: then it stands.
 bool set_energy(BallMotion& ball, Vec3 normal, double energy, bool rolls);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

@@ -14,7 +14,7 @@
 
 #include "physics/dynamic/equations_of_motion.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 namespace {
 
@@ -272,4 +272,4 @@ std::optional<Vec3> roll(BodyState& state, const BodyConstants& constants, const
     return Roller(constants, body, ground).roll(state, time);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

@@ -5,9 +5,10 @@
 #include <cstddef>
 #include <optional>
 
+#include "physics/constraint/namespace.h"
 #include "physics/dynamic/body_state.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 /// A ring around the axis (Y) of what rolls, that a tube is laid around: the rim of a cylinder or cone has no tube, a
 /// capsule's end is a tube around a ring of no size, a cone's apex is neither. Body axes, m.
@@ -42,4 +43,4 @@ struct RollingGround {
 std::optional<Vec3> roll(BodyState& state, const BodyConstants& constants, const RollingBody& body,
                          const RollingGround& ground, double time);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

@@ -7,7 +7,9 @@
 
 #include <cstdint>
 
-namespace embody::physics {
+#include "physics/constraint/namespace.h"
+
+namespace embody::physics::constraint {
 
 /// Rounds over the points of a region within one pass, in which its bodies are not touched.
 inline constexpr int normal_rounds = 1;
@@ -146,4 +148,4 @@ const ContactKernels* contact_kernels(int lanes);
 /// The widest there is.
 const ContactKernels& widest_contact_kernels();
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

@@ -10,13 +10,13 @@
 namespace embody::EMBODY_WIDE {
 namespace {
 
-using physics::BatchHead;
-using physics::BatchPoint;
-using physics::BatchSource;
-using physics::BodyRows;
-using physics::ContactRow;
-using physics::ContactSweep;
-using physics::LaneBit;
+using physics::constraint::BatchHead;
+using physics::constraint::BatchPoint;
+using physics::constraint::BatchSource;
+using physics::constraint::BodyRows;
+using physics::constraint::ContactRow;
+using physics::constraint::ContactSweep;
+using physics::constraint::LaneBit;
 
 /// Two bodies' velocities, one pair a lane, taken from their rows and put back.
 struct Velocities {
@@ -259,7 +259,7 @@ void fill(float* batch, int points, const BatchSource& source) {
     std::memcpy(batch + BatchHead::body_b * lanes, source.body_b, sizeof(WideMask));
 
     // Points, and the anchor in their middle.
-    Wide near_row[physics::BatchHead::most_points][row_floats], rest_row[row_floats];
+    Wide near_row[physics::constraint::BatchHead::most_points][row_floats], rest_row[row_floats];
     Wide3 arm_a{zero, zero, zero}, arm_b{zero, zero, zero};
     Wide count = zero;
     for (int k = 0; k < points; ++k) {

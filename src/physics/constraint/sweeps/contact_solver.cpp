@@ -25,7 +25,7 @@
 
 #include "physics/constraint/sweeps/contact_batch.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 namespace {
 
@@ -285,4 +285,4 @@ void add_to_totals(Contact& contact) {
     contact.friction_total.twist += contact.friction.twist;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

@@ -6,8 +6,9 @@
 #include <span>
 
 #include "physics/constraint/contact/contact.h"
+#include "physics/constraint/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 /// The two halves of a substep: before the drift the constraints also take position errors out; after it they hold for
 /// the velocity alone, so that no position error is left in it.
@@ -76,4 +77,4 @@ void solve_contact(Contact& contact, const PreparedContact& prepared, SolvePhase
 /// Adds the substep's impulses to the step's totals; after its velocity phase.
 void add_to_totals(Contact& contact);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 namespace {
 
@@ -75,4 +75,4 @@ void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, d
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

@@ -4,9 +4,10 @@
 #include <span>
 
 #include "physics/constraint/joint/joint_system.h"
+#include "physics/constraint/namespace.h"
 #include "physics/constraint/sweeps/contact_solver.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 /// Constraints that are solved together: indices into the arrays, in solve order. Knows no island; it is given one.
 struct ConstraintList {
@@ -23,4 +24,4 @@ struct ConstraintList {
 void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, double time, std::span<BodyState> bodies,
                  std::span<const BodyConstants> constants);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

@@ -8,7 +8,7 @@
 
 #include "physics/dynamic/equations_of_motion.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 namespace {
 
@@ -394,4 +394,4 @@ void WideContactSolver::write_contact(const Batch& batch, std::uint32_t lane, co
     glance.is_sunk = is_pressed && is_deep;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

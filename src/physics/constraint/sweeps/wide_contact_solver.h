@@ -9,10 +9,11 @@
 #include "foundation/task_pool.h"
 #include "physics/constraint/contact/contact.h"
 #include "physics/constraint/contact/contact_work.h"
+#include "physics/constraint/namespace.h"
 #include "physics/constraint/sweeps/contact_batch.h"
 #include "physics/constraint/sweeps/contact_solver.h"
 
-namespace embody::physics {
+namespace embody::physics::constraint {
 
 /// Contacts of bodies without joints, as many at once as the processor has lanes (docs/physics/wide-solver.md). Knows
 /// no island: it is given bodies, and batches in the order in which they are to be solved. Keeps its memory from step
@@ -128,4 +129,4 @@ private:
     std::size_t used_lines_ = 0, used_lanes_ = 0;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::constraint

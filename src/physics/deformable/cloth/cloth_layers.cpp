@@ -7,7 +7,7 @@
 
 #include "physics/deformable/contact/nearest_points.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 struct ClothLayers::Search {
     const ClothLayers& layers;
@@ -277,4 +277,4 @@ void ClothLayers::part(const Nodes& nodes, double thickness, double friction, st
     join(contacts_, thickness, give, moves);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -11,8 +11,9 @@
 #include "physics/deformable/cloth/patch_tree.h"
 #include "physics/deformable/contact/nodes.h"
 #include "physics/deformable/contact/thin_pairs.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// A node over a triangle of the same sheet, or two of its edges that cross: Σ weight x is the way between their
 /// nearest points when the substep began, `distance` (m) long along the unit `normal`.
@@ -81,4 +82,4 @@ private:
     std::vector<LayerContact> contacts_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

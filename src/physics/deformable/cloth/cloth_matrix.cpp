@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 void SliceBlocks::set(std::size_t slice, std::size_t lane, const Block& block) {
     SliceFloats* to = &values_[slice * (slice_block / slice_rows)];
@@ -77,4 +77,4 @@ ClothRows ClothMatrix::rows(const float* own) const {
             far_.view(far_values_.empty() ? nullptr : far_values_.front().lane.data()), own};
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

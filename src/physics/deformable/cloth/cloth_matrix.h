@@ -10,8 +10,9 @@
 #include "math/mat3.h"
 #include "math/vec3.h"
 #include "physics/deformable/cloth/cloth_row_kernels.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 using Float4 = float __attribute__((vector_size(16)));
 
@@ -113,4 +114,4 @@ private:
     std::vector<SliceFloats> far_values_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <map>
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -163,4 +163,4 @@ ScalarRows make_bending_rows(const std::vector<Vec3>& nodes, const Cloth& cloth)
     return rows;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

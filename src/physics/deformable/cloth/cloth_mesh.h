@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "physics/definitions/deformable_definition.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// A triangle of cloth as it was cut: F = Σ x_k (warp_k, weft_k) turns its plane at rest into where it is.
 struct ClothTriangle {
@@ -30,4 +31,4 @@ std::vector<ClothTriangle> make_cloth_triangles(const std::vector<Vec3>& nodes, 
 /// has its diagonal element first.
 ScalarRows make_bending_rows(const std::vector<Vec3>& nodes, const Cloth& cloth);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -8,11 +8,11 @@
 namespace embody::EMBODY_WIDE {
 namespace {
 
-using physics::ClothRows;
-using physics::ClothSlots;
-using physics::ClothVectors;
-using physics::slice_block;
-using physics::slice_rows;
+using physics::deformable::ClothRows;
+using physics::deformable::ClothSlots;
+using physics::deformable::ClothVectors;
+using physics::deformable::slice_block;
+using physics::deformable::slice_rows;
 
 constexpr std::size_t width = lanes;
 using Doubles = double __attribute__((vector_size(8 * EMBODY_LANES)));
@@ -102,7 +102,7 @@ void dot_residual(const ClothVectors& of, std::size_t first, std::size_t last, d
 
 }  // namespace
 
-extern const physics::ClothRowKernels cloth_row_kernels;
-const physics::ClothRowKernels cloth_row_kernels{turn, multiply, advance, dot_residual};
+extern const physics::deformable::ClothRowKernels cloth_row_kernels;
+const physics::deformable::ClothRowKernels cloth_row_kernels{turn, multiply, advance, dot_residual};
 
 }  // namespace embody::EMBODY_WIDE

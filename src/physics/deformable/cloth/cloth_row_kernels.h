@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace embody::physics {
+#include "physics/deformable/namespace.h"
+
+namespace embody::physics::deformable {
 
 /// Nodes that lie side by side, a lane each: a slice.
 inline constexpr std::size_t slice_rows = 16;
@@ -60,4 +62,4 @@ const ClothRowKernels* cloth_row_kernels(int lanes);
 /// The widest that this processor has.
 const ClothRowKernels& widest_cloth_row_kernels();
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

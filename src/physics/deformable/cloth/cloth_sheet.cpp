@@ -12,7 +12,7 @@
 
 #include "physics/deformable/contact/free_motion.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -400,4 +400,4 @@ double ClothSheet::elastic_energy() const {
     return energy;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -11,8 +11,9 @@
 #include "physics/deformable/contact/nodes.h"
 #include "physics/deformable/contact/pair_springs.h"
 #include "physics/deformable/contact/touch_springs.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// Cloth that moves: membrane of warp, weft and shear, bending, air, contacts, by backward Euler with one linear
 /// solve for the elastic forces a substep (docs/physics/cloth.md).
@@ -124,4 +125,4 @@ private:
     int rounds_ = 0, solves_ = 0;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -167,7 +167,7 @@ void ClothSolver::precondition_bodies(std::span<const TouchSpring> springs, std:
     add_line_pulls();
     for (std::size_t b = 0; b < bodies.size(); ++b)
         body_better_[b] =
-            bodies[b].moves ? embody::physics::solve(body_factors_[b].factor, body_better_[b]) : BodyMove{};
+            bodies[b].moves ? embody::physics::deformable::solve(body_factors_[b].factor, body_better_[b]) : BodyMove{};
     for (const std::uint32_t s : coupled_) {
         if (!is_held(s)) continue;
         const TouchSpring& spring = springs[s];
@@ -361,4 +361,4 @@ int ClothSolver::solve(std::span<const SheetSystem> sheets, std::span<const Line
     return rounds_;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

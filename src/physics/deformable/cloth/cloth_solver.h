@@ -8,9 +8,10 @@
 #include "foundation/task_pool.h"
 #include "physics/deformable/cloth/cloth_matrix.h"
 #include "physics/deformable/contact/touch_springs.h"
+#include "physics/deformable/namespace.h"
 #include "physics/linear/band_cholesky.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// A sheet's part of the equations, an entry a node.
 struct SheetSystem {
@@ -131,4 +132,4 @@ private:
     int workers_ = 1, rounds_ = 0;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -6,7 +6,7 @@
 
 #include "physics/deformable/cloth/cloth_solver.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 bool ClothSolver::prepare_lines(std::span<const LineSystem> lines, std::span<const TouchSpring> springs) {
     factors_.clear();
@@ -110,4 +110,4 @@ void ClothSolver::follow_bodies() {
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

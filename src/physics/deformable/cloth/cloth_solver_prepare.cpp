@@ -5,7 +5,7 @@
 
 #include "physics/deformable/cloth/cloth_solver.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -178,4 +178,4 @@ void ClothSolver::prepare_bodies(std::span<const TouchSpring> springs, std::span
     for (BodyFactor& body : body_factors_) factorize(body.factor);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -228,4 +228,4 @@ void PatchTree::visit_two(std::uint32_t a, std::uint32_t b, std::vector<std::arr
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

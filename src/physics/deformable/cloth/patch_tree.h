@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "math/bounds.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// Directions that all normals of some triangles lean to, a bit each. Triangles of one piece that share such a
 /// direction lie over each other nowhere along it (P. Volino and N. Magnenat-Thalmann, "Efficient self-collision
@@ -59,4 +60,4 @@ private:
     std::vector<LeanMask> leans_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "physics/deformable/contact/body_features.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -67,4 +67,4 @@ std::vector<BodyFeature> find_features(const ShapeDefinition& shape) {
     return features;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

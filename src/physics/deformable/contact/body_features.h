@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "physics/definitions/shape_definition.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// A point of a shape that may poke into a soft surface between its nodes, with the radius of the ball around it that
 /// belongs to the shape, m.
@@ -18,4 +19,4 @@ struct BodyFeature {
 /// the nodes find.
 std::vector<BodyFeature> find_features(const ShapeDefinition& shape);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

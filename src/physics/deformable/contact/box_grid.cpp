@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "physics/deformable/contact/box_grid.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 // Counting sort of the boxes into the cells that they may reach.
 void BoxGrid::fill(std::span<const Bounds> boxes, double usual_size) {
@@ -26,4 +26,4 @@ void BoxGrid::fill(std::span<const Bounds> boxes, double usual_size) {
         for_each_bucket(boxes[t], [&](std::size_t b) { boxes_[next_[b]++] = t; });
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

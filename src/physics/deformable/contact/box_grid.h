@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "math/bounds.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// Boxes of things of about the same size by the cells of a grid that they reach, cells by a hash (M. Teschner and
 /// others, "Optimized spatial hashing for collision detection of deformable objects", 2003).
@@ -85,4 +86,4 @@ private:
     std::vector<RoundedBox> rounded_;  // by box
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

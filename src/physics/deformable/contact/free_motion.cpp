@@ -3,7 +3,7 @@
 
 #include "math/mat3.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 void keep_momenta(const Nodes& nodes, std::span<const Vec3> given, double h, std::span<Vec3> moves) {
     double mass = 0;
@@ -70,4 +70,4 @@ void set_velocities(Nodes& nodes, std::span<const Vec3> moves, double h) {
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -4,8 +4,9 @@
 #include <span>
 
 #include "physics/deformable/contact/nodes.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// Of a deformable that nothing holds: changes `moves` (m, of a substep of h seconds) by a small move and turn of the
 /// whole, so that momentum and angular momentum are those before and what is `given` from outside (N s, by node).
@@ -23,4 +24,4 @@ struct WholeMotion {
 /// would make what spins fast look faster than it is.
 void set_velocities(Nodes& nodes, std::span<const Vec3> moves, double h);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

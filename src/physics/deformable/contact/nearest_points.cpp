@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 // C. Ericson, Real-Time Collision Detection, 5.1.5.
 std::array<double, 3> nearest_weights(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
@@ -43,4 +43,4 @@ bool nearest_inside(Vec3 a, Vec3 b, Vec3 c, Vec3 d, double& s, double& t) {
     return s > 0 && s < 1 && t > 0 && t < 1;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -4,8 +4,9 @@
 #include <array>
 
 #include "math/vec3.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// Barycentric weights of the triangle's point nearest to p.
 std::array<double, 3> nearest_weights(Vec3 p, Vec3 a, Vec3 b, Vec3 c);
@@ -17,4 +18,4 @@ double nearest_along(Vec3 p, Vec3 a, Vec3 b);
 /// are parallel.
 bool nearest_inside(Vec3 a, Vec3 b, Vec3 c, Vec3 d, double& s, double& t);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -59,4 +59,4 @@ double gap(const NodeContact& contact, Vec3 node_position, double radius, const 
     return dot(node_position - body.center_at(time) - rotation * contact.anchor, rotation * contact.normal) - radius;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

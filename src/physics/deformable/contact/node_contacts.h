@@ -6,8 +6,9 @@
 #include "foundation/task_pool.h"
 #include "physics/deformable/contact/nodes.h"
 #include "physics/deformable/contact/touched_body.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// A node over a plane of a body, which moves with the body.
 struct NodeContact {
@@ -28,4 +29,4 @@ double way_of(const TouchedBody& body, double time_step);
 /// How far the node's surface is off the plane (m; negative: in it) `time` (s) after the step began.
 double gap(const NodeContact& contact, Vec3 node_position, double radius, const TouchedBody& body, double time);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

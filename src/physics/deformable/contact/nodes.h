@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "math/vec3.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// The points of a deformable, one entry a node in each array.
 struct Nodes {
@@ -18,4 +19,4 @@ struct Nodes {
     [[nodiscard]] std::size_t size() const { return position.size(); }
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

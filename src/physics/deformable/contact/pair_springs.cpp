@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 struct PairSprings::Found {
     ThinCandidate candidate;
@@ -250,4 +250,4 @@ void PairSprings::finish(std::span<const Vec3> moves, std::span<Vec3> given, Thi
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -7,8 +7,9 @@
 
 #include "physics/deformable/contact/thin_pairs.h"
 #include "physics/deformable/contact/touch_springs.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// What a contact of two sheets or ropes has left from the last substep.
 struct ThinContact {
@@ -66,4 +67,4 @@ private:
     std::vector<std::pair<Slots, std::size_t>> last_of_;  // of each pair, one beyond its last spring
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/deformable/namespace.h"
 #include "physics/dynamic/wind.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// What a deformable is told of one substep.
 struct Substep {
@@ -14,4 +15,4 @@ struct Substep {
     double air_density = 1.2;  ///< kg/m³
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -6,7 +6,7 @@
 #include "physics/deformable/contact/box_grid.h"
 #include "physics/deformable/contact/nearest_points.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -149,4 +149,4 @@ bool will_touch(const ThinSurface& a, const ThinSurface& b, std::span<const Thin
     });
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -8,8 +8,9 @@
 
 #include "foundation/task_pool.h"
 #include "physics/deformable/contact/nodes.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// What another sheet or rope meets of one.
 struct ThinSurface {
@@ -51,4 +52,4 @@ bool find_points(const ThinSurface& a, const ThinSurface& b, const ThinCandidate
 bool will_touch(const ThinSurface& a, const ThinSurface& b, std::span<const ThinCandidate> candidates, double time_step,
                 double gravity);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -60,4 +60,4 @@ void TieSprings::finish(std::span<const Vec3> moves, std::span<Vec3> given) {
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -6,8 +6,9 @@
 
 #include "physics/deformable/contact/nodes.h"
 #include "physics/deformable/contact/touch_springs.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// A tie of a sheet or rope to another, as one solve sees both.
 struct PlacedTie {
@@ -32,4 +33,4 @@ private:
     std::vector<Vec3*> pulls_;  // of these
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

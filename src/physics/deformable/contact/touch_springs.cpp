@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -328,4 +328,4 @@ void TouchSprings::finish(std::span<Vec3> node_moves, std::span<const BodyMove> 
     std::ranges::stable_sort(memory_, {}, &Memory::feature);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

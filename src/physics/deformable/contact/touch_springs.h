@@ -9,8 +9,9 @@
 #include "physics/definitions/deformable_definition.h"
 #include "physics/deformable/contact/node_contacts.h"
 #include "physics/deformable/contact/substep.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// How far the pushes of a substep move a body off its path: m, rad.
 struct BodyMove {
@@ -184,4 +185,4 @@ private:
     std::vector<Place> places_;   // of the bodies, at the substep's end
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

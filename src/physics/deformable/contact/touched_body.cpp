@@ -3,7 +3,7 @@
 
 #include "physics/dynamic/equations_of_motion.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 Mat3 TouchedBody::rotation_on_path(double time, Vec3 off) const {
     return to_matrix(cayley(time * path_turn + bend(time) * path_spin_up + off));
@@ -57,4 +57,4 @@ void PartPushes::go_on(std::span<TouchedBody> bodies, double h) const {
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

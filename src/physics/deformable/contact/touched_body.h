@@ -9,8 +9,9 @@
 #include "math/mat3.h"
 #include "math/transform.h"
 #include "physics/collision/shapes/collision_shape.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// A rigid body near a deformable. It has made its step already: through the substeps it goes along the path of that
 /// step and, on top, by what the nodes push it.
@@ -80,4 +81,4 @@ private:
     std::vector<std::pair<Vec3, Vec3>> velocities_;  // off the path, and spins
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

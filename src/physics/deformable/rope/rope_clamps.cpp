@@ -15,7 +15,7 @@
 #include "math/quat.h"
 #include "physics/dynamic/equations_of_motion.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -335,4 +335,4 @@ void RopeClamps::finish(std::span<const Vec3> places, std::span<const BodyMove> 
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/deformable/namespace.h"
 #include "physics/deformable/rope/rope_segment.h"
 #include "physics/deformable/rope/rope_system.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// Where a rope's direction is held, and the twist of its spans from one such place to the next
 /// (docs/physics/ropes.md).
@@ -108,4 +109,4 @@ private:
     std::vector<Span> spans_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -11,7 +11,7 @@
 
 #include "physics/deformable/contact/free_motion.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -398,4 +398,4 @@ double RopeLine::elastic_energy() const {
     return energy + clamps_.elastic_energy();
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

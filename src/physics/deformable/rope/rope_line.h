@@ -5,10 +5,11 @@
 
 #include "physics/deformable/cloth/cloth_solver.h"
 #include "physics/deformable/contact/nodes.h"
+#include "physics/deformable/namespace.h"
 #include "physics/deformable/rope/rope_clamps.h"
 #include "physics/deformable/rope/rope_system.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// A rope in motion: stretch and bending of a line of nodes by backward Euler, with Newton's method and a direct solve,
 /// so that it is exact for any stiffness (docs/physics/ropes.md).
@@ -128,4 +129,4 @@ private:
     int rounds_ = 0;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -4,8 +4,9 @@
 #include <algorithm>
 
 #include "math/mat3.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 struct RopeSegment {
     double length = 0;  ///< at rest, m
@@ -30,4 +31,4 @@ inline Mat3 damping_of_growth(Vec3 turn, double damping) {
     return damping * ((1 - turning) * Mat3::identity() + turning * outer(axis, axis));
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -191,4 +191,4 @@ bool RopeSystem::solve(std::span<const TouchSpring> springs, std::span<const Bod
     return true;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "physics/deformable/contact/touch_springs.h"
+#include "physics/deformable/namespace.h"
 #include "physics/linear/band_cholesky.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// A twist as a stiffness of rank one: its moment y (N m) pushes the unknowns with -y times the derivatives of the
 /// angle by them, and y = stiffness (offset + what the angle grows by with the unknowns).
@@ -72,4 +73,4 @@ private:
     std::vector<double> border_;  // dense, by rows; its lower factor once factorised
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -41,4 +41,4 @@ double EnclosedGas::energy() const {
     return absolute_ * (volume_ - rest_volume_ - rest_volume_ * std::log(volume_ / rest_volume_));
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "math/vec3.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// Gas all through a closed surface, which spreads at once and keeps its temperature (Boyle's law). At rest its
 /// pressure and the tension of what encloses it are in balance: the thing is drawn as it is when blown up.
@@ -36,4 +37,4 @@ private:
     std::vector<Vec3> slope_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

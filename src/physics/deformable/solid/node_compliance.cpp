@@ -5,7 +5,7 @@
 
 #include "physics/linear/column_kernels.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 void NodeCompliance::forget(std::size_t nodes) {
     number_.assign(nodes, none);
@@ -101,4 +101,4 @@ void NodeCompliance::complete(const DissectedCholesky& factor, std::span<const s
     });
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

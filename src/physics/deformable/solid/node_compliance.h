@@ -2,9 +2,10 @@
 #pragma once
 
 #include "foundation/task_pool.h"
+#include "physics/deformable/namespace.h"
 #include "physics/linear/dissected_cholesky.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// How touched nodes of a solid move by forces on each other, m/N: blocks of the inverse of its matrix, each node in
 /// its own axes. Kept from substep to substep, as long as the factor is, for the nodes that are touched again.
@@ -40,4 +41,4 @@ private:
     std::vector<float> value_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -5,8 +5,9 @@
 #include <cstdint>
 
 #include "math/vec3.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// A point that up to three nodes of a solid carry.
 struct CarriedPoint {
@@ -34,4 +35,4 @@ struct SolidContact {
     [[nodiscard]] bool has_body() const { return other.count == 0; }
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -459,4 +459,4 @@ void SolidContacts::solve_together(const Group& group, double h, TaskPool& worke
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -4,10 +4,11 @@
 #include <vector>
 
 #include "physics/deformable/contact/touched_body.h"
+#include "physics/deformable/namespace.h"
 #include "physics/deformable/solid/solid_contact.h"
 #include "physics/deformable/solid/touched_nodes.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// Hard contacts with Coulomb friction, and attachments, of all solids with bodies and each other in a substep: forces
 /// p (paper, eqs. (4) and (7)) with
@@ -80,4 +81,4 @@ private:
     std::vector<Vec3> probe_forces_, probe_torques_;  // by body, N and N m
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

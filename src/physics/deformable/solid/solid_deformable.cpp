@@ -7,7 +7,7 @@
 #include "geometry/tetrahedra/tetrahedral_mesh.h"
 #include "physics/deformable/contact/free_motion.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -411,4 +411,4 @@ Conserved SolidDeformable::conserved(Vec3 gravity) const {
     return sum;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -6,12 +6,13 @@
 #include "math/bounds.h"
 #include "physics/definitions/step_report.h"
 #include "physics/deformable/contact/nodes.h"
+#include "physics/deformable/namespace.h"
 #include "physics/deformable/solid/enclosed_gas.h"
 #include "physics/deformable/solid/node_compliance.h"
 #include "physics/deformable/solid/solid_elements.h"
 #include "physics/linear/dissected_cholesky.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// A soft solid in motion (docs/physics/deformables.md). A substep is begin_substep(), push() with the contact forces
 /// that are guessed, solve(), what contacts make of it with push() and the compliance of nodes, and finish().
@@ -139,4 +140,4 @@ private:
     NodeCompliance compliance_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

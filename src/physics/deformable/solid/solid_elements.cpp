@@ -7,7 +7,7 @@
 
 #include "math/rotation_part.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -315,4 +315,4 @@ void SolidElements::reset_rotations(Quat rotation) {
     std::ranges::fill(node_rotation_, rotation);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -6,8 +6,9 @@
 #include "math/mat3.h"
 #include "math/quat.h"
 #include "physics/definitions/deformable_definition.h"
+#include "physics/deformable/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// The elastic energy of a solid of linear tetrahedra (docs/physics/deformables.md):
 ///
@@ -90,4 +91,4 @@ private:
     std::vector<Matrix> rotation_f_, node_rotation_f_, gradient_f_, node_stress_f_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

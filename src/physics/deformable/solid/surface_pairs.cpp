@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 namespace {
 
@@ -213,4 +213,4 @@ void find_surface_contacts(const SolidDeformable& one, std::uint32_t one_number,
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

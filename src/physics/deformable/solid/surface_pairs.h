@@ -5,10 +5,11 @@
 #include <vector>
 
 #include "geometry/bounding_volume_tree.h"
+#include "physics/deformable/namespace.h"
 #include "physics/deformable/solid/solid_contact.h"
 #include "physics/deformable/solid/solid_deformable.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// The way on which one thing leaves another that it lies within.
 struct WayOut {
@@ -62,4 +63,4 @@ void find_surface_contacts(const SolidDeformable& one, std::uint32_t one_number,
                            std::uint32_t two_number, double reach, double radius, double friction, bool is_parting,
                            std::vector<SolidContact>& contacts);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -6,7 +6,7 @@
 
 #include "physics/linear/column_kernels.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 void TouchedNodes::begin(SolidDeformable& solid) {
     compliance_ = &solid.compliance();
@@ -100,4 +100,4 @@ void TouchedNodes::end_probe() {
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <vector>
 
+#include "physics/deformable/namespace.h"
 #include "physics/deformable/solid/solid_deformable.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 /// The nodes of a solid that contacts act on in a substep, and how they move by forces on each other.
 class TouchedNodes {
@@ -58,4 +59,4 @@ private:
     std::vector<std::vector<float>> probe_part_moves_;  // as moved_
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

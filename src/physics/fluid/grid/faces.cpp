@@ -7,7 +7,7 @@
 
 #include "physics/fluid/particles/transfer.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -226,4 +226,4 @@ void subtract_gradient(FluidGrid& grid, std::span<const double> x, const Surface
     });
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

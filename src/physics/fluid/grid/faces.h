@@ -3,11 +3,12 @@
 
 #include "foundation/task_pool.h"
 #include "physics/fluid/grid/grid.h"
+#include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/solids.h"
 #include "physics/fluid/pressure/pressure_system.h"
 #include "physics/fluid/pressure/surface_tension.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 /// Gives faces without a velocity the mean of their neighbours', `layers` faces far from those that are known.
 void extrapolate(FluidGrid& grid, std::array<std::vector<float>, 3>& field, int layers, TaskPool& workers);
@@ -36,4 +37,4 @@ void add_surface_pressure(const FluidGrid& grid, const PressureSystem& system, c
 void subtract_gradient(FluidGrid& grid, std::span<const double> x, const SurfacePressure& surface, double scale,
                        std::array<std::vector<float>, 3>& field, TaskPool& workers);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -3,7 +3,9 @@
 
 #include <cstring>
 
-namespace embody::physics {
+#include "physics/fluid/namespace.h"
+
+namespace embody::physics::fluid {
 
 /// Four numbers side by side: one instruction works on all of them, on every processor alike.
 using Four = float __attribute__((vector_size(16)));
@@ -27,4 +29,4 @@ inline void store_pairs(Four value, float* first, float* second) {
     std::memcpy(second, reinterpret_cast<const char*>(&value) + sizeof value / 2, sizeof value / 2);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

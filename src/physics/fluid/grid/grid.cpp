@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -211,4 +211,4 @@ void FluidGrid::sort(std::vector<FluidParticle>& particles, float volume, std::s
     particles.swap(sorted_);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -9,9 +9,10 @@
 #include "foundation/task_pool.h"
 #include "math/bounds.h"
 #include "math/vec3.h"
+#include "physics/fluid/namespace.h"
 #include "physics/fluid/particles/particle.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 using Cell = std::array<int, 3>;
 
@@ -149,4 +150,4 @@ enum ThinMark : std::uint8_t {
     near_thin = 8,  ///< such a wall is within a cell: particles ask the true shapes
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -6,7 +6,7 @@
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/grid/liquid_cells.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -167,4 +167,4 @@ void FluidGrid::clear_tile(const Cell& corner) {
     });
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

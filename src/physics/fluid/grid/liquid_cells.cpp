@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -125,4 +125,4 @@ void mark_liquid(FluidGrid& grid, LiquidCells& liquid, TaskPool& workers) {
     number_rows(grid, liquid, workers);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -6,8 +6,9 @@
 
 #include "foundation/task_pool.h"
 #include "physics/fluid/grid/grid.h"
+#include "physics/fluid/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 /// Cells of which solids leave less have no surface of their own: they take it from their neighbours.
 inline constexpr float least_room = 0.3f;
@@ -21,4 +22,4 @@ struct LiquidCells {
 /// Marks the liquid's cells: grid.surface from the density and the room around, grid.row by number.
 void mark_liquid(FluidGrid& grid, LiquidCells& liquid, TaskPool& workers);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -9,7 +9,7 @@
 #include "physics/fluid/obstacles/solids.h"
 #include "physics/fluid/particles/transfer.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -63,4 +63,4 @@ void drag_small_body(FluidGrid& grid, double density, double viscosity, double p
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

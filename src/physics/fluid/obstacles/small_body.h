@@ -3,8 +3,9 @@
 
 #include "math/vec3.h"
 #include "physics/fluid/grid/grid.h"
+#include "physics/fluid/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 struct MovingSolid;
 
@@ -18,4 +19,4 @@ double drag_of_sphere(double radius, double speed, double density, double viscos
 void drag_small_body(FluidGrid& grid, double density, double viscosity, double particle_mass, double dt,
                      MovingSolid& moving);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -7,7 +7,7 @@
 #include "physics/collision/queries/cast_at_convex.h"
 #include "physics/collision/shapes/collision_shape_data.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -338,4 +338,4 @@ std::optional<SolidProbe::Crossing> SolidProbe::crossing(Vec3 a, Vec3 b) const {
     return first;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -9,8 +9,9 @@
 #include "math/mat3.h"
 #include "physics/collision/shapes/collision_shape.h"
 #include "physics/collision/shapes/convex.h"
+#include "physics/fluid/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 /// How near a solid is: exact next to its faces, else at most the true distance; < 0 inside.
 struct SolidDistance {
@@ -72,4 +73,4 @@ private:
     std::vector<std::uint32_t> found_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -228,4 +228,4 @@ float SolidRegion::room(int cell) const {
     return room_[cell];
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

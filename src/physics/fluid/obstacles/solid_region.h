@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "physics/fluid/grid/grid.h"
+#include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/solid_probe.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 /// Solids measured on a box of cells: how far each centre is from them and which share of each octant (an eighth of a
 /// cell) they fill. From these come the shares of the faces' control volumes and of the density's kernel.
@@ -61,4 +62,4 @@ private:
     bool any_thin_ = false, any_cut_ = false;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -327,4 +327,4 @@ void FluidSolids::end() {
 
 Quat MovingSolid::end_rotation(double dt) const { return turned(rotation, angular_velocity, dt / 2); }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -6,11 +6,12 @@
 
 #include "math/transform.h"
 #include "physics/fluid/grid/grid.h"
+#include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/solid_probe.h"
 #include "physics/fluid/obstacles/solid_region.h"
 #include "physics/fluid/pressure/bound_liquid.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 /// A rigid body as a fluid meets it in a step.
 struct FluidSolid {
@@ -116,4 +117,4 @@ private:
     std::vector<std::pair<std::uint32_t, std::uint32_t>> fixed_versions_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -7,7 +7,7 @@
 #include "physics/fluid/grid/faces.h"
 #include "physics/fluid/particles/transfer.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -82,4 +82,4 @@ void rub_along_walls(FluidGrid& grid, FluidSolids& solids, double density, doubl
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

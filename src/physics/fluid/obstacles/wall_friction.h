@@ -3,9 +3,10 @@
 
 #include "foundation/task_pool.h"
 #include "physics/fluid/grid/grid.h"
+#include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/solids.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 /// Turbulent stress of a smooth wall over the density, m²/s², on liquid of kinematic viscosity ν (m²/s) that slides at
 /// `speed` (m/s) along it at the distance y (m), beyond ν speed/y, the laminar one; 0 where that is all (docs/physics/
@@ -17,4 +18,4 @@ double turbulent_stress(double speed, double y, double kinematic_viscosity);
 void rub_along_walls(FluidGrid& grid, FluidSolids& solids, double density, double viscosity, double particle_mass,
                      double dt, TaskPool& workers);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

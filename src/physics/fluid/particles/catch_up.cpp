@@ -8,7 +8,7 @@
 #include "physics/fluid/particles/transfer.h"
 #include "physics/fluid/solver.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -98,4 +98,4 @@ void FluidSolver::displace(double share, Followed& followed, TaskPool& workers) 
     followed.is_solved = followed.is_solved && iterations <= most_iterations;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

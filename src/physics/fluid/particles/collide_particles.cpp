@@ -6,7 +6,7 @@
 
 #include "physics/fluid/particles/transfer.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -261,4 +261,4 @@ void ParticleCollider::stride(FluidParticle& particle, const float* to, const Sp
     if (grid_.solid[grid_.index(cell_at(grid_, to))] < 1.5f) push_out(particle, before, when);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "physics/fluid/grid/grid.h"
+#include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/solids.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 /// Keeps particles out of solids: by the grid's distances, and near walls thinner than a cell by the true shapes. One a
 /// worker.
@@ -66,4 +67,4 @@ private:
     std::vector<std::size_t> near_fixed_, near_moving_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

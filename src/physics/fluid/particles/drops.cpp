@@ -7,7 +7,7 @@
 #include "physics/fluid/particles/transfer.h"
 #include "physics/fluid/solver.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 bool is_drop(const FluidGrid& grid, const float* place) {
     Cell c{};
@@ -46,4 +46,4 @@ void slow_at_wall(const FluidGrid& grid, const FluidSolids& solids, const FluidP
     for (int axis = 0; axis < 3; ++axis) velocity[axis] += static_cast<float>(along[axis] * (left / speed - 1));
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

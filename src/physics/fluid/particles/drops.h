@@ -2,9 +2,10 @@
 #pragma once
 
 #include "physics/fluid/grid/grid.h"
+#include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/solids.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 struct FluidProperties;
 
@@ -16,4 +17,4 @@ bool is_drop(const FluidGrid& grid, const float* place);
 void slow_at_wall(const FluidGrid& grid, const FluidSolids& solids, const FluidProperties& liquid, double dt,
                   const float* place, float* velocity);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

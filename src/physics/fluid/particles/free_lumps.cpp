@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -180,4 +180,4 @@ void FreeLumps::end(Vec3 change, const FluidSolids& solids, double particle_mass
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -7,10 +7,11 @@
 #include "math/mat3.h"
 #include "math/vec3.h"
 #include "physics/fluid/grid/grid.h"
+#include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/solids.h"
 #include "physics/fluid/pressure/pressure_system.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 /// Lumps of liquid that touch nothing, or only bodies that move freely; those that share a body are one. What the cells
 /// do to a lump has a resultant and a moment that it must not have: the tension of its surface would push and turn it,
@@ -53,4 +54,4 @@ private:
     std::vector<Touched> bodies_;  // as solids.moving()
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -8,7 +8,7 @@
 
 #include "physics/fluid/grid/four.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -94,4 +94,4 @@ double usual_speed_of(std::span<const FluidParticle> particles, std::size_t drop
     return 0;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -7,8 +7,9 @@
 #include <span>
 
 #include "foundation/task_pool.h"
+#include "physics/fluid/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 /// A parcel of liquid: a cache line. Lengths in metres, in world axes from the fluid's origin.
 struct FluidParticle {
@@ -39,4 +40,4 @@ ParticleReach reach_of(std::span<const FluidParticle> particles, TaskPool& worke
 /// The speed that all but 1 in `drops_by_particle` stay below, m/s, at most 1 % too large.
 double usual_speed_of(std::span<const FluidParticle> particles, std::size_t drops_by_particle, TaskPool& workers);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -8,7 +8,7 @@
 
 #include "physics/fluid/grid/four.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -184,4 +184,4 @@ float sample_center(const FluidGrid& grid, const std::vector<float>& field, cons
     return between.value;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

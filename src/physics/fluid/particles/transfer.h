@@ -6,8 +6,9 @@
 
 #include "foundation/task_pool.h"
 #include "physics/fluid/grid/grid.h"
+#include "physics/fluid/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 /// Particles to faces: grid.mass, grid.velocity (momentum over mass), grid.density (`volume`: a particle's, in cells).
 /// grid.known tells which faces any particle reached.
@@ -34,4 +35,4 @@ FaceWeights face_weights(const FluidGrid& grid, const float* position, int axis)
 /// A value on centres at a place of the fluid's frame, and its gradient per cell.
 float sample_center(const FluidGrid& grid, const std::vector<float>& field, const float* position, float* gradient);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

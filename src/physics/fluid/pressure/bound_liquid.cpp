@@ -7,7 +7,7 @@
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/obstacles/solids.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -97,4 +97,4 @@ void release_liquid(MovingSolid& moving) {
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

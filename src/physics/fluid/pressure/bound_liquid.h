@@ -5,8 +5,9 @@
 
 #include "math/mat3.h"
 #include "math/vec3.h"
+#include "physics/fluid/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 class FluidGrid;
 struct MovingSolid;
@@ -37,4 +38,4 @@ void bind_liquid(const FluidGrid& grid, double density, Vec3 gravity, MovingSoli
 /// Gives the solid what the liquid's momentum has changed by, once both have their final velocity.
 void release_liquid(MovingSolid& moving);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -11,7 +11,7 @@
 #include "physics/fluid/grid/liquid_cells.h"
 #include "physics/linear/dot_product.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -340,4 +340,4 @@ int PressureSystem::solve(std::span<const double> b, std::vector<double>& x, dou
     return iterations;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -9,9 +9,10 @@
 #include "foundation/task_pool.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/grid/liquid_cells.h"
+#include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/solids.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 /// A x = b over the liquid's cells: (A x)_c = Σ_f w_f / θ_f (x_c − x_neighbour), with w the open share of a face and x
 /// = 0 at a distance θ in air, plus what the pressure does to bodies that it moves. Symmetric, positive definite.
@@ -78,4 +79,4 @@ private:
     double scale_ = 0;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

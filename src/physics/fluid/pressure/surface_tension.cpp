@@ -7,7 +7,7 @@
 
 #include "physics/fluid/particles/transfer.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -108,4 +108,4 @@ void SurfacePressure::draw_in(const FluidGrid& grid, const float* place, float* 
     for (int axis = 0; axis < 3; ++axis) shift[axis] += way * slope[axis];
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -5,8 +5,9 @@
 
 #include "foundation/task_pool.h"
 #include "physics/fluid/grid/grid.h"
+#include "physics/fluid/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 /// Whether surface tension σ (N/m) is more than noise beside gravity on cells of h: these are finer than twice the
 /// capillary length √(σ/(ρ g)).
@@ -42,4 +43,4 @@ private:
     std::vector<float> curvature_;  // of the surface through or near a centre, 1/m; positive around a drop
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -9,7 +9,7 @@
 
 #include "physics/linear/dot_product.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 namespace {
 
@@ -377,4 +377,4 @@ void ViscositySystem::write_back(const Viscosity& liquid, FluidGrid& grid, Fluid
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "physics/fluid/grid/grid.h"
+#include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/solids.h"
 
-namespace embody::physics {
+namespace embody::physics::fluid {
 
 /// A liquid's resistance to shear.
 struct Viscosity {
@@ -73,4 +74,4 @@ private:
     std::vector<double> x_, r_, z_, p_, ap_, diagonal_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::fluid

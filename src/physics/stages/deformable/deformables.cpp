@@ -11,7 +11,7 @@
 #include "physics/stages/deformable/thin_groups.h"
 #include "physics/stages/stages.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -412,4 +412,4 @@ void advance_deformables(WorldState& world) {
     note_quiet(world, moving);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

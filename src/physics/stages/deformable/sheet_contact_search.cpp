@@ -9,7 +9,7 @@
 #include "physics/deformable/contact/box_grid.h"
 #include "physics/deformable/contact/nearest_points.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -226,4 +226,4 @@ void find_sheet_contacts(std::span<const TouchedBody> bodies, const std::vector<
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -2,12 +2,13 @@
 #pragma once
 
 #include "physics/stages/deformable/thin_deformables.h"
+#include "physics/stages/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 /// What of bodies pokes between the nodes of a sheet, once the contacts of its nodes are known: edges, rims and round
 /// sides under its edges, corners and small balls under its triangles. As of find_thin_contacts().
 void find_sheet_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide, double time_step,
                          Vec3 gravity, ThinDeformable& thin, TaskPool& workers);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -10,7 +10,7 @@
 #include "physics/deformable/contact/node_contacts.h"
 #include "physics/deformable/solid/surface_pairs.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -230,4 +230,4 @@ std::vector<SolidContact> find_solid_contacts(const WorldState& world, std::span
     return all;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/stages/namespace.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 /// Whether a deformable and a body, or another deformable, see each other.
 bool may_collide(const DeformableDefinition& deformable, const BodyDefinition& body);
@@ -19,4 +20,4 @@ std::vector<SolidContact> find_solid_contacts(const WorldState& world, std::span
 /// A contact's `partner` where that is another deformable.
 inline constexpr std::uint64_t first_deformable_partner = std::uint64_t{1} << 32;
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -126,4 +126,4 @@ void SolidTies::push(WorldState& world, std::uint32_t slot, SolidDeformable& sol
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -2,9 +2,10 @@
 #pragma once
 
 #include "physics/stages/deformable/thin_deformables.h"
+#include "physics/stages/namespace.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 /// Ties of a sheet or rope to soft solids that have made their substep already. What the solid gives where it is tied
 /// is known, so for the sheet's solve it is a small body there; what the pull has become moves the solid in the same
@@ -39,4 +40,4 @@ bool is_tied(const DeformableRecord& thin, std::uint32_t node, DeformableHandle 
 /// Whether it has a tie to a soft solid that is there.
 bool has_solid_ties(const WorldState& world, const DeformableRecord& thin);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -6,7 +6,7 @@
 
 #include "physics/stages/deformable/sheet_contact_search.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -98,4 +98,4 @@ std::vector<std::uint32_t> bodies_pushed_by(const DeformableRecord& record, std:
     return slots;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

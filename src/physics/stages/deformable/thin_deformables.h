@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/stages/namespace.h"
 #include "physics/state/deformable_record.h"
 
 namespace embody {
 class TaskPool;
 }
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 /// A sheet or rope in a step.
 struct ThinDeformable {
@@ -29,4 +30,4 @@ std::span<const TouchSpring> springs_of(const DeformableRecord& record);
 /// Slots of the bodies that it pushed in the last substep, ascending.
 std::vector<std::uint32_t> bodies_pushed_by(const DeformableRecord& record, std::span<const TouchedBody> bodies);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

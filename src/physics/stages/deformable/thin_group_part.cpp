@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<std::uint32_t, 2>>& segments) {
     ThinSurface surface;
@@ -309,4 +309,4 @@ void ThinGroupPart::advance(std::span<TouchedBody> bodies) {
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

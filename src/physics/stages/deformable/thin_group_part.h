@@ -3,8 +3,9 @@
 
 #include "physics/deformable/contact/tie_springs.h"
 #include "physics/stages/deformable/thin_groups.h"
+#include "physics/stages/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 /// One part of a substep of sheets and ropes that are solved together (docs/physics/cloth.md).
 class ThinGroupPart {
@@ -62,4 +63,4 @@ void note_breaks(WorldState& world, const DeformableRecord& record);
 /// What others meet of it. `segments`: keeps those of a rope.
 ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<std::uint32_t, 2>>& segments);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

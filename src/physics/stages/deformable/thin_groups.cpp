@@ -10,7 +10,7 @@
 #include "physics/stages/deformable/thin_group_part.h"
 #include "physics/stages/deformable/thin_on_solids.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -275,4 +275,4 @@ void forget_thin_contacts(WorldState& world, std::uint32_t slot) {
                   [&](const auto& memory) { return memory.first.first == slot || memory.first.second == slot; });
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

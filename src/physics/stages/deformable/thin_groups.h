@@ -3,9 +3,10 @@
 
 #include "physics/deformable/contact/pair_springs.h"
 #include "physics/stages/deformable/thin_deformables.h"
+#include "physics/stages/namespace.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 /// A tie between two of a group, by index in its members.
 struct ThinTie {
@@ -33,4 +34,4 @@ void advance_thin_groups(WorldState& world, std::span<const ThinGroup> groups, s
 /// What the deformable of that slot has touched of others is no more.
 void forget_thin_contacts(WorldState& world, std::uint32_t slot);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

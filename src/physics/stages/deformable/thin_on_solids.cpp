@@ -6,7 +6,7 @@
 #include "physics/stages/deformable/solid_contact_search.h"
 #include "physics/stages/deformable/solid_ties.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 const PlacedSurface& ThinOnSolids::surface(std::uint32_t slot) {
     const auto known = surfaces_.find(slot);
@@ -123,4 +123,4 @@ void ThinOnSolids::take(ThinDeformable& thin, std::span<const TouchedBody> bodie
     std::ranges::stable_sort(sheet.surface_pushes, {}, touch_of);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

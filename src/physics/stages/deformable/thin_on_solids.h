@@ -6,9 +6,10 @@
 
 #include "physics/deformable/solid/surface_pairs.h"
 #include "physics/stages/deformable/thin_deformables.h"
+#include "physics/stages/namespace.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 /// Sheets and ropes on soft solids that have made their substep already (docs/physics/cloth.md). For the sheet each is
 /// a body that cannot be moved; what the sheet pushes acts on the solid from its next substep on.
@@ -49,4 +50,4 @@ private:
     std::vector<Vec3> push_, move_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -7,7 +7,7 @@
 #include "physics/stages/fluid/fluids.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -212,4 +212,4 @@ FluidIds move_particles(FluidRecord& from, FluidIds ids, FluidRecord& to) {
     return to.solver->add_particles(from.solver->take_particles(ids), from.solver->origin());
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

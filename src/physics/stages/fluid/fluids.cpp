@@ -8,7 +8,7 @@
 #include "physics/stages/rigid/wake.h"
 #include "physics/stages/stages.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -307,4 +307,4 @@ void settle_fluids(WorldState& world) {
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

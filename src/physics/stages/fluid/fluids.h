@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/stages/namespace.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 /// Particles that fill the definition's volume and no solid. Fails where there are none or too many, or a hull is flat.
 Result<FluidRecord> set_up_fluid(const WorldState& world, const FluidDefinition& definition);
@@ -18,4 +19,4 @@ void prepare_fluid(WorldState& world, FluidRecord& fluid);
 /// Fills what is read of a fluid from its solver.
 void read_particles(FluidRecord& record, TaskPool& workers);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -6,7 +6,7 @@
 
 #include "physics/dynamic/equations_of_motion.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -178,4 +178,4 @@ void BodyPaths::remember(std::span<const std::uint32_t> bodies) {
     });
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

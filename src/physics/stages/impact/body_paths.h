@@ -5,9 +5,10 @@
 #include <cstdint>
 #include <span>
 
+#include "physics/stages/namespace.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 /// Where bodies are within a step if nothing but their free motion and the impacts so far move them. A view of the
 /// world, made anew each step; its memory is the world's (ImpactMemory).
@@ -65,4 +66,4 @@ private:
     const std::size_t states_;  ///< remembered of a path: one for each substep's end
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -23,7 +23,7 @@
 #include "physics/stages/impact/impact_regions.h"
 #include "physics/stages/stages.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -474,4 +474,4 @@ void solve_impacts(WorldState& world) {
     if (!world.contacts.empty()) ImpactStage(world).run();
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -6,7 +6,7 @@
 
 #include "physics/dynamic/equations_of_motion.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -180,4 +180,4 @@ void gather_jointed(WorldState& world) {
     sort_once(found);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

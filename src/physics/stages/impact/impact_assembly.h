@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/stages/namespace.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 /// Adds to the bodies of the present impact (ImpactMemory::bodies) those that joints connect with them, at most
 /// `most_jointed_bodies` and as many joints as a direct solve takes, the fewest joints away first; lists them and their
@@ -27,4 +28,4 @@ void move_carriers(WorldState& world, double time);
 /// Puts them back to where they are at the step's start.
 void put_carriers_back(WorldState& world);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

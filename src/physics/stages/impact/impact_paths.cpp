@@ -8,7 +8,7 @@
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/state/share_awake.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 ImpactPaths::ImpactPaths(WorldState& world, const BodyPaths& bodies)
     : world_(world),
@@ -268,4 +268,4 @@ void ImpactPaths::leave_open(Contact& contact) {
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -5,8 +5,9 @@
 #include <cstdint>
 
 #include "physics/stages/impact/body_paths.h"
+#include "physics/stages/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 /// Which contacts close as fast as an impact does, and when, on the paths that their bodies take through the step. A
 /// view of the world, made anew each step; its memory is the world's.
@@ -84,4 +85,4 @@ private:
     const std::size_t most_heap_bounces_;  ///< in a step; the collapse of a large heap of bouncing bodies has no end
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

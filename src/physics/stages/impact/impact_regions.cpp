@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -226,4 +226,4 @@ void ImpactRegions::add_loaded_neighbours(std::span<const std::uint32_t> bodies,
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

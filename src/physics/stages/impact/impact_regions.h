@@ -4,8 +4,9 @@
 #include <optional>
 
 #include "physics/stages/impact/impact_paths.h"
+#include "physics/stages/namespace.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 /// Where two bodies meet at the moment of an impact, and the sites of the group that collides there. Like ImpactPaths a
 /// view of the world for one step.
@@ -75,4 +76,4 @@ private:
     const double step_;
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -15,7 +15,7 @@
 #include "physics/constraint/rolling/rolling_ball.h"
 #include "physics/dynamic/equations_of_motion.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -339,4 +339,4 @@ bool roll_ball(const WorldState& world, std::uint32_t body, std::span<const std:
     return BallPath(world, body, contacts, surroundings).roll(rolled);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

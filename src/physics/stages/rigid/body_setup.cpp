@@ -9,7 +9,7 @@
 #include "physics/stages/rigid/wake.h"
 #include "physics/stages/touch/pair_watch.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -185,4 +185,4 @@ BodyDefinition current_definition(const WorldState& world, std::uint32_t body) {
     return definition;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

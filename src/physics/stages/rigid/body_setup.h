@@ -3,9 +3,10 @@
 
 #include <span>
 
+#include "physics/stages/namespace.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 /// What a definition becomes: checked and computed before anything in the world changes.
 struct BodySetup {
@@ -39,4 +40,4 @@ void add_jointed_pair(WorldState& world, const JointDefinition& joint);
 /// The definition as it stands now.
 BodyDefinition current_definition(const WorldState& world, std::uint32_t body);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -11,7 +11,7 @@
 #include "physics/stages/stages.h"
 #include "physics/state/share_awake.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -202,4 +202,4 @@ void stop_tunnelling(WorldState& world) {
     for (const FastBody& each : fast) put_back(world, each.body, first_touch(world, each.body, fast));
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

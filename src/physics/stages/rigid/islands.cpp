@@ -6,7 +6,7 @@
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/stages/stages.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -115,4 +115,4 @@ void find_islands(WorldState& world) {
     world.report.islands = static_cast<std::uint32_t>(world.islands.list.size());
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

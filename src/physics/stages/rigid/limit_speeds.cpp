@@ -4,7 +4,7 @@
 #include "physics/stages/stages.h"
 #include "physics/state/share_awake.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -33,4 +33,4 @@ void limit_speeds(WorldState& world) {
     world.report.limits |= limits;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

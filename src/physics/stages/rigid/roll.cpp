@@ -7,7 +7,7 @@
 #include "physics/collision/shapes/collision_shape_data.h"
 #include "physics/constraint/rolling/rolling_body.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -150,4 +150,4 @@ bool roll_alone(WorldState& world, const Island& island) {
     return true;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

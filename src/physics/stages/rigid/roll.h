@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/stages/namespace.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 /// A point of the contacts.
 struct DeepestPoint {
@@ -20,4 +21,4 @@ bool roll_alone(WorldState& world, const Island& island);
 /// All of the ground's impulse (N s, on the contact's b) at that point of an island's contacts, in the sweeps' measure.
 void note_load(WorldState& world, std::span<const std::uint32_t> contacts, const DeepestPoint& deepest, Vec3 impulse);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -8,7 +8,7 @@
 #include "physics/stages/rigid/roll.h"
 #include "physics/state/share_awake.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -106,4 +106,4 @@ bool take_rolled_ball(WorldState& world, const Island& island) {
     return true;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -5,7 +5,7 @@
 #include "physics/stages/stages.h"
 #include "physics/state/share_awake.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -78,4 +78,4 @@ void put_to_sleep(WorldState& world) {
     world.touch_memory.is_laid_out = false;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

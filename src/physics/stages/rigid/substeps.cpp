@@ -13,7 +13,7 @@
 #include "physics/stages/stages.h"
 #include "physics/state/share_awake.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -499,4 +499,4 @@ void run_substeps(WorldState& world) {
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

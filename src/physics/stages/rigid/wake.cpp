@@ -6,7 +6,7 @@
 #include "physics/stages/stages.h"
 #include "physics/state/share_awake.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -169,4 +169,4 @@ void gather_awake(WorldState& world) {
     });
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -4,9 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "physics/stages/namespace.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 /// Wakes the sleeping group of a body, if it sleeps; its contacts serve as warm start of the next step.
 void wake_group_of(WorldState& world, std::uint32_t body);
@@ -27,4 +28,4 @@ void wake_around(WorldState& world, std::span<const std::uint32_t> bodies);
 /// By slot, whether it is one of these.
 std::vector<bool> marked(const WorldState& world, std::span<const std::uint32_t> bodies);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -3,7 +3,7 @@
 #include "physics/stages/stages.h"
 #include "physics/state/share_awake.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -89,4 +89,4 @@ void find_pairs(WorldState& world) {
     world.report.pairs = static_cast<std::uint32_t>(world.pairs->size());
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -158,4 +158,4 @@ void leave_alone(const WorldState& world, PairWatch& watch, double way) {
     watch.look_again = bodies[watch.pair.a].path + bodies[watch.pair.b].path + std::min(way, longest_way);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/stages/namespace.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 // Most pairs of the broad phase are apart. A pair that nothing is found of is left alone until the ways that the two
 // bodies have gone since, and may go in the step, add up to the gap it had: whoever asks reads two numbers of each pair
@@ -40,4 +41,4 @@ void for_each_live_pair(WorldState& world, Visit&& visit) {
     }
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -5,7 +5,7 @@
 
 #include "physics/collision/shapes/collision_shape_data.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -54,4 +54,4 @@ double leave_out_unreachable(const WorldState& world, const BroadPhase::Pair& pa
     return least;
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

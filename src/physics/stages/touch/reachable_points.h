@@ -5,9 +5,10 @@
 
 #include "physics/collision/broad_phase/broad_phase.h"
 #include "physics/collision/pairs/manifold.h"
+#include "physics/stages/namespace.h"
 #include "physics/state/world_state.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 /// Takes those points out of the contacts of what rolls that will not come nearer than `near` (m) in this step: a wheel
 /// that rolls brings nothing of its rim to the ground but its lowest point, however far it goes. They would draw the
@@ -16,4 +17,4 @@ namespace embody::physics {
 double leave_out_unreachable(const WorldState& world, const BroadPhase::Pair& pair, double near,
                              std::vector<Manifold>& manifolds);
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -7,7 +7,7 @@
 #include "physics/stages/touch/pair_watch.h"
 #include "physics/stages/touch/reachable_points.h"
 
-namespace embody::physics {
+namespace embody::physics::stages {
 
 namespace {
 
@@ -483,4 +483,4 @@ void find_contacts(WorldState& world) {
     lay_out(world);
 }
 
-}  // namespace embody::physics
+}  // namespace embody::physics::stages

@@ -9,7 +9,7 @@
 #include "physics/deformable/cloth/cloth_sheet.h"
 #include "physics/deformable/rope/rope_line.h"
 
-namespace embody::physics {
+namespace embody::physics::deformable {
 
 inline constexpr double gravity = 9.81;
 
@@ -104,4 +104,4 @@ struct DeformableScene {
     }
 };
 
-}  // namespace embody::physics
+}  // namespace embody::physics::deformable

@@ -8,7 +8,7 @@
 #include "physics/definitions/deformable_primitives.h"
 #include "physics/inter/world.h"
 
-namespace embody::physics {
+namespace embody::physics::dynamic {
 namespace {
 
 TEST(Wind, IsSteadyWithoutGusts) {
@@ -80,4 +80,4 @@ TEST(Wind, BlowsAHangingSheetAsideAndAnotherWindWakesIt) {
 }
 
 }  // namespace
-}  // namespace embody::physics
+}  // namespace embody::physics::dynamic

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace embody::physics {
+namespace optimization {}
+namespace deformable {}
+namespace fluid {}
+namespace constraint {}
+namespace collision {}
+namespace dynamic {}
+}  // namespace embody::physics
+
+/// All that a world remembers, and the memory of its stages. Only stages, step and the face see it.
+namespace embody::physics::state {
+
+// The rooms that it may see (docs/architecture.md).
+using namespace optimization;
+using namespace deformable;
+using namespace fluid;
+using namespace constraint;
+using namespace collision;
+using namespace dynamic;
+
+}  // namespace embody::physics::state

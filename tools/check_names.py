@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Fails where two classes have one name: the linker would merge them in silence (one definition rule).
+
+Usage: check_names.py [ROOT]   (default: the folder above this file)
+Looks at all classes, structs, unions and enumerations at namespace scope below src/ that are not in an unnamed namespace. Types inside others
+are named by them.
+"""
+import pathlib
+import re
+import sys
+
+TOKEN = re.compile(r"""//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+'|\#[^\n]*(?:\\\n[^\n]*)*|\w+|::|[{};()<>=:,]""", re.S)
+KINDS = {"class", "struct", "union", "enum"}
+
+
+def definitions(text: str):
+    """Qualified names of the types that the text defines at namespace scope."""
+    tokens = [t.group(0) for t in TOKEN.finditer(text) if t.group(0)[0] not in "#\"'" and t.group(0)[:2] not in ("//", "/*", 'R"')]
+    scopes = []          # of each open brace: a namespace's name, "" for an unnamed one, None for anything else
+    start = 0            # of the declaration at work
+    for i, token in enumerate(tokens):
+        if token == ";":
+            start = i + 1
+        elif token == "}":
+            if scopes:
+                scopes.pop()
+            start = i + 1
+        elif token == "{":
+            head = tokens[start:i]
+            start = i + 1
+            if "namespace" in head and "using" not in head:
+                scopes.append("::".join(t for t in head[head.index("namespace") + 1:] if t not in ("::", "inline")))
+                continue
+            if None not in scopes and "" not in scopes and "(" not in head and "=" not in head:
+                places = [k for k, t in enumerate(head) if t in KINDS]
+                # "template <class T> struct X" defines X, "struct X::Y" a member of X; a specialisation is named by its arguments.
+                rest = [t for t in head[places[-1] + 1:] if t not in ("final", "alignas")] if places else []
+                name = rest[:1]
+                while len(rest) > len(name) + 1 and rest[len(name)] == "::":
+                    name = rest[:len(name) + 2]
+                if name and re.match(r"[A-Za-z_]", name[0]) and "<" not in rest:
+                    yield "::".join([s for s in scopes if s] + [t for t in name if t != "::"])
+            scopes.append(None)
+
+
+def main() -> int:
+    root = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent
+    found, wrong = {}, 0
+    for path in sorted((root / "src").rglob("*")):
+        if path.suffix not in (".h", ".cpp"):
+            continue
+        for name in definitions(path.read_text()):
+            place = path.relative_to(root).as_posix()
+            if found.setdefault(name, place) != place:
+                print(f"{place}: {name} is defined in {found[name]}, too; rename one, or put it into an unnamed namespace")
+                wrong += 1
+    print(f"{len(found)} types, {wrong} of them twice")
+    if not found:
+        print("nothing was found: is this the right folder?")
+    return 1 if wrong or not found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
