@@ -428,6 +428,76 @@ TEST(Bowls, BallKeepsItsEnergyOverHillsAndSaddles) {
     }
 }
 
+// Marbles on one ring of the hollow, each with a place of its own; the ground has no bounce, they have among
+// themselves.
+Outcome swing_together(const Hollow& hollow, int count, double restitution, double mu, std::uint64_t seed,
+                       double seconds) {
+    Random random(seed);
+    auto world = make_world({.air_density = 0});
+    add_hollow(*world, hollow, mu, random);
+    const double r = 0.05, centre = hollow.radius - r;
+    const auto shape = world->create_shape(SphereShape{r}).value();
+    const Material glass{.friction_static = mu,
+                         .friction_dynamic = mu,
+                         .restitution = restitution,
+                         .friction_combine = CombineRule::geometric_mean,
+                         .restitution_combine = CombineRule::multiply};
+    double lowest = 0;
+    for (int i = 0; i < count; ++i) {
+        // In a pipe one beside the other across it, in a bowl around its middle.
+        const bool is_bowl = hollow.kind.ends_with("bowl");
+        const double angle = is_bowl ? random.between(0.3, 0.7) : -0.6 + 1.2 * (i + 0.5) / count;
+        const double around = is_bowl ? 2 * pi * (i + random.between(-0.2, 0.2)) / count : random.between(-0.02, 0.02);
+        Vec3 place{centre * std::sin(angle), hollow.radius - centre * std::cos(angle), around};
+        if (is_bowl) {
+            place = {centre * std::sin(angle) * std::cos(around), place.y, centre * std::sin(angle) * std::sin(around)};
+        }
+        const auto body =
+            world->create_body({.shape = shape, .position = place, .material = glass, .allow_sleep = false}).value();
+        lowest += world->mass(body) * gravity * r;
+    }
+    Outcome outcome;
+    double start = 0;
+    for (int i = 0; i < std::lround(seconds * 60); ++i) {
+        const double now = energy(*world) - lowest;
+        if (i == 6) start = now;
+        if (start > 0) {
+            outcome.last = now / start;
+            outcome.least = std::min(outcome.least, outcome.last);
+            outcome.most = std::max(outcome.most, outcome.last);
+        }
+        world->step();
+    }
+    return outcome;
+}
+
+TEST(Bowls, MarblesThatHitEachOtherGainNothingAndLoseNoneByThat) {
+    struct Case {
+        const char* kind;
+        int count;
+        double restitution;
+    };
+    for (const auto& [kind, count, restitution] : {Case{"bowl", 2, 1},
+                                                   {"bowl", 10, 1},
+                                                   {"field bowl", 3, 1},
+                                                   {"field bowl", 5, 1},
+                                                   {"pipe", 2, 1},
+                                                   {"pipe", 10, 1},
+                                                   {"box pipe", 3, 1},
+                                                   {"bowl", 3, 0.9},
+                                                   {"field bowl", 10, 0.9},
+                                                   {"pipe", 5, 0.9}}) {
+        const Hollow hollow{kind, 1, 60, std::string(kind).starts_with("field") ? 1.0 : 1.5};
+        for (const double mu : {0.0, 0.5}) {
+            const Outcome outcome = swing_together(hollow, count, restitution, mu, 1, 60);
+            EXPECT_LT(outcome.most, 1 + 1e-6) << count << " in a " << kind << " mu " << mu;
+            // What rolls slips after a collision, and rubs.
+            if (restitution < 1 || mu > 0) continue;
+            EXPECT_GT(outcome.least, 1 - bar) << count << " in a " << kind;
+        }
+    }
+}
+
 TEST(RandomBowls, KeepTheEnergyOfWhatRollsOrSlidesFreely) {
     constexpr int usual = 12;
     const int cases = wanted_cases("EMBODY_BOWL_CASES", usual);

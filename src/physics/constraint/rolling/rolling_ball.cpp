@@ -7,6 +7,9 @@
 //     (1 + k) (dv/dt)_t = k r σ n × dn/dt + a_t,   r dσ/dt = −v · (n × dn/dt).
 // For n that turns by φ about the axis t, without a: with u = v·t, w = r σ, κ = k/(1 + k)
 //     du/dφ = κ w,   dw/dφ = −u,   so u² + κ w² stays;   v across t stays and turns along.
+// Two balls that collide: an impulse P along the line of centres c is answered by the ground, which takes what points
+// into it, so each yields with (1 − (c·n)²)/m, and P (1 + e) conserves energy for e = 1. For spheres it does not change
+// the slip, and friction not the approach, so eq. (3) of the paper ends in min(µ P, what stops the slip).
 // Sources: E. Routh, "Advanced dynamics", 1905, chapter V (a sphere that rolls on a surface); M. Gualtieri et al.,
 // "Golfer's dilemma", 2006 (the same in a cylinder).
 #include "physics/constraint/rolling/rolling_ball.h"
@@ -89,6 +92,39 @@ bool set_energy(BallMotion& ball, Vec3 normal, double energy, bool rolls) {
     ball.velocity *= has_energy ? std::sqrt(wanted / now) : 0;
     if (rolls) ball.spin = (cross(normal, ball.velocity) + normal * whirl) / ball.radius;
     return has_energy;
+}
+
+std::optional<Vec3> collide_balls(const CollidingBall& a, const CollidingBall& b, Vec3 direction, double restitution,
+                                  double friction) {
+    constexpr double most_lift = 1e-3;  // m/s
+    const auto yielding_along = [&](const CollidingBall& ball) {
+        const double into_ground = dot(direction, ball.ground);
+        return (1 - into_ground * into_ground) / ball.mass;
+    };
+    const auto surface_velocity = [&](const CollidingBall& ball, double side) {
+        return ball.motion.velocity + cross(ball.motion.spin, direction * (side * ball.motion.radius));
+    };
+    const double closing = dot(direction, a.motion.velocity - b.motion.velocity);
+    const double normal = (1 + restitution) * closing / (yielding_along(a) + yielding_along(b));
+
+    // The slip of spheres yields to friction alone.
+    Vec3 slip = surface_velocity(b, -1) - surface_velocity(a, 1);
+    slip -= direction * dot(direction, slip);
+    const double speed = length(slip);
+    const double yielding = (1 + 1 / a.motion.inertia) / a.mass + (1 + 1 / b.motion.inertia) / b.mass;
+    const Vec3 rubbing = speed > 0 ? slip * (-std::min(1 / yielding, friction * normal / speed)) : Vec3{};
+    const Vec3 impulse = direction * normal + rubbing;
+    if (-dot(impulse, a.ground) > most_lift * a.mass || dot(impulse, b.ground) > most_lift * b.mass)
+        return std::nullopt;
+    const auto push = [&](const CollidingBall& ball, double sign) {
+        BallMotion& motion = ball.motion;
+        const Vec3 change = impulse * (sign / ball.mass);
+        motion.velocity += change - ball.ground * dot(change, ball.ground);
+        motion.spin -= cross(direction, rubbing) / (motion.inertia * motion.radius * ball.mass);
+    };
+    push(a, -1);
+    push(b, 1);
+    return impulse;
 }
 
 }  // namespace embody::physics::constraint

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+
 #include "math/vec3.h"
+
 #include "physics/constraint/namespace.h"
 
 namespace embody::physics::constraint {
@@ -41,5 +44,17 @@ void turn_with_normal(BallMotion& ball, Vec3 from, Vec3 to, bool rolls);
 /// Gives the ball that kinetic energy (J/kg) by another speed along the surface; of what rolls the spin goes along, but
 /// for that about the normal. False where it has none left: then it stands.
 bool set_energy(BallMotion& ball, Vec3 normal, double energy, bool rolls);
+
+/// One of two balls that collide on still ground.
+struct CollidingBall {
+    BallMotion& motion;
+    double mass = 0;  ///< kg
+    Vec3 ground;      ///< normal of its ground, towards its centre
+};
+
+/// Collides two balls that approach each other, with the ground under each; `direction`: from a's centre to b's, unit.
+/// The impulse on b, N s; none, and nothing done, where it would lift one of them off its ground.
+std::optional<Vec3> collide_balls(const CollidingBall& a, const CollidingBall& b, Vec3 direction, double restitution,
+                                  double friction);
 
 }  // namespace embody::physics::constraint

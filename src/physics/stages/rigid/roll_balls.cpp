@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/stages/rigid/ball_path.h"
+#include "physics/stages/rigid/ball_cluster.h"
+#include "physics/stages/rigid/ball_ground.h"
 #include "physics/stages/rigid/roll.h"
 #include "physics/state/share_awake.h"
 
@@ -24,41 +25,122 @@ bool may_roll(const WorldState& world, std::uint32_t body) {
            constants.angular_damping == 0;
 }
 
+// What touches already and does not bounce is no impact.
+void leave_to_rolling(ContactGlance& glance) {
+    glance.was_touching = true;
+    glance.bounces = false;
+}
+
 void list_candidates(const WorldState& world, BallMemory& memory) {
     memory.count = 0;
     for (const std::uint32_t body : world.awake) {
         if (!may_roll(world, body)) continue;
         if (memory.count == 0) memory.of_body.assign(world.motion.size(), 0);
         if (memory.count == memory.candidates.size()) memory.candidates.emplace_back();
-        BallMemory::Candidate& candidate = memory.candidates[memory.count++];
+        BallMemory::Candidate& candidate = memory.candidates[memory.count];
         candidate.body = body;
-        candidate.is_alone = true;
-        candidate.has_rolled = false;
+        candidate.is_free = true;
+        candidate.has_rolled = candidate.has_company = false;
         candidate.contacts.clear();
+        candidate.parent = static_cast<std::uint32_t>(memory.count++);
         memory.of_body[body] = static_cast<std::uint32_t>(memory.count);
     }
 }
 
-void give_contacts(const WorldState& world, BallMemory& memory) {
-    const auto give = [&](std::uint32_t body, std::uint32_t other, std::uint32_t contact) {
-        if (memory.of_body[body] == 0) return;
+// Union-find with path halving; the smallest is the root.
+std::uint32_t root_of(BallMemory& memory, std::uint32_t ball) {
+    std::vector<BallMemory::Candidate>& list = memory.candidates;
+    while (list[ball].parent != ball) ball = list[ball].parent = list[list[ball].parent].parent;
+    return ball;
+}
+
+// Whom each ball touches: still ground, other balls, or what it cannot be followed beside.
+void list_neighbours(const WorldState& world, BallMemory& memory) {
+    memory.pairs.clear();
+    const auto add_ground = [&](std::uint32_t body, std::uint32_t other, std::uint32_t contact) {
         BallMemory::Candidate& candidate = memory.candidates[memory.of_body[body] - 1];
-        candidate.is_alone = candidate.is_alone && is_still(world.motion[other]);
-        if (candidate.is_alone) candidate.contacts.push_back(contact);
+        candidate.is_free = candidate.is_free && is_still(world.motion[other]);
+        if (candidate.is_free) candidate.contacts.push_back(contact);
     };
     for (std::uint32_t i = 0; i < world.contact_glances.size(); ++i) {
         const ContactGlance& glance = world.contact_glances[i];
-        give(glance.a, glance.b, i);
-        give(glance.b, glance.a, i);
+        const std::uint32_t a = memory.of_body[glance.a], b = memory.of_body[glance.b];
+        if (a > 0 && b > 0) {
+            memory.pairs.push_back({i, a - 1, b - 1, {}, 0});
+            const std::uint32_t first = root_of(memory, a - 1), second = root_of(memory, b - 1);
+            memory.candidates[std::max(first, second)].parent = std::min(first, second);
+        } else if (a > 0) {
+            add_ground(glance.a, glance.b, i);
+        } else if (b > 0) {
+            add_ground(glance.b, glance.a, i);
+        }
     }
     const auto leave_out = [&](std::uint32_t body) {
-        if (memory.of_body[body] > 0) memory.candidates[memory.of_body[body] - 1].is_alone = false;
+        if (memory.of_body[body] > 0) memory.candidates[memory.of_body[body] - 1].is_free = false;
     };
     for (std::uint32_t slot = 0; slot < world.joints.slot_count(); ++slot) {
         if (!world.joints.used(slot)) continue;
         const JointDefinition& joint = world.joints.at(slot).definition;
         leave_out(joint.body_b.index);
         if (!joint.body_a.is_null()) leave_out(joint.body_a.index);
+    }
+}
+
+bool is_followed(const BallMemory::Candidate& candidate) { return candidate.is_free && !candidate.contacts.empty(); }
+
+// Those that no other ball is near.
+void roll_single_balls(WorldState& world, BallMemory& memory) {
+    constexpr std::size_t fewest_shared = 64;
+    for (const BallMemory::Pair& pair : memory.pairs) {
+        memory.candidates[pair.a].has_company = memory.candidates[pair.b].has_company = true;
+    }
+    share_among(*world.workers, memory.count, memory.count >= fewest_shared, [&](int, Share share) {
+        for (std::size_t i = share.first; i < share.last; ++i) {
+            BallMemory::Candidate& candidate = memory.candidates[i];
+            if (candidate.has_company || !is_followed(candidate)) continue;
+            candidate.rolled.candidate = static_cast<std::uint32_t>(i);
+            candidate.has_rolled =
+                path_of_ball(world, candidate.body, candidate.contacts, candidate.surroundings).roll(candidate.rolled);
+        }
+    });
+}
+
+// What the collisions of a cluster leave in the contact and the account of the step.
+void note_collision(WorldState& world, const BallMemory::Pair& pair) {
+    if (pair.impulse == Vec3{}) return;
+    Contact& contact = world.contacts[pair.contact];
+    contact.points[0].total += static_cast<float>(dot(pair.impulse, contact.normal));
+    contact.friction_total.along_1 += static_cast<float>(dot(pair.impulse, contact.tangent_1));
+    contact.friction_total.along_2 += static_cast<float>(dot(pair.impulse, tangent_2(contact)));
+    contact.had_impact = true;
+    ++world.report.impacts;
+    if (world.ledger) world.ledger->note_impact({}, pair.energy_change, world);
+}
+
+void roll_clusters(WorldState& world, BallMemory& memory) {
+    constexpr std::size_t most_members = 32;
+    for (BallMemory::Pair& pair : memory.pairs) pair.root = root_of(memory, pair.a);
+    std::sort(memory.pairs.begin(), memory.pairs.end(), [](const BallMemory::Pair& p, const BallMemory::Pair& q) {
+        return p.root != q.root ? p.root < q.root : p.contact < q.contact;
+    });
+    for (auto first = memory.pairs.begin(); first != memory.pairs.end();) {
+        const auto last = std::find_if(first, memory.pairs.end(),
+                                       [&](const BallMemory::Pair& pair) { return pair.root != first->root; });
+        const std::span<BallMemory::Pair> pairs(first, last);
+        first = last;
+        std::vector<std::uint32_t>& members = memory.members;
+        members.clear();
+        for (const BallMemory::Pair& pair : pairs) members.insert(members.end(), {pair.a, pair.b});
+        std::sort(members.begin(), members.end());
+        members.erase(std::unique(members.begin(), members.end()), members.end());
+        const auto can_be_followed = [&](std::uint32_t index) { return is_followed(memory.candidates[index]); };
+        if (members.size() > most_members || !std::all_of(members.begin(), members.end(), can_be_followed)) continue;
+        if (!roll_cluster(world, memory, members, pairs)) continue;
+        for (const std::uint32_t index : members) memory.candidates[index].has_rolled = true;
+        for (const BallMemory::Pair& pair : pairs) {
+            note_collision(world, pair);
+            leave_to_rolling(world.contact_glances[pair.contact]);
+        }
     }
 }
 
@@ -69,40 +151,34 @@ void roll_balls(WorldState& world) {
     memory.rolled.clear();
     list_candidates(world, memory);
     if (memory.count == 0) return;
-    give_contacts(world, memory);
-    constexpr std::size_t fewest_shared = 64;
-    memory.surroundings.resize(static_cast<std::size_t>(world.workers->workers()));
-    share_among(*world.workers, memory.count, memory.count >= fewest_shared, [&](int worker, Share share) {
-        BallMemory::Surroundings& own = memory.surroundings[static_cast<std::size_t>(worker)];
-        for (std::size_t i = share.first; i < share.last; ++i) {
-            BallMemory::Candidate& candidate = memory.candidates[i];
-            if (!candidate.is_alone || candidate.contacts.empty()) continue;
-            candidate.has_rolled = roll_ball(world, candidate.body, candidate.contacts, own, candidate.rolled);
-        }
-    });
+    list_neighbours(world, memory);
+    roll_single_balls(world, memory);
+    roll_clusters(world, memory);
     for (std::size_t i = 0; i < memory.count; ++i) {
         const BallMemory::Candidate& candidate = memory.candidates[i];
         if (!candidate.has_rolled) continue;
         memory.rolled.push_back(candidate.rolled);
-
-        // What touches already and does not bounce is no impact.
-        for (const std::uint32_t contact : candidate.contacts) {
-            world.contact_glances[contact].was_touching = true;
-            world.contact_glances[contact].bounces = false;
-        }
+        for (const std::uint32_t contact : candidate.contacts) leave_to_rolling(world.contact_glances[contact]);
     }
 }
 
-bool take_rolled_ball(WorldState& world, const Island& island) {
+bool take_rolled_balls(WorldState& world, const Island& island) {
     const std::vector<RolledBall>& list = world.ball_memory.rolled;
-    if (list.empty() || island.body_count != 1 || island.joint_count > 0) return false;
-    const std::uint32_t body = world.islands.bodies[island.first_body];
-    const auto found = std::lower_bound(list.begin(), list.end(), body,
-                                        [](const RolledBall& ball, std::uint32_t slot) { return ball.body < slot; });
-    if (found == list.end() || found->body != body) return false;
-    world.motion[body] = found->state;
-    const auto contacts = std::span(world.islands.contacts).subspan(island.first_contact, island.contact_count);
-    note_load(world, contacts, {found->contact, 0}, found->impulse);
+    if (list.empty() || island.joint_count > 0) return false;
+    const auto find = [&](std::uint32_t body) {
+        const auto found =
+            std::lower_bound(list.begin(), list.end(), body,
+                             [](const RolledBall& ball, std::uint32_t slot) { return ball.body < slot; });
+        return found != list.end() && found->body == body ? &*found : nullptr;
+    };
+    const auto bodies = std::span(world.islands.bodies).subspan(island.first_body, island.body_count);
+    if (!std::all_of(bodies.begin(), bodies.end(), [&](std::uint32_t body) { return find(body) != nullptr; }))
+        return false;
+    for (const std::uint32_t body : bodies) {
+        const RolledBall& ball = *find(body);
+        world.motion[body] = ball.state;
+        note_load(world, world.ball_memory.candidates[ball.candidate].contacts, {ball.contact, 0}, ball.impulse);
+    }
     return true;
 }
 

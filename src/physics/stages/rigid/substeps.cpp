@@ -190,9 +190,11 @@ const IslandsBySolver& sort_islands(WorldState& world) {
     world.held.resize(world.bodies.slot_count());
     world.direct_solver.begin(world.settings.time_step, world.settings.substeps);
     for (const Island& island : world.islands.list) {
-        if (take_rolled_ball(world, island)) {
+        if (take_rolled_balls(world, island)) {
             note_outcomes(world, island);
-            if (world.ledger) world.ledger->note_rolled(world.islands.bodies[island.first_body]);
+            for (const std::uint32_t body : bodies_of(world, island)) {
+                if (world.ledger) world.ledger->note_rolled(body);
+            }
         } else if (island.contact_count == 0 && island.joint_count == 0) {
             ways.free.push_back(world.islands.bodies[island.first_body]);
         } else if (island.contact_count == 0 && joint_system(world, island)) {

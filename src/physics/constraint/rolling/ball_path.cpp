@@ -5,24 +5,22 @@
 // smooth_edge_angle: there the turn takes nothing. Whatever the parts leave out, the energy says the speed:
 //     T₁ = T₀ + m a · (x₁ − x₀) + work of friction,
 // so what puts the ball back takes from its motion what it lifts.
-#include "physics/stages/rigid/ball_path.h"
+#include "physics/constraint/rolling/ball_path.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "physics/collision/queries/ball_touch.h"
-#include "physics/constraint/rolling/rolling_ball.h"
 #include "physics/dynamic/equations_of_motion.h"
 
-namespace embody::physics::stages {
+namespace embody::physics::constraint {
 
 namespace {
 
 constexpr double same_normal = 1 - 1e-9;     // cosine
 constexpr double part_turn = 0.06;           // rad of the normal, or of a swing's phase, in a part
 constexpr double part_way = 0.5;             // of the radius, in a part
-constexpr int most_parts = 256;              // of a step
 constexpr int most_halvings = 6;             // of a part
 constexpr double slow = 2e-3;                // m/s: slower by itself and by a step's gravity, it comes to rest
 constexpr double slow_resisted = 0.05;       // m/s: the same of what the ground resists to roll
@@ -35,77 +33,23 @@ constexpr double most_fall = 0.05;           // m/s: faster, what did not touch 
 
 const double smooth_cosine = std::cos(smooth_edge_angle);
 
-/// The ball on its way.
-struct Place {
-    Vec3 center;
-    Quat rotation;
-    BallMotion motion;
-    BallTouch touch;
-    std::size_t ground = 0;
-    double centripetal = 0;  ///< v · dn/dt in the last part, m/s²: what the curvature of the ground asks for
-    bool rolls = false;
-};
+}  // namespace
 
-class BallPath {
-public:
-    BallPath(const WorldState& world, std::uint32_t body, std::span<const std::uint32_t> contacts,
-             BallMemory::Surroundings& surroundings);
-    bool roll(RolledBall& rolled);
-
-private:
-    void find(Vec3 center, double margin);
-    [[nodiscard]] bool is_flat(const Place& at) const;
-    bool is_plain(const Place& at);
-    bool begin(Place& at);
-    [[nodiscard]] int count_parts(const Place& at) const;
-    [[nodiscard]] double load(const Place& at) const;
-    bool leaves(const Place& at);
-    bool hit(Place& at, Vec3 last_normal);
-    bool settle(Place& at, const Vec3* last_normal, double margin);
-    double move_along_plane(const Place& from, Place& to, double pressing, double time) const;
-    std::optional<double> turn_or_hit(Place& at, Vec3 last_normal, double time);
-    bool advance(Place& at, double time, int halvings);
-    void write(const Place& at, RolledBall& rolled) const;
-
-    const WorldState& world_;
-    const std::uint32_t body_;
-    const std::span<const std::uint32_t> contacts_;
-    const BodyState& state_;
-    const double step_, radius_;
-    const Vec3 acceleration_;
-    const double mass_;
-    bool was_touching_ = false, bounces_ = false, resists_ = false;
-    std::vector<BallMemory::Ground>& grounds_;
-    std::vector<BallTouch>& touches_;
-    std::vector<std::size_t>& ground_of_;
-};
-
-BallPath::BallPath(const WorldState& world, std::uint32_t body, std::span<const std::uint32_t> contacts,
-                   BallMemory::Surroundings& surroundings)
-    : world_(world),
-      body_(body),
-      contacts_(contacts),
-      state_(world.motion[body]),
-      step_(world.settings.time_step),
-      radius_(world.record(body).reach),
-      acceleration_(world.constants[body].acceleration),
-      mass_(world.constants[body].mass),
+BallPath::BallPath(const BallInStep& ball, BallSurroundings& surroundings)
+    : ball_(ball),
+      state_(ball.state),
+      step_(ball.step),
+      radius_(ball.radius),
+      acceleration_(ball.constants.acceleration),
+      mass_(ball.constants.mass),
       grounds_(surroundings.grounds),
       touches_(surroundings.touches),
       ground_of_(surroundings.ground_of) {
-    grounds_.clear();
-    for (const std::uint32_t index : contacts) {
-        const Contact& contact = world.contacts[index];
-        const std::uint32_t other = contact.a == body ? contact.b : contact.a;
+    for (const std::uint32_t index : ball.own) {
+        const Contact& contact = ball.all_contacts[index];
         was_touching_ = was_touching_ || contact.was_touching;
         bounces_ = bounces_ || contact.bounces;
         resists_ = resists_ || contact.friction_rolling > 0 || contact.friction_torsional > 0;
-        if (!grounds_.empty() && grounds_.back().body == other) continue;
-        grounds_.push_back({other,
-                            world.record(other).shape,
-                            world.pose(other),
-                            {contact.friction_static, contact.friction_dynamic, contact.friction_rolling,
-                             contact.friction_torsional}});
     }
 }
 
@@ -113,14 +57,13 @@ void BallPath::find(Vec3 center, double margin) {
     touches_.clear();
     ground_of_.clear();
     for (std::size_t i = 0; i < grounds_.size(); ++i) {
-        find_ball_touches(*world_.record(body_).shape, radius_, center, *grounds_[i].shape, grounds_[i].pose, margin,
-                          touches_);
+        find_ball_touches(ball_.shape, radius_, center, *grounds_[i].shape, grounds_[i].pose, margin, touches_);
         ground_of_.resize(touches_.size(), i);
     }
 }
 
 // Puts the ball onto the ground near by: the surfaces there count as planes. The touch is the last one that moved it.
-bool BallPath::settle(Place& at, const Vec3* last_normal, double margin) {
+bool BallPath::settle(BallPlace& at, const Vec3* last_normal, double margin) {
     constexpr int rounds = 8;
     constexpr double rounding = 1e-12;  // m
     find(at.center, margin);
@@ -156,18 +99,18 @@ bool BallPath::settle(Place& at, const Vec3* last_normal, double margin) {
 
 // Comes to a place that stands at a real angle to the last one: what goes into it is lost, as in any impact without a
 // bounce. False where it bounces, or is wedged between the two, which is the contact solver's.
-bool BallPath::hit(Place& at, Vec3 last_normal) {
+bool BallPath::hit(BallPlace& at, Vec3 last_normal) {
     const Vec3 n = at.touch.normal;
     const double closing = -dot(at.motion.velocity, n);
     if (bounces_ || closing < 0) return false;
     at.motion.velocity += n * closing;
-    if (dot(at.motion.velocity, last_normal) < length(acceleration_) * step_ / world_.settings.substeps) return false;
+    if (dot(at.motion.velocity, last_normal) < length(acceleration_) * step_ / ball_.substeps) return false;
     at.rolls = push_along(at.motion, n, {}, closing, grounds_[at.ground].friction, 1).sticks;
     return true;
 }
 
 // Whether all that was found is one flat face.
-bool BallPath::is_flat(const Place& at) const {
+bool BallPath::is_flat(const BallPlace& at) const {
     return std::all_of(touches_.begin(), touches_.end(), [&](const BallTouch& touch) {
         return touch.is_flat && dot(touch.normal, at.touch.normal) >= same_normal;
     });
@@ -175,15 +118,15 @@ bool BallPath::is_flat(const Place& at) const {
 
 // Flat as far as it gets, and level or resisting: the contact solver loses nothing there. Triangles beyond a hollow
 // edge are not seen from before it: where the ball gets to is looked at too.
-bool BallPath::is_plain(const Place& at) {
+bool BallPath::is_plain(const BallPlace& at) {
     const bool is_level = length(cross(acceleration_, at.touch.normal)) <= 1e-6 * length(acceleration_);
     if (!(is_level || resists_) || !is_flat(at)) return false;
     find(at.center + at.motion.velocity * step_, most_gap);
     return is_flat(at);
 }
 
-bool BallPath::begin(Place& at) {
-    const double inertia = world_.constants[body_].inertia.x.x / (mass_ * radius_ * radius_);
+bool BallPath::begin(BallPlace& at, bool has_company) {
+    const double inertia = ball_.constants.inertia.x.x / (mass_ * radius_ * radius_);
     at.center = state_.center;
     at.rotation = state_.rotation;
     at.motion = {state_.linear_velocity, state_.angular_velocity, radius_, inertia};
@@ -201,14 +144,14 @@ bool BallPath::begin(Place& at) {
     at.motion.velocity += n * closing;
     const Vec3 along = acceleration_ - n * dot(acceleration_, n);
     const double least = resists_ ? slow_resisted : is_on_face ? 0 : slow;
-    if (length(at.motion.velocity) + length(along) * step_ < least) return false;
+    if (!has_company && length(at.motion.velocity) + length(along) * step_ < least) return false;
     const BallFriction& friction = grounds_[at.ground].friction;
     at.rolls = friction.at_rest > 0 && length(at.motion.slip(n)) <= 1e-3 * speed;
     const double start = at.motion.energy(), given = dot(acceleration_, at.center - state_.center);
     return std::fabs(gap) < soft_sag || set_energy(at.motion, n, start + given, at.rolls);
 }
 
-int BallPath::count_parts(const Place& at) const {
+int BallPath::count_parts(const BallPlace& at) const {
     const double speed = length(at.motion.velocity) + length(acceleration_) * step_ / 2;
     double curvature = 0;
     for (const BallTouch& touch : touches_) {
@@ -219,14 +162,14 @@ int BallPath::count_parts(const Place& at) const {
                                                               : 1 / radius_);
     }
     const double rate = std::max(speed * curvature, std::sqrt(length(acceleration_) * curvature));
-    const double parts = std::max({rate * step_ / part_turn, speed * step_ / (part_way * radius_),
-                                   static_cast<double>(world_.settings.substeps)});
+    const double parts =
+        std::max({rate * step_ / part_turn, speed * step_ / (part_way * radius_), static_cast<double>(ball_.substeps)});
     return static_cast<int>(std::ceil(std::min(parts, 1e6)));
 }
 
 // How hard the ground must press, m/s². Of a smooth mesh its curvature tells, that of the centre's path being κ/(1 + κ
 // r); else the last part does.
-double BallPath::load(const Place& at) const {
+double BallPath::load(const BallPlace& at) const {
     constexpr double least = 0.2;  // of 1 + κ r: a hollow that is hardly wider than the ball
     double centripetal = at.centripetal;
     const double squared = length_squared(at.motion.velocity);
@@ -238,14 +181,14 @@ double BallPath::load(const Place& at) const {
 }
 
 // Whether free flight takes it off the ground within a step's time.
-bool BallPath::leaves(const Place& at) {
+bool BallPath::leaves(const BallPlace& at) {
     constexpr double clear = 1e-11;  // m
     find(at.center + (at.motion.velocity + acceleration_ * (step_ / 2)) * step_, clear);
     return touches_.empty();
 }
 
 // Along the plane that touches it at the start, pressed by so much (m/s²). The work of friction, J/kg.
-double BallPath::move_along_plane(const Place& from, Place& to, double pressing, double time) const {
+double BallPath::move_along_plane(const BallPlace& from, BallPlace& to, double pressing, double time) const {
     const Vec3 n = from.touch.normal, along = acceleration_ - n * dot(acceleration_, n);
     const BallPush push = push_along(to.motion, n, along, pressing, grounds_[from.ground].friction, time);
     to.center += push.mean_velocity * time;
@@ -257,7 +200,7 @@ double BallPath::move_along_plane(const Place& from, Place& to, double pressing,
 
 // Turns the motion with the ground, which loses nothing, or hits what stands at a real angle to the last place. The
 // energy that is lost, J/kg, <= 0; none where it bounces or is wedged.
-std::optional<double> BallPath::turn_or_hit(Place& at, Vec3 last_normal, double time) {
+std::optional<double> BallPath::turn_or_hit(BallPlace& at, Vec3 last_normal, double time) {
     const Vec3 n = at.touch.normal;
     if (dot(last_normal, n) >= smooth_cosine) {
         at.centripetal = dot(at.motion.velocity, n - last_normal) / time;
@@ -270,7 +213,7 @@ std::optional<double> BallPath::turn_or_hit(Place& at, Vec3 last_normal, double 
     return at.motion.energy() - before;
 }
 
-bool BallPath::advance(Place& at, double time, int halvings) {
+bool BallPath::advance(BallPlace& at, double time, int halvings) {
     const auto in_halves = [&] {
         return halvings > 0 && advance(at, time / 2, halvings - 1) && advance(at, time / 2, halvings - 1);
     };
@@ -278,7 +221,7 @@ bool BallPath::advance(Place& at, double time, int halvings) {
     if (pressing < 0 && leaves(at)) return false;
 
     // Along the plane, and back onto the ground.
-    Place next = at;
+    BallPlace next = at;
     const double friction_work = move_along_plane(at, next, std::max(0.0, pressing), time);
     const Vec3 last_normal = at.touch.normal;
     const double moved = length(next.center - at.center);
@@ -293,8 +236,9 @@ bool BallPath::advance(Place& at, double time, int halvings) {
     return true;
 }
 
-void BallPath::write(const Place& at, RolledBall& rolled) const {
-    rolled.body = body_;
+bool BallPath::write(const BallPlace& at, Vec3 received, RolledBall& rolled) const {
+    if (!is_finite(at.center) || !is_finite(at.motion.velocity) || !is_finite(at.motion.spin)) return false;
+    rolled.body = ball_.body;
     rolled.state = state_;
     rolled.state.center = at.center;
     rolled.state.rotation = at.rotation;
@@ -302,41 +246,36 @@ void BallPath::write(const Place& at, RolledBall& rolled) const {
     rolled.state.linear_velocity = at.motion.velocity;
     rolled.state.angular_velocity = at.motion.spin;
     double best = -2;
-    for (const std::uint32_t index : contacts_) {
-        const Contact& contact = world_.contacts[index];
-        const double sign = contact.b == body_ ? 1 : -1, cosine = sign * dot(contact.normal, at.touch.normal);
+    for (const std::uint32_t index : ball_.own) {
+        const Contact& contact = ball_.all_contacts[index];
+        const double sign = contact.b == ball_.body ? 1 : -1, cosine = sign * dot(contact.normal, at.touch.normal);
         if (cosine <= best) continue;
         best = cosine;
         rolled.contact = index;
-        rolled.impulse = (at.motion.velocity - state_.linear_velocity - acceleration_ * step_) * (mass_ * sign);
+        rolled.impulse =
+            ((at.motion.velocity - state_.linear_velocity - acceleration_ * step_) * mass_ - received) * sign;
     }
+    return true;
 }
 
+bool BallPath::advance(BallPlace& at, double time) { return advance(at, time, most_halvings); }
+
 bool BallPath::roll(RolledBall& rolled) {
-    Place start;
-    if (!begin(start)) return false;
+    BallPlace start;
+    if (!begin(start, false)) return false;
     int parts = count_parts(start);
     if (parts > most_parts) return false;
     if (!start.touch.knows_curvature && !start.touch.is_flat) {
         // The curvature is seen from a first part.
-        Place trial = start;
-        if (!advance(trial, step_ / parts, most_halvings)) return false;
+        BallPlace trial = start;
+        if (!advance(trial, step_ / parts)) return false;
         start.centripetal = trial.centripetal;
     }
-    Place at = start;
+    BallPlace at = start;
     for (int i = 0; i < parts; ++i) {
-        if (!advance(at, step_ / parts, most_halvings)) return false;
+        if (!advance(at, step_ / parts)) return false;
     }
-    if (!is_finite(at.center) || !is_finite(at.motion.velocity) || !is_finite(at.motion.spin)) return false;
-    write(at, rolled);
-    return true;
+    return write(at, {}, rolled);
 }
 
-}  // namespace
-
-bool roll_ball(const WorldState& world, std::uint32_t body, std::span<const std::uint32_t> contacts,
-               BallMemory::Surroundings& surroundings, RolledBall& rolled) {
-    return BallPath(world, body, contacts, surroundings).roll(rolled);
-}
-
-}  // namespace embody::physics::stages
+}  // namespace embody::physics::constraint

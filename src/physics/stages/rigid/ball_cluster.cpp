@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+//
+// Balls that roll near each other: each follows its own path (ball_path.cpp), all in equal parts of the step. Where two
+// of them come together within a part, all go on only to that time, and the two collide there (rolling_ball.cpp). The
+// impact stage would lead each through the impact on a straight path and the contact solver back onto the ground: both
+// change the energy of what lies on curved ground by several percent a collision.
+#include "physics/stages/rigid/ball_cluster.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/stages/impact/impact_paths.h"
+#include "physics/stages/rigid/ball_ground.h"
+
+namespace embody::physics::stages {
+
+namespace {
+
+constexpr double touch_gap = 1e-6;  // of the smaller radius: nearer balls touch
+constexpr double deepest = 0.5;     // of the smaller radius: deeper, the contact solver takes balls out of each other
+constexpr double deepest_rest = 0.01;  // the same of balls that stay together
+constexpr int most_collisions = 64;    // of a pair in a step
+constexpr double least_share = 1e-6;   // of a part: a shorter rest is none
+
+class BallCluster {
+public:
+    BallCluster(const WorldState& world, BallMemory& memory, std::span<const std::uint32_t> members,
+                std::span<BallMemory::Pair> pairs)
+        : world_(world), memory_(memory), members_(members), pairs_(pairs) {}
+    bool roll();
+
+private:
+    using Candidate = BallMemory::Candidate;
+    using Pair = BallMemory::Pair;
+    [[nodiscard]] Candidate& ball(std::uint32_t index) const { return memory_.candidates[index]; }
+    [[nodiscard]] double radii(const Pair& pair) const {
+        return ball(pair.a).at.motion.radius + ball(pair.b).at.motion.radius;
+    }
+    [[nodiscard]] double size(const Pair& pair) const {
+        return std::min(ball(pair.a).at.motion.radius, ball(pair.b).at.motion.radius);
+    }
+    [[nodiscard]] double gap(const Pair& pair) const {
+        return length(ball(pair.b).at.center - ball(pair.a).at.center) - radii(pair);
+    }
+    [[nodiscard]] bool is_too_deep(const Pair& pair) const;
+    [[nodiscard]] bool is_quiet() const;
+    [[nodiscard]] double energy(const Candidate& own) const { return own.path->mass() * own.at.motion.energy(); }
+    bool begin();
+    [[nodiscard]] int count_parts() const;
+    bool advance(double time);
+    [[nodiscard]] double meeting(const Pair& pair) const;
+    bool collide(Pair& pair);
+    bool collide_all();
+    bool end();
+
+    const WorldState& world_;
+    BallMemory& memory_;
+    const std::span<const std::uint32_t> members_;
+    const std::span<BallMemory::Pair> pairs_;
+    std::size_t collisions_ = 0;
+};
+
+bool BallCluster::begin() {
+    for (const std::uint32_t index : members_) {
+        Candidate& own = ball(index);
+        own.received = {};
+        own.path.emplace(path_of_ball(world_, own.body, own.contacts, own.surroundings));
+        if (!own.path->begin(own.at, true)) return false;
+    }
+    for (Pair& pair : pairs_) {
+        pair.impulse = {};
+        pair.energy_change = 0;
+        if (is_too_deep(pair)) return false;
+    }
+    return !is_quiet() && collide_all();
+}
+
+// Balls whose collision was not foreseen lie in each other for a while.
+bool BallCluster::is_too_deep(const Pair& pair) const {
+    const BallPlace &a = ball(pair.a).at, &b = ball(pair.b).at;
+    const double parting = dot(normalized(b.center - a.center), b.motion.velocity - a.motion.velocity);
+    const bool stay = std::fabs(parting) < ImpactPaths::slowest_impact;
+    return gap(pair) < -(stay ? deepest_rest : deepest) * size(pair);
+}
+
+// What has come to rest is the contact solver's.
+bool BallCluster::is_quiet() const {
+    return std::all_of(members_.begin(), members_.end(), [&](std::uint32_t index) {
+        return length(ball(index).at.motion.velocity) < ImpactPaths::slowest_impact;
+    });
+}
+
+int BallCluster::count_parts() const {
+    int parts = 1;
+    for (const std::uint32_t index : members_) parts = std::max(parts, ball(index).path->count_parts(ball(index).at));
+    return parts;
+}
+
+// All of them, to their next places.
+bool BallCluster::advance(double time) {
+    return std::all_of(members_.begin(), members_.end(), [&](std::uint32_t index) {
+        Candidate& own = ball(index);
+        own.next = own.at;
+        return own.path->advance(own.next, time);
+    });
+}
+
+// The share of the part after which the two come together, on straight lines; 1 if they do not.
+double BallCluster::meeting(const Pair& pair) const {
+    const Candidate &a = ball(pair.a), &b = ball(pair.b);
+    const Vec3 start = b.at.center - a.at.center, change = b.next.center - a.next.center - start;
+    const double along = dot(start, change), square = length_squared(change), both = radii(pair);
+    const double rest = length_squared(start) - both * both;
+    if (gap(pair) <= touch_gap * size(pair) || along >= 0) return 1;
+    const double discriminant = along * along - square * rest;
+    return discriminant < 0 ? 1 : std::min(1.0, (-along - std::sqrt(discriminant)) / square);
+}
+
+// False where the blow takes one of them off its ground.
+bool BallCluster::collide(Pair& pair) {
+    Candidate &a = ball(pair.a), &b = ball(pair.b);
+    const Vec3 direction = normalized(b.at.center - a.at.center);
+    const Material material = combine(world_.record(a.body).definition.material,
+                                      world_.record(b.body).definition.material, world_.surface_pairs);
+    const double before = energy(a) + energy(b);
+    const std::optional<Vec3> impulse = collide_balls({a.at.motion, a.path->mass(), a.at.touch.normal},
+                                                      {b.at.motion, b.path->mass(), b.at.touch.normal}, direction,
+                                                      material.restitution, material.friction_dynamic);
+    if (!impulse || ++collisions_ > most_collisions * pairs_.size()) return false;
+    a.at.rolls = b.at.rolls = false;
+    a.received -= *impulse;
+    b.received += *impulse;
+    pair.impulse += *impulse;
+    pair.energy_change += energy(a) + energy(b) - before;
+    return true;
+}
+
+// All that touch and approach each other, until none does.
+bool BallCluster::collide_all() {
+    constexpr double rounding = 1e-9;  // m/s
+    for (bool any = true; any;) {
+        any = false;
+        for (Pair& pair : pairs_) {
+            if (gap(pair) > 2 * touch_gap * size(pair)) continue;
+            const BallPlace &a = ball(pair.a).at, &b = ball(pair.b).at;
+            if (dot(b.center - a.center, a.motion.velocity - b.motion.velocity) <= rounding * radii(pair)) continue;
+            if (!collide(pair)) return false;
+            any = true;
+        }
+    }
+    return true;
+}
+
+bool BallCluster::end() {
+    for (const std::uint32_t index : members_) {
+        Candidate& own = ball(index);
+        if (!own.path->write(own.at, own.received, own.rolled)) return false;
+        own.rolled.candidate = index;
+    }
+    return true;
+}
+
+bool BallCluster::roll() {
+    if (!begin()) return false;
+    const int parts = count_parts();
+    if (parts > BallPath::most_parts) return false;
+    const double part = world_.settings.time_step / parts;
+    int left_parts = 2 * parts + most_collisions * static_cast<int>(pairs_.size());
+    for (double left = world_.settings.time_step; left > least_share * part;) {
+        if (left_parts-- == 0) return false;
+        const double time = std::min(part, left);
+        if (!advance(time)) return false;
+        double share = 1;
+        for (const Pair& pair : pairs_) share = std::min(share, meeting(pair));
+        if (share < 1 && !advance(std::max(share, least_share) * time)) return false;
+        for (const std::uint32_t index : members_) ball(index).at = ball(index).next;
+        left -= std::max(share, least_share) * time;
+        if (!collide_all()) return false;
+    }
+    return end();
+}
+
+}  // namespace
+
+bool roll_cluster(const WorldState& world, BallMemory& memory, std::span<const std::uint32_t> members,
+                  std::span<BallMemory::Pair> pairs) {
+    return BallCluster(world, memory, members, pairs).roll();
+}
+
+}  // namespace embody::physics::stages

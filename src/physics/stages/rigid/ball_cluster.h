@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "physics/stages/namespace.h"
+#include "physics/state/world_state.h"
+
+namespace embody::physics::stages {
+
+/// Takes balls that roll on still ground near each other through the step, together with their collisions: the members
+/// (indices of candidates) and their pairs. False where one of them cannot be followed so; then nothing is told.
+bool roll_cluster(const WorldState& world, BallMemory& memory, std::span<const std::uint32_t> members,
+                  std::span<BallMemory::Pair> pairs);
+
+}  // namespace embody::physics::stages
