@@ -173,13 +173,18 @@ void turn_freely(Quat& rotation, Vec3& omega, const BodyConstants& constants, do
 }  // namespace
 
 void fly(BodyState& state, const BodyConstants& constants, double time) {
+    if (move_freely(state, constants, time)) refresh_inertia(state, constants);
+}
+
+bool move_freely(BodyState& state, const BodyConstants& constants, double time) {
     const double half = time / 2;
     const Vec3 acceleration = constants.acceleration;
     state.linear_velocity = kicked(state.linear_velocity, acceleration, constants.linear_damping, half);
     state.center += state.linear_velocity * time;
     state.linear_velocity = kicked(state.linear_velocity, acceleration, constants.linear_damping, half);
     state.hidden_momentum = {};
-    if (state.angular_velocity == Vec3{} && constants.torque == Vec3{}) return;
+    const bool is_pushed = constants.torque != Vec3{} || constants.angular_damping > 0;
+    if (state.angular_velocity == Vec3{} && !is_pushed) return false;
 
     // In the body's axes; forwards and backwards alike, as the midpoint rule is symmetric in time. Its error goes with
     // the square of the turn.
@@ -189,6 +194,7 @@ void fly(BodyState& state, const BodyConstants& constants, double time) {
     Quat rotation = state.rotation;
     Vec3 omega = rotate_inverse(rotation, state.angular_velocity);
     const auto push = [&] {
+        if (!is_pushed) return;
         const Vec3 angular = constants.inverse_inertia * rotate_inverse(rotation, constants.torque);
         omega = kicked(omega, angular, constants.angular_damping, half);
     };
@@ -200,7 +206,7 @@ void fly(BodyState& state, const BodyConstants& constants, double time) {
     state.rotation = rotation;
     state.turn = rotation * conjugate(state.start_rotation);
     state.angular_velocity = rotate(rotation, omega);
-    refresh_inertia(state, constants);
+    return true;
 }
 
 void drift_kinematic(BodyState& state, double time) {

@@ -31,6 +31,9 @@ void drift(BodyState& state, const BodyConstants& constants, double time);
 /// Free flight over `time` (s): one substep without constraints, in parts where the body spins fast. A negative time
 /// goes back the same way. Energy and angular momentum are kept to 1e-12, either way.
 void fly(BodyState& state, const BodyConstants& constants, double time);
+/// The same, but for the inverse inertia, which stays as it was: refresh_inertia() has to follow before it is used.
+/// Whether the body turned.
+bool move_freely(BodyState& state, const BodyConstants& constants, double time);
 
 /// As drift(), for a body that only its own velocity moves.
 void drift_kinematic(BodyState& state, double time);

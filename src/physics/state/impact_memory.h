@@ -37,7 +37,7 @@ struct ImpactMemory {
     std::vector<double> liveliness;           ///< product of the restitutions of its bounces in this step
     std::vector<float> speed_gain;            ///< most that its free motion can add to an approach in the step, m/s
     std::vector<std::uint32_t> path_of_body;  ///< first of its path's states, see BodyPaths
-    std::vector<BodyState> path_states;
+    std::vector<BodyState> path_states;       ///< with the inverse inertia of the start of the step
     std::vector<std::uint32_t> remembered_bodies;
 
     // By contact; the lists of each body's contacts once there is an impact at all.

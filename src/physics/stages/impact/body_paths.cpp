@@ -77,10 +77,11 @@ BodyState BodyPaths::state_at(std::uint32_t body, double time) const {
     if (path != not_remembered && whole > 0) {
         state = memory_.path_states[path + whole - 1];
     } else {
-        for (std::size_t k = 0; k < whole; ++k) fly(state, constants, substep_);
+        for (std::size_t k = 0; k < whole; ++k) move_freely(state, constants, substep_);
     }
     const double rest = time - static_cast<double>(whole) * substep_;
-    if (rest > 0) fly(state, constants, rest);
+    if (rest > 0) move_freely(state, constants, rest);
+    refresh_inertia(state, constants);
     return state;
 }
 
@@ -129,8 +130,9 @@ void BodyPaths::lead_through(std::uint32_t body, BodyState state, double time) {
     } else {
         const auto whole = std::min(static_cast<std::size_t>(time / substep_), states_);
         const double rest = time - static_cast<double>(whole) * substep_;
-        if (rest > 0) fly(state, world_.constants[body], -rest);
-        for (std::size_t k = 0; k < whole; ++k) fly(state, world_.constants[body], -substep_);
+        if (rest > 0) move_freely(state, world_.constants[body], -rest);
+        for (std::size_t k = 0; k < whole; ++k) move_freely(state, world_.constants[body], -substep_);
+        refresh_inertia(state, world_.constants[body]);
     }
     begin_anew(body, state);
 }
@@ -158,7 +160,7 @@ void BodyPaths::fill_path(std::uint32_t body) {
     BodyState state = world_.motion[body];
     const std::size_t first = memory_.path_of_body[body];
     for (std::size_t k = 0; k < states_; ++k) {
-        fly(state, world_.constants[body], substep_);
+        move_freely(state, world_.constants[body], substep_);
         memory_.path_states[first + k] = state;
     }
 }
