@@ -32,7 +32,7 @@ void set_gradient(const float* gradient, float steepest, float* affine) {
 
 FluidSolver::FluidSolver(Vec3 origin, double cell_size, const FluidProperties& properties,
                          std::span<const Vec3f> positions, Vec3 velocity)
-    : origin_(origin), properties_(properties), grid_(cell_size), solids_(origin) {
+    : origin_(origin), properties_(properties), grid_(cell_size), obstacles_(origin) {
     add_particles(positions);
     for (FluidParticle& particle : particles_) {
         for (int axis = 0; axis < 3; ++axis) particle.velocity[axis] = static_cast<float>(velocity[axis]);
@@ -90,19 +90,19 @@ double FluidSolver::usual_speed(TaskPool& workers) const {
     return usual_speed_of(particles_, drops_by_particle, workers);
 }
 
-void FluidSolver::prepare(std::span<FluidSolid> solids, TaskPool& workers) {
+void FluidSolver::prepare(std::span<FluidObstacle> obstacles, TaskPool& workers) {
     // A copy: whoever made them still knows them by their order.
     std::vector<FluidParticle> particles = particles_;
     grid_.cover(particles, workers);
     if (particles.empty()) return;
-    solids_.begin(solids, grid_);
-    grid_.sort(particles, particle_share(), solids_.in_reach(0, grid_.cell_size()), workers);
-    solids_.measure(0, grid_, workers);
+    obstacles_.begin(obstacles, grid_);
+    grid_.sort(particles, particle_share(), obstacles_.in_reach(0, grid_.cell_size()), workers);
+    obstacles_.measure(0, grid_, workers);
 }
 
-FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidSolid> solids, TaskPool& workers) {
+FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidObstacle> obstacles, TaskPool& workers) {
     FluidOutcome outcome;
-    for (FluidSolid& solid : solids) solid.impulse = solid.angular_impulse = {};
+    for (FluidObstacle& obstacle : obstacles) obstacle.impulse = obstacle.angular_impulse = {};
     if (particles_.empty()) return outcome;
     speed_ = usual_speed(workers);
     const double h = grid_.cell_size(), cells = (speed_ + length(gravity) * dt) * dt / (longest_way * h);
@@ -111,18 +111,18 @@ FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidSolid>
     const double parts = std::max(cells, is_tense_ ? std::sqrt(tension / steady_tension(density, h, dt)) : 0.0);
     outcome.parts = static_cast<int>(std::clamp(std::ceil(parts), 1.0, static_cast<double>(most_parts)));
     outcome.is_slowed = cells > most_parts;
-    solids_.begin(solids, grid_);
+    obstacles_.begin(obstacles, grid_);
     const double part = dt / outcome.parts;
     for (int i = 0; i < outcome.parts && !particles_.empty(); ++i) advance_part(part, gravity, outcome, workers);
-    solids_.end();
+    obstacles_.end();
 
-    // Numbers that are none: no solid learns of them.
-    for (const FluidSolid& solid : solids) {
-        outcome.is_finite = outcome.is_finite && is_finite(solid.impulse) && is_finite(solid.angular_impulse);
+    // Numbers that are none: no obstacle learns of them.
+    for (const FluidObstacle& obstacle : obstacles) {
+        outcome.is_finite = outcome.is_finite && is_finite(obstacle.impulse) && is_finite(obstacle.angular_impulse);
     }
     outcome.is_finite = outcome.is_finite && reach_of(particles_, workers).is_finite();
     if (outcome.is_finite) return outcome;
-    for (FluidSolid& solid : solids) solid.impulse = solid.angular_impulse = {};
+    for (FluidObstacle& obstacle : obstacles) obstacle.impulse = obstacle.angular_impulse = {};
     return outcome;
 }
 
@@ -163,15 +163,15 @@ float FluidSolver::particle_share() const {
 void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers) {
     outcome.lost += grid_.cover(particles_, workers);
     if (particles_.empty()) return;
-    grid_.sort(particles_, particle_share(), solids_.in_reach(dt, grid_.cell_size()), workers);
-    solids_.measure(dt, grid_, workers);
-    solids_.accelerate(dt);
+    grid_.sort(particles_, particle_share(), obstacles_.in_reach(dt, grid_.cell_size()), workers);
+    obstacles_.measure(dt, grid_, workers);
+    obstacles_.accelerate(dt);
     const bool has_liquid = grid_.on_grid() > 0;
     if (has_liquid) advance_grid(dt, gravity, outcome, workers);
     move_particles(dt, workers);
     fly(dt, gravity * dt, workers);
-    if (has_liquid) lumps_.end(gravity * dt, solids_, properties_.density * properties_.particle_volume, particles_);
-    solids_.advance(dt);
+    if (has_liquid) lumps_.end(gravity * dt, obstacles_, properties_.density * properties_.particle_volume, particles_);
+    obstacles_.advance(dt);
 }
 
 void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers) {
@@ -182,13 +182,13 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     extrapolate(grid_, grid_.velocity, 2, workers);
 
     system_.build(grid_, workers);
-    lumps_.begin(grid_, system_, solids_, particles_, is_tense_);
-    solids_.list_areas(grid_);
+    lumps_.begin(grid_, system_, obstacles_, particles_, is_tense_);
+    obstacles_.list_areas(grid_);
     const Viscosity liquid{properties_.density, properties_.viscosity, properties_.yield_stress};
     if (is_viscous(liquid, h, dt)) shear(liquid, dt, outcome);
-    rub_along_walls(grid_, solids_, properties_.density, properties_.viscosity,
+    rub_along_walls(grid_, obstacles_, properties_.density, properties_.viscosity,
                     properties_.density * properties_.particle_volume, dt, workers);
-    for (MovingSolid& moving : solids_.moving()) {
+    for (MovingObstacle& moving : obstacles_.moving()) {
         bind_liquid(grid_, properties_.density, gravity, moving);
         drag_small_body(grid_, properties_.density, properties_.viscosity,
                         properties_.density * properties_.particle_volume, dt, moving);
@@ -198,7 +198,7 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     extrapolate(grid_, grid_.velocity, 1, workers);
     admit_drops(grid_, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
-    follow_solids(grid_, solids_, sticking_of(liquid, h, speed_), workers);
+    follow_obstacles(grid_, obstacles_, sticking_of(liquid, h, speed_), workers);
     spread_out(workers);
 }
 
@@ -206,7 +206,7 @@ void FluidSolver::find_places(double dt, TaskPool& workers) {
     const std::size_t count = grid_.on_grid();
     places_.resize(count);
     share_among(workers, count, count > few_particles, [&](int, Share share) {
-        ParticleCollider collider(grid_, solids_, dt);
+        ParticleCollider collider(grid_, obstacles_, dt);
         for (std::size_t i = share.first; i < share.last; ++i) places_[i] = collider.place_of(particles_[i]);
     });
 }
@@ -224,7 +224,7 @@ void FluidSolver::accelerate(Vec3 change, TaskPool& workers) {
 
 void FluidSolver::shear(const Viscosity& liquid, double dt, FluidOutcome& outcome) {
     constexpr int most_iterations = 300;
-    const int iterations = viscosity_.solve(liquid, dt, most_iterations, grid_, solids_);
+    const int iterations = viscosity_.solve(liquid, dt, most_iterations, grid_, obstacles_);
     outcome.viscosity_iterations += iterations;
     outcome.is_solved = outcome.is_solved && iterations <= most_iterations;
 }
@@ -234,7 +234,7 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
     constexpr double allowed_change = 1e-4;  // of a cell's volume in a part of a step
     constexpr int most_iterations = 300;
     const double h = grid_.cell_size(), rho = properties_.density;
-    outflow(grid_, solids_, system_, flow_, workers);
+    outflow(grid_, obstacles_, system_, flow_, workers);
     impulse_.resize(system_.size());
     for (std::size_t row = 0; row < system_.size(); ++row) {
         flow_[row] *= -rho / h;
@@ -242,14 +242,14 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
     }
     surface_.clear();
     if (is_tense_) tighten(dt, workers);
-    system_.set_bodies(solids_.moving(), rho / h);
+    system_.set_bodies(obstacles_.moving(), rho / h);
     const double tolerance = allowed_change * rho * h * h / dt;
     const int iterations = system_.solve(flow_, impulse_, tolerance, most_iterations, workers);
     outcome.pressure_iterations += iterations;
     outcome.is_solved = outcome.is_solved && iterations <= most_iterations;
 
     subtract_gradient(grid_, impulse_, surface_, 1 / (rho * h), grid_.velocity, workers);
-    push_solids(impulse_);
+    push_obstacles(impulse_);
     grid_.for_tiles(workers, [&](const Cell& corner) {
         grid_.for_cells(corner, [&](int cell, const Cell&) {
             const int row = grid_.row[cell];
@@ -265,16 +265,16 @@ void FluidSolver::tighten(double dt, TaskPool& workers) {
     add_surface_pressure(grid_, system_, surface_, flow_, workers);
 }
 
-void FluidSolver::push_solids(std::span<const double> impulse) {
-    for (MovingSolid& moving : solids_.moving()) {
+void FluidSolver::push_obstacles(std::span<const double> impulse) {
+    for (MovingObstacle& moving : obstacles_.moving()) {
         Vec3 linear, angular;
-        for (const SolidArea& part : moving.areas) {
+        for (const ObstacleArea& part : moving.areas) {
             linear += part.area * impulse[part.row];
             angular += part.moment * impulse[part.row];
         }
-        FluidSolid& solid = *moving.solid;
-        solid.impulse += linear;
-        solid.angular_impulse += angular;
+        FluidObstacle& obstacle = *moving.obstacle;
+        obstacle.impulse += linear;
+        obstacle.angular_impulse += angular;
         moving.linear_velocity += moving.response.linear_change(linear, angular);
         moving.angular_velocity += moving.response.angular_change(linear, angular);
         release_liquid(moving);
@@ -313,7 +313,7 @@ void FluidSolver::move_particles(double dt, TaskPool& workers) {
     const auto time = static_cast<float>(dt);
     const std::size_t count = grid_.on_grid();
     share_among(workers, count, count > few_particles, [&](int, Share share) {
-        ParticleCollider collider(grid_, solids_, dt);
+        ParticleCollider collider(grid_, obstacles_, dt);
         for (std::size_t i = share.first; i < share.last; ++i) {
             FluidParticle& particle = particles_[i];
             FieldSample sample = sample_field(grid_, grid_.velocity, places_[i].data());
@@ -323,7 +323,7 @@ void FluidSolver::move_particles(double dt, TaskPool& workers) {
             // A drop reads back what it wrote: a gradient that it took along would stay for ever.
             const bool is_single = is_drop(grid_, places_[i].data());
             const float steepest = is_single ? 0 : 1 / time;
-            if (is_single) slow_at_wall(grid_, solids_, properties_, dt, places_[i].data(), sample.value);
+            if (is_single) slow_at_wall(grid_, obstacles_, properties_, dt, places_[i].data(), sample.value);
             for (int a = 0; a < 3; ++a) {
                 particle.velocity[a] = sample.value[a];
                 set_gradient(sample.gradient[a], steepest, particle.affine[a]);
@@ -343,13 +343,13 @@ void FluidSolver::move_particles(double dt, TaskPool& workers) {
 void FluidSolver::fly(double dt, Vec3 change, TaskPool& workers) {
     const std::size_t first = grid_.on_grid(), count = particles_.size() - first;
     share_among(workers, count, count > few_particles, [&](int, Share share) {
-        ParticleCollider collider(grid_, solids_, dt);
+        ParticleCollider collider(grid_, obstacles_, dt);
         for (std::size_t i = first + share.first; i < first + share.last; ++i) {
             FluidParticle& particle = particles_[i];
             float* velocity = particle.velocity;
             float end[3];
             for (int axis = 0; axis < 3; ++axis) velocity[axis] += static_cast<float>(change[axis]);
-            slow_at_wall(grid_, solids_, properties_, dt, particle.position, velocity);
+            slow_at_wall(grid_, obstacles_, properties_, dt, particle.position, velocity);
             for (int axis = 0; axis < 3; ++axis) {
                 std::fill_n(particle.affine[axis], 3, 0.0f);
                 end[axis] = particle.position[axis] + static_cast<float>(dt) * velocity[axis];

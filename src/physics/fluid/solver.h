@@ -8,7 +8,7 @@
 #include "physics/definitions/step_report.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
-#include "physics/fluid/obstacles/solids.h"
+#include "physics/fluid/obstacles/obstacles.h"
 #include "physics/fluid/particles/free_lumps.h"
 #include "physics/fluid/pressure/pressure_system.h"
 #include "physics/fluid/pressure/surface_tension.h"
@@ -29,9 +29,9 @@ struct FluidOutcome {
     int parts = 0;                                          ///< the step was solved in
     int pressure_iterations = 0, viscosity_iterations = 0;  ///< over all parts
     std::size_t lost = 0;                                   ///< particles that flew out of reach
-    bool is_finite = true;                                  ///< false: the particles are of no use; no solid was pushed
-    bool is_solved = true;                                  ///< false: a solve ended early
-    bool is_slowed = false;                                 ///< particles were faster than the parts allow
+    bool is_finite = true;   ///< false: the particles are of no use; no obstacle was pushed
+    bool is_solved = true;   ///< false: a solve ended early
+    bool is_slowed = false;  ///< particles were faster than the parts allow
 };
 
 /// A liquid: particles that carry it and a grid on which its pressure and viscosity are solved, with the rigid bodies
@@ -42,17 +42,18 @@ public:
     FluidSolver(Vec3 origin, double cell_size, const FluidProperties& properties, std::span<const Vec3f> positions,
                 Vec3 velocity);
 
-    /// Gets the grid and the static solids on it ready for the first step.
-    void prepare(std::span<FluidSolid> solids, TaskPool& workers);
-    /// Advances by dt; the solids' impulses are set.
-    FluidOutcome advance(double dt, Vec3 gravity, std::span<FluidSolid> solids, TaskPool& workers);
+    /// Gets the grid and the static obstacles on it ready for the first step.
+    void prepare(std::span<FluidObstacle> obstacles, TaskPool& workers);
+    /// Advances by dt; the obstacles' impulses are set.
+    FluidOutcome advance(double dt, Vec3 gravity, std::span<FluidObstacle> obstacles, TaskPool& workers);
 
-    /// After a step: the solids are where they came to by what they met, and the particles are kept out of them there.
+    /// After a step: the obstacles are where they came to by what they met, and the particles are kept out of them
+    /// there.
     struct Followed {
         bool is_solved = true;
         std::size_t lost = 0;  ///< particles out of reach
     };
-    Followed follow(std::span<FluidSolid> solids, TaskPool& workers);
+    Followed follow(std::span<FluidObstacle> obstacles, TaskPool& workers);
 
     [[nodiscard]] Vec3 origin() const { return origin_; }
     [[nodiscard]] const FluidProperties& properties() const { return properties_; }
@@ -97,12 +98,12 @@ private:
     void tighten(double dt, TaskPool& workers);
     void spread_out(TaskPool& workers);
     void move_particles(double dt, TaskPool& workers);
-    void push_solids(std::span<const double> impulse);
+    void push_obstacles(std::span<const double> impulse);
 
     Vec3 origin_;
     FluidProperties properties_;
     FluidGrid grid_;
-    FluidSolids solids_;
+    FluidObstacles obstacles_;
     PressureSystem system_;
     ViscositySystem viscosity_;
     SurfacePressure surface_;

@@ -91,7 +91,7 @@ TEST(Fluid, MatterCanChangeWhileItRunsButNotItsCells) {
     EXPECT_EQ(refused.error().where, "cell_size");
 }
 
-TEST(Fluid, ParticlesFillTheVolumeButNoSolid) {
+TEST(Fluid, ParticlesFillTheVolumeButNoObstacle) {
     auto world = make_world();
     add_box(*world, {0.05, 1, 1}, {.kind = BodyKind::static_body, .position = {0.05, 0, 0}});
     const FluidHandle water = world->create_fluid(cube_of_water(0.2, 0.02)).value();
@@ -228,17 +228,17 @@ TEST(Fluid, NumbersThatAreNoneFreezeItAndAreReported) {
 TEST(Fluid, NumbersThatAreNonePushNoBody) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const auto shape = std::move(CollisionShape::create(BoxShape{{0.05, 0.05, 0.05}})).value();
-    FluidSolid solid{.shape = shape.get(), .inverse_mass = 1, .inverse_inertia = Mat3::identity()};
+    FluidObstacle obstacle{.shape = shape.get(), .inverse_mass = 1, .inverse_inertia = Mat3::identity()};
     std::vector<Vec3f> places;
     for (float x = -0.09f; x < 0.1f; x += 0.02f) {
         for (float y = -0.09f; y < 0.1f; y += 0.02f) places.push_back({x, y, 0.07f});
     }
     FluidSolver solver({}, 0.04, {.particle_volume = 8e-6}, places, {0, nan, 0});
     TaskPool workers(1);
-    const FluidOutcome outcome = solver.advance(1.0 / 60, {0, -9.81, 0}, {&solid, 1}, workers);
+    const FluidOutcome outcome = solver.advance(1.0 / 60, {0, -9.81, 0}, {&obstacle, 1}, workers);
     EXPECT_FALSE(outcome.is_finite);
-    EXPECT_EQ(solid.impulse, Vec3{});
-    EXPECT_EQ(solid.angular_impulse, Vec3{});
+    EXPECT_EQ(obstacle.impulse, Vec3{});
+    EXPECT_EQ(obstacle.angular_impulse, Vec3{});
 }
 
 TEST(Fluid, DegenerateLumpsOfLiquidAreNoTrouble) {

@@ -63,28 +63,28 @@ void list_next_layer(const FluidGrid& grid, const std::array<std::vector<float>,
     }
 }
 
-// Velocity at a shut face that slides along the solid.
+// Velocity at a shut face that slides along the obstacle.
 double sliding(const FluidGrid& grid, int axis, int cell, Vec3 center, Vec3 wall) {
     const float at[3] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)};
     float gradient[3];
-    sample_center(grid, grid.solid, at, gradient);
+    sample_center(grid, grid.obstacle, at, gradient);
     const Vec3 normal = normalized(Vec3{gradient[0], gradient[1], gradient[2]});
     const Vec3 velocity = velocity_around(grid, axis, cell);
     return velocity[axis] + normal[axis] * dot(wall - velocity, normal);
 }
 
 // Velocity at a shut face.
-float followed(const FluidGrid& grid, const FluidSolids& solids, double sticking, const FaceValue& face,
+float followed(const FluidGrid& grid, const FluidObstacles& obstacles, double sticking, const FaceValue& face,
                const Cell& c) {
     const int axis = face.axis, cell = face.cell, below = cell - grid.stride(axis);
-    const int nearer = grid.solid[cell] < grid.solid[below] ? cell : below;
+    const int nearer = grid.obstacle[cell] < grid.obstacle[below] ? cell : below;
     const Vec3 center = face_center(grid, axis, c);
-    const Vec3 wall = solids.velocity_at(grid.solid_owner[nearer], center);
+    const Vec3 wall = obstacles.velocity_at(grid.obstacle_owner[nearer], center);
     if (grid.thin[cell] & (1 << axis)) return static_cast<float>(wall[axis]);
     const double slides = sticking < 1 ? sliding(grid, axis, cell, center, wall) : 0;
 
-    // Straight from the velocity one face farther out, through the solid's at its surface.
-    const double inside = std::clamp(-0.5 * (grid.solid[cell] + grid.solid[below]), 0.0, 0.5);
+    // Straight from the velocity one face farther out, through the obstacle's at its surface.
+    const double inside = std::clamp(-0.5 * (grid.obstacle[cell] + grid.obstacle[below]), 0.0, 0.5);
     const double sticks = wall[axis] - (grid.velocity[axis][cell] - wall[axis]) * inside / (1 - inside);
     return static_cast<float>(slides + (sticks - slides) * sticking);
 }
@@ -133,7 +133,7 @@ void admit_drops(FluidGrid& grid, TaskPool& workers) {
     });
 }
 
-void follow_solids(FluidGrid& grid, const FluidSolids& solids, double sticking, TaskPool& workers) {
+void follow_obstacles(FluidGrid& grid, const FluidObstacles& obstacles, double sticking, TaskPool& workers) {
     const auto tiles = grid.tiles();
     std::vector<std::vector<FaceValue>> found(static_cast<std::size_t>(workers.workers()));
     share_among(workers, tiles.size(), tiles.size() > 16, [&](int worker, Share share) {
@@ -142,7 +142,7 @@ void follow_solids(FluidGrid& grid, const FluidSolids& solids, double sticking, 
             grid.for_cells(tiles[i], [&](int cell, const Cell& c) {
                 for (int axis = 0; axis < 3; ++axis) {
                     if (grid.open[axis][cell] > 0 || !grid.known[axis][cell]) continue;
-                    list.push_back({axis, cell, followed(grid, solids, sticking, {axis, cell, 0}, c)});
+                    list.push_back({axis, cell, followed(grid, obstacles, sticking, {axis, cell, 0}, c)});
                 }
             });
         }
@@ -152,8 +152,8 @@ void follow_solids(FluidGrid& grid, const FluidSolids& solids, double sticking, 
     }
 }
 
-void outflow(const FluidGrid& grid, const FluidSolids& solids, const PressureSystem& system, std::vector<double>& flow,
-             TaskPool& workers) {
+void outflow(const FluidGrid& grid, const FluidObstacles& obstacles, const PressureSystem& system,
+             std::vector<double>& flow, TaskPool& workers) {
     flow.resize(system.size());
     const double area = grid.cell_size() * grid.cell_size();
     share_among(workers, flow.size(), flow.size() > 2000, [&](int, Share share) {
@@ -169,9 +169,9 @@ void outflow(const FluidGrid& grid, const FluidSolids& solids, const PressureSys
             flow[row] = sum * area;
         }
     });
-    for (const MovingSolid& solid : solids.moving()) {
-        for (const SolidArea& part : solid.areas) {
-            flow[part.row] += dot(part.area, solid.linear_velocity) + dot(part.moment, solid.angular_velocity);
+    for (const MovingObstacle& obstacle : obstacles.moving()) {
+        for (const ObstacleArea& part : obstacle.areas) {
+            flow[part.row] += dot(part.area, obstacle.linear_velocity) + dot(part.moment, obstacle.angular_velocity);
         }
     }
 }

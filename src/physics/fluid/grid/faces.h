@@ -4,7 +4,7 @@
 #include "foundation/task_pool.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
-#include "physics/fluid/obstacles/solids.h"
+#include "physics/fluid/obstacles/obstacles.h"
 #include "physics/fluid/pressure/pressure_system.h"
 #include "physics/fluid/pressure/surface_tension.h"
 
@@ -19,14 +19,14 @@ void admit_drops(FluidGrid& grid, TaskPool& workers);
 /// Velocity at a face; the components across are means of the four nearest faces, m/s.
 Vec3 velocity_around(const FluidGrid& grid, int axis, int cell);
 
-/// Shut faces move as the solid does: along its normal, or wholly where the solid is thin. As far as the liquid sticks
-/// (1: its layer at the wall is thicker than a cell, 0: much thinner) such that the velocity at the surface is the
-/// solid's.
-void follow_solids(FluidGrid& grid, const FluidSolids& solids, double sticking, TaskPool& workers);
+/// Shut faces move as the obstacle does: along its normal, or wholly where the obstacle is thin. As far as the liquid
+/// sticks (1: its layer at the wall is thicker than a cell, 0: much thinner) such that the velocity at the surface is
+/// the obstacle's.
+void follow_obstacles(FluidGrid& grid, const FluidObstacles& obstacles, double sticking, TaskPool& workers);
 
-/// Volume that flows out of each liquid cell by faces and surfaces of solids, m³/s.
-void outflow(const FluidGrid& grid, const FluidSolids& solids, const PressureSystem& system, std::vector<double>& flow,
-             TaskPool& workers);
+/// Volume that flows out of each liquid cell by faces and surfaces of obstacles, m³/s.
+void outflow(const FluidGrid& grid, const FluidObstacles& obstacles, const PressureSystem& system,
+             std::vector<double>& flow, TaskPool& workers);
 
 /// Adds to the right hand side of the pressure's equation what the pressure at the surface does.
 void add_surface_pressure(const FluidGrid& grid, const PressureSystem& system, const SurfacePressure& surface,

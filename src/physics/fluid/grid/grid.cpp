@@ -134,7 +134,7 @@ void FluidGrid::resize(const Cell& lower, const Cell& upper) {
     }
     for (auto& array : known) array.assign(cells, 0);
     for (auto* array : {&density, &surface}) array->assign(cells, 0);
-    solid_owner.assign(cells, -1);
+    obstacle_owner.assign(cells, -1);
     row.assign(cells, -1);
     first_particle.assign(cells, 0);
     particle_count.assign(cells, 0);
@@ -143,7 +143,7 @@ void FluidGrid::resize(const Cell& lower, const Cell& upper) {
     wet_cells_.assign(tiles, 0);
     active_.clear();
 
-    // The last pressure is the next solve's guess; static solids stand where they stood.
+    // The last pressure is the next solve's guess; static obstacles stand where they stood.
     const auto box_of = [](const Cell& low, const Cell& whole, const Cell& unit) {
         Box box;
         for (int axis = 0; axis < 3; ++axis) {
@@ -161,7 +161,7 @@ void FluidGrid::resize(const Cell& lower, const Cell& upper) {
     for (auto& array : static_share) carry_over(array, from, to);
     carry_over(static_thin, from, to);
     carry_over(is_static_known, box_of(old_lower, old_size, tile), box_of(lower_, size_, tile));
-    solid = static_distance;
+    obstacle = static_distance;
     room = static_room;
     thin = static_thin;
 }

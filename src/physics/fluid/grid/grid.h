@@ -70,9 +70,9 @@ public:
     static constexpr int colors = 8;
     /// Lowest cells of tiles that were active when the particles were last sorted, and are not now.
     [[nodiscard]] std::span<const Cell> left() const { return left_; }
-    /// Of tiles around drops that fly by themselves, whose static solids are not known yet.
+    /// Of tiles around drops that fly by themselves, whose static obstacles are not known yet.
     [[nodiscard]] std::span<const Cell> unknown_around_drops() const { return unknown_; }
-    /// Makes a tile what it is where there is neither liquid nor any moving solid. Inactive tiles are so.
+    /// Makes a tile what it is where there is neither liquid nor any moving obstacle. Inactive tiles are so.
     void clear_tile(const Cell& corner);
 
     /// Calls visit(index of the row's first cell, its cell) for each row of eight cells of a tile.
@@ -101,19 +101,19 @@ public:
     // Written by the stages of FluidSolver::advance; their units and meaning: docs/physics/fluids.md.
     std::array<std::vector<float>, 3> velocity;      ///< of faces, m/s
     std::array<std::vector<float>, 3> mass;          ///< of particles at faces, in particles
-    std::array<std::vector<float>, 3> open;          ///< share of a face's control volume that is not solid
+    std::array<std::vector<float>, 3> open;          ///< share of a face's control volume outside obstacles
     std::array<std::vector<std::uint8_t>, 3> known;  ///< faces whose velocity is one
     std::vector<float> density;                      ///< particles around a centre, in volumes of the cell
     std::vector<float> surface;                      ///< signed distance to the liquid's surface, in cells, < 0 inside
-    std::vector<float> solid;                        ///< signed distance to the nearest solid, in cells, within ±2
-    std::vector<std::int16_t> solid_owner;           ///< which of the moving solids is nearest; -1: a static one
-    std::vector<float> room;                         ///< share of the density's kernel that is not solid
+    std::vector<float> obstacle;                     ///< signed distance to the nearest obstacle, in cells, within ±2
+    std::vector<std::int16_t> obstacle_owner;        ///< which of the moving obstacles is nearest; -1: a static one
+    std::vector<float> room;                         ///< share of the density's kernel outside obstacles
     std::vector<std::uint8_t> thin;                  ///< bits of ThinMark
     std::vector<std::int32_t> row;                   ///< of the pressure's system; -1: not liquid
     std::vector<float> pressure;                     ///< of the last step, Pa
     std::array<std::vector<float>, 3> shift;         ///< displacement of a face against clumping, m
 
-    // Of static solids alone, kept from step to step.
+    // Of static obstacles alone, kept from step to step.
     std::array<std::vector<float>, 3> static_share;
     std::vector<float> static_distance, static_room;
     std::vector<std::uint8_t> static_thin;

@@ -53,8 +53,8 @@ void FluidGrid::for_tiles_around(int place, Visit visit) const {
     }
 }
 
-// Where liquid may be: where many particles are, near moving solids and where nothing is known of the static ones, and
-// around each cell that the particles of the other tiles fill so far.
+// Where liquid may be: where many particles are, near moving obstacles and where nothing is known of the static ones,
+// and around each cell that the particles of the other tiles fill so far.
 void FluidGrid::mark_wet_tiles(const std::vector<FluidParticle>& particles, float volume,
                                std::span<const Bounds> near) {
     for (std::size_t t = 0; t < tile_state_.size(); ++t) {
@@ -152,10 +152,10 @@ void FluidGrid::list_tiles() {
 void FluidGrid::clear_tile(const Cell& corner) {
     for_rows(corner, [&](int first, const Cell&) {
         for (int cell = first; cell < first + tile[0]; ++cell) {
-            solid[cell] = static_distance[cell];
+            obstacle[cell] = static_distance[cell];
             room[cell] = static_room[cell];
             thin[cell] = static_thin[cell];
-            solid_owner[cell] = -1;
+            obstacle_owner[cell] = -1;
             row[cell] = -1;
             surface[cell] = 1;
             density[cell] = 0;

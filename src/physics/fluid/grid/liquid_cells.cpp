@@ -62,7 +62,7 @@ void mark_beside_liquid(FluidGrid& grid, TaskPool& workers) {
                 const std::size_t before = own.marked.size();
                 look_around(grid, cell, false, own.marked);
                 const bool is_dry = own.marked.size() == before && grid.surface[cell] >= 0;
-                if (is_dry && grid.room[cell] < least_room && grid.solid[cell] > -1) own.narrow.push_back(cell);
+                if (is_dry && grid.room[cell] < least_room && grid.obstacle[cell] > -1) own.narrow.push_back(cell);
             });
         }
     });

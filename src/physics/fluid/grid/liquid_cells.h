@@ -10,7 +10,7 @@
 
 namespace embody::physics::fluid {
 
-/// Cells of which solids leave less have no surface of their own: they take it from their neighbours.
+/// Cells of which obstacles leave less have no surface of their own: they take it from their neighbours.
 inline constexpr float least_room = 0.3f;
 
 /// The cells of liquid by row.

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "physics/fluid/obstacles/solids.h"
+#include "physics/fluid/obstacles/obstacles.h"
 #include "physics/fluid/particles/transfer.h"
 
 namespace embody::physics::fluid {
@@ -24,14 +24,14 @@ double drag_of_sphere(double radius, double speed, double density, double viscos
 }
 
 void drag_small_body(FluidGrid& grid, double density, double viscosity, double particle_mass, double dt,
-                     MovingSolid& moving) {
-    FluidSolid& solid = *moving.solid;
-    if (!moving.is_small || !moving.is_in_reach || !(solid.inverse_mass > 0)) return;
+                     MovingObstacle& moving) {
+    FluidObstacle& obstacle = *moving.obstacle;
+    if (!moving.is_small || !moving.is_in_reach || !(obstacle.inverse_mass > 0)) return;
     const float place[3] = {static_cast<float>(moving.center.x), static_cast<float>(moving.center.y),
                             static_cast<float>(moving.center.z)};
     float gradient[3];
     const double wet = std::clamp<double>(sample_center(grid, grid.density, place, gradient), 0, 1);
-    const double volume = solid.shape->mass_properties().volume, radius = std::cbrt(volume * 0.75 / pi);
+    const double volume = obstacle.shape->mass_properties().volume, radius = std::cbrt(volume * 0.75 / pi);
     Vec3 liquid;                             // its velocity around
     std::array<double, 3> answer{}, mass{};  // what a unit impulse changes that by; the weighed mass at the faces
     std::array<FaceWeights, 3> around;
@@ -54,9 +54,9 @@ void drag_small_body(FluidGrid& grid, double density, double viscosity, double p
     if (!(drag > 0)) return;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<int>(axis);
-        const double impulse = slip[a] / (1 / drag + solid.inverse_mass + answer[axis]);
-        solid.impulse[a] += impulse;
-        moving.linear_velocity[a] += impulse * solid.inverse_mass;
+        const double impulse = slip[a] / (1 / drag + obstacle.inverse_mass + answer[axis]);
+        obstacle.impulse[a] += impulse;
+        moving.linear_velocity[a] += impulse * obstacle.inverse_mass;
         for (const FaceWeight& face : around[axis]) {
             grid.velocity[axis][face.cell] -= static_cast<float>(impulse * face.weight / mass[axis]);
         }

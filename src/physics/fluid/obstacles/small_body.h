@@ -7,7 +7,7 @@
 
 namespace embody::physics::fluid {
 
-struct MovingSolid;
+struct MovingObstacle;
 
 /// Drag of a sphere, N s/m: force over speed relative to the liquid, m/s. `radius` of the sphere of equal volume, m;
 /// density, kg/m³, and dynamic viscosity, Pa s, of the liquid. J. M. Dallavalle, "Micromeritics", 2nd edition 1948: C_d
@@ -15,8 +15,8 @@ struct MovingSolid;
 double drag_of_sphere(double radius, double speed, double density, double viscosity);
 
 /// Drag between a body smaller than a cell and the liquid around it over dt, by equal and opposite impulses: the
-/// body's goes to its velocity and its solid's impulse, the liquid's to the faces around. `particle_mass`: kg.
+/// body's goes to its velocity and its obstacle's impulse, the liquid's to the faces around. `particle_mass`: kg.
 void drag_small_body(FluidGrid& grid, double density, double viscosity, double particle_mass, double dt,
-                     MovingSolid& moving);
+                     MovingObstacle& moving);
 
 }  // namespace embody::physics::fluid

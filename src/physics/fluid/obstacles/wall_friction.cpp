@@ -31,25 +31,25 @@ double turbulent_stress(double speed, double y, double kinematic_viscosity) {
     return std::max(0.0, all - kinematic_viscosity * speed / y);
 }
 
-void rub_along_walls(FluidGrid& grid, FluidSolids& solids, double density, double viscosity, double particle_mass,
+void rub_along_walls(FluidGrid& grid, FluidObstacles& obstacles, double density, double viscosity, double particle_mass,
                      double dt, TaskPool& workers) {
     const auto tiles = grid.tiles();
     const double h = grid.cell_size();
     std::vector<std::vector<SlowedFace>> found(static_cast<std::size_t>(workers.workers()));
     const auto look_at = [&](int axis, int cell, const Cell& c, std::vector<SlowedFace>& slowed) {
         const int below = cell - grid.stride(axis);
-        const float distance = 0.5f * (grid.solid[cell] + grid.solid[below]);
+        const float distance = 0.5f * (grid.obstacle[cell] + grid.obstacle[below]);
         if (!(distance > nearest && distance <= farthest) || !(grid.open[axis][cell] > 0.25f)) return;
         if (!(grid.mass[axis][cell] > 0) || (grid.row[cell] < 0 && grid.row[below] < 0)) return;
         Vec3 center = grid.center(c);
         center[axis] -= h / 2;
-        const int owner = grid.solid_owner[grid.solid[cell] < grid.solid[below] ? cell : below];
-        if (owner >= 0 && solids.moving()[static_cast<std::size_t>(owner)].solid->inverse_mass > 0) return;
+        const int owner = grid.obstacle_owner[grid.obstacle[cell] < grid.obstacle[below] ? cell : below];
+        if (owner >= 0 && obstacles.moving()[static_cast<std::size_t>(owner)].obstacle->inverse_mass > 0) return;
         const float at[3] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)};
         float gradient[3];
-        (void)sample_center(grid, grid.solid, at, gradient);
+        (void)sample_center(grid, grid.obstacle, at, gradient);
         const Vec3 normal = normalized(Vec3{gradient[0], gradient[1], gradient[2]});
-        const Vec3 slip = velocity_around(grid, axis, cell) - solids.velocity_at(owner, center);
+        const Vec3 slip = velocity_around(grid, axis, cell) - obstacles.velocity_at(owner, center);
         const Vec3 along = slip - normal * dot(slip, normal);
         const double speed = length(along);
         // The speed is that of half a cell away also where the face is nearer: cells hold no layers within them.
@@ -62,7 +62,7 @@ void rub_along_walls(FluidGrid& grid, FluidSolids& solids, double density, doubl
         auto& slowed = found[static_cast<std::size_t>(worker)];
         for (std::size_t i = share.first; i < share.last; ++i) {
             grid.for_cells(tiles[i], [&](int cell, const Cell& c) {
-                if (!(grid.solid[cell] < farthest + 0.5f)) return;
+                if (!(grid.obstacle[cell] < farthest + 0.5f)) return;
                 for (int axis = 0; axis < 3; ++axis) look_at(axis, cell, c, slowed);
             });
         }
@@ -72,12 +72,12 @@ void rub_along_walls(FluidGrid& grid, FluidSolids& solids, double density, doubl
         for (const SlowedFace& face : slowed) {
             grid.velocity[face.axis][face.cell] += static_cast<float>(face.change);
             if (face.owner < 0) continue;
-            MovingSolid& moving = solids.moving()[static_cast<std::size_t>(face.owner)];
+            MovingObstacle& moving = obstacles.moving()[static_cast<std::size_t>(face.owner)];
             Vec3 impulse;
             impulse[face.axis] = -face.change * grid.mass[face.axis][face.cell] * particle_mass;
             const Vec3 moment = cross(face.center - moving.center, impulse);
-            moving.solid->impulse += impulse;
-            moving.solid->angular_impulse += moment;
+            moving.obstacle->impulse += impulse;
+            moving.obstacle->angular_impulse += moment;
         }
     }
 }

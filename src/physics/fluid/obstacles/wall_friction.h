@@ -4,7 +4,7 @@
 #include "foundation/task_pool.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
-#include "physics/fluid/obstacles/solids.h"
+#include "physics/fluid/obstacles/obstacles.h"
 
 namespace embody::physics::fluid {
 
@@ -13,9 +13,9 @@ namespace embody::physics::fluid {
 /// fluids.md, "Walls").
 double turbulent_stress(double speed, double y, double kinematic_viscosity);
 
-/// The faces next to solids that liquid does not move are slowed by the layer at the wall, which is thinner than a
+/// The faces next to obstacles that liquid does not move are slowed by the layer at the wall, which is thinner than a
 /// cell, and pull at them; on small bodies that move freely no such layer comes about. `particle_mass` in kg.
-void rub_along_walls(FluidGrid& grid, FluidSolids& solids, double density, double viscosity, double particle_mass,
+void rub_along_walls(FluidGrid& grid, FluidObstacles& obstacles, double density, double viscosity, double particle_mass,
                      double dt, TaskPool& workers);
 
 }  // namespace embody::physics::fluid

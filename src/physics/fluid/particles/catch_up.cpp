@@ -12,34 +12,34 @@ namespace embody::physics::fluid {
 
 namespace {
 
-constexpr double least_way = 0.005;  // cells: less does not bring a particle into a solid
+constexpr double least_way = 0.005;  // cells: less does not bring a particle into an obstacle
 constexpr double single_way = 0.25;  // cells: of less the particles are kept out one by one
 constexpr double longest_way = 1.5;  // cells, of a part
 constexpr int most_parts = 16;
 
 }  // namespace
 
-FluidSolver::Followed FluidSolver::follow(std::span<FluidSolid> solids, TaskPool& workers) {
+FluidSolver::Followed FluidSolver::follow(std::span<FluidObstacle> obstacles, TaskPool& workers) {
     Followed followed;
     if (particles_.empty()) return followed;
-    solids_.begin(solids, grid_);
-    const double way = solids_.surprise() / grid_.cell_size();
+    obstacles_.begin(obstacles, grid_);
+    const double way = obstacles_.surprise() / grid_.cell_size();
     if (way > single_way) {
         const double parts = std::clamp(std::ceil(way / longest_way), 1.0, static_cast<double>(most_parts));
-        solids_.begin_catching_up();
+        obstacles_.begin_catching_up();
         for (int i = 0; i < static_cast<int>(parts) && !particles_.empty(); ++i) displace(1 / parts, followed, workers);
-        solids_.end_catching_up();
+        obstacles_.end_catching_up();
     }
     if (way > least_way) keep_out(workers);
-    solids_.end();
+    obstacles_.end();
     return followed;
 }
 
-// Out of thin solids by their true shapes; the particles keep their velocities: the next pressure stops them.
+// Out of thin obstacles by their true shapes; the particles keep their velocities: the next pressure stops them.
 void FluidSolver::keep_out(TaskPool& workers) {
-    solids_.place();
+    obstacles_.place();
     share_among(workers, particles_.size(), particles_.size() > few_particles, [&](int, Share part) {
-        ParticleCollider collider(grid_, solids_, 0);
+        ParticleCollider collider(grid_, obstacles_, 0);
         for (std::size_t i = part.first; i < part.last; ++i) {
             if (!collider.is_near_thin(particles_[i].position)) continue;
             FluidParticle moved = particles_[i];
@@ -47,20 +47,20 @@ void FluidSolver::keep_out(TaskPool& workers) {
             std::copy_n(moved.position, 3, particles_[i].position);
         }
     });
-    solids_.advance(0);
+    obstacles_.advance(0);
 }
 
-// The displacement of least Σ |d|² that lets the solids through and keeps the liquid's volume: d = −∇q, ∇·d = 0, as the
-// pressure moves liquid at rest.
+// The displacement of least Σ |d|² that lets the obstacles through and keeps the liquid's volume: d = −∇q, ∇·d = 0, as
+// the pressure moves liquid at rest.
 void FluidSolver::displace(double share, Followed& followed, TaskPool& workers) {
     constexpr double allowed_change = 1e-3;  // of a cell's volume
     constexpr int most_iterations = 300;
     const double h = grid_.cell_size();
     followed.lost += grid_.cover(particles_, workers);
     if (particles_.empty()) return;
-    grid_.sort(particles_, particle_share(), solids_.in_reach(share, h), workers);
-    solids_.measure(share, grid_, workers);
-    if (grid_.on_grid() == 0) return solids_.advance(share);
+    grid_.sort(particles_, particle_share(), obstacles_.in_reach(share, h), workers);
+    obstacles_.measure(share, grid_, workers);
+    if (grid_.on_grid() == 0) return obstacles_.advance(share);
     find_places(share, workers);
     particles_to_grid(grid_, particles_, places_, particle_share(), workers);
     grid_.for_tiles(workers, [&](const Cell& corner) {
@@ -69,8 +69,8 @@ void FluidSolver::displace(double share, Followed& followed, TaskPool& workers) 
         });
     });
     system_.build(grid_, workers);
-    solids_.list_areas(grid_);
-    outflow(grid_, solids_, system_, flow_, workers);
+    obstacles_.list_areas(grid_);
+    outflow(grid_, obstacles_, system_, flow_, workers);
     for (double& flow : flow_) flow *= -1 / h;
     potential_.assign(system_.size(), 0);
     system_.set_bodies({}, 0);
@@ -79,11 +79,11 @@ void FluidSolver::displace(double share, Followed& followed, TaskPool& workers) 
     extrapolate(grid_, grid_.velocity, 1, workers);
     admit_drops(grid_, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
-    follow_solids(grid_, solids_, 0, workers);
+    follow_obstacles(grid_, obstacles_, 0, workers);
 
     const std::size_t count = grid_.on_grid();
     share_among(workers, count, count > few_particles, [&](int, Share part) {
-        ParticleCollider collider(grid_, solids_, share);
+        ParticleCollider collider(grid_, obstacles_, share);
         for (std::size_t i = part.first; i < part.last; ++i) {
             FluidParticle moved = particles_[i];
             float way[3], end[3];
@@ -94,7 +94,7 @@ void FluidSolver::displace(double share, Followed& followed, TaskPool& workers) 
             std::copy_n(moved.position, 3, particles_[i].position);
         }
     });
-    solids_.advance(share);
+    obstacles_.advance(share);
     followed.is_solved = followed.is_solved && iterations <= most_iterations;
 }
 

@@ -10,7 +10,7 @@ namespace embody::physics::fluid {
 
 namespace {
 
-// Particles come no nearer to a solid than this, in cells.
+// Particles come no nearer to an obstacle than this, in cells.
 constexpr float least_distance = 0.02f;
 // They go no farther in a part of a step than this, in cells.
 constexpr double longest_way = 4;
@@ -31,9 +31,9 @@ Cell cell_at(const FluidGrid& grid, const float* position) {
 
 }  // namespace
 
-ParticleCollider::ParticleCollider(const FluidGrid& grid, const FluidSolids& solids, double dt)
-    : grid_(grid), solids_(solids), fixed_(solids.fixed()) {
-    for (const MovingSolid& moving : solids.moving()) {
+ParticleCollider::ParticleCollider(const FluidGrid& grid, const FluidObstacles& obstacles, double dt)
+    : grid_(grid), obstacles_(obstacles), fixed_(obstacles.fixed()) {
+    for (const MovingObstacle& moving : obstacles.moving()) {
         Mover mover{moving.probe, &moving, {}, {}};
         mover.before = mover.posed(moving.kept_center, moving.kept_rotation);
         mover.end = mover.posed(moving.center + moving.linear_velocity * (dt / 2), moving.end_rotation(dt));
@@ -47,13 +47,13 @@ ParticleCollider::ParticleCollider(const FluidGrid& grid, const FluidSolids& sol
 }
 
 ParticleCollider::Pose ParticleCollider::Mover::posed(Vec3 center, Quat rotation) const {
-    return {center, rotation, solid->center, to_matrix(solid->rotation * conjugate(rotation))};
+    return {center, rotation, obstacle->center, to_matrix(obstacle->rotation * conjugate(rotation))};
 }
 
 ParticleCollider::Pose ParticleCollider::Mover::at(double share) const {
     if (share == 0) return before;
     if (share == 1) return end;
-    const Pose middle{solid->center, solid->rotation, {}, {}};
+    const Pose middle{obstacle->center, obstacle->rotation, {}, {}};
     const Pose &from = share < 0.5 ? before : middle, &to = share < 0.5 ? middle : end;
     const double t = share < 0.5 ? 2 * share : 2 * share - 1;
     const double other = dot(from.rotation, to.rotation) < 0 ? -t : t;
@@ -81,7 +81,7 @@ void ParticleCollider::look_around(const Bounds& way) {
         Mover& mover = moving_[i];
         if (!mover.is_met()) continue;
         // Wherever in the part a place is seen from, it is no farther from where it is than this.
-        const double arm = length(seen_.center() - mover.solid->center) + length(seen_.half_extents());
+        const double arm = length(seen_.center() - mover.obstacle->center) + length(seen_.half_extents());
         const double aside = mover.shift + mover.turn * (arm + mover.shift);
         if (mover.probe.look_at(enlarged(seen_, gap + aside), gap)) near_moving_.push_back(i);
     }
@@ -147,25 +147,25 @@ void ParticleCollider::stop_at(FluidParticle& particle, const Wall& wall) const 
 
 void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span& when) const {
     constexpr float deep = -0.1f;  // cells
-    // The grid has a moving solid where it is in the middle of the part.
-    const int owner = grid_.solid_owner[grid_.index(cell_at(grid_, particle.position))];
+    // The grid has a moving obstacle where it is in the middle of the part.
+    const int owner = grid_.obstacle_owner[grid_.index(cell_at(grid_, particle.position))];
     const Mover* mover = owner >= 0 ? &moving_[static_cast<std::size_t>(owner)] : nullptr;
     const Pose pose = mover != nullptr ? mover->at(when.last) : Pose{};
     float gradient[3];
     const auto distance_at = [&](Vec3 p) {
         const float at[3] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-        return sample_center(grid_, grid_.solid, at, gradient);
+        return sample_center(grid_, grid_.obstacle, at, gradient);
     };
     const Vec3 inside = pose.seen(to_vec(particle.position));
     const float distance = distance_at(inside);
     if (distance >= least_distance) return;
     const Vec3 normal = normalized(Vec3{gradient[0], gradient[1], gradient[2]});
     const Vec3 outside = inside + normal * ((least_distance - distance) * grid_.cell_size());
-    const Vec3 wall = solids_.velocity_at(owner, outside);
+    const Vec3 wall = obstacles_.velocity_at(owner, outside);
     set_position(particle, pose.back(outside));
     stop_at(particle, {normal, wall});
 
-    // Where that leads nowhere (the seam of two solids) it does not go on.
+    // Where that leads nowhere (the seam of two obstacles) it does not go on.
     const float now = distance_at(outside);
     if (now > deep) return;
     const Vec3 stayed = mover != nullptr ? mover->at(when.first).seen(before) : before;
@@ -175,7 +175,7 @@ void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span
 }
 
 // Shortens the way from `from` to `to` where the probe bars it, and slides on along what bars it.
-bool ParticleCollider::bar(const SolidProbe& probe, Vec3 from, Vec3& to, Vec3& normal) const {
+bool ParticleCollider::bar(const ObstacleProbe& probe, Vec3 from, Vec3& to, Vec3& normal) const {
     constexpr int most_slides = 3;
     const double gap = least_distance * grid_.cell_size();
     bool is_barred = false;
@@ -190,7 +190,7 @@ bool ParticleCollider::bar(const SolidProbe& probe, Vec3 from, Vec3& to, Vec3& n
         to = slide + 1 < most_slides ? place + rest - normal * std::min(0.0, dot(rest, normal)) : place;
     }
     // Too near without having gone through, or inside since the start.
-    const SolidDistance near = probe.nearest(to);
+    const ObstacleDistance near = probe.nearest(to);
     const bool is_behind = probe.is_surface() && near.distance < 0;
     const double distance = is_behind ? -near.distance : near.distance;
     if (distance >= gap) return is_barred;
@@ -218,7 +218,7 @@ void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to, const 
         }
         for (const std::size_t i : near_moving_) {
             const Mover& mover = moving_[i];
-            const MovingSolid& moving = *mover.solid;
+            const MovingObstacle& moving = *mover.obstacle;
             const Pose before = mover.at(when.first), after = mover.at(when.last);
             Vec3 seen_to = after.seen(to);
             if (!bar(mover.probe, before.seen(from), seen_to, normal)) continue;
@@ -258,7 +258,7 @@ void ParticleCollider::stride(FluidParticle& particle, const float* to, const Sp
     }
     const Vec3 before = to_vec(particle.position);
     std::copy_n(to, 3, particle.position);
-    if (grid_.solid[grid_.index(cell_at(grid_, to))] < 1.5f) push_out(particle, before, when);
+    if (grid_.obstacle[grid_.index(cell_at(grid_, to))] < 1.5f) push_out(particle, before, when);
 }
 
 }  // namespace embody::physics::fluid

@@ -6,18 +6,18 @@
 
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
-#include "physics/fluid/obstacles/solids.h"
+#include "physics/fluid/obstacles/obstacles.h"
 
 namespace embody::physics::fluid {
 
-/// Keeps particles out of solids: by the grid's distances, and near walls thinner than a cell by the true shapes. One a
-/// worker.
+/// Keeps particles out of obstacles: by the grid's distances, and near walls thinner than a cell by the true shapes.
+/// One a worker.
 class ParticleCollider {
 public:
-    ParticleCollider(const FluidGrid& grid, const FluidSolids& solids, double dt);
+    ParticleCollider(const FluidGrid& grid, const FluidObstacles& obstacles, double dt);
     /// Where a particle meets the grid: its place, but on its own side of thin walls only.
     std::array<float, 3> place_of(const FluidParticle& particle);
-    /// Moves the particle towards `end`, a place of the fluid's frame, as far as solids let it.
+    /// Moves the particle towards `end`, a place of the fluid's frame, as far as obstacles let it.
     void move(FluidParticle& particle, const float* end);
     /// Whether the true shapes are asked there.
     [[nodiscard]] bool is_near_thin(const float* position) const;
@@ -35,11 +35,11 @@ private:
     void push_out(FluidParticle& particle, Vec3 before, const Span& when) const;
     [[nodiscard]] bool sees(Vec3 from, Vec3 to);
     void sweep(FluidParticle& particle, Vec3 from, Vec3 to, const Span& when);
-    [[nodiscard]] bool bar(const SolidProbe& probe, Vec3 from, Vec3& to, Vec3& normal) const;
+    [[nodiscard]] bool bar(const ObstacleProbe& probe, Vec3 from, Vec3& to, Vec3& normal) const;
     void stop_at(FluidParticle& particle, const Wall& wall) const;
     void look_around(const Bounds& way);
 
-    /// Where a moving solid is at a time of the part, and places beside it as the middle of the part sees them.
+    /// Where a moving obstacle is at a time of the part, and places beside it as the middle of the part sees them.
     struct Pose {
         Vec3 center;
         Quat rotation;
@@ -49,20 +49,20 @@ private:
         [[nodiscard]] Vec3 back(Vec3 p) const { return center + transpose(turn) * (p - middle); }
     };
     struct Mover {
-        SolidProbe probe;
-        const MovingSolid* solid;
+        ObstacleProbe probe;
+        const MovingObstacle* obstacle;
         Pose before, end;
         double shift = 0;  ///< farthest that its centre is from where it is in the middle of the part, m
         double turn = 0;   ///< and a point of it, by its rotation alone, by distance from the centre
         [[nodiscard]] Pose at(double share) const;
         [[nodiscard]] Pose posed(Vec3 center, Quat rotation) const;
-        [[nodiscard]] bool is_met() const { return solid->is_in_reach && !solid->is_small; }
+        [[nodiscard]] bool is_met() const { return obstacle->is_in_reach && !obstacle->is_small; }
     };
 
     const FluidGrid& grid_;
-    const FluidSolids& solids_;
-    std::vector<SolidProbe> fixed_;
-    std::vector<Mover> moving_;  // as solids.moving()
+    const FluidObstacles& obstacles_;
+    std::vector<ObstacleProbe> fixed_;
+    std::vector<Mover> moving_;  // as obstacles.moving()
     Bounds seen_;                // the probes have looked at this box, and those of these indices meet it
     std::vector<std::size_t> near_fixed_, near_moving_;
 };

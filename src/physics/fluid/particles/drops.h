@@ -3,7 +3,7 @@
 
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
-#include "physics/fluid/obstacles/solids.h"
+#include "physics/fluid/obstacles/obstacles.h"
 
 namespace embody::physics::fluid {
 
@@ -14,7 +14,7 @@ bool is_drop(const FluidGrid& grid, const float* place);
 
 /// Takes from the velocity (m/s) of a drop at `place` what a wall beside it takes in dt (docs/physics/fluids.md,
 /// "Drops").
-void slow_at_wall(const FluidGrid& grid, const FluidSolids& solids, const FluidProperties& liquid, double dt,
+void slow_at_wall(const FluidGrid& grid, const FluidObstacles& obstacles, const FluidProperties& liquid, double dt,
                   const float* place, float* velocity);
 
 }  // namespace embody::physics::fluid

@@ -23,11 +23,11 @@ std::int32_t row_near(const FluidGrid& grid, const float* place) {
 }
 
 // Whether any of the liquid touches what does not move freely: looked for first, since most does.
-bool touches_fixed(const FluidGrid& grid, const PressureSystem& system, const FluidSolids& solids) {
+bool touches_fixed(const FluidGrid& grid, const PressureSystem& system, const FluidObstacles& obstacles) {
     for (std::size_t row = 0; row < system.size(); ++row) {
         const auto cell = static_cast<int>(system.cell(row));
-        const int owner = grid.solid_owner[cell];
-        if (owner >= 0 && solids.moving()[static_cast<std::size_t>(owner)].solid->inverse_mass > 0) continue;
+        const int owner = grid.obstacle_owner[cell];
+        if (owner >= 0 && obstacles.moving()[static_cast<std::size_t>(owner)].obstacle->inverse_mass > 0) continue;
         for (int axis = 0; axis < 3; ++axis) {
             if (grid.open[axis][cell] < 1 || grid.open[axis][cell + grid.stride(axis)] < 1) return true;
         }
@@ -57,9 +57,9 @@ std::int32_t FreeLumps::joined(std::int32_t lump) const {
 }
 
 // A lump that touches what does not move freely is not free; one that shares a body with another is one with it.
-void FreeLumps::touch(const FluidGrid& grid, const FluidSolids& solids, int cell, std::int32_t lump) {
-    const int owner = grid.solid_owner[cell];
-    if (owner < 0 || !(solids.moving()[static_cast<std::size_t>(owner)].solid->inverse_mass > 0)) {
+void FreeLumps::touch(const FluidGrid& grid, const FluidObstacles& obstacles, int cell, std::int32_t lump) {
+    const int owner = grid.obstacle_owner[cell];
+    if (owner < 0 || !(obstacles.moving()[static_cast<std::size_t>(owner)].obstacle->inverse_mass > 0)) {
         lumps_[static_cast<std::size_t>(lump)].is_free = false;
         return;
     }
@@ -76,17 +76,17 @@ std::int32_t FreeLumps::lump_at(const FluidGrid& grid, const float* place) const
     if (row >= 0) return lump_of_row_[static_cast<std::size_t>(row)];
     Cell c{};
     for (int axis = 0; axis < 3; ++axis) c[axis] = static_cast<int>(grid.in_cells(place[axis], axis));
-    const int cell = grid.index(c), owner = grid.solid_owner[cell];
-    return owner >= 0 && grid.solid[cell] < next_to ? bodies_[static_cast<std::size_t>(owner)].lump : -1;
+    const int cell = grid.index(c), owner = grid.obstacle_owner[cell];
+    return owner >= 0 && grid.obstacle[cell] < next_to ? bodies_[static_cast<std::size_t>(owner)].lump : -1;
 }
 
 // Rows that are neighbours are of one lump.
-void FreeLumps::find(const FluidGrid& grid, const PressureSystem& system, const FluidSolids& solids) {
+void FreeLumps::find(const FluidGrid& grid, const PressureSystem& system, const FluidObstacles& obstacles) {
     lumps_.clear();
     joined_.clear();
     bodies_.clear();
-    for (const MovingSolid& moving : solids.moving())
-        bodies_.push_back({-1, moving.solid->impulse, moving.solid->angular_impulse});
+    for (const MovingObstacle& moving : obstacles.moving())
+        bodies_.push_back({-1, moving.obstacle->impulse, moving.obstacle->angular_impulse});
     lump_of_row_.assign(system.size(), -1);
     std::vector<std::size_t> to_visit;
     for (std::size_t first = 0; first < system.size(); ++first) {
@@ -102,7 +102,7 @@ void FreeLumps::find(const FluidGrid& grid, const PressureSystem& system, const 
             for (int axis = 0; axis < 3; ++axis) {
                 const int stride = grid.stride(axis);
                 for (const int other : {cell - stride, cell + stride}) {
-                    if (grid.open[axis][std::max(cell, other)] < 1) touch(grid, solids, cell, lump);
+                    if (grid.open[axis][std::max(cell, other)] < 1) touch(grid, obstacles, cell, lump);
                     if (grid.row[other] < 0) continue;
                     std::int32_t& its = lump_of_row_[static_cast<std::size_t>(grid.row[other])];
                     if (its >= 0) continue;
@@ -120,12 +120,12 @@ void FreeLumps::find(const FluidGrid& grid, const PressureSystem& system, const 
     for (Touched& body : bodies_) body.lump = body.lump < 0 ? -1 : joined(body.lump);
 }
 
-void FreeLumps::begin(const FluidGrid& grid, const PressureSystem& system, const FluidSolids& solids,
+void FreeLumps::begin(const FluidGrid& grid, const PressureSystem& system, const FluidObstacles& obstacles,
                       const std::vector<FluidParticle>& particles, bool all) {
     lumps_.clear();
     lump_of_particle_.clear();
-    if (!all && touches_fixed(grid, system, solids)) return;
-    find(grid, system, solids);
+    if (!all && touches_fixed(grid, system, obstacles)) return;
+    find(grid, system, obstacles);
     lump_of_particle_.assign(particles.size(), -1);
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const std::int32_t lump = lump_at(grid, particles[i].position);
@@ -137,7 +137,7 @@ void FreeLumps::begin(const FluidGrid& grid, const PressureSystem& system, const
     }
 }
 
-void FreeLumps::end(Vec3 change, const FluidSolids& solids, double particle_mass,
+void FreeLumps::end(Vec3 change, const FluidObstacles& obstacles, double particle_mass,
                     std::vector<FluidParticle>& particles) const {
     if (lumps_.empty()) return;
     constexpr double fewest = 64;  // that are turned
@@ -160,9 +160,9 @@ void FreeLumps::end(Vec3 change, const FluidSolids& solids, double particle_mass
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         if (bodies_[i].lump < 0 || now[static_cast<std::size_t>(bodies_[i].lump)].count == 0) continue;
         Correction& correction = corrections[static_cast<std::size_t>(bodies_[i].lump)];
-        const MovingSolid& moving = solids.moving()[i];
-        const Vec3 given = (moving.solid->impulse - bodies_[i].impulse) / particle_mass;
-        const Vec3 turned = (moving.solid->angular_impulse - bodies_[i].angular_impulse) / particle_mass;
+        const MovingObstacle& moving = obstacles.moving()[i];
+        const Vec3 given = (moving.obstacle->impulse - bodies_[i].impulse) / particle_mass;
+        const Vec3 turned = (moving.obstacle->angular_impulse - bodies_[i].angular_impulse) / particle_mass;
         correction.linear -= given;
         correction.angular -= turned + cross(moving.center - correction.center, given);
     }

@@ -8,7 +8,7 @@
 #include "math/vec3.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
-#include "physics/fluid/obstacles/solids.h"
+#include "physics/fluid/obstacles/obstacles.h"
 #include "physics/fluid/pressure/pressure_system.h"
 
 namespace embody::physics::fluid {
@@ -20,11 +20,12 @@ class FreeLumps {
 public:
     /// Finds them, and what momentum their particles and the bodies have. Unless `all`, only where the whole fluid is
     /// free. Rows are known, and nothing has been done to the bodies in this part of the step.
-    void begin(const FluidGrid& grid, const PressureSystem& system, const FluidSolids& solids,
+    void begin(const FluidGrid& grid, const PressureSystem& system, const FluidObstacles& obstacles,
                const std::vector<FluidParticle>& particles, bool all);
     /// The same particles after they moved: each lump gets the momentum that it had, less what its bodies were given,
     /// and so it does with the angular momentum about its centre. `change`: of all velocities by gravity, m/s.
-    void end(Vec3 change, const FluidSolids& solids, double particle_mass, std::vector<FluidParticle>& particles) const;
+    void end(Vec3 change, const FluidObstacles& obstacles, double particle_mass,
+             std::vector<FluidParticle>& particles) const;
 
 private:
     /// Sums over its particles, m and m/s.
@@ -43,15 +44,15 @@ private:
         std::int32_t lump = -1;
         Vec3 impulse, angular_impulse;
     };
-    void find(const FluidGrid& grid, const PressureSystem& system, const FluidSolids& solids);
-    void touch(const FluidGrid& grid, const FluidSolids& solids, int cell, std::int32_t lump);
+    void find(const FluidGrid& grid, const PressureSystem& system, const FluidObstacles& obstacles);
+    void touch(const FluidGrid& grid, const FluidObstacles& obstacles, int cell, std::int32_t lump);
     [[nodiscard]] std::int32_t joined(std::int32_t lump) const;
     [[nodiscard]] std::int32_t lump_at(const FluidGrid& grid, const float* place) const;
 
     std::vector<std::int32_t> lump_of_row_, lump_of_particle_;  // −1: a drop of its own
     std::vector<std::int32_t> joined_;                          // by lump: an earlier one that it is part of, or itself
     std::vector<Lump> lumps_;
-    std::vector<Touched> bodies_;  // as solids.moving()
+    std::vector<Touched> bodies_;  // as obstacles.moving()
 };
 
 }  // namespace embody::physics::fluid

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "physics/fluid/grid/grid.h"
-#include "physics/fluid/obstacles/solids.h"
+#include "physics/fluid/obstacles/obstacles.h"
 
 namespace embody::physics::fluid {
 
@@ -46,9 +46,9 @@ double liquid_share(const FluidGrid& grid, int axis, int cell, Vec3 weight) {
 }
 
 // Inverse of the symmetric [A B; Bᵀ C] by its Schur complement.
-SolidResponse inverse_of(const Mat3& a, const Mat3& b, const Mat3& c) {
+ObstacleResponse inverse_of(const Mat3& a, const Mat3& b, const Mat3& c) {
     const Mat3 a_inverse = inverse_or_zero(a), ab = a_inverse * b;
-    SolidResponse response;
+    ObstacleResponse response;
     response.angular = inverse_or_zero(c - transpose(b) * ab);
     response.coupling = ab * response.angular * -1.0;
     response.linear = a_inverse - response.coupling * transpose(ab);
@@ -57,9 +57,9 @@ SolidResponse inverse_of(const Mat3& a, const Mat3& b, const Mat3& c) {
 
 }  // namespace
 
-void bind_liquid(const FluidGrid& grid, double density, Vec3 gravity, MovingSolid& moving) {
-    const FluidSolid& solid = *moving.solid;
-    moving.response = {Mat3::identity() * solid.inverse_mass, Mat3::zero(), solid.inverse_inertia};
+void bind_liquid(const FluidGrid& grid, double density, Vec3 gravity, MovingObstacle& moving) {
+    const FluidObstacle& obstacle = *moving.obstacle;
+    moving.response = {Mat3::identity() * obstacle.inverse_mass, Mat3::zero(), obstacle.inverse_inertia};
     if (!moving.is_in_reach || moving.bound.empty()) return;
     const double h = grid.cell_size(), volume = h * h * h;
     Mat3 masses = Mat3::zero(), couplings = Mat3::zero(), inertia = Mat3::zero();
@@ -76,9 +76,9 @@ void bind_liquid(const FluidGrid& grid, double density, Vec3 gravity, MovingSoli
         momentum += n * (face.mass * face.speed);
         angular_momentum += face.turn * (face.mass * face.speed);
     }
-    if (!(solid.inverse_mass > 0)) return;
-    const double mass = 1 / solid.inverse_mass;
-    const Mat3 own_inertia = inverse_or_zero(solid.inverse_inertia);
+    if (!(obstacle.inverse_mass > 0)) return;
+    const double mass = 1 / obstacle.inverse_mass;
+    const Mat3 own_inertia = inverse_or_zero(obstacle.inverse_inertia);
     moving.response = inverse_of(Mat3::identity() * mass + masses, couplings, own_inertia + inertia);
     const Vec3 linear = moving.linear_velocity * mass + momentum,
                angular = own_inertia * moving.angular_velocity + angular_momentum;
@@ -86,14 +86,14 @@ void bind_liquid(const FluidGrid& grid, double density, Vec3 gravity, MovingSoli
     moving.angular_velocity = moving.response.angular_change(linear, angular);
 }
 
-void release_liquid(MovingSolid& moving) {
+void release_liquid(MovingObstacle& moving) {
     if (!moving.is_in_reach) return;
     for (const BoundFace& face : moving.bound) {
         if (!(face.mass > 0)) continue;
         const double speed = moving.linear_velocity[face.axis] + dot(face.turn, moving.angular_velocity);
         const double impulse = face.mass * (face.speed - speed);
-        moving.solid->impulse += along(face.axis) * impulse;
-        moving.solid->angular_impulse += face.turn * impulse;
+        moving.obstacle->impulse += along(face.axis) * impulse;
+        moving.obstacle->angular_impulse += face.turn * impulse;
     }
 }
 

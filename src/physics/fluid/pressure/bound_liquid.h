@@ -10,19 +10,20 @@
 namespace embody::physics::fluid {
 
 class FluidGrid;
-struct MovingSolid;
+struct MovingObstacle;
 
-/// A shut face of a solid that fills only a part of its control volume, the rest of which goes along with the solid.
+/// A shut face of an obstacle that fills only a part of its control volume, the rest of which goes along with the
+/// obstacle.
 struct BoundFace {
     int axis = 0, cell = 0;
-    float share = 0;   ///< of the control volume that is shut but not solid
+    float share = 0;   ///< of the control volume that is shut but outside the obstacle
     double mass = 0;   ///< of liquid in it, kg
-    Vec3 turn;         ///< (place − the solid's centre of mass) × axis, m
+    Vec3 turn;         ///< (place − the obstacle's centre of mass) × axis, m
     double speed = 0;  ///< of that liquid along the axis before it is bound, m/s
 };
 
 /// What impulses do to a body's velocities: its inverse mass and inertia, with the liquid that it has bound.
-struct SolidResponse {
+struct ObstacleResponse {
     Mat3 linear = Mat3::zero(), coupling = Mat3::zero(), angular = Mat3::zero();
 
     [[nodiscard]] Vec3 linear_change(Vec3 impulse, Vec3 moment) const { return linear * impulse + coupling * moment; }
@@ -31,11 +32,11 @@ struct SolidResponse {
     }
 };
 
-/// What is liquid of a moving solid's bound faces, by the last pressure, and its speed; the solid's response. The
-/// solid takes the liquid's momentum over: its velocities become the common ones.
-void bind_liquid(const FluidGrid& grid, double density, Vec3 gravity, MovingSolid& moving);
+/// What is liquid of a moving obstacle's bound faces, by the last pressure, and its speed; the obstacle's response. The
+/// obstacle takes the liquid's momentum over: its velocities become the common ones.
+void bind_liquid(const FluidGrid& grid, double density, Vec3 gravity, MovingObstacle& moving);
 
-/// Gives the solid what the liquid's momentum has changed by, once both have their final velocity.
-void release_liquid(MovingSolid& moving);
+/// Gives the obstacle what the liquid's momentum has changed by, once both have their final velocity.
+void release_liquid(MovingObstacle& moving);
 
 }  // namespace embody::physics::fluid

@@ -182,13 +182,13 @@ void PressureSystem::multiply(Share block, std::span<const double> x, std::span<
     }
 }
 
-void PressureSystem::set_bodies(std::span<const MovingSolid> bodies, double scale) {
+void PressureSystem::set_bodies(std::span<const MovingObstacle> bodies, double scale) {
     scale_ = scale;
     bodies_.clear();
     parts_.clear();
-    for (const MovingSolid& body : bodies) {
-        if (body.solid->inverse_mass <= 0 || body.areas.empty()) continue;
-        for (const SolidArea& area : body.areas) {
+    for (const MovingObstacle& body : bodies) {
+        if (body.obstacle->inverse_mass <= 0 || body.areas.empty()) continue;
+        for (const ObstacleArea& area : body.areas) {
             parts_.push_back({area.row, static_cast<std::int32_t>(bodies_.size()), area.area, area.moment});
         }
         bodies_.push_back(&body);
@@ -206,11 +206,11 @@ void PressureSystem::set_bodies(std::span<const MovingSolid> bodies, double scal
 // What the pressure x does to the velocity of a body.
 void PressureSystem::move_body(std::size_t body, std::span<const double> x) {
     Vec3 impulse, moment;
-    for (const SolidArea& area : bodies_[body]->areas) {
+    for (const ObstacleArea& area : bodies_[body]->areas) {
         impulse += area.area * x[area.row];
         moment += area.moment * x[area.row];
     }
-    const SolidResponse& response = bodies_[body]->response;
+    const ObstacleResponse& response = bodies_[body]->response;
     velocities_[body] = {response.linear_change(impulse, moment) * scale_,
                          response.angular_change(impulse, moment) * scale_};
 }

@@ -10,7 +10,7 @@
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/grid/liquid_cells.h"
 #include "physics/fluid/namespace.h"
-#include "physics/fluid/obstacles/solids.h"
+#include "physics/fluid/obstacles/obstacles.h"
 
 namespace embody::physics::fluid {
 
@@ -27,7 +27,7 @@ public:
     [[nodiscard]] static float gap_share(float inside, float outside);
 
     /// The bodies that take part: adds `scale` J M⁻¹ Jᵀ. None: the liquid alone.
-    void set_bodies(std::span<const MovingSolid> bodies, double scale);
+    void set_bodies(std::span<const MovingObstacle> bodies, double scale);
     /// Starts from x. Stops at residuals (largest component) below `tolerance`. Returns the iterations; most + 1 where
     /// they did not suffice.
     int solve(std::span<const double> b, std::vector<double>& x, double tolerance, int most, TaskPool& workers);
@@ -72,7 +72,7 @@ private:
     std::size_t blocks_ = 1;
     std::vector<double> diagonal_, scaling_;
     std::vector<double> r_, z_, p_, ap_, q_;
-    std::vector<const MovingSolid*> bodies_;
+    std::vector<const MovingObstacle*> bodies_;
     std::vector<BodyVelocity> velocities_;
     std::vector<BodyPart> parts_;            // by row, then by body
     std::vector<std::uint32_t> first_part_;  // by block, and one more

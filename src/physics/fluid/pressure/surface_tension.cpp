@@ -83,7 +83,7 @@ void SurfacePressure::measure(double impulse, const FluidGrid& grid, TaskPool& w
         smooth(grid, axis, filled_, scratch_, workers);
         smooth(grid, axis, room_, scratch_, workers);
     }
-    // Shares of what is not solid, so that a wall curves nothing: the surface meets it at a right angle.
+    // Shares of what is not obstacle, so that a wall curves nothing: the surface meets it at a right angle.
     grid.for_tiles(workers, [&](const Cell& corner) {
         grid.for_cells(corner, [&](int cell, const Cell&) {
             filled_[cell] = room_[cell] > 1e-3f ? filled_[cell] / room_[cell] : 0;

@@ -43,7 +43,7 @@ double sticking_of(const Viscosity& liquid, double h, double speed) {
 }
 
 // Unknown are the open faces of cells with liquid; their inertia is what is liquid of their control volume.
-void ViscositySystem::number_faces(const FluidGrid& grid, const FluidSolids& solids) {
+void ViscositySystem::number_faces(const FluidGrid& grid, const FluidObstacles& obstacles) {
     faces_.clear();
     fixed_.clear();
     inertia_.clear();
@@ -66,18 +66,18 @@ void ViscositySystem::number_faces(const FluidGrid& grid, const FluidSolids& sol
             });
         }
     }
-    body_of_.assign(solids.moving().size(), -1);
+    body_of_.assign(obstacles.moving().size(), -1);
 }
 
-// Numbers a shut face, which moves as its solid does, after the unknown ones.
-std::int32_t ViscositySystem::fixed_face(const FluidGrid& grid, const FluidSolids& solids, int axis, int cell,
+// Numbers a shut face, which moves as its obstacle does, after the unknown ones.
+std::int32_t ViscositySystem::fixed_face(const FluidGrid& grid, const FluidObstacles& obstacles, int axis, int cell,
                                          const Cell& c) {
     std::int32_t& number = number_[axis][cell];
     if (number != -1) return number;
     const int below = cell - grid.stride(axis);
-    const int owner = grid.solid_owner[grid.solid[cell] < grid.solid[below] ? cell : below];
+    const int owner = grid.obstacle_owner[grid.obstacle[cell] < grid.obstacle[below] ? cell : below];
     Vec3 arm;
-    if (owner >= 0) arm = face_center(grid, axis, c) - solids.moving()[static_cast<std::size_t>(owner)].center;
+    if (owner >= 0) arm = face_center(grid, axis, c) - obstacles.moving()[static_cast<std::size_t>(owner)].center;
     number = static_cast<std::int32_t>(faces_.size() + fixed_.size());
     fixed_.push_back({axis, owner, arm});
     return number;
@@ -115,8 +115,8 @@ void ViscositySystem::measure_rates(const Viscosity& liquid, double dt, const Fl
 }
 
 // The strain of axes a and b at the edge of the cell's lower faces of both.
-void ViscositySystem::add_edge(const FluidGrid& grid, const FluidSolids& solids, int a, int b, int cell, const Cell& c,
-                               double scale) {
+void ViscositySystem::add_edge(const FluidGrid& grid, const FluidObstacles& obstacles, int a, int b, int cell,
+                               const Cell& c, double scale) {
     const int da = grid.stride(a), db = grid.stride(b);
     const int cells[4] = {cell, cell - da, cell - db, cell - da - db};
     // The harmonic mean: what does not yield beside what does must not hold it.
@@ -128,7 +128,7 @@ void ViscositySystem::add_edge(const FluidGrid& grid, const FluidSolids& solids,
             share += filled(grid, other);
             ++liquid;
         }
-        count += viscosity_[other] > 0 || grid.solid[other] >= 0;
+        count += viscosity_[other] > 0 || grid.obstacle[other] >= 0;
     }
     if (!(share > 0)) return;
     const double viscosity = share / count * liquid / fluidity;
@@ -149,14 +149,15 @@ void ViscositySystem::add_edge(const FluidGrid& grid, const FluidSolids& solids,
             if (grid.open[side.axis][side.cell] > 0) return;
             Cell place = c;
             if (!side.is_upper) --place[side.across];
-            number = fixed_face(grid, solids, side.axis, side.cell, place);
+            number = fixed_face(grid, obstacles, side.axis, side.cell, place);
         }
         const bool is_free = number < static_cast<std::int32_t>(faces_.size());
         any_free = any_free || is_free;
         strain.face[k] = number;
         const int partner = sides[k ^ 1].cell;
         if (is_free && !(grid.open[side.axis][partner] > 0)) {
-            const double distance = 0.5 * (grid.solid[side.cell] + grid.solid[side.cell - grid.stride(side.axis)]);
+            const double distance =
+                0.5 * (grid.obstacle[side.cell] + grid.obstacle[side.cell - grid.stride(side.axis)]);
             nearest_wall = std::min(nearest_wall, std::max(distance, least_wall));
         }
     }
@@ -165,7 +166,7 @@ void ViscositySystem::add_edge(const FluidGrid& grid, const FluidSolids& solids,
     strains_.push_back(strain);
 }
 
-void ViscositySystem::list_strains(const FluidGrid& grid, const FluidSolids& solids, double scale) {
+void ViscositySystem::list_strains(const FluidGrid& grid, const FluidObstacles& obstacles, double scale) {
     strains_.clear();
     for (const Cell& corner : grid.tiles()) {
         grid.for_cells(corner, [&](int cell, const Cell& c) {
@@ -175,29 +176,29 @@ void ViscositySystem::list_strains(const FluidGrid& grid, const FluidSolids& sol
                 const int above = cell + grid.stride(a);
                 const auto number = [&](int at, const Cell& place) {
                     if (number_[a][at] >= 0) return number_[a][at];
-                    return grid.open[a][at] > 0 ? -1 : fixed_face(grid, solids, a, at, place);
+                    return grid.open[a][at] > 0 ? -1 : fixed_face(grid, obstacles, a, at, place);
                 };
                 const std::int32_t upper = number(above, next), lower = number(cell, c);
                 if (upper < 0 || lower < 0) continue;
                 strains_.push_back({{upper, lower, -1, -1}, 2 * scale * viscosity_[cell] * filled(grid, cell)});
             }
-            add_edge(grid, solids, 0, 1, cell, c, scale);
-            add_edge(grid, solids, 1, 2, cell, c, scale);
-            add_edge(grid, solids, 2, 0, cell, c, scale);
+            add_edge(grid, obstacles, 0, 1, cell, c, scale);
+            add_edge(grid, obstacles, 1, 2, cell, c, scale);
+            add_edge(grid, obstacles, 2, 0, cell, c, scale);
         });
     }
 }
 
-void ViscositySystem::list_bodies(const Viscosity& liquid, const FluidGrid& grid, const FluidSolids& solids) {
+void ViscositySystem::list_bodies(const Viscosity& liquid, const FluidGrid& grid, const FluidObstacles& obstacles) {
     bodies_.clear();
     const double h = grid.cell_size(), unit = liquid.density * h * h * h;
     for (const FixedFace& face : fixed_) {
         if (face.owner < 0 || body_of_[face.owner] >= 0) continue;
-        const MovingSolid& moving = solids.moving()[static_cast<std::size_t>(face.owner)];
-        if (!(moving.solid->inverse_mass > 0)) continue;
+        const MovingObstacle& moving = obstacles.moving()[static_cast<std::size_t>(face.owner)];
+        if (!(moving.obstacle->inverse_mass > 0)) continue;
         body_of_[face.owner] = static_cast<std::int32_t>(bodies_.size());
-        bodies_.push_back({face.owner, 1 / moving.solid->inverse_mass / unit,
-                           inverse_or_zero(moving.solid->inverse_inertia) * (1 / unit), moving.linear_velocity,
+        bodies_.push_back({face.owner, 1 / moving.obstacle->inverse_mass / unit,
+                           inverse_or_zero(moving.obstacle->inverse_inertia) * (1 / unit), moving.linear_velocity,
                            moving.angular_velocity});
     }
 }
@@ -260,13 +261,13 @@ void ViscositySystem::multiply(std::vector<double>& x, std::vector<double>& y) {
     }
 }
 
-// What is: velocities of faces, solids and bodies.
-void ViscositySystem::start_from(const FluidGrid& grid, const FluidSolids& solids) {
+// What is: velocities of faces, obstacles and bodies.
+void ViscositySystem::start_from(const FluidGrid& grid, const FluidObstacles& obstacles) {
     const std::size_t free = faces_.size(), faces = free + fixed_.size();
     for (std::size_t i = 0; i < free; ++i) x_[i] = grid.velocity[faces_[i].first][faces_[i].second];
     for (std::size_t i = 0; i < fixed_.size(); ++i) {
         if (fixed_[i].owner < 0) continue;
-        const MovingSolid& moving = solids.moving()[static_cast<std::size_t>(fixed_[i].owner)];
+        const MovingObstacle& moving = obstacles.moving()[static_cast<std::size_t>(fixed_[i].owner)];
         x_[free + i] = (moving.linear_velocity + cross(moving.angular_velocity, fixed_[i].arm))[fixed_[i].axis];
     }
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -344,23 +345,23 @@ int ViscositySystem::iterate(int most) {
     return iteration;
 }
 
-int ViscositySystem::solve(const Viscosity& liquid, double dt, int most, FluidGrid& grid, FluidSolids& solids) {
+int ViscositySystem::solve(const Viscosity& liquid, double dt, int most, FluidGrid& grid, FluidObstacles& obstacles) {
     const double h = grid.cell_size();
-    number_faces(grid, solids);
+    number_faces(grid, obstacles);
     measure_rates(liquid, dt, grid);
-    list_strains(grid, solids, dt / (liquid.density * h * h));
-    list_bodies(liquid, grid, solids);
+    list_strains(grid, obstacles, dt / (liquid.density * h * h));
+    list_bodies(liquid, grid, obstacles);
     const std::size_t size = faces_.size() + fixed_.size() + 6 * bodies_.size();
     for (auto* vector : {&x_, &r_, &z_, &p_, &ap_, &diagonal_}) vector->assign(size, 0);
-    start_from(grid, solids);
+    start_from(grid, obstacles);
     fill_diagonal();
     fill_residual();
     const int iterations = iterate(most);
-    write_back(liquid, grid, solids);
+    write_back(liquid, grid, obstacles);
     return iterations;
 }
 
-void ViscositySystem::write_back(const Viscosity& liquid, FluidGrid& grid, FluidSolids& solids) {
+void ViscositySystem::write_back(const Viscosity& liquid, FluidGrid& grid, FluidObstacles& obstacles) {
     const std::size_t faces = faces_.size() + fixed_.size();
     for (std::size_t i = 0; i < faces_.size(); ++i) {
         grid.velocity[faces_[i].first][faces_[i].second] = static_cast<float>(x_[i]);
@@ -368,12 +369,12 @@ void ViscositySystem::write_back(const Viscosity& liquid, FluidGrid& grid, Fluid
     const double h = grid.cell_size(), unit = liquid.density * h * h * h;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const Body& body = bodies_[i];
-        MovingSolid& moving = solids.moving()[static_cast<std::size_t>(body.owner)];
+        MovingObstacle& moving = obstacles.moving()[static_cast<std::size_t>(body.owner)];
         const double* u = &x_[faces + 6 * i];
         moving.linear_velocity = {u[0], u[1], u[2]};
         moving.angular_velocity = {u[3], u[4], u[5]};
-        moving.solid->impulse += (moving.linear_velocity - body.linear_before) * (body.mass * unit);
-        moving.solid->angular_impulse += body.inertia * (moving.angular_velocity - body.angular_before) * unit;
+        moving.obstacle->impulse += (moving.linear_velocity - body.linear_before) * (body.mass * unit);
+        moving.obstacle->angular_impulse += body.inertia * (moving.angular_velocity - body.angular_before) * unit;
     }
 }
 

@@ -5,7 +5,7 @@
 
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
-#include "physics/fluid/obstacles/solids.h"
+#include "physics/fluid/obstacles/obstacles.h"
 
 namespace embody::physics::fluid {
 
@@ -23,13 +23,13 @@ bool is_viscous(const Viscosity& liquid, double h, double dt);
 /// walls that are thinner than a cell cannot be told, and it slides.
 double sticking_of(const Viscosity& liquid, double h, double speed);
 
-/// Implicit viscous step of the face velocities, with no slip at solids, no stress at the surface, and the bodies that
-/// it moves as unknowns (docs/physics/fluids.md, "Viscosity").
+/// Implicit viscous step of the face velocities, with no slip at obstacles, no stress at the surface, and the bodies
+/// that it moves as unknowns (docs/physics/fluids.md, "Viscosity").
 class ViscositySystem {
 public:
-    /// Changes the velocities of faces and of moving solids, and adds to the solids' impulses. Returns the iterations;
-    /// most + 1 where they did not suffice.
-    int solve(const Viscosity& liquid, double dt, int most, FluidGrid& grid, FluidSolids& solids);
+    /// Changes the velocities of faces and of moving obstacles, and adds to the obstacles' impulses. Returns the
+    /// iterations; most + 1 where they did not suffice.
+    int solve(const Viscosity& liquid, double dt, int most, FluidGrid& grid, FluidObstacles& obstacles);
 
 private:
     /// A rate of strain: signed sum of up to four velocities, and its weight.
@@ -41,20 +41,20 @@ private:
         int axis, owner;
         Vec3 arm;  // from the owner's centre, m
     };
-    void number_faces(const FluidGrid& grid, const FluidSolids& solids);
-    std::int32_t fixed_face(const FluidGrid& grid, const FluidSolids& solids, int axis, int cell, const Cell& c);
+    void number_faces(const FluidGrid& grid, const FluidObstacles& obstacles);
+    std::int32_t fixed_face(const FluidGrid& grid, const FluidObstacles& obstacles, int axis, int cell, const Cell& c);
     void measure_rates(const Viscosity& liquid, double dt, const FluidGrid& grid);
-    void list_strains(const FluidGrid& grid, const FluidSolids& solids, double scale);
-    void add_edge(const FluidGrid& grid, const FluidSolids& solids, int a, int b, int cell, const Cell& c,
+    void list_strains(const FluidGrid& grid, const FluidObstacles& obstacles, double scale);
+    void add_edge(const FluidGrid& grid, const FluidObstacles& obstacles, int a, int b, int cell, const Cell& c,
                   double scale);
-    void list_bodies(const Viscosity& liquid, const FluidGrid& grid, const FluidSolids& solids);
+    void list_bodies(const Viscosity& liquid, const FluidGrid& grid, const FluidObstacles& obstacles);
     void multiply(std::vector<double>& x, std::vector<double>& y);
     void set_fixed(std::vector<double>& x) const;
-    void start_from(const FluidGrid& grid, const FluidSolids& solids);
+    void start_from(const FluidGrid& grid, const FluidObstacles& obstacles);
     void fill_diagonal();
     void fill_residual();
     int iterate(int most);
-    void write_back(const Viscosity& liquid, FluidGrid& grid, FluidSolids& solids);
+    void write_back(const Viscosity& liquid, FluidGrid& grid, FluidObstacles& obstacles);
 
     /// A body that the liquid moves: its six unknowns come after the faces'.
     struct Body {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "physics/fluid/obstacles/solid_probe.h"
+#include "physics/fluid/obstacles/obstacle_probe.h"
 #include "physics/stages/fluid/fluids.h"
 #include "physics/state/world_state.h"
 
@@ -68,7 +68,7 @@ Result<void> fill_boxes(const FluidDefinition& definition, Filling& filling) {
 Result<void> fill_hulls(const FluidDefinition& definition, Filling& filling) {
     const double step = definition.cell_size / 2;
     std::vector<std::unique_ptr<CollisionShape>> shapes;
-    std::vector<SolidProbe> probes;
+    std::vector<ObstacleProbe> probes;
     for (std::size_t i = 0; i < definition.hulls.size(); ++i) {
         auto shape = CollisionShape::create(HullShape{definition.hulls[i]});
         if (!shape) return Error{"hulls[" + std::to_string(i) + "]", shape.error().why, shape.error().remedy};
@@ -87,7 +87,7 @@ Result<void> fill_hulls(const FluidDefinition& definition, Filling& filling) {
             const auto holds = [&](const Bounds& box) { return contains(box, p); };
             if (std::any_of(definition.boxes.begin(), definition.boxes.end(), holds)) return true;
             return std::any_of(probes.begin(), probes.end() - 1,
-                               [&](const SolidProbe& other) { return other.nearest(p).distance < 0; });
+                               [&](const ObstacleProbe& other) { return other.nearest(p).distance < 0; });
         };
         filling.fill(
             first, {static_cast<int>(counts[0]), static_cast<int>(counts[1]), static_cast<int>(counts[2])},
@@ -96,14 +96,14 @@ Result<void> fill_hulls(const FluidDefinition& definition, Filling& filling) {
     return {};
 }
 
-// Those in solids are left out.
-void leave_out_solids(const WorldState& world, double cell_size, std::vector<Vec3>& places) {
+// Those in obstacles are left out.
+void leave_out_obstacles(const WorldState& world, double cell_size, std::vector<Vec3>& places) {
     Bounds bounds;
     for (const Vec3 p : places) bounds.add(p);
     world.broad_phase.query(bounds, [&](std::uint32_t slot) {
         const BodyRecord& record = world.record(slot);
         if (!record.shape || !record.definition.enabled) return;
-        SolidProbe probe(*record.shape, world.pose(slot));
+        ObstacleProbe probe(*record.shape, world.pose(slot));
         if (!probe.look_at(bounds, cell_size)) return;
         std::erase_if(places, [&](Vec3 p) {
             return !(contains(enlarged(probe.bounds(), cell_size), p)) ? false : probe.nearest(p).distance < 0;
@@ -152,8 +152,8 @@ Result<FluidIds> add_particles(const WorldState& world, FluidRecord& fluid, std:
     }
     if (fluid.positions.size() + places.size() > most_fluid_particles) return too_many();
     std::vector<Vec3> free(places.begin(), places.end());
-    leave_out_solids(world, fluid.definition.cell_size, free);
-    if (free.empty()) return Error{"places", "hold no particle", "place the liquid outside of solids"};
+    leave_out_obstacles(world, fluid.definition.cell_size, free);
+    if (free.empty()) return Error{"places", "hold no particle", "place the liquid outside of obstacles"};
     std::vector<Vec3f> positions;
     positions.reserve(free.size());
     for (const Vec3 p : free) positions.push_back(to_vec3f(p - fluid.solver->origin()));
@@ -173,10 +173,10 @@ Result<FluidRecord> set_up_fluid(const WorldState& world, const FluidDefinition&
     if (filling.places.size() > most_fluid_particles) return too_many();
     const double particle_volume =
         filling.volume / static_cast<double>(std::max<std::size_t>(filling.places.size(), 1));
-    leave_out_solids(world, definition.cell_size, filling.places);
+    leave_out_obstacles(world, definition.cell_size, filling.places);
     if (filling.places.empty()) {
         return Error{"boxes", "hold no particle",
-                     "place the liquid outside of solids, in regions larger than cell_size / 2"};
+                     "place the liquid outside of obstacles, in regions larger than cell_size / 2"};
     }
 
     const Vec3 origin = origin_amid(filling.places);

@@ -56,52 +56,53 @@ Vec3 turn_between(Quat from, Quat to) {
 }
 
 // A body that nothing but the user moves. One that was put somewhere else goes there in this step.
-FluidSolid fixed_solid(const WorldState& world, const FluidRecord& fluid, std::uint32_t slot) {
+FluidObstacle fixed_obstacle(const WorldState& world, const FluidRecord& fluid, std::uint32_t slot) {
     const BodyRecord& record = world.record(slot);
     const BodyState& state = world.motion[slot];
     const double dt = world.settings.time_step;
-    FluidSolid solid;
-    solid.body = slot;
-    solid.shape = record.shape;
-    solid.version = record.version;
-    solid.pose = world.pose(slot);
-    solid.center = state.center;
-    solid.linear_velocity = state.linear_velocity;
-    solid.angular_velocity = state.angular_velocity;
-    solid.is_static = record.definition.kind == BodyKind::static_body;
+    FluidObstacle obstacle;
+    obstacle.body = slot;
+    obstacle.shape = record.shape;
+    obstacle.version = record.version;
+    obstacle.pose = world.pose(slot);
+    obstacle.center = state.center;
+    obstacle.linear_velocity = state.linear_velocity;
+    obstacle.angular_velocity = state.angular_velocity;
+    obstacle.is_static = record.definition.kind == BodyKind::static_body;
     const auto seen = fluid.seen.find(slot);
-    if (seen == fluid.seen.end() || seen->second.version == record.version) return solid;
+    if (seen == fluid.seen.end() || seen->second.version == record.version) return obstacle;
     const Vec3 local_center = world.constants[slot].local_center;
     const Vec3 last_center = transform_point(seen->second.pose, local_center);
-    const Vec3 way = state.center - last_center, turn = turn_between(seen->second.pose.rotation, solid.pose.rotation);
-    if (way == Vec3{} && turn == Vec3{}) return solid;
-    if (length(way) + length(turn) * record.reach > farthest_jump) return solid;
-    solid.is_static = false;
-    solid.pose = seen->second.pose;
-    solid.center = last_center;
-    solid.linear_velocity = way / dt;
-    solid.angular_velocity = turn / dt;
-    return solid;
+    const Vec3 way = state.center - last_center,
+               turn = turn_between(seen->second.pose.rotation, obstacle.pose.rotation);
+    if (way == Vec3{} && turn == Vec3{}) return obstacle;
+    if (length(way) + length(turn) * record.reach > farthest_jump) return obstacle;
+    obstacle.is_static = false;
+    obstacle.pose = seen->second.pose;
+    obstacle.center = last_center;
+    obstacle.linear_velocity = way / dt;
+    obstacle.angular_velocity = turn / dt;
+    return obstacle;
 }
 
-FluidSolid dynamic_solid(WorldState& world, std::uint32_t slot, double density) {
+FluidObstacle dynamic_obstacle(WorldState& world, std::uint32_t slot, double density) {
     const BodyState& state = world.motion[slot];
-    FluidSolid solid;
-    solid.body = slot;
-    solid.shape = world.record(slot).shape;
-    solid.version = world.record(slot).version;
-    solid.pose = world.pose(slot);
-    solid.center = state.center;
-    if (world.is_asleep(slot)) return solid;
+    FluidObstacle obstacle;
+    obstacle.body = slot;
+    obstacle.shape = world.record(slot).shape;
+    obstacle.version = world.record(slot).version;
+    obstacle.pose = world.pose(slot);
+    obstacle.center = state.center;
+    if (world.is_asleep(slot)) return obstacle;
     const double dt = world.settings.time_step;
     const Support support = support_of(world, slot, density);
-    solid.linear_velocity = state.linear_velocity;
-    solid.angular_velocity = state.angular_velocity;
-    solid.inverse_mass = state.inverse_mass;
-    solid.inverse_inertia = state.inverse_inertia;
-    solid.acceleration = world.constants[slot].acceleration + support.linear * (state.inverse_mass / dt);
-    solid.angular_acceleration = state.inverse_inertia * (world.constants[slot].torque + support.angular / dt);
-    return solid;
+    obstacle.linear_velocity = state.linear_velocity;
+    obstacle.angular_velocity = state.angular_velocity;
+    obstacle.inverse_mass = state.inverse_mass;
+    obstacle.inverse_inertia = state.inverse_inertia;
+    obstacle.acceleration = world.constants[slot].acceleration + support.linear * (state.inverse_mass / dt);
+    obstacle.angular_acceleration = state.inverse_inertia * (world.constants[slot].torque + support.angular / dt);
+    return obstacle;
 }
 
 // Slots of the bodies that the fluid may meet in this step, ascending.
@@ -129,13 +130,13 @@ bool is_disturbed(const WorldState& world, const FluidRecord& fluid, const std::
 }
 
 // Forces of this step on the bodies, and what is remembered of them.
-void push_bodies(WorldState& world, FluidRecord& fluid, std::span<const FluidSolid> solids) {
+void push_bodies(WorldState& world, FluidRecord& fluid, std::span<const FluidObstacle> obstacles) {
     const double dt = world.settings.time_step;
     fluid.seen.clear();
-    for (const FluidSolid& solid : solids) {
-        const BodyRecord& record = world.record(solid.body);
-        fluid.seen[solid.body] = {record.version, world.pose(solid.body), solid.impulse / dt,
-                                  solid.angular_impulse / dt};
+    for (const FluidObstacle& obstacle : obstacles) {
+        const BodyRecord& record = world.record(obstacle.body);
+        fluid.seen[obstacle.body] = {record.version, world.pose(obstacle.body), obstacle.impulse / dt,
+                                     obstacle.angular_impulse / dt};
     }
 }
 
@@ -230,15 +231,15 @@ void fall_asleep_if_quiet(WorldState& world, FluidRecord& fluid) {
     read_particles(fluid, *world.workers);
 }
 
-std::vector<FluidSolid> solids_near(WorldState& world, const FluidRecord& fluid,
-                                    const std::vector<std::uint32_t>& slots) {
-    std::vector<FluidSolid> solids;
-    solids.reserve(slots.size());
+std::vector<FluidObstacle> obstacles_near(WorldState& world, const FluidRecord& fluid,
+                                          const std::vector<std::uint32_t>& slots) {
+    std::vector<FluidObstacle> obstacles;
+    obstacles.reserve(slots.size());
     for (const std::uint32_t slot : slots) {
-        solids.push_back(world.is_dynamic(slot) ? dynamic_solid(world, slot, fluid.definition.density)
-                                                : fixed_solid(world, fluid, slot));
+        obstacles.push_back(world.is_dynamic(slot) ? dynamic_obstacle(world, slot, fluid.definition.density)
+                                                   : fixed_obstacle(world, fluid, slot));
     }
-    return solids;
+    return obstacles;
 }
 
 void advance_fluid(WorldState& world, FluidRecord& fluid) {
@@ -247,11 +248,11 @@ void advance_fluid(WorldState& world, FluidRecord& fluid) {
     if (fluid.is_asleep) fluid.quiet_time = 0;
     fluid.is_asleep = false;
     const TaskPool::StayAwake stay_awake(*world.workers);
-    std::vector<FluidSolid> solids = solids_near(world, fluid, slots);
+    std::vector<FluidObstacle> obstacles = obstacles_near(world, fluid, slots);
     const FluidOutcome outcome = fluid.solver->advance(
-        world.settings.time_step, world.settings.gravity * fluid.definition.gravity_factor, solids, *world.workers);
+        world.settings.time_step, world.settings.gravity * fluid.definition.gravity_factor, obstacles, *world.workers);
     note_outcome(world, fluid, outcome);
-    push_bodies(world, fluid, solids);
+    push_bodies(world, fluid, obstacles);
     if (fluid.is_frozen) read_particles(fluid, *world.workers);
     fall_asleep_if_quiet(world, fluid);
 }
@@ -262,8 +263,8 @@ void follow_bodies(WorldState& world, FluidRecord& fluid) {
     for (const auto& [slot, seen] : fluid.seen) {
         if (world.is_used(slot)) slots.push_back(slot);
     }
-    std::vector<FluidSolid> solids = solids_near(world, fluid, slots);
-    const FluidSolver::Followed followed = fluid.solver->follow(solids, *world.workers);
+    std::vector<FluidObstacle> obstacles = obstacles_near(world, fluid, slots);
+    const FluidSolver::Followed followed = fluid.solver->follow(obstacles, *world.workers);
     fluid.lost += followed.lost;
     if (followed.lost > 0) report_limit(world, StepLimit::fluid_particles_lost);
     if (!followed.is_solved) report_limit(world, StepLimit::fluid_unsolved);
@@ -274,8 +275,8 @@ void follow_bodies(WorldState& world, FluidRecord& fluid) {
 
 void prepare_fluid(WorldState& world, FluidRecord& fluid) {
     world.fluid_touches.resize(world.bodies.slot_count());
-    std::vector<FluidSolid> solids = solids_near(world, fluid, bodies_near(world, fluid));
-    fluid.solver->prepare(solids, *world.workers);
+    std::vector<FluidObstacle> obstacles = obstacles_near(world, fluid, bodies_near(world, fluid));
+    fluid.solver->prepare(obstacles, *world.workers);
 }
 
 void advance_fluids(WorldState& world) {

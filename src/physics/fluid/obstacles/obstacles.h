@@ -7,15 +7,15 @@
 #include "math/transform.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
-#include "physics/fluid/obstacles/solid_probe.h"
-#include "physics/fluid/obstacles/solid_region.h"
+#include "physics/fluid/obstacles/obstacle_probe.h"
+#include "physics/fluid/obstacles/obstacle_region.h"
 #include "physics/fluid/pressure/bound_liquid.h"
 
 namespace embody::physics::fluid {
 
 /// A rigid body as a fluid meets it in a step.
-struct FluidSolid {
-    std::uint32_t body = 0;  ///< caller's number; solids come in its order
+struct FluidObstacle {
+    std::uint32_t body = 0;  ///< caller's number; obstacles come in its order
     const CollisionShape* shape = nullptr;
     std::uint32_t version = 0;  ///< another one after each change from outside
     bool is_static = false;     ///< never moves: measured once
@@ -29,27 +29,27 @@ struct FluidSolid {
     Vec3 impulse, angular_impulse;  ///< result: of the fluid on it in this step, about its centre of mass, N s, N m s
 };
 
-/// What a solid's surface in a cell is to the cell's pressure: its area vector, m², into the solid, and the moment of
-/// it about the solid's centre of mass, m³.
-struct SolidArea {
+/// What an obstacle's surface in a cell is to the cell's pressure: its area vector, m², into the obstacle, and the
+/// moment of it about the obstacle's centre of mass, m³.
+struct ObstacleArea {
     int row = 0;
     Vec3 area, moment;
 };
 
-/// A solid that is or may be in motion, through the parts of a step.
-struct MovingSolid {
-    FluidSolid* solid = nullptr;
+/// An obstacle that is or may be in motion, through the parts of a step.
+struct MovingObstacle {
+    FluidObstacle* obstacle = nullptr;
     Vec3 center;  ///< in the fluid's frame, in the middle of the part
     Quat rotation;
     Vec3 linear_velocity, angular_velocity;
     Vec3 kept_center;  ///< where it was when particles were last kept out of it: when the part begins
     Quat kept_rotation;
-    SolidProbe probe;
-    SolidRegion region;
-    std::array<std::vector<float>, 3> share;  ///< of faces, by the region's index: what other solids left
-    std::vector<SolidArea> areas;
+    ObstacleProbe probe;
+    ObstacleRegion region;
+    std::array<std::vector<float>, 3> share;  ///< of faces, by the region's index: what other obstacles left
+    std::vector<ObstacleArea> areas;
     std::vector<BoundFace> bound;
-    SolidResponse response;
+    ObstacleResponse response;
     bool is_in_reach = false;
     bool is_small = false;  ///< smaller than a cell: what it fills is spread around its centre
 
@@ -58,17 +58,17 @@ struct MovingSolid {
     [[nodiscard]] Quat end_rotation(double dt) const;
 };
 
-/// Measures the solids on the grid: static ones once for each tile, the others in each part of a step.
-class FluidSolids {
+/// Measures the obstacles on the grid: static ones once for each tile, the others in each part of a step.
+class FluidObstacles {
 public:
-    explicit FluidSolids(Vec3 origin) : origin_(origin) {}
+    explicit FluidObstacles(Vec3 origin) : origin_(origin) {}
 
     /// Before the parts of a step.
-    void begin(std::span<FluidSolid> solids, FluidGrid& grid);
-    /// How far the solids are from where the last step left them, m: what they met there was not expected.
+    void begin(std::span<FluidObstacle> obstacles, FluidGrid& grid);
+    /// How far the obstacles are from where the last step left them, m: what they met there was not expected.
     [[nodiscard]] double surprise() const;
-    /// Puts the solids where the last step left them, with velocities that bring them where they are in a second; then
-    /// back to where and as fast as they are.
+    /// Puts the obstacles where the last step left them, with velocities that bring them where they are in a second;
+    /// then back to where and as fast as they are.
     void begin_catching_up();
     void end_catching_up();
     /// Boxes that hold what the moving ones may meet in a part of that length, in the fluid's frame.
@@ -86,20 +86,21 @@ public:
     /// After the parts of a step.
     void end();
 
-    [[nodiscard]] std::vector<MovingSolid>& moving() { return moving_; }
-    [[nodiscard]] const std::vector<MovingSolid>& moving() const { return moving_; }
-    /// A solid's velocity at a point by its number in the grid's solid_owner.
+    [[nodiscard]] std::vector<MovingObstacle>& moving() { return moving_; }
+    [[nodiscard]] const std::vector<MovingObstacle>& moving() const { return moving_; }
+    /// An obstacle's velocity at a point by its number in the grid's obstacle_owner.
     [[nodiscard]] Vec3 velocity_at(int owner, Vec3 p) const {
         return owner < 0 ? Vec3{} : moving_[static_cast<std::size_t>(owner)].velocity_at(p);
     }
-    /// Static solids as they stand in the fluid's frame.
-    [[nodiscard]] const std::vector<SolidProbe>& fixed() const { return fixed_; }
+    /// Static obstacles as they stand in the fluid's frame.
+    [[nodiscard]] const std::vector<ObstacleProbe>& fixed() const { return fixed_; }
 
 private:
     void measure_static(FluidGrid& grid, TaskPool& workers);
-    void measure_static_tile(FluidGrid& grid, const Cell& corner, std::vector<SolidProbe>& probes, SolidRegion& region);
-    static void measure_moving(MovingSolid& moving, const FluidGrid& grid);
-    static void place_moving(MovingSolid& moving, int owner, FluidGrid& grid);
+    void measure_static_tile(FluidGrid& grid, const Cell& corner, std::vector<ObstacleProbe>& probes,
+                             ObstacleRegion& region);
+    static void measure_moving(MovingObstacle& moving, const FluidGrid& grid);
+    static void place_moving(MovingObstacle& moving, int owner, FluidGrid& grid);
 
     /// Where a step left a body.
     struct LeftBody {
@@ -107,13 +108,13 @@ private:
         Vec3 center;
         Quat rotation;
     };
-    [[nodiscard]] const LeftBody* left(const FluidSolid& solid) const;
-    void put_where_it_is(MovingSolid& moving) const;
+    [[nodiscard]] const LeftBody* left(const FluidObstacle& obstacle) const;
+    void put_where_it_is(MovingObstacle& moving) const;
 
     Vec3 origin_;
-    std::vector<MovingSolid> moving_;
+    std::vector<MovingObstacle> moving_;
     std::vector<LeftBody> left_;
-    std::vector<SolidProbe> fixed_;
+    std::vector<ObstacleProbe> fixed_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> fixed_versions_;
 };
 

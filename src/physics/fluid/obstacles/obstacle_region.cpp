@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "physics/fluid/obstacles/solid_region.h"
+#include "physics/fluid/obstacles/obstacle_region.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 constexpr double half_diagonal = 1.7320508;
 
 // Whether a wall stands between two places, and not the tip of an edge: its sides look away from each other.
-bool is_walled(const SolidProbe& probe, Vec3 a, Vec3 b) {
+bool is_walled(const ObstacleProbe& probe, Vec3 a, Vec3 b) {
     constexpr double least_opposed = -0.5;
     const auto entry = probe.crossing(a, b);
     if (!entry) return false;
@@ -22,7 +22,7 @@ bool is_walled(const SolidProbe& probe, Vec3 a, Vec3 b) {
 
 }  // namespace
 
-void SolidRegion::begin(const FluidGrid& grid, const Cell& lower, const Cell& upper) {
+void ObstacleRegion::begin(const FluidGrid& grid, const Cell& lower, const Cell& upper) {
     grid_ = &grid;
     lower_ = lower;
     upper_ = upper;
@@ -39,7 +39,7 @@ void SolidRegion::begin(const FluidGrid& grid, const Cell& lower, const Cell& up
     any_thin_ = any_cut_ = false;
 }
 
-bool SolidRegion::add(SolidProbe& probe) {
+bool ObstacleRegion::add(ObstacleProbe& probe) {
     const double h = grid_->cell_size();
     Cell low = lower_, high = upper_;
     for (int axis = 0; axis < 3; ++axis) --low[axis];
@@ -70,7 +70,7 @@ bool SolidRegion::add(SolidProbe& probe) {
 
 // What the shares cannot see (docs/physics/fluids.md, "Thin walls"): surfaces between two centres that are both
 // outside, and walls around a centre that end before the next one.
-void SolidRegion::shut_thin(const SolidProbe& probe) {
+void ObstacleRegion::shut_thin(const ObstacleProbe& probe) {
     const double h = grid_->cell_size();
     constexpr double thickness = 1.9;  // cells: nothing is left open of the faces beside a wall of two
     constexpr float on_surface = 1e-3f;
@@ -112,7 +112,7 @@ void SolidRegion::shut_thin(const SolidProbe& probe) {
     }
 }
 
-void SolidRegion::mark_near_thin() {
+void ObstacleRegion::mark_near_thin() {
     const auto mark_around = [&](int x, int y, int z) {
         for (int dz = std::max(z - 1, 0); dz <= std::min(z + 1, size_[2] - 1); ++dz) {
             for (int dy = std::max(y - 1, 0); dy <= std::min(y + 1, size_[1] - 1); ++dy) {
@@ -136,7 +136,7 @@ void SolidRegion::mark_near_thin() {
     }
 }
 
-void SolidRegion::finish() {
+void ObstacleRegion::finish() {
     if (any_thin_) filled_ = share_;
     for (int z = 1; z < size_[2]; ++z) {
         for (int y = 1; y < size_[1]; ++y) {
@@ -163,7 +163,7 @@ void SolidRegion::finish() {
 }
 
 // The tent kernel over octants: 1/8, 3/8, 3/8, 1/8 along each axis, one axis after the other.
-void SolidRegion::measure_room() {
+void ObstacleRegion::measure_room() {
     const auto cells = distance_.size();
     room_.assign(cells, 1);
     if (!any_cut_) return;
@@ -187,7 +187,7 @@ void SolidRegion::measure_room() {
     for (std::size_t cell = 0; cell < cells; ++cell) room_[cell] = std::max(0.0f, 1 - folded_[0][cell]);
 }
 
-void SolidRegion::spread(Vec3 place, double volume) {
+void ObstacleRegion::spread(Vec3 place, double volume) {
     const double h = grid_->cell_size();
     room_.assign(distance_.size(), 1);
     for (int axis = 0; axis <= 3; ++axis) {  // 3: centres
@@ -215,7 +215,7 @@ void SolidRegion::spread(Vec3 place, double volume) {
     }
 }
 
-float SolidRegion::room(int cell) const {
+float ObstacleRegion::room(int cell) const {
     if (distance_[cell] > 1.75f) return room_[cell];
 
     // Behind a thin wall nothing counts, and what lies before it is taken to the centre (ParticleCollider::place_of).

@@ -13,8 +13,8 @@
 
 namespace embody::physics::fluid {
 
-/// How near a solid is: exact next to its faces, else at most the true distance; < 0 inside.
-struct SolidDistance {
+/// How near an obstacle is: exact next to its faces, else at most the true distance; < 0 inside.
+struct ObstacleDistance {
     double distance = 0;  ///< m
     Vec3 normal;          ///< unit, outwards
 };
@@ -23,23 +23,23 @@ struct SolidDistance {
 /// and heightfields the front of a triangle is outside and what lies behind it within the reach asked for is inside.
 /// The hulls of a compound, which stand for one surface, leave gaps: each is met as a millimetre or so thicker than it
 /// is (its shares of cubes are its own).
-class SolidProbe {
+class ObstacleProbe {
 public:
-    SolidProbe(const CollisionShape& shape, const Transform& pose);
+    ObstacleProbe(const CollisionShape& shape, const Transform& pose);
 
     [[nodiscard]] const Bounds& bounds() const { return bounds_; }
     /// Chooses the parts within `reach` of the box; the questions below are for points in the box alone. False if there
     /// are none.
     bool look_at(const Bounds& box, double reach);
     /// Farther than the reach: the reach.
-    [[nodiscard]] SolidDistance nearest(Vec3 p) const;
-    /// Shares of the eight octants of the axis-aligned cube around p, of that edge, that are solid: 0 … 1, added to
-    /// `shares`. Bit 0 of an octant's number: its upper half in x, bit 1: in y, bit 2: in z.
+    [[nodiscard]] ObstacleDistance nearest(Vec3 p) const;
+    /// Shares of the eight octants of the axis-aligned cube around p, of that edge, inside the obstacle: 0 … 1, added
+    /// to `shares`. Bit 0 of an octant's number: its upper half in x, bit 1: in y, bit 2: in z.
     void add_octants(Vec3 p, double edge, float* shares) const;
-    /// Whether the solid ends within `depth` behind the surface nearest to p, which is inside.
+    /// Whether the obstacle ends within `depth` behind the surface nearest to p, which is inside.
     [[nodiscard]] bool is_thinner(Vec3 p, Vec3 normal, double depth) const;
     /// First place of the way from a to b where a surface is met, from either side of triangles, from outside of
-    /// solids: share of the way, and the normal against it.
+    /// obstacles: share of the way, and the normal against it.
     struct Crossing {
         double share = 0;
         Vec3 normal;
@@ -59,7 +59,7 @@ private:
         std::array<Vec3, 3> corners;
         Vec3 normal;
     };
-    [[nodiscard]] SolidDistance nearest_triangle(Vec3 p) const;
+    [[nodiscard]] ObstacleDistance nearest_triangle(Vec3 p) const;
     [[nodiscard]] std::optional<Crossing> crossing_of_pieces(Vec3 a, Vec3 direction, double whole) const;
 
     const CollisionShape* shape_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "physics/fluid/obstacles/solid_probe.h"
+#include "physics/fluid/obstacles/obstacle_probe.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ double outside_of(const Bounds& box, Vec3 p) {
 // its face by more than this cosine tells.
 constexpr double turned_away = 0.8;
 struct TwoFaces {
-    SolidDistance first{-1e300, {}}, second{-1e300, {}};
+    ObstacleDistance first{-1e300, {}}, second{-1e300, {}};
 
     void offer(double distance, Vec3 normal) {
         if (distance > first.distance) {
@@ -138,7 +138,7 @@ Vec3 octant_offset(int octant) {
 Vec3 rotate_back(const Mat3& rotation, Vec3 v) { return {dot(rotation.x, v), dot(rotation.y, v), dot(rotation.z, v)}; }
 
 // Share of a cube of that edge behind a face at this distance from its centre: exact for faces along the axes.
-double share_behind(const SolidDistance& face, double edge) {
+double share_behind(const ObstacleDistance& face, double edge) {
     const Vec3 n = abs(face.normal);
     if (face.distance < -edge) return 1;
     return std::clamp(0.5 - face.distance / (edge * (n.x + n.y + n.z)), 0.0, 1.0);
@@ -167,7 +167,7 @@ Vec3 closest_on_triangle(Vec3 p, const std::array<Vec3, 3>& t) {
 
 }  // namespace
 
-SolidProbe::SolidProbe(const CollisionShape& shape, const Transform& pose)
+ObstacleProbe::ObstacleProbe(const CollisionShape& shape, const Transform& pose)
     : shape_(&shape), pose_(pose), bounds_(shape.bounds(pose)), seal_(seal_of(shape)) {
     bounds_ = enlarged(bounds_, seal_);
     for (const ConvexPiece& piece : shape.data().pieces) {
@@ -177,9 +177,9 @@ SolidProbe::SolidProbe(const CollisionShape& shape, const Transform& pose)
     }
 }
 
-bool SolidProbe::is_surface() const { return shape_->data().surface != nullptr; }
+bool ObstacleProbe::is_surface() const { return shape_->data().surface != nullptr; }
 
-bool SolidProbe::look_at(const Bounds& box, double reach) {
+bool ObstacleProbe::look_at(const Bounds& box, double reach) {
     reach_ = reach;
     const Bounds wide = enlarged(box, reach);
     near_pieces_.clear();
@@ -209,7 +209,7 @@ bool SolidProbe::look_at(const Bounds& box, double reach) {
     return !near_pieces_.empty() || !near_triangles_.empty();
 }
 
-SolidDistance SolidProbe::nearest_triangle(Vec3 p) const {
+ObstacleDistance ObstacleProbe::nearest_triangle(Vec3 p) const {
     // Of triangles equally near (p is nearest to a common edge or corner) the one that looks most straight at p tells
     // the side; of two that look both ways the front.
     double best = reach_ * reach_, best_side = 0;
@@ -232,26 +232,26 @@ SolidDistance SolidProbe::nearest_triangle(Vec3 p) const {
     return {best_side < 0 ? -std::sqrt(best) : std::sqrt(best), away};
 }
 
-SolidDistance SolidProbe::nearest(Vec3 p) const {
+ObstacleDistance ObstacleProbe::nearest(Vec3 p) const {
     const CollisionShape::Data& data = shape_->data();
     if (data.is_plane) {
         const Vec3 normal = rotate(pose_.rotation, data.plane_normal);
         return {std::min(reach_, dot(normal, p - pose_.position) - data.plane_offset), normal};
     }
     if (data.surface) return nearest_triangle(p);
-    SolidDistance best{reach_, {0, 1, 0}};
+    ObstacleDistance best{reach_, {0, 1, 0}};
     for (const std::uint32_t index : near_pieces_) {
         const Piece& piece = pieces_[index];
         if (outside_of(piece.bounds, p) >= best.distance) continue;
         const Vec3 local = rotate_back(piece.rotation, p - piece.position);
-        SolidDistance here = faces_near(*piece.convex, local).first;
+        ObstacleDistance here = faces_near(*piece.convex, local).first;
         here.distance -= seal_;
         if (here.distance < best.distance) best = {here.distance, piece.rotation * here.normal};
     }
     return best;
 }
 
-void SolidProbe::add_octants(Vec3 p, double edge, float* shares) const {
+void ObstacleProbe::add_octants(Vec3 p, double edge, float* shares) const {
     const double half = edge / 2;
     const auto add = [&](int octant, double share) {
         shares[octant] = std::min(1.0f, shares[octant] + static_cast<float>(share));
@@ -281,7 +281,7 @@ void SolidProbe::add_octants(Vec3 p, double edge, float* shares) const {
     }
 }
 
-bool SolidProbe::is_thinner(Vec3 p, Vec3 normal, double depth) const {
+bool ObstacleProbe::is_thinner(Vec3 p, Vec3 normal, double depth) const {
     const CollisionShape::Data& data = shape_->data();
     if (data.is_plane) return false;
     const Vec3 behind = p - normal * depth;
@@ -290,7 +290,7 @@ bool SolidProbe::is_thinner(Vec3 p, Vec3 normal, double depth) const {
     return crossing(p, behind).has_value();
 }
 
-std::optional<SolidProbe::Crossing> SolidProbe::crossing_of_pieces(Vec3 a, Vec3 direction, double whole) const {
+std::optional<ObstacleProbe::Crossing> ObstacleProbe::crossing_of_pieces(Vec3 a, Vec3 direction, double whole) const {
     Bounds box;
     box.add(a);
     box.add(a + direction * whole);
@@ -311,7 +311,7 @@ std::optional<SolidProbe::Crossing> SolidProbe::crossing_of_pieces(Vec3 a, Vec3 
     return first;
 }
 
-std::optional<SolidProbe::Crossing> SolidProbe::crossing(Vec3 a, Vec3 b) const {
+std::optional<ObstacleProbe::Crossing> ObstacleProbe::crossing(Vec3 a, Vec3 b) const {
     const Vec3 way = b - a;
     const double whole = length(way);
     if (!(whole > 0)) return std::nullopt;

@@ -7,21 +7,21 @@
 
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
-#include "physics/fluid/obstacles/solid_probe.h"
+#include "physics/fluid/obstacles/obstacle_probe.h"
 
 namespace embody::physics::fluid {
 
-/// Solids measured on a box of cells: how far each centre is from them and which share of each octant (an eighth of a
-/// cell) they fill. From these come the shares of the faces' control volumes and of the density's kernel.
-class SolidRegion {
+/// Obstacles measured on a box of cells: how far each centre is from them and which share of each octant (an eighth of
+/// a cell) they fill. From these come the shares of the faces' control volumes and of the density's kernel.
+class ObstacleRegion {
 public:
     static constexpr double reach = 2;  ///< cells: farther surfaces are not told apart
 
     /// Cells from `lower` to below `upper` of the grid; measured is one more all around.
     void begin(const FluidGrid& grid, const Cell& lower, const Cell& upper);
-    /// Adds a solid; false if it is out of reach.
-    bool add(SolidProbe& probe);
-    /// Faces from octants, once all solids are in.
+    /// Adds an obstacle; false if it is out of reach.
+    bool add(ObstacleProbe& probe);
+    /// Faces from octants, once all obstacles are in.
     void finish();
     /// Instead of both: a volume, m³, that is less than a cell and spread by trilinear weights around a place that is
     /// two cells within the box.
@@ -45,7 +45,7 @@ public:
     [[nodiscard]] float room(int cell) const;
 
 private:
-    void shut_thin(const SolidProbe& probe);
+    void shut_thin(const ObstacleProbe& probe);
     void mark_near_thin();
     void measure_room();
     [[nodiscard]] int stride(int axis) const { return axis == 0 ? 1 : axis == 1 ? size_[0] : size_[0] * size_[1]; }

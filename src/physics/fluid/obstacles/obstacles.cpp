@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "physics/fluid/obstacles/solids.h"
+#include "physics/fluid/obstacles/obstacles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@ namespace embody::physics::fluid {
 
 namespace {
 
-// Faces of which less is open are shut: seams between solids that touch do not leak.
+// Faces of which less is open are shut: seams between obstacles that touch do not leak.
 constexpr float least_open = 0.02f;
 // A body that was put farther away than this from outside was not moved through the fluid, m.
 constexpr double farthest_put = 0.5;
@@ -19,9 +19,9 @@ Quat turned(Quat rotation, Vec3 angular_velocity, double dt) {
     return normalized({rotation.x + change.x, rotation.y + change.y, rotation.z + change.z, rotation.w + change.w});
 }
 
-Transform moved(const FluidSolid& solid, Vec3 origin, Vec3 center, Quat rotation) {
+Transform moved(const FluidObstacle& obstacle, Vec3 origin, Vec3 center, Quat rotation) {
     // The body's origin relative to its centre of mass turns along.
-    const Vec3 arm = rotate_inverse(solid.pose.rotation, solid.pose.position - solid.center);
+    const Vec3 arm = rotate_inverse(obstacle.pose.rotation, obstacle.pose.position - obstacle.center);
     return {center - origin + rotate(rotation, arm), rotation};
 }
 
@@ -31,8 +31,8 @@ Vec3 turn_between(Quat from, Quat to) {
     return Vec3{turn.x, turn.y, turn.z} * (turn.w < 0 ? -2.0 : 2.0);
 }
 
-// A face that is shut though the solid does not fill it.
-void bind_face(MovingSolid& moving, const FluidGrid& grid, int axis, const Cell& c, float share) {
+// A face that is shut though the obstacle does not fill it.
+void bind_face(MovingObstacle& moving, const FluidGrid& grid, int axis, const Cell& c, float share) {
     if (share < least_open) return;
     const Vec3 n{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
     const Vec3 place = grid.center(c) - n * (grid.cell_size() / 2);
@@ -43,36 +43,36 @@ void bind_face(MovingSolid& moving, const FluidGrid& grid, int axis, const Cell&
 }  // namespace
 
 // Where the last step left a body that it knew and that goes on from there.
-const FluidSolids::LeftBody* FluidSolids::left(const FluidSolid& solid) const {
-    const auto found = std::ranges::lower_bound(left_, solid.body, {}, &LeftBody::body);
-    if (found == left_.end() || found->body != solid.body) return nullptr;
-    if (found->version == solid.version) return &*found;
-    return length(found->center + origin_ - solid.center) < farthest_put ? &*found : nullptr;
+const FluidObstacles::LeftBody* FluidObstacles::left(const FluidObstacle& obstacle) const {
+    const auto found = std::ranges::lower_bound(left_, obstacle.body, {}, &LeftBody::body);
+    if (found == left_.end() || found->body != obstacle.body) return nullptr;
+    if (found->version == obstacle.version) return &*found;
+    return length(found->center + origin_ - obstacle.center) < farthest_put ? &*found : nullptr;
 }
 
-void FluidSolids::put_where_it_is(MovingSolid& moving) const {
-    const FluidSolid& solid = *moving.solid;
-    moving.center = solid.center - origin_;
-    moving.rotation = solid.pose.rotation;
-    moving.linear_velocity = solid.linear_velocity;
-    moving.angular_velocity = solid.angular_velocity;
+void FluidObstacles::put_where_it_is(MovingObstacle& moving) const {
+    const FluidObstacle& obstacle = *moving.obstacle;
+    moving.center = obstacle.center - origin_;
+    moving.rotation = obstacle.pose.rotation;
+    moving.linear_velocity = obstacle.linear_velocity;
+    moving.angular_velocity = obstacle.angular_velocity;
 }
 
-void FluidSolids::begin(std::span<FluidSolid> solids, FluidGrid& grid) {
+void FluidObstacles::begin(std::span<FluidObstacle> obstacles, FluidGrid& grid) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> versions;
     std::size_t count = 0;
-    for (FluidSolid& solid : solids) {
-        if (solid.is_static) {
-            versions.emplace_back(solid.body, solid.version);
+    for (FluidObstacle& obstacle : obstacles) {
+        if (obstacle.is_static) {
+            versions.emplace_back(obstacle.body, obstacle.version);
             continue;
         }
         if (count == moving_.size()) {
-            moving_.push_back({.probe = SolidProbe(*solid.shape, solid.pose)});
+            moving_.push_back({.probe = ObstacleProbe(*obstacle.shape, obstacle.pose)});
         }
-        MovingSolid& moving = moving_[count++];
-        moving.solid = &solid;
+        MovingObstacle& moving = moving_[count++];
+        moving.obstacle = &obstacle;
         put_where_it_is(moving);
-        const LeftBody* before = left(solid);
+        const LeftBody* before = left(obstacle);
         moving.kept_center = before != nullptr ? before->center : moving.center;
         moving.kept_rotation = before != nullptr ? before->rotation : moving.rotation;
     }
@@ -80,25 +80,25 @@ void FluidSolids::begin(std::span<FluidSolid> solids, FluidGrid& grid) {
     if (versions == fixed_versions_) return;
     fixed_versions_ = std::move(versions);
     fixed_.clear();
-    for (const FluidSolid& solid : solids) {
-        if (!solid.is_static) continue;
-        fixed_.emplace_back(*solid.shape, Transform{solid.pose.position - origin_, solid.pose.rotation});
+    for (const FluidObstacle& obstacle : obstacles) {
+        if (!obstacle.is_static) continue;
+        fixed_.emplace_back(*obstacle.shape, Transform{obstacle.pose.position - origin_, obstacle.pose.rotation});
     }
     std::fill(grid.is_static_known.begin(), grid.is_static_known.end(), 0);
 }
 
-double FluidSolids::surprise() const {
+double FluidObstacles::surprise() const {
     double farthest = 0;
-    for (const MovingSolid& moving : moving_) {
-        const double reach = length(moving.solid->shape->bounds(moving.solid->pose).half_extents());
+    for (const MovingObstacle& moving : moving_) {
+        const double reach = length(moving.obstacle->shape->bounds(moving.obstacle->pose).half_extents());
         const Vec3 turn = turn_between(moving.kept_rotation, moving.rotation);
         farthest = std::max(farthest, length(moving.center - moving.kept_center) + length(turn) * reach);
     }
     return farthest;
 }
 
-void FluidSolids::begin_catching_up() {
-    for (MovingSolid& moving : moving_) {
+void FluidObstacles::begin_catching_up() {
+    for (MovingObstacle& moving : moving_) {
         moving.linear_velocity = moving.center - moving.kept_center;
         moving.angular_velocity = turn_between(moving.kept_rotation, moving.rotation);
         moving.center = moving.kept_center;
@@ -106,16 +106,16 @@ void FluidSolids::begin_catching_up() {
     }
 }
 
-void FluidSolids::end_catching_up() {
-    for (MovingSolid& moving : moving_) put_where_it_is(moving);
+void FluidObstacles::end_catching_up() {
+    for (MovingObstacle& moving : moving_) put_where_it_is(moving);
 }
 
-void FluidSolids::measure_static_tile(FluidGrid& grid, const Cell& corner, std::vector<SolidProbe>& probes,
-                                      SolidRegion& region) {
+void FluidObstacles::measure_static_tile(FluidGrid& grid, const Cell& corner, std::vector<ObstacleProbe>& probes,
+                                         ObstacleRegion& region) {
     Cell upper = corner;
     for (int axis = 0; axis < 3; ++axis) upper[axis] += FluidGrid::tile[axis];
     region.begin(grid, corner, upper);
-    for (SolidProbe& probe : probes) region.add(probe);
+    for (ObstacleProbe& probe : probes) region.add(probe);
     region.finish();
     grid.for_cells(corner, [&](int cell, const Cell& c) {
         const int here = region.index(c);
@@ -128,7 +128,7 @@ void FluidSolids::measure_static_tile(FluidGrid& grid, const Cell& corner, std::
     grid.clear_tile(corner);
 }
 
-void FluidSolids::measure_static(FluidGrid& grid, TaskPool& workers) {
+void FluidObstacles::measure_static(FluidGrid& grid, TaskPool& workers) {
     std::vector<Cell> unknown;
     for (const Cell& corner : grid.tiles()) {
         if (!grid.is_static_known[grid.tile_of(corner)]) unknown.push_back(corner);
@@ -139,8 +139,8 @@ void FluidSolids::measure_static(FluidGrid& grid, TaskPool& workers) {
     // Neighbours cost alike: every worker takes each so many-th.
     const auto number = static_cast<std::size_t>(workers.workers());
     share_among(workers, number, unknown.size() > 4, [&](int, Share share) {
-        std::vector<SolidProbe> probes = fixed_;
-        SolidRegion region;
+        std::vector<ObstacleProbe> probes = fixed_;
+        ObstacleRegion region;
         for (std::size_t first = share.first; first < share.last; ++first) {
             for (std::size_t i = first; i < unknown.size(); i += number) {
                 measure_static_tile(grid, unknown[i], probes, region);
@@ -150,10 +150,10 @@ void FluidSolids::measure_static(FluidGrid& grid, TaskPool& workers) {
 }
 
 // Shares and distances of one alone.
-void FluidSolids::measure_moving(MovingSolid& moving, const FluidGrid& grid) {
+void FluidObstacles::measure_moving(MovingObstacle& moving, const FluidGrid& grid) {
     // The cells in reach, within the box and away from its rim.
     const double h = grid.cell_size();
-    const Bounds wide = enlarged(moving.probe.bounds(), SolidRegion::reach * h);
+    const Bounds wide = enlarged(moving.probe.bounds(), ObstacleRegion::reach * h);
     Cell lower{}, upper{};
     const Vec3 extent = moving.probe.bounds().half_extents() * 2;
     moving.is_small = std::max({extent.x, extent.y, extent.z}) < h && !moving.probe.is_surface();
@@ -170,10 +170,10 @@ void FluidSolids::measure_moving(MovingSolid& moving, const FluidGrid& grid) {
         moving.is_in_reach = moving.is_in_reach && (is_inside || !moving.is_small);
     }
     if (!moving.is_in_reach) return;
-    SolidRegion& region = moving.region;
+    ObstacleRegion& region = moving.region;
     region.begin(grid, lower, upper);
     if (moving.is_small) {
-        region.spread(moving.center, moving.solid->shape->mass_properties().volume);
+        region.spread(moving.center, moving.obstacle->shape->mass_properties().volume);
         return;
     }
     moving.is_in_reach = region.add(moving.probe);
@@ -181,10 +181,10 @@ void FluidSolids::measure_moving(MovingSolid& moving, const FluidGrid& grid) {
     region.finish();
 }
 
-// Where solids overlap, the first one has the space.
-void FluidSolids::place_moving(MovingSolid& moving, int owner, FluidGrid& grid) {
+// Where obstacles overlap, the first one has the space.
+void FluidObstacles::place_moving(MovingObstacle& moving, int owner, FluidGrid& grid) {
     if (!moving.is_in_reach) return;
-    const SolidRegion& region = moving.region;
+    const ObstacleRegion& region = moving.region;
     const Cell &lower = region.lower(), &upper = region.upper();
     moving.bound.clear();
     for (auto& share : moving.share) share.assign(static_cast<std::size_t>(region.index(upper)) + 1, 0);
@@ -202,9 +202,9 @@ void FluidSolids::place_moving(MovingSolid& moving, int owner, FluidGrid& grid) 
                     open -= share;
                     bind_face(moving, grid, axis, c, share - region.filled(axis, here));
                 }
-                if (region.distance(here) < grid.solid[cell]) {
-                    grid.solid[cell] = region.distance(here);
-                    grid.solid_owner[cell] = static_cast<std::int16_t>(owner);
+                if (region.distance(here) < grid.obstacle[cell]) {
+                    grid.obstacle[cell] = region.distance(here);
+                    grid.obstacle_owner[cell] = static_cast<std::int16_t>(owner);
                 }
                 grid.room[cell] *= region.room(here);
                 grid.thin[cell] |= region.thin(here);
@@ -213,28 +213,28 @@ void FluidSolids::place_moving(MovingSolid& moving, int owner, FluidGrid& grid) 
     }
 }
 
-std::vector<Bounds> FluidSolids::in_reach(double dt, double cell_size) const {
+std::vector<Bounds> FluidObstacles::in_reach(double dt, double cell_size) const {
     constexpr double cells = 6;  // as far as a particle goes in a part, and what it asks of its surroundings
     std::vector<Bounds> boxes;
-    for (const MovingSolid& moving : moving_) {
-        const FluidSolid& solid = *moving.solid;
-        const Bounds bounds = solid.shape->bounds(solid.pose);
-        const double radius = length(bounds.half_extents()) + length(bounds.center() - solid.center);
+    for (const MovingObstacle& moving : moving_) {
+        const FluidObstacle& obstacle = *moving.obstacle;
+        const Bounds bounds = obstacle.shape->bounds(obstacle.pose);
+        const double radius = length(bounds.half_extents()) + length(bounds.center() - obstacle.center);
         const double way = length(moving.linear_velocity) * dt + length(moving.center - moving.kept_center);
         boxes.push_back(enlarged(Bounds{moving.center, moving.center}, radius + way + cells * cell_size));
     }
     return boxes;
 }
 
-void FluidSolids::place() {
-    for (MovingSolid& moving : moving_) {
-        const FluidSolid& solid = *moving.solid;
-        const Transform placed = moved(solid, origin_, moving.center + origin_, moving.rotation);
-        moving.probe = SolidProbe(*solid.shape, placed);
+void FluidObstacles::place() {
+    for (MovingObstacle& moving : moving_) {
+        const FluidObstacle& obstacle = *moving.obstacle;
+        const Transform placed = moved(obstacle, origin_, moving.center + origin_, moving.rotation);
+        moving.probe = ObstacleProbe(*obstacle.shape, placed);
     }
 }
 
-void FluidSolids::measure(double dt, FluidGrid& grid, TaskPool& workers) {
+void FluidObstacles::measure(double dt, FluidGrid& grid, TaskPool& workers) {
     measure_static(grid, workers);
     for (const Cell& corner : grid.left()) grid.clear_tile(corner);
     grid.for_tiles(workers, [&](const Cell& corner) {
@@ -244,14 +244,14 @@ void FluidSolids::measure(double dt, FluidGrid& grid, TaskPool& workers) {
                     const float open = 1 - grid.static_share[axis][cell];
                     grid.open[axis][cell] = open < least_open ? 0 : open;
                 }
-                grid.solid[cell] = grid.static_distance[cell];
+                grid.obstacle[cell] = grid.static_distance[cell];
                 grid.room[cell] = grid.static_room[cell];
                 grid.thin[cell] = grid.static_thin[cell];
-                grid.solid_owner[cell] = -1;
+                grid.obstacle_owner[cell] = -1;
             }
         });
     });
-    for (MovingSolid& moving : moving_) {
+    for (MovingObstacle& moving : moving_) {
         moving.center += moving.linear_velocity * (dt / 2);
         moving.rotation = turned(moving.rotation, moving.angular_velocity, dt / 2);
     }
@@ -261,31 +261,31 @@ void FluidSolids::measure(double dt, FluidGrid& grid, TaskPool& workers) {
     });
     for (std::size_t i = 0; i < moving_.size(); ++i) place_moving(moving_[i], static_cast<int>(i), grid);
 
-    // A cell that is shut all around is solid, be its centre on the seam of two solids.
+    // A cell that is shut all around is obstacle, be its centre on the seam of two obstacles.
     grid.for_tiles(workers, [&](const Cell& corner) {
         grid.for_cells(corner, [&](int cell, const Cell&) {
-            if (grid.solid[cell] > 0.5f) return;
+            if (grid.obstacle[cell] > 0.5f) return;
             for (int axis = 0; axis < 3; ++axis) {
                 if (grid.open[axis][cell] > 0 || grid.open[axis][cell + grid.stride(axis)] > 0) return;
             }
-            grid.solid[cell] = std::min(grid.solid[cell], -0.5f);
+            grid.obstacle[cell] = std::min(grid.obstacle[cell], -0.5f);
         });
     });
 }
 
-void FluidSolids::accelerate(double dt) {
-    for (MovingSolid& moving : moving_) {
-        moving.linear_velocity += moving.solid->acceleration * dt;
-        moving.angular_velocity += moving.solid->angular_acceleration * dt;
+void FluidObstacles::accelerate(double dt) {
+    for (MovingObstacle& moving : moving_) {
+        moving.linear_velocity += moving.obstacle->acceleration * dt;
+        moving.angular_velocity += moving.obstacle->angular_acceleration * dt;
     }
 }
 
-void FluidSolids::list_areas(const FluidGrid& grid) {
+void FluidObstacles::list_areas(const FluidGrid& grid) {
     const double h = grid.cell_size();
-    for (MovingSolid& moving : moving_) {
+    for (MovingObstacle& moving : moving_) {
         moving.areas.clear();
         if (!moving.is_in_reach) continue;
-        const SolidRegion& region = moving.region;
+        const ObstacleRegion& region = moving.region;
         const Cell &low = region.lower(), &high = region.upper();
         for (int z = low[2]; z < high[2]; ++z) {
             for (int y = low[1]; y < high[1]; ++y) {
@@ -309,8 +309,8 @@ void FluidSolids::list_areas(const FluidGrid& grid) {
     }
 }
 
-void FluidSolids::advance(double dt) {
-    for (MovingSolid& moving : moving_) {
+void FluidObstacles::advance(double dt) {
+    for (MovingObstacle& moving : moving_) {
         moving.center += moving.linear_velocity * (dt / 2);
         moving.rotation = moving.end_rotation(dt);
         moving.kept_center = moving.center;
@@ -318,13 +318,13 @@ void FluidSolids::advance(double dt) {
     }
 }
 
-void FluidSolids::end() {
+void FluidObstacles::end() {
     left_.clear();
-    for (const MovingSolid& moving : moving_) {
-        left_.push_back({moving.solid->body, moving.solid->version, moving.kept_center, moving.kept_rotation});
+    for (const MovingObstacle& moving : moving_) {
+        left_.push_back({moving.obstacle->body, moving.obstacle->version, moving.kept_center, moving.kept_rotation});
     }
 }
 
-Quat MovingSolid::end_rotation(double dt) const { return turned(rotation, angular_velocity, dt / 2); }
+Quat MovingObstacle::end_rotation(double dt) const { return turned(rotation, angular_velocity, dt / 2); }
 
 }  // namespace embody::physics::fluid
