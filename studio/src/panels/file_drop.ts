@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 import type { ServerError } from "../connection/messages";
+import { entityOf } from "../document/entity_of_model";
 import type { Studio } from "../studio";
 import { addUnder } from "../tools/ghost";
 import { openSceneFile } from "./dialogs";
-import { entityOf } from "./model_browser";
 
 const LARGEST_BYTES = 256 * 1024 * 1024;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import type { ModelSummary, NewEntity } from "../connection/messages";
+import type { ModelSummary } from "../connection/messages";
 import type { Studio } from "../studio";
 import { addInFront } from "../tools/ghost";
 import { PRIMITIVES, type Primitive } from "../tools/primitives";
@@ -165,11 +165,6 @@ export class ModelBrowser {
     const recent = this.studio.preferences.get("recent").filter((key) => key !== model.key);
     this.studio.preferences.set("recent", [model.key, ...recent].slice(0, 60));
   }
-}
-
-/** What a tile or file becomes in the scene. */
-export function entityOf(model: ModelSummary): NewEntity {
-  return { model: model.key };
 }
 
 function primitiveDrawing(primitive: Primitive): SVGSVGElement {

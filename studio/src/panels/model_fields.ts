@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
+import { entityOf } from "../document/entity_of_model";
 import type { Studio } from "../studio";
 import { addInFront } from "../tools/ghost";
 import { element, show } from "./element";
 import { openHistory } from "./history";
 import { modelCard } from "./model_card";
-import { entityOf } from "./model_browser";
 
 /** The model that was picked in the browser: what it is, and what can be done with it. */
 export class ModelFields {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 import type { ModelSummary } from "../connection/messages";
+import { entityOf } from "../document/entity_of_model";
 import { Signal } from "../signal";
 import type { Studio } from "../studio";
 import { addInFront } from "../tools/ghost";
 import type { DragIn } from "./drag_in";
 import { element } from "./element";
 import { icon } from "./icons";
-import { entityOf } from "./model_browser";
 
 const PAGE = 60;
 const TILE_WIDTH = 92;
