@@ -131,6 +131,7 @@ struct Ball {
     double radius = 0.1, angle = 0.3, mu = 0;
     Vec3 velocity, spin;
     double seconds = 60, time_step = 1.0 / 60;
+    double above = 0;  ///< the smooth surface, m
 };
 
 // The ball sits on the smooth surface at first; what that is off the facets it falls, or counts as heat: told from the
@@ -139,7 +140,7 @@ Outcome swing(const Hollow& hollow, const Ball& ball, std::uint64_t seed = 1) {
     Random random(seed);
     auto world = make_world({.time_step = ball.time_step});
     add_hollow(*world, hollow, ball.mu, random);
-    const double centre = hollow.radius - ball.radius;
+    const double centre = hollow.radius - ball.radius - ball.above;
     const auto body = world
                           ->create_body({.shape = world->create_shape(SphereShape{ball.radius}).value(),
                                          .position = {centre * std::sin(ball.angle),
@@ -512,7 +513,7 @@ TEST(RandomBowls, KeepTheEnergyOfWhatRollsOrSlidesFreely) {
         const double degrees = random.between(5, is_field ? 50 : 80);
         Ball ball{r, in_degrees(degrees), 0};
         if (cases <= usual) ball.seconds = 20;
-        if (random.below(2) > 0) ball.mu = random.between(0.4, 1) + 2.0 / 7 * std::tan(ball.angle);
+        if (random.below(2) > 0) ball.mu = std::min(random.between(0.4, 1) + 2.0 / 7 * std::tan(ball.angle), 2.0);
         if (ball.mu == 0 && random.below(2) > 0) ball.spin = random_vector(random, 1 / r);
         if (hollow.kind.ends_with("bowl")) ball.velocity = {0, 0, random.between(-0.5, 0.5) * std::sqrt(gravity * r)};
         const std::string what = "seed " + std::to_string(seed) + ": " + hollow.kind + ", r " + std::to_string(r) +
@@ -535,6 +536,8 @@ TEST(RandomBowls, NothingThatSlipsGains) {
         if (hollow.kind.starts_with("field")) hollow.reach = 1;
         Ball ball{r, in_degrees(random.between(5, 50)), random.between(0.05, 0.5)};
         ball.spin = random_vector(random, 5 / r);
+        // Over the middle of a facet: what begins in the ground is pushed out.
+        ball.above = hollow.radius * (1 - std::cos(hollow.reach / hollow.facets));
         ball.seconds = cases <= usual ? 10 : 60;
         const Outcome outcome = swing(hollow, ball, static_cast<std::uint64_t>(seed));
         EXPECT_LT(outcome.most, 1 + bar / 10) << "seed " << seed << ": " << hollow.kind << ", r " << r << ", R/r "

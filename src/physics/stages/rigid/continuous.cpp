@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "physics/dynamic/equations_of_motion.h"
+#include "physics/stages/rigid/roll_balls.h"
 #include "physics/stages/stages.h"
 #include "physics/state/share_awake.h"
 
@@ -186,7 +187,9 @@ double first_touch(const WorldState& world, std::uint32_t body, const std::vecto
     const Sweep sweep = sweep_of(world, body);
     double first = 1;
     for_each_met(world, body, sweep, fast, [&](std::uint32_t other, std::size_t place) {
-        if (place < fast.size()) return;
+        // What rolls along a surface has followed it all the way; a straight line between its ends would cut into
+        // edges.
+        if (place < fast.size() || has_rolled_along(world, body, other)) return;
         const Transform pose = world.pose(other);
         if (const auto time = meeting_time(world, body, other, sweep, {pose, pose, {}})) first = std::min(first, *time);
     });

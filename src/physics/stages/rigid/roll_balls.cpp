@@ -144,6 +144,13 @@ void roll_clusters(WorldState& world, BallMemory& memory) {
     }
 }
 
+const RolledBall* find_rolled(const WorldState& world, std::uint32_t body) {
+    const std::vector<RolledBall>& list = world.ball_memory.rolled;
+    const auto found = std::lower_bound(list.begin(), list.end(), body,
+                                        [](const RolledBall& ball, std::uint32_t slot) { return ball.body < slot; });
+    return found != list.end() && found->body == body ? &*found : nullptr;
+}
+
 }  // namespace
 
 void roll_balls(WorldState& world) {
@@ -165,21 +172,25 @@ void roll_balls(WorldState& world) {
 bool take_rolled_balls(WorldState& world, const Island& island) {
     const std::vector<RolledBall>& list = world.ball_memory.rolled;
     if (list.empty() || island.joint_count > 0) return false;
-    const auto find = [&](std::uint32_t body) {
-        const auto found =
-            std::lower_bound(list.begin(), list.end(), body,
-                             [](const RolledBall& ball, std::uint32_t slot) { return ball.body < slot; });
-        return found != list.end() && found->body == body ? &*found : nullptr;
-    };
     const auto bodies = std::span(world.islands.bodies).subspan(island.first_body, island.body_count);
-    if (!std::all_of(bodies.begin(), bodies.end(), [&](std::uint32_t body) { return find(body) != nullptr; }))
+    if (!std::all_of(bodies.begin(), bodies.end(),
+                     [&](std::uint32_t body) { return find_rolled(world, body) != nullptr; }))
         return false;
     for (const std::uint32_t body : bodies) {
-        const RolledBall& ball = *find(body);
+        const RolledBall& ball = *find_rolled(world, body);
         world.motion[body] = ball.state;
         note_load(world, world.ball_memory.candidates[ball.candidate].contacts, {ball.contact, 0}, ball.impulse);
     }
     return true;
+}
+
+bool has_rolled_along(const WorldState& world, std::uint32_t body, std::uint32_t ground) {
+    const RolledBall* ball = find_rolled(world, body);
+    if (ball == nullptr || world.motion[body].center != ball->state.center) return false;
+    const std::vector<std::uint32_t>& contacts = world.ball_memory.candidates[ball->candidate].contacts;
+    return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t contact) {
+        return world.contacts[contact].a == ground || world.contacts[contact].b == ground;
+    });
 }
 
 }  // namespace embody::physics::stages

@@ -16,4 +16,7 @@ void roll_balls(WorldState& world);
 /// Whether the island is balls that were rolled; they are then where the step takes them.
 bool take_rolled_balls(WorldState& world, const Island& island);
 
+/// Whether the body is where it was rolled to in this step, with `ground` among what it rolled along.
+bool has_rolled_along(const WorldState& world, std::uint32_t body, std::uint32_t ground);
+
 }  // namespace embody::physics::stages
