@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "database/migrations.h"
 
+#include <algorithm>
+
 #include "database/transaction.h"
 
 namespace embody::database {
@@ -33,7 +35,11 @@ Result<void> migrate(Connection& connection, std::span<const Migration> migratio
                          std::to_string(known),
                      "open it with the newer Embody that wrote it, or name another file with --database"};
     }
-    if (*version < known && connection.is_read_only()) {
+    const bool is_needed = std::any_of(migrations.begin(), migrations.end(), [&](const Migration& migration) {
+        return migration.version > *version && !migration.is_optional_for_reading;
+    });
+    if (connection.is_read_only() && !is_needed) return {};
+    if (connection.is_read_only()) {
         return Error{connection.file().string(),
                      "has schema version " + std::to_string(*version) + ", this program needs " +
                          std::to_string(known) + " and cannot change the file: it is read-only",

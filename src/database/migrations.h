@@ -11,6 +11,9 @@ namespace embody::database {
 struct Migration {
     int version;           ///< 1, 2, 3 … without a gap
     const char* commands;  ///< what leads from version - 1 to version
+    /// Whether a program of this version can read a file of version - 1 as it is: a file that cannot be changed is
+    /// then opened without the step.
+    bool is_optional_for_reading = false;
 };
 
 /// Brings the file to the last version, each step in a transaction of its own; a step that another process takes at the

@@ -231,7 +231,7 @@ constexpr std::array<Migration, 6> migrations{{{1, first_version},
                                                {3, audit_of_manual_changes},
                                                {4, shared_contents},
                                                {5, with_simulation_meshes},
-                                               {6, rebuilt_words}}};
+                                               {6, rebuilt_words, true}}};
 
 }  // namespace
 

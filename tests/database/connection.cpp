@@ -314,6 +314,23 @@ TEST(Migrations, OfAReadOnlyFileAreTold) {
     EXPECT_NE(told.find("is read-only"), std::string::npos) << told;
 }
 
+// The last step changes no table: a file that cannot be changed is read without it.
+TEST(Migrations, OfAReadOnlyFileAreLeftOutWhereReadingNeedsNone) {
+    TemporaryFolder folder;
+    {
+        const auto connection = open_model_database(folder / "models.sqlite");
+        ASSERT_TRUE(connection);
+        ASSERT_TRUE((*connection)->execute("PRAGMA user_version = 5"));
+    }
+    chmod((folder / "models.sqlite").c_str(), 0444);
+    chmod(folder.path().c_str(), 0755);
+    const std::string told = as_another_person([&] {
+        const auto connection = open_model_database(folder / "models.sqlite");
+        return connection ? "opened" : connection.error().message();
+    });
+    EXPECT_EQ(told, "opened");
+}
+
 TEST(Migrations, KeepRowsOfAnOlderSchema) {
     TemporaryFolder folder;
     auto connection = Connection::open(folder / "models.sqlite", ours);

@@ -499,6 +499,80 @@ TEST(Bowls, MarblesThatHitEachOtherGainNothingAndLoseNoneByThat) {
     }
 }
 
+// Two on a slope, one of which rolls into the other.
+TEST(Bowls, SlowCollisionsOfBallsThatRollDoNotBounce) {
+    for (const double threshold : {0.0, 5.0}) {
+        auto world = make_world({.air_density = 0});
+        const Material material{.friction_static = 0,
+                                .friction_dynamic = 0,
+                                .restitution = 1,
+                                .restitution_threshold = threshold,
+                                .restitution_combine = CombineRule::multiply};
+        Material ground = material;
+        ground.restitution = 0;
+        const Vec3 n{std::sin(0.3), std::cos(0.3), 0};
+        const auto sphere = world->create_shape(SphereShape{0.05}).value();
+        ASSERT_TRUE(world->create_body({.kind = BodyKind::static_body,
+                                        .shape = world->create_shape(PlaneShape{n, 0}).value(),
+                                        .material = ground}));
+        const auto ball = [&](double z, double speed) {
+            return world
+                ->create_body({.shape = sphere,
+                               .position = n * 0.05 + Vec3{0, 0, z},
+                               .linear_velocity = {0, 0, speed},
+                               .material = material,
+                               .allow_sleep = false})
+                .value();
+        };
+        const auto first = ball(0, 0.5), second = ball(0.2, 0);
+        for (int i = 0; i < 30; ++i) world->step();
+        EXPECT_NEAR(world->linear_velocity(first).z, threshold > 0 ? 0.25 : 0, 1e-6);
+        EXPECT_NEAR(world->linear_velocity(second).z, threshold > 0 ? 0.25 : 0.5, 1e-6);
+    }
+}
+
+// What two balls do is the same whether two others, far away, are still there.
+TEST(Bowls, BallsThatRollRememberNothingOfOthers) {
+    const auto speed_after = [](bool others_go) {
+        auto world = make_world({.air_density = 0});
+        const Material material{.friction_static = 0.1,
+                                .friction_dynamic = 0.1,
+                                .restitution = 0,
+                                .restitution_combine = CombineRule::multiply};
+        const auto sphere = world->create_shape(SphereShape{0.05}).value();
+        const auto ball = [&](Vec3 place, Vec3 velocity) {
+            return world
+                ->create_body({.shape = sphere,
+                               .position = place,
+                               .linear_velocity = velocity,
+                               .material = material,
+                               .allow_sleep = false})
+                .value();
+        };
+        EXPECT_TRUE(world->create_body({.kind = BodyKind::static_body,
+                                        .shape = world->create_shape(SphereShape{1}).value(),
+                                        .position = {100, 0, 0},
+                                        .material = material}));
+        std::vector<BodyHandle> others;
+        for (const double angle : {0.06, -0.0371}) {
+            const Vec3 out{std::sin(angle), std::cos(angle), 0}, along{std::cos(angle), -std::sin(angle), 0};
+            others.push_back(ball(Vec3{100, 0, 0} + out * 1.05, along * 1.5));
+        }
+        const Vec3 n{std::sin(0.7), std::cos(0.7), 0};
+        EXPECT_TRUE(world->create_body({.kind = BodyKind::static_body,
+                                        .shape = world->create_shape(PlaneShape{n, 0}).value(),
+                                        .material = material}));
+        const auto first = ball(n * 0.05, {});
+        ball(n * 0.05 + Vec3{0, 0, 0.102}, {});
+        for (int i = 0; i < 12; ++i) {
+            if (others_go && i == 2) EXPECT_TRUE(world->destroy_bodies(others));
+            world->step();
+        }
+        return length(world->linear_velocity(first));
+    };
+    EXPECT_EQ(speed_after(true), speed_after(false));
+}
+
 TEST(RandomBowls, KeepTheEnergyOfWhatRollsOrSlidesFreely) {
     constexpr int usual = 12;
     const int cases = wanted_cases("EMBODY_BOWL_CASES", usual);

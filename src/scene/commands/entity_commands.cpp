@@ -28,8 +28,9 @@ Result<std::string> usual_name(SessionState& state, const Entity& entity) {
 
 Result<void> check_room(const Document& document, std::size_t count) {
     if (document.next_index > last_document_index - count + 1)
-        return Error{"entity", "no index is left",
-                     "give the entity with the highest index a lower one in the scene file"};
+        return Error{
+            "entity", "no index is left",
+            "give the entity with the highest index a lower one in the scene file, and take next_index out of it"};
     if (document.entities.size() + count <= most_entities) return {};
     return Error{"entity", "a scene can have " + std::to_string(most_entities) + " entities", "delete some first"};
 }

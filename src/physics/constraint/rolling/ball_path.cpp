@@ -24,6 +24,7 @@ constexpr double part_way = 0.5;             // of the radius, in a part
 constexpr int most_halvings = 6;             // of a part
 constexpr double slow = 2e-3;                // m/s: slower by itself and by a step's gravity, it comes to rest
 constexpr double slow_resisted = 0.05;       // m/s: the same of what the ground resists to roll
+constexpr double least_way = 1e-9;           // of the radius, in a part: less is standing still
 constexpr double most_gap = 2e-4;            // m: farther from the ground it does not touch
 constexpr double soft_sag = 1e-5;            // m: so deep the contact solver carries it (validation.SleepOnlyInBalance)
 constexpr double deepest = 0.1;              // of the radius: deeper, the contact solver takes it out
@@ -127,6 +128,7 @@ bool BallPath::is_plain(const BallPlace& at) {
 
 bool BallPath::begin(BallPlace& at, bool has_company) {
     const double inertia = ball_.constants.inertia.x.x / (mass_ * radius_ * radius_);
+    at = {};
     at.center = state_.center;
     at.rotation = state_.rotation;
     at.motion = {state_.linear_velocity, state_.angular_velocity, radius_, inertia};
@@ -231,7 +233,8 @@ bool BallPath::advance(BallPlace& at, double time, int halvings) {
     const std::optional<double> lost = turn_or_hit(next, last_normal, time);
     if (!lost) return false;
     const double left = at.motion.energy() + dot(acceleration_, next.center - at.center) + friction_work + *lost;
-    if (!set_energy(next.motion, next.touch.normal, left, next.rolls) && halvings > 0) return in_halves();
+    const bool may_halve = halvings > 0 && moved > least_way * radius_;
+    if (!set_energy(next.motion, next.touch.normal, left, next.rolls) && may_halve) return in_halves();
     at = next;
     return true;
 }
@@ -260,17 +263,20 @@ bool BallPath::write(const BallPlace& at, Vec3 received, RolledBall& rolled) con
 
 bool BallPath::advance(BallPlace& at, double time) { return advance(at, time, most_halvings); }
 
+bool BallPath::see_curvature(BallPlace& at, double part) {
+    if (at.touch.knows_curvature || at.touch.is_flat) return true;
+    BallPlace trial = at;
+    if (!advance(trial, part)) return false;
+    at.centripetal = trial.centripetal;
+    return true;
+}
+
 bool BallPath::roll(RolledBall& rolled) {
     BallPlace start;
     if (!begin(start, false)) return false;
     int parts = count_parts(start);
     if (parts > most_parts) return false;
-    if (!start.touch.knows_curvature && !start.touch.is_flat) {
-        // The curvature is seen from a first part.
-        BallPlace trial = start;
-        if (!advance(trial, step_ / parts)) return false;
-        start.centripetal = trial.centripetal;
-    }
+    if (!see_curvature(start, step_ / parts)) return false;
     BallPlace at = start;
     for (int i = 0; i < parts; ++i) {
         if (!advance(at, step_ / parts)) return false;

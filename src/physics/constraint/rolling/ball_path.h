@@ -76,6 +76,8 @@ public:
     /// Where it is at the step's start. What has company rolls on however slow it is.
     bool begin(BallPlace& at, bool has_company);
     [[nodiscard]] int count_parts(const BallPlace& at) const;
+    /// What curves the ground, where its touch does not tell, from a first part of this time (s) on trial.
+    bool see_curvature(BallPlace& at, double part);
     bool advance(BallPlace& at, double time);
     /// The end of the step. `received`: impulse of others than the ground, N s.
     bool write(const BallPlace& at, Vec3 received, RolledBall& rolled) const;

@@ -310,7 +310,10 @@ void ImpactStage::go_back(double time) {
 
 // Whether the contact may bounce once more.
 bool ImpactStage::count_impact(std::uint32_t contact) {
-    return memory_.impacts[contact]++ < most_bounces && paths_.bounces(world_.contacts[contact]);
+    std::uint8_t& count = memory_.impacts[contact];
+    const bool may_bounce = count < most_bounces && paths_.bounces(world_.contacts[contact]);
+    if (count < most_impacts) ++count;
+    return may_bounce;
 }
 
 // The sites of the contact, whose region is `manifold`, and of those that come down with it. Whether it bounces.

@@ -185,14 +185,14 @@ void ImpactRegions::add_points_below(const Contact& contact, const PointGaps& ga
     int touching = 0;
     const auto count = static_cast<std::size_t>(contact.count);
     for (std::size_t i = 0; i < count; ++i) {
-        if (gaps[i] > highest) continue;
+        if (!(gaps[i] <= highest)) continue;
         arm_a += contact.points[i].arm_a;
         arm_b += contact.points[i].arm_b;
         ++touching;
     }
     if (touching > 1) add_site(contact, {arm_a / touching, arm_b / touching, contact.normal}, time, false);
     for (std::size_t i = 0; i < count; ++i) {
-        if (gaps[i] > highest) continue;
+        if (!(gaps[i] <= highest)) continue;
         add_site(contact, {contact.points[i].arm_a, contact.points[i].arm_b, contact.normal}, time, false);
     }
 }

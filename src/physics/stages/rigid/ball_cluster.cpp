@@ -20,6 +20,7 @@ constexpr double touch_gap = 1e-6;  // of the smaller radius: nearer balls touch
 constexpr double deepest = 0.5;     // of the smaller radius: deeper, the contact solver takes balls out of each other
 constexpr double deepest_rest = 0.01;  // the same of balls that stay together
 constexpr int most_collisions = 64;    // of a pair in a step
+constexpr int parts_of_budget = 4;     // for each part and each pair, in a step
 constexpr double least_share = 1e-6;   // of a part: a shorter rest is none
 
 class BallCluster {
@@ -28,6 +29,8 @@ public:
                 std::span<BallMemory::Pair> pairs)
         : world_(world), memory_(memory), members_(members), pairs_(pairs) {}
     bool roll();
+    /// Whether it was given up because there was no end of collisions.
+    [[nodiscard]] bool is_exhausted() const { return is_exhausted_; }
 
 private:
     using Candidate = BallMemory::Candidate;
@@ -58,6 +61,7 @@ private:
     const std::span<const std::uint32_t> members_;
     const std::span<BallMemory::Pair> pairs_;
     std::size_t collisions_ = 0;
+    bool is_exhausted_ = false;
 };
 
 bool BallCluster::begin() {
@@ -123,11 +127,15 @@ bool BallCluster::collide(Pair& pair) {
     const Material material = combine(world_.record(a.body).definition.material,
                                       world_.record(b.body).definition.material, world_.surface_pairs);
     const double before = energy(a) + energy(b);
+    const double closing = dot(direction, a.at.motion.velocity - b.at.motion.velocity);
+    const double restitution = closing >= material.restitution_threshold ? material.restitution : 0;
     const std::optional<Vec3> impulse = collide_balls({a.at.motion, a.path->mass(), a.at.touch.normal},
                                                       {b.at.motion, b.path->mass(), b.at.touch.normal}, direction,
-                                                      material.restitution, material.friction_dynamic);
-    if (!impulse || ++collisions_ > most_collisions * pairs_.size()) return false;
+                                                      restitution, material.friction_dynamic);
+    is_exhausted_ = ++collisions_ > most_collisions * pairs_.size();
+    if (!impulse || is_exhausted_) return false;
     a.at.rolls = b.at.rolls = false;
+    a.at.centripetal = b.at.centripetal = 0;
     a.received -= *impulse;
     b.received += *impulse;
     pair.impulse += *impulse;
@@ -165,9 +173,13 @@ bool BallCluster::roll() {
     const int parts = count_parts();
     if (parts > BallPath::most_parts) return false;
     const double part = world_.settings.time_step / parts;
-    int left_parts = 2 * parts + most_collisions * static_cast<int>(pairs_.size());
+    for (const std::uint32_t index : members_) {
+        if (!ball(index).path->see_curvature(ball(index).at, part)) return false;
+    }
+    int left_parts = parts_of_budget * (parts + static_cast<int>(pairs_.size()));
     for (double left = world_.settings.time_step; left > least_share * part;) {
-        if (left_parts-- == 0) return false;
+        is_exhausted_ = left_parts-- == 0;
+        if (is_exhausted_) return false;
         const double time = std::min(part, left);
         if (!advance(time)) return false;
         double share = 1;
@@ -182,9 +194,13 @@ bool BallCluster::roll() {
 
 }  // namespace
 
-bool roll_cluster(const WorldState& world, BallMemory& memory, std::span<const std::uint32_t> members,
-                  std::span<BallMemory::Pair> pairs) {
-    return BallCluster(world, memory, members, pairs).roll();
+bool roll_cluster(WorldState& world, std::span<const std::uint32_t> members, std::span<BallMemory::Pair> pairs) {
+    BallCluster cluster(world, world.ball_memory, members, pairs);
+    const bool has_rolled = cluster.roll();
+    if (cluster.is_exhausted()) {
+        world.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
+    }
+    return has_rolled;
 }
 
 }  // namespace embody::physics::stages

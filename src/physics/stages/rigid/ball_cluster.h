@@ -10,8 +10,8 @@
 namespace embody::physics::stages {
 
 /// Takes balls that roll on still ground near each other through the step, together with their collisions: the members
-/// (indices of candidates) and their pairs. False where one of them cannot be followed so; then nothing is told.
-bool roll_cluster(const WorldState& world, BallMemory& memory, std::span<const std::uint32_t> members,
-                  std::span<BallMemory::Pair> pairs);
+/// (indices of candidates) and their pairs, of world.ball_memory. False where one of them cannot be followed so; then
+/// nothing is told but the limit, where their collisions have no end.
+bool roll_cluster(WorldState& world, std::span<const std::uint32_t> members, std::span<BallMemory::Pair> pairs);
 
 }  // namespace embody::physics::stages

@@ -135,9 +135,11 @@ void roll_clusters(WorldState& world, BallMemory& memory) {
         members.erase(std::unique(members.begin(), members.end()), members.end());
         const auto can_be_followed = [&](std::uint32_t index) { return is_followed(memory.candidates[index]); };
         if (members.size() > most_members || !std::all_of(members.begin(), members.end(), can_be_followed)) continue;
-        if (!roll_cluster(world, memory, members, pairs)) continue;
+        if (!roll_cluster(world, members, pairs)) continue;
         for (const std::uint32_t index : members) memory.candidates[index].has_rolled = true;
         for (const BallMemory::Pair& pair : pairs) {
+            // Nothing of the last step's load is left in the contact.
+            note_load(world, std::span(&pair.contact, 1), {pair.contact, 0}, Vec3{});
             note_collision(world, pair);
             leave_to_rolling(world.contact_glances[pair.contact]);
         }
