@@ -163,7 +163,7 @@ class Yard:
         for failure in failures:
             if str(self.models) not in failure["path"] or len(failure["why"]) < len(str(self.models)) // 2:
                 wrong.append(f"a refusal without file or reason: {failure}")
-        refused = [failure["path"] for failure in failures if "/good-" in failure["path"]]
+        refused = [f"{failure['path']}: {failure['why']}" for failure in failures if "/good-" in failure["path"]]
         if refused:
             wrong.append(f"good files were refused: {refused[:3]}")
         if report["added"] < self.good:

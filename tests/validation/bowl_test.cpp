@@ -565,7 +565,9 @@ TEST(Bowls, BallsThatRollRememberNothingOfOthers) {
         const auto first = ball(n * 0.05, {});
         ball(n * 0.05 + Vec3{0, 0, 0.102}, {});
         for (int i = 0; i < 12; ++i) {
-            if (others_go && i == 2) EXPECT_TRUE(world->destroy_bodies(others));
+            if (others_go && i == 2) {
+                EXPECT_TRUE(world->destroy_bodies(others));
+            }
             world->step();
         }
         return length(world->linear_velocity(first));
