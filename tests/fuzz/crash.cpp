@@ -30,6 +30,12 @@ bool serves_others(std::string_view module) {
     return false;
 }
 
+/// Operators new and delete are the program's own (sanitizer.cpp), whoever calls them.
+bool is_allocation(const char* symbol) {
+    return symbol != nullptr &&
+           (std::string_view(symbol).starts_with("_Zn") || std::string_view(symbol).starts_with("_Zd"));
+}
+
 template <std::size_t size>
 void copy(std::array<char, size>& to, const char* text) {
     std::strncpy(to.data(), text, size - 1);
@@ -49,7 +55,7 @@ void tell(int signal) {
         if (dladdr(frames[static_cast<std::size_t>(i)], &where) == 0 || where.dli_fname == nullptr) continue;
         const char* slash = std::strrchr(where.dli_fname, '/');
         const char* module = slash == nullptr ? where.dli_fname : slash + 1;
-        if (serves_others(module)) continue;
+        if (serves_others(module) || is_allocation(where.dli_sname)) continue;
         // The first of the program is this function, called by the system.
         if (!std::exchange(is_below_this, true)) continue;
         copy(words->module, module);
