@@ -87,7 +87,8 @@ public:
         bytes_per_worker_ = shares_.each;
         if (auto ran = run_queue(); !ran) return ran;
 
-        // Once more, alone, with all of the memory.
+        // Once more, alone, with all of the memory, and each by a worker of its own: one that lives on after a hostile
+        // file may carry its damage into the next.
         queue_ = std::exchange(again_, {});
         next_ = 0;
         is_last_round_ = true;
@@ -221,7 +222,8 @@ private:
         ++place.served;
         // Work for the worker first, so that it is busy while `done` stores the model.
         const bool larger_share = message.kind == FrameKind::out_of_memory && shares_.alone > bytes_per_worker_;
-        if (place.served >= models_a_worker || place.worker->processor_seconds() > most_processor_seconds) {
+        const bool is_used_up = is_last_round_ || place.served >= models_a_worker;
+        if (is_used_up || place.worker->processor_seconds() > most_processor_seconds) {
             place.worker.reset();
         } else {
             give_next(place);

@@ -20,9 +20,9 @@ struct ConfinedPoolOptions {
 
 /// Prepares `items` in worker processes of their own (limits on memory, time and system calls; no network), so that a
 /// crash, a hang or a memory bomb of one file costs that file only. What a crowded machine may have caused (a worker
-/// that died, or ran out of its share of the memory or of wall time) is tried once more at the end, by one worker with
-/// all of the memory. `done` is called on the calling thread, once an item, in the order in which they finish; it
-/// returns false to stop early. Fails only if no worker can be started.
+/// that died, or ran out of its share of the memory or of wall time) is tried once more at the end, one after the
+/// other, each by a new worker with all of the memory. `done` is called on the calling thread, once an item, in the
+/// order in which they finish; it returns false to stop early. Fails only if no worker can be started.
 Result<void> prepare_confined(const std::vector<ImportItem>& items, const ConfinedPoolOptions& options,
                               const std::function<bool(std::size_t item, Result<PreparedModel> prepared)>& done);
 

@@ -113,6 +113,21 @@ TEST(ConfinedPool, TriesOnceMoreWhatACrowdedMachineMayHaveCaused) {
               "needs more than 0.500000 s of processor time");
 }
 
+// A worker whose memory a file has damaged answers, and not again: the next file is innocent.
+TEST(ConfinedPool, TheSecondTryIsByAWorkerOfItsOwn) {
+    const ScratchFolder scratch;
+    const std::string lives = "'" + scratch.write("lives", "0").string() + "'";
+    const auto worker = fake_worker(scratch, "n=$(cat " + lives + "); echo $((n + 1)) >" + lives +
+                                                 "\ntest $n -ge 2 || kill -SEGV $$\n" +
+                                                 answers(scratch, FrameKind::failed, "answered"));
+    const auto results = prepare_all({{.path = "a.obj"}, {.path = "b.obj"}},
+                                     {.workers = 1, .wall_seconds_per_model = 3, .worker_program = worker});
+    for (const auto& [item, result] : results) {
+        ASSERT_FALSE(result.ok());
+        EXPECT_EQ(result.error().why, "answered") << item;
+    }
+}
+
 TEST(ConfinedPool, AModelThatNeedsMoreMemoryHasItAlone) {
     const ScratchFolder scratch;
     // A worker's second argument is its address space. Half of the budget, for two at a time, is too little.
