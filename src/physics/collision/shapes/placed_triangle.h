@@ -45,7 +45,7 @@ struct PlacedTriangle {
 /// A side of the prism over a triangle. Over an edge where the surface bends away a little the side leans halfway to
 /// the neighbour's normal, so that nothing in the wedge between the two prisms is lost.
 struct PrismSide {
-    /// Tangent of half the bend (30 degrees) up to which neighbours share the wedge.
+    /// Tangent of half the angle between the normals (30 degrees) up to which neighbours share the wedge.
     static constexpr float shallow_half_dihedral = 0.268F;
 
     Vec3 outwards;

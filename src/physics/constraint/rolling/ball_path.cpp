@@ -65,7 +65,7 @@ void BallPath::find(Vec3 center, double margin) {
 
 // Puts the ball onto the ground near by: the surfaces there count as planes. The touch is the last one that moved it.
 bool BallPath::settle(BallPlace& at, const Vec3* last_normal, double margin) {
-    constexpr int rounds = 8;
+    constexpr int rounds = 8;           // planes that it is put onto in turn
     constexpr double rounding = 1e-12;  // m
     find(at.center, margin);
     if (touches_.empty()) return false;

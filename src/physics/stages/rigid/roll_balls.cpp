@@ -90,7 +90,7 @@ bool is_followed(const BallMemory::Candidate& candidate) { return candidate.is_f
 
 // Those that no other ball is near.
 void roll_single_balls(WorldState& world, BallMemory& memory) {
-    constexpr std::size_t fewest_shared = 64;
+    constexpr std::size_t fewest_shared = 64;  // balls: below, waking the workers costs more
     for (const BallMemory::Pair& pair : memory.pairs) {
         memory.candidates[pair.a].has_company = memory.candidates[pair.b].has_company = true;
     }
@@ -118,7 +118,7 @@ void note_collision(WorldState& world, const BallMemory::Pair& pair) {
 }
 
 void roll_clusters(WorldState& world, BallMemory& memory) {
-    constexpr std::size_t most_members = 32;
+    constexpr std::size_t most_members = 32;  // balls: the time of one worker grows with the square of their number
     for (BallMemory::Pair& pair : memory.pairs) pair.root = root_of(memory, pair.a);
     std::sort(memory.pairs.begin(), memory.pairs.end(), [](const BallMemory::Pair& p, const BallMemory::Pair& q) {
         return p.root != q.root ? p.root < q.root : p.contact < q.contact;
