@@ -19,9 +19,16 @@ def read_table(architecture: pathlib.Path) -> dict[str, set[str]]:
     for line in section.splitlines():
         cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
         names = [re.findall(r"`([^`]+)`", cell) for cell in cells]
-        if line.startswith("|") and names[0]:
+        if line.startswith("|") and names[0] and not names[0][0].endswith(".h"):
             table[names[0][0]] = set(names[1]) if len(names) > 1 else set()
     return table
+
+
+def read_few(architecture: pathlib.Path) -> dict[str, set[str]]:
+    """Rows `| `file` | only `layer`, `file` |` of the same section: headers that not all of their layer's readers may see."""
+    section = architecture.read_text().split("## Who may include whom", 1)[1].split("\n## ", 1)[0]
+    rows = re.findall(r"^\| `([^`]+\.h)` \| only (.*) \|$", section, re.MULTILINE)
+    return {header: set(re.findall(r"`([^`]+)`", readers)) for header, readers in rows}
 
 
 def layer_of(path: str, layers: list[str]) -> str | None:
@@ -33,6 +40,7 @@ def layer_of(path: str, layers: list[str]) -> str | None:
 def main() -> int:
     root = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent
     table = read_table(root / "docs" / "architecture.md")
+    few = read_few(root / "docs" / "architecture.md")
     layers = list(table)
     wrong, checked = [], 0
     files = [(p, p.relative_to(root / "src").as_posix()) for p in (root / "src").rglob("*") if p.suffix in (".h", ".cpp")]
@@ -61,6 +69,8 @@ def main() -> int:
                 wrong.append(f'{name}:{number}: "{included}" is in no layer (include by the path below src/)')
             elif other not in allowed:
                 wrong.append(f"{name}:{number}: {own} must not include {other} ({included})")
+            elif included in few and not {own, name} & few[included]:
+                wrong.append(f"{name}:{number}: {included} is for {', '.join(sorted(few[included]))} only")
     for line in wrong:
         print(line)
     print(f"{len(files)} files, {checked} includes, {len(wrong)} wrong")

@@ -70,4 +70,8 @@ Vec3 Wind::at(Vec3 position) const {
                       (noise(0, gust) * along + across * noise(1, gust) * side + upwards * noise(2, gust) * up);
 }
 
+Wind wind_at(const WorldSettings& settings, double time) {
+    return {settings.wind, settings.gustiness, settings.gust_time, time};
+}
+
 }  // namespace embody::physics::dynamic

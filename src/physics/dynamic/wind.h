@@ -2,6 +2,7 @@
 #pragma once
 
 #include "math/vec3.h"
+#include "physics/definitions/world_settings.h"
 #include "physics/dynamic/namespace.h"
 
 namespace embody::physics::dynamic {
@@ -22,5 +23,8 @@ struct Wind {
     /// Velocity of the air at a place in the world, m/s.
     [[nodiscard]] Vec3 at(Vec3 position) const;
 };
+
+/// The air at a time of the world, s.
+Wind wind_at(const WorldSettings& settings, double time);
 
 }  // namespace embody::physics::dynamic

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/state/world_state.h"
+
 namespace embody::physics {
 
 using namespace state;
@@ -13,10 +15,10 @@ std::optional<RayHit> cast_ray(const WorldState& world, Vec3 origin, Vec3 direct
     const Vec3 unit = normalized(direction);
     if (unit == Vec3{} || !is_finite(unit) || !is_finite(origin) || !(max_distance > 0)) return std::nullopt;
     std::optional<RayHit> nearest;
-    world.broad_phase.query_ray(origin, unit, max_distance, [&](std::uint32_t body, double limit) {
-        const BodyHandle handle = world.bodies.handle_at(body);
+    world.contacts.broad_phase.query_ray(origin, unit, max_distance, [&](std::uint32_t body, double limit) {
+        const BodyHandle handle = world.rigid.bodies.handle_at(body);
         if (handle == ignore) return limit;
-        const auto hit = cast_ray(*world.record(body).shape, world.pose(body), origin, unit, limit);
+        const auto hit = cast_ray(*world.rigid.record(body).shape, world.rigid.pose(body), origin, unit, limit);
         if (!hit || (nearest && hit->distance >= nearest->distance)) return limit;
         nearest = RayHit{handle, origin + unit * hit->distance, hit->normal, hit->distance};
         return hit->distance;
@@ -34,9 +36,9 @@ std::vector<BodyHandle> overlap_box(const WorldState& world, const Bounds& box) 
     const auto solid = CollisionShape::create(BoxShape{half});
     if (!solid) return found;
     const Transform pose{box.center(), Quat{}};
-    world.broad_phase.query(box, [&](std::uint32_t body) {
-        if (separation(*solid.value(), pose, *world.record(body).shape, world.pose(body), 0) > 0) return;
-        found.push_back(world.bodies.handle_at(body));
+    world.contacts.broad_phase.query(box, [&](std::uint32_t body) {
+        if (separation(*solid.value(), pose, *world.rigid.record(body).shape, world.rigid.pose(body), 0) > 0) return;
+        found.push_back(world.rigid.bodies.handle_at(body));
     });
     return found;
 }
@@ -47,13 +49,13 @@ namespace {
 std::optional<double> drop_onto(const WorldState& world, std::uint32_t body, std::uint32_t other, double limit) {
     constexpr double touch = 1e-6;
     constexpr int most_rounds = 256;
-    const CollisionShape& shape = *world.record(body).shape;
-    const CollisionShape& ground = *world.record(other).shape;
-    Transform pose = world.pose(body);
+    const CollisionShape& shape = *world.rigid.record(body).shape;
+    const CollisionShape& ground = *world.rigid.record(other).shape;
+    Transform pose = world.rigid.pose(body);
     const double start = pose.position.y;
     double fallen = 0;
     for (int round = 0; round < most_rounds && fallen <= limit; ++round) {
-        const double gap = separation(shape, pose, ground, world.pose(other), limit);
+        const double gap = separation(shape, pose, ground, world.rigid.pose(other), limit);
         if (gap <= touch) return fallen;
         fallen += gap;
         pose.position.y = start - fallen;
@@ -65,13 +67,13 @@ std::optional<double> drop_onto(const WorldState& world, std::uint32_t body, std
 
 std::optional<double> drop_distance(const WorldState& world, std::uint32_t body, double max_distance,
                                     const std::function<bool(BodyHandle)>& ignores) {
-    const BodyRecord& record = world.record(body);
+    const BodyRecord& record = world.rigid.record(body);
     if (!record.shape || is_static_only(record.shape->definition()) || !(max_distance > 0)) return std::nullopt;
-    Bounds swept = record.shape->bounds(world.pose(body));
+    Bounds swept = record.shape->bounds(world.rigid.pose(body));
     swept.lower.y -= max_distance;
     std::optional<double> least;
-    world.broad_phase.query(swept, [&](std::uint32_t other) {
-        if (other == body || (ignores && ignores(world.bodies.handle_at(other)))) return;
+    world.contacts.broad_phase.query(swept, [&](std::uint32_t other) {
+        if (other == body || (ignores && ignores(world.rigid.bodies.handle_at(other)))) return;
         const auto distance = drop_onto(world, body, other, least ? *least : max_distance);
         if (distance && (!least || *distance < *least)) least = distance;
     });

@@ -95,20 +95,20 @@ const Error no_such_deformable{"deformable", "is not one of this world"};
 Result<DeformableHandle> World::create_deformable(const DeformableDefinition& definition) {
     auto record = make_record(*this, {}, definition);
     if (!record) return record.error();
-    return state_->deformables.insert(std::move(*record));
+    return state_->deformables.records.insert(std::move(*record));
 }
 
 Result<void> World::destroy_deformable(DeformableHandle deformable) {
-    const DeformableRecord* record = state_->deformables.find(deformable);
+    const DeformableRecord* record = state_->deformables.records.find(deformable);
     if (record == nullptr) return no_such_deformable;
     for (const std::uint32_t body : record->touched_bodies) {
-        if (state_->is_used(body)) wake_later(*state_, body);
+        if (state_->rigid.is_used(body)) wake_later(state_->activity, body);
     }
-    state_->deformables.remove(deformable);
-    forget_thin_contacts(*state_, deformable.index);
-    for (std::uint32_t slot = 0; slot < state_->deformables.slot_count(); ++slot) {
-        if (!state_->deformables.used(slot)) continue;
-        std::erase_if(state_->deformables.at(slot).surface_pushes,
+    state_->deformables.records.remove(deformable);
+    forget_thin_contacts(state_->deformables, deformable.index);
+    for (std::uint32_t slot = 0; slot < state_->deformables.records.slot_count(); ++slot) {
+        if (!state_->deformables.records.used(slot)) continue;
+        std::erase_if(state_->deformables.records.at(slot).surface_pushes,
                       [&](const SurfacePush& push) { return push.slot == deformable.index; });
     }
     return {};
@@ -116,44 +116,44 @@ Result<void> World::destroy_deformable(DeformableHandle deformable) {
 
 std::vector<DeformableHandle> World::deformables() const {
     std::vector<DeformableHandle> handles;
-    for (std::uint32_t slot = 0; slot < state_->deformables.slot_count(); ++slot) {
-        if (state_->deformables.used(slot)) handles.push_back(state_->deformables.handle_at(slot));
+    for (std::uint32_t slot = 0; slot < state_->deformables.records.slot_count(); ++slot) {
+        if (state_->deformables.records.used(slot)) handles.push_back(state_->deformables.records.handle_at(slot));
     }
     return handles;
 }
 
 const DeformableDefinition* World::deformable(DeformableHandle deformable) const {
-    const DeformableRecord* record = state_->deformables.find(deformable);
+    const DeformableRecord* record = state_->deformables.records.find(deformable);
     return record != nullptr ? &record->definition : nullptr;
 }
 
 std::span<const Vec3> World::node_positions(DeformableHandle deformable) const {
-    const DeformableRecord* record = state_->deformables.find(deformable);
+    const DeformableRecord* record = state_->deformables.records.find(deformable);
     return record != nullptr ? std::span<const Vec3>(record->nodes().position) : std::span<const Vec3>();
 }
 
 std::span<const Vec3> World::node_velocities(DeformableHandle deformable) const {
-    const DeformableRecord* record = state_->deformables.find(deformable);
+    const DeformableRecord* record = state_->deformables.records.find(deformable);
     return record != nullptr ? std::span<const Vec3>(record->nodes().velocity) : std::span<const Vec3>();
 }
 
 std::span<const double> World::node_masses(DeformableHandle deformable) const {
-    const DeformableRecord* record = state_->deformables.find(deformable);
+    const DeformableRecord* record = state_->deformables.records.find(deformable);
     return record != nullptr ? std::span<const double>(record->nodes().mass) : std::span<const double>();
 }
 
 bool World::is_asleep(DeformableHandle deformable) const {
-    const DeformableRecord* record = state_->deformables.find(deformable);
+    const DeformableRecord* record = state_->deformables.records.find(deformable);
     return record == nullptr || record->is_asleep;
 }
 
 Transform World::pose(DeformableHandle deformable) const {
-    const DeformableRecord* record = state_->deformables.find(deformable);
+    const DeformableRecord* record = state_->deformables.records.find(deformable);
     return record != nullptr ? nearest_rigid_motion(*record) : Transform{};
 }
 
 double World::mass(DeformableHandle deformable) const {
-    const DeformableRecord* record = state_->deformables.find(deformable);
+    const DeformableRecord* record = state_->deformables.records.find(deformable);
     double sum = 0;
     if (record != nullptr) {
         for (const double mass : record->nodes().mass) sum += mass;
@@ -162,12 +162,12 @@ double World::mass(DeformableHandle deformable) const {
 }
 
 Vec3 World::center_of_mass(DeformableHandle deformable) const {
-    const DeformableRecord* record = state_->deformables.find(deformable);
+    const DeformableRecord* record = state_->deformables.records.find(deformable);
     return record != nullptr ? center_of(record->nodes()) : Vec3{};
 }
 
 Result<void> World::wake(DeformableHandle deformable) {
-    DeformableRecord* record = state_->deformables.find(deformable);
+    DeformableRecord* record = state_->deformables.records.find(deformable);
     if (record == nullptr) return no_such_deformable;
     wake_up(*record);
     return {};
@@ -175,7 +175,7 @@ Result<void> World::wake(DeformableHandle deformable) {
 
 Result<void> World::set_nodes(DeformableHandle deformable, std::span<const Vec3> positions,
                               std::span<const Vec3> velocities) {
-    DeformableRecord* record = state_->deformables.find(deformable);
+    DeformableRecord* record = state_->deformables.records.find(deformable);
     if (record == nullptr) return no_such_deformable;
     const std::size_t count = record->definition.nodes.size();
     for (const auto& [field, values] : {std::pair{"positions", positions}, {"velocities", velocities}}) {
@@ -188,13 +188,13 @@ Result<void> World::set_nodes(DeformableHandle deformable, std::span<const Vec3>
     record->set_motion(positions, velocities, nearest_rigid_motion(*record).rotation);
     record->last_positions = record->nodes().position;
     record->contacts.clear();
-    forget_thin_contacts(*state_, deformable.index);
+    forget_thin_contacts(state_->deformables, deformable.index);
     wake_up(*record);
     return {};
 }
 
 Result<void> World::set_deformable(DeformableHandle deformable, const DeformableDefinition& definition) {
-    DeformableRecord* record = state_->deformables.find(deformable);
+    DeformableRecord* record = state_->deformables.records.find(deformable);
     if (record == nullptr) return no_such_deformable;
     auto changed = make_record(*this, deformable, definition);
     if (!changed) return changed.error();
@@ -215,7 +215,7 @@ Result<void> World::set_deformable(DeformableHandle deformable, const Deformable
 
 Result<void> World::set_attachments(DeformableHandle deformable, const std::vector<Attachment>& attachments,
                                     const std::vector<Clamp>& clamps, const std::vector<Tie>& ties) {
-    DeformableRecord* record = state_->deformables.find(deformable);
+    DeformableRecord* record = state_->deformables.records.find(deformable);
     if (record == nullptr) return no_such_deformable;
     if (auto result = check_attachments(*this, attachments); !result) return result;
     if (auto result = check_ties(*this, deformable, ties); !result) return result;
@@ -231,7 +231,7 @@ Result<void> World::set_attachments(DeformableHandle deformable, const std::vect
 }
 
 std::optional<Tie> World::nearest_tie(std::uint32_t node, DeformableHandle other, Vec3 place) const {
-    const DeformableRecord* record = state_->deformables.find(other);
+    const DeformableRecord* record = state_->deformables.records.find(other);
     if (record == nullptr) return std::nullopt;
     const std::vector<Vec3>& at = record->nodes().position;
     std::optional<Tie> nearest;
@@ -257,19 +257,19 @@ std::optional<Tie> World::nearest_tie(std::uint32_t node, DeformableHandle other
 }
 
 std::span<const double> World::rope_tensions(DeformableHandle rope) const {
-    const DeformableRecord* record = state_->deformables.find(rope);
+    const DeformableRecord* record = state_->deformables.records.find(rope);
     return record != nullptr && record->rope ? record->rope->tensions() : std::span<const double>();
 }
 
 std::span<const RopeTwist> World::rope_twists(DeformableHandle rope) const {
-    const DeformableRecord* record = state_->deformables.find(rope);
+    const DeformableRecord* record = state_->deformables.records.find(rope);
     return record != nullptr && record->rope ? record->rope->twists() : std::span<const RopeTwist>();
 }
 
 std::vector<std::uint32_t> World::broken_segments(DeformableHandle rope) const {
     std::vector<std::uint32_t> broken;
     for (std::uint32_t s = 0; s < rope_tensions(rope).size(); ++s) {
-        if (state_->deformables.find(rope)->rope->is_broken(s)) broken.push_back(s);
+        if (state_->deformables.records.find(rope)->rope->is_broken(s)) broken.push_back(s);
     }
     return broken;
 }

@@ -20,37 +20,37 @@ constexpr double same_volume = 1e-9;
 }  // namespace
 
 Result<FluidHandle> World::create_fluid(const FluidDefinition& definition) {
-    auto record = set_up_fluid(*state_, definition);
+    auto record = set_up_fluid(ObstacleAccess(*state_), definition);
     if (!record) return record.error();
-    prepare_fluid(*state_, *record);
-    return state_->fluids.insert(std::move(*record));
+    prepare_fluid(FluidAccess(*state_), *record);
+    return state_->fluids.records.insert(std::move(*record));
 }
 
 Result<void> World::destroy_fluid(FluidHandle fluid) {
-    const FluidRecord* record = state_->fluids.find(fluid);
+    const FluidRecord* record = state_->fluids.records.find(fluid);
     if (record == nullptr) return Error{"fluid", "is not one of this world"};
     for (const auto& [slot, seen] : record->seen) {
-        if (state_->is_used(slot)) wake_later(*state_, slot);
+        if (state_->rigid.is_used(slot)) wake_later(state_->activity, slot);
     }
-    state_->fluids.remove(fluid);
+    state_->fluids.records.remove(fluid);
     return {};
 }
 
 std::vector<FluidHandle> World::fluids() const {
     std::vector<FluidHandle> handles;
-    for (std::uint32_t slot = 0; slot < state_->fluids.slot_count(); ++slot) {
-        if (state_->fluids.used(slot)) handles.push_back(state_->fluids.handle_at(slot));
+    for (std::uint32_t slot = 0; slot < state_->fluids.records.slot_count(); ++slot) {
+        if (state_->fluids.records.used(slot)) handles.push_back(state_->fluids.records.handle_at(slot));
     }
     return handles;
 }
 
 const FluidDefinition* World::fluid(FluidHandle fluid) const {
-    const FluidRecord* record = state_->fluids.find(fluid);
+    const FluidRecord* record = state_->fluids.records.find(fluid);
     return record != nullptr ? &record->definition : nullptr;
 }
 
 Result<void> World::set_fluid(FluidHandle fluid, const FluidDefinition& definition) {
-    FluidRecord* record = state_->fluids.find(fluid);
+    FluidRecord* record = state_->fluids.records.find(fluid);
     if (record == nullptr) return Error{"fluid", "is not one of this world"};
     if (auto result = validate(definition); !result) return result;
     if (definition.cell_size != record->definition.cell_size)
@@ -64,17 +64,17 @@ Result<void> World::set_fluid(FluidHandle fluid, const FluidDefinition& definiti
 }
 
 Result<FluidIds> World::add_to_fluid(FluidHandle fluid, std::span<const Vec3> places) {
-    FluidRecord* record = state_->fluids.find(fluid);
+    FluidRecord* record = state_->fluids.records.find(fluid);
     if (record == nullptr) return Error{"fluid", "is not one of this world"};
     if (record->is_frozen) return Error{"fluid", "is frozen", "destroy it and create another one"};
-    const auto ids = add_particles(*state_, *record, places);
+    const auto ids = add_particles(ObstacleAccess(*state_), *record, places);
     if (!ids) return ids.error();
     if (Result<void> awake = wake(fluid); !awake) return awake.error();
     return *ids;
 }
 
 Result<void> World::change_fluid(FluidHandle fluid, FluidIds ids, const FluidChange& change) {
-    FluidRecord* record = state_->fluids.find(fluid);
+    FluidRecord* record = state_->fluids.records.find(fluid);
     if (record == nullptr) return Error{"fluid", "is not one of this world"};
     record->solver->change_particles(ids, change);
     read_particles(*record, *state_->workers);
@@ -82,15 +82,15 @@ Result<void> World::change_fluid(FluidHandle fluid, FluidIds ids, const FluidCha
 }
 
 Result<FluidPart> World::move_between_fluids(FluidHandle from, FluidIds ids, FluidHandle to) {
-    FluidRecord* source = state_->fluids.find(from);
+    FluidRecord* source = state_->fluids.records.find(from);
     if (source == nullptr) return Error{"from", "is not one of this world"};
     if (source->is_frozen) return Error{"from", "is frozen", "destroy it and create another one"};
     FluidHandle target = to;
     if (target.is_null()) {
-        target = state_->fluids.insert(fluid_around(*source, ids));
-        source = state_->fluids.find(from);
+        target = state_->fluids.records.insert(fluid_around(*source, ids));
+        source = state_->fluids.records.find(from);
     }
-    FluidRecord* record = state_->fluids.find(target);
+    FluidRecord* record = state_->fluids.records.find(target);
     if (record == nullptr) return Error{"to", "is not one of this world"};
     if (record == source) return Error{"to", "is the fluid that they are in"};
     if (record->is_frozen) return Error{"to", "is frozen", "destroy it and create another one"};
@@ -102,12 +102,12 @@ Result<FluidPart> World::move_between_fluids(FluidHandle from, FluidIds ids, Flu
     for (const FluidHandle changed : {from, target}) {
         if (Result<void> awake = wake(changed); !awake) return awake.error();
     }
-    if (to.is_null()) prepare_fluid(*state_, *record);
+    if (to.is_null()) prepare_fluid(FluidAccess(*state_), *record);
     return part;
 }
 
 FluidParticles World::fluid_particles(FluidHandle fluid) const {
-    const FluidRecord* record = state_->fluids.find(fluid);
+    const FluidRecord* record = state_->fluids.records.find(fluid);
     if (record == nullptr) return {};
     return {record->solver->origin(),
             record->positions,
@@ -122,23 +122,23 @@ FluidParticles World::fluid_particles(FluidHandle fluid) const {
 }
 
 double World::fluid_pressure(FluidHandle fluid, Vec3 point) const {
-    const FluidRecord* record = state_->fluids.find(fluid);
+    const FluidRecord* record = state_->fluids.records.find(fluid);
     return record != nullptr ? record->solver->pressure_at(point - record->solver->origin()) : 0;
 }
 
 FluidForce World::fluid_force(BodyHandle body) const {
     if (!contains(body)) return {};
-    const BodyRecord& record = state_->record(body.index);
+    const BodyRecord& record = state_->rigid.record(body.index);
     return {record.fluid_force, record.fluid_torque};
 }
 
 Result<void> World::wake(FluidHandle fluid) {
-    FluidRecord* record = state_->fluids.find(fluid);
+    FluidRecord* record = state_->fluids.records.find(fluid);
     if (record == nullptr) return Error{"fluid", "is not one of this world"};
     record->is_asleep = false;
     record->quiet_time = 0;
     for (const auto& [slot, seen] : record->seen) {
-        if (state_->is_used(slot)) wake_later(*state_, slot);
+        if (state_->rigid.is_used(slot)) wake_later(state_->activity, slot);
     }
     return {};
 }

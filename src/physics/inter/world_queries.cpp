@@ -15,8 +15,8 @@ std::optional<RayHit> World::cast_ray(Vec3 origin, Vec3 direction, double max_di
 std::vector<BodyHandle> World::overlap_box(const Bounds& box) const { return physics::overlap_box(*state_, box); }
 
 Bounds World::bounds(BodyHandle body) const {
-    if (!contains(body) || !state_->record(body.index).shape) return {};
-    return state_->record(body.index).shape->bounds(state_->pose(body.index));
+    if (!contains(body) || !state_->rigid.record(body.index).shape) return {};
+    return state_->rigid.record(body.index).shape->bounds(state_->rigid.pose(body.index));
 }
 
 std::optional<double> World::drop_distance(BodyHandle body, double max_distance,

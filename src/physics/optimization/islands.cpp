@@ -39,7 +39,7 @@ private:
 bool is_movable(const BodyState& body) { return body.inverse_mass > 0; }
 
 // Breadth first through the contacts, all immovable bodies first.
-void find_levels(std::span<const BodyState> bodies, std::span<const ContactGlance> contacts, Islands::Memory& memory,
+void find_levels(std::span<const BodyState> bodies, std::span<const ContactSummary> contacts, Islands::Memory& memory,
                  std::vector<std::uint32_t>& level) {
     level.assign(bodies.size(), no_level);
 
@@ -48,21 +48,21 @@ void find_levels(std::span<const BodyState> bodies, std::span<const ContactGlanc
     std::vector<std::uint32_t>& front = memory.front;
     first.assign(bodies.size() + 1, 0);
     neighbour.resize(2 * contacts.size());
-    for (const ContactGlance& c : contacts) {
+    for (const ContactSummary& c : contacts) {
         if (c.is_idle) continue;
         ++first[c.a + 1];
         ++first[c.b + 1];
     }
     for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
     next.assign(first.begin(), first.end() - 1);
-    for (const ContactGlance& c : contacts) {
+    for (const ContactSummary& c : contacts) {
         if (c.is_idle) continue;
         neighbour[next[c.a]++] = c.b;
         neighbour[next[c.b]++] = c.a;
     }
 
     front.clear();
-    for (const ContactGlance& c : contacts) {
+    for (const ContactSummary& c : contacts) {
         for (const std::uint32_t body : {c.a, c.b}) {
             if (c.is_idle || is_movable(bodies[body]) || level[body] == 0) continue;
             level[body] = 0;
@@ -119,12 +119,12 @@ void sort_by_level(std::span<std::uint32_t> contacts, LevelOf level_of) {
     for (const std::uint32_t i : unsorted) contacts[first_of_level[level_of(i)]++] = i;
 }
 
-void list_graph(std::span<const std::uint32_t> awake, std::span<const ContactGlance> contacts,
+void list_graph(std::span<const std::uint32_t> awake, std::span<const ContactSummary> contacts,
                 std::span<const Joint> joints, ContactGraph& graph) {
     graph.bodies.assign(awake.begin(), awake.end());
     graph.contacts.clear();
     graph.joints.clear();
-    for (const ContactGlance& c : contacts) {
+    for (const ContactSummary& c : contacts) {
         graph.contacts.push_back(c.is_idle ? ContactGraph::Ends{none, none} : ContactGraph::Ends{c.a, c.b});
     }
     for (const Joint& j : joints) graph.joints.push_back({j.a_is_world ? none : j.a, j.b});
@@ -133,14 +133,14 @@ void list_graph(std::span<const std::uint32_t> awake, std::span<const ContactGla
 }  // namespace
 
 void build_islands(std::span<const std::uint32_t> awake, std::span<const BodyState> bodies,
-                   std::span<const ContactGlance> contacts, std::span<const Joint> joints, Islands& islands) {
+                   std::span<const ContactSummary> contacts, std::span<const Joint> joints, Islands& islands) {
     std::swap(islands.graph, islands.last_graph);
     list_graph(awake, contacts, joints, islands.graph);
     if (islands.graph == islands.last_graph && islands.level.size() == bodies.size()) return;
 
     // Immovable bodies do not connect: two boxes on one floor are two islands.
     DisjointSets sets(bodies.size(), islands.memory.parent);
-    for (const ContactGlance& c : contacts) {
+    for (const ContactSummary& c : contacts) {
         if (!c.is_idle && is_movable(bodies[c.a]) && is_movable(bodies[c.b])) sets.unite(c.a, c.b);
     }
     for (const Joint& j : joints) {
@@ -166,7 +166,7 @@ void build_islands(std::span<const std::uint32_t> awake, std::span<const BodySta
     distribute(
         contacts.size(), islands.list, islands.contacts,
         [&](std::size_t i) {
-            const ContactGlance& c = contacts[i];
+            const ContactSummary& c = contacts[i];
             return c.is_idle ? none : island_of(is_movable(bodies[c.a]) ? c.a : c.b);
         },
         [](Island& i) -> std::uint32_t& { return i.first_contact; },

@@ -50,6 +50,6 @@ inline constexpr std::uint32_t no_level = 0xFFFFFFFFu;  ///< hangs in the air
 /// `awake` lists the movable bodies, ascending; every contact and joint must touch at least one of them. Where the
 /// graph is still the one that the islands were built of, they stay.
 void build_islands(std::span<const std::uint32_t> awake, std::span<const BodyState> bodies,
-                   std::span<const ContactGlance> contacts, std::span<const Joint> joints, Islands& islands);
+                   std::span<const ContactSummary> contacts, std::span<const Joint> joints, Islands& islands);
 
 }  // namespace embody::physics::optimization

@@ -19,7 +19,7 @@ bool is_movable(const BodyState& body) { return body.inverse_mass > 0; }
 
 // The lowest colour that neither body has, of those with a batch to fill if there are any; what finds none is left for
 // another round of 64 colours.
-std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<const ContactGlance> contacts,
+std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<const ContactSummary> contacts,
                             std::span<const BodyState> bodies, SolveSchedule& s) {
     constexpr std::uint32_t colours = 64, none = 0xFFFFFFFFu;
     s.colours.resize(std::max(s.colours.size(), bodies.size()));
@@ -32,7 +32,7 @@ std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<cons
         for (const std::uint32_t i : order) s.colours[contacts[i].a] = s.colours[contacts[i].b] = 0;
         for (std::size_t k = 0; k < order.size(); ++k) {
             if (s.stage_of[k] != none) continue;
-            const ContactGlance& c = contacts[order[k]];
+            const ContactSummary& c = contacts[order[k]];
             const bool a_moves = is_movable(bodies[c.a]), b_moves = is_movable(bodies[c.b]);
             const std::uint64_t used = (a_moves ? s.colours[c.a] : 0) | (b_moves ? s.colours[c.b] : 0);
             if (~used == 0) continue;
@@ -52,7 +52,7 @@ std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<cons
 
 }  // namespace
 
-void build_schedule(std::span<const std::uint32_t> order, std::span<const ContactGlance> contacts,
+void build_schedule(std::span<const std::uint32_t> order, std::span<const ContactSummary> contacts,
                     std::span<const BodyState> bodies, int lanes, SolveSchedule& s) {
     s.stage_of.resize(order.size());
     const std::uint32_t stages = colour_stages(order, contacts, bodies, s);
@@ -60,7 +60,7 @@ void build_schedule(std::span<const std::uint32_t> order, std::span<const Contac
     // By stage, in it what carried a load before what did not, and by falling number of points: one counting sort.
     constexpr std::uint32_t kinds = 2 * most_points;
     const auto key_of = [&](std::size_t k) {
-        const ContactGlance& contact = contacts[order[k]];
+        const ContactSummary& contact = contacts[order[k]];
         return s.stage_of[k] * kinds + (contact.was_loaded ? 0 : most_points) + (most_points - contact.count);
     };
     s.first_of_key.assign(stages * kinds + 1, 0);

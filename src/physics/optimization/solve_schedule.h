@@ -32,7 +32,7 @@ struct SolveSchedule {
 
 /// `order`: contacts from the ground up. Arrays over bodies are indexed by slot. Equal inputs give equal schedules, and
 /// the solution does not depend on `lanes`.
-void build_schedule(std::span<const std::uint32_t> order, std::span<const ContactGlance> contacts,
+void build_schedule(std::span<const std::uint32_t> order, std::span<const ContactSummary> contacts,
                     std::span<const BodyState> bodies, int lanes, SolveSchedule& schedule);
 
 }  // namespace embody::physics::optimization

@@ -18,18 +18,18 @@ namespace embody::physics::state {
 namespace {
 
 bool is_counted(const WorldState& world, std::uint32_t body) {
-    return world.is_used(body) && world.is_dynamic(body) && world.record(body).definition.enabled;
+    return world.rigid.is_used(body) && world.rigid.is_dynamic(body) && world.rigid.record(body).definition.enabled;
 }
 
 Vec3 gravity_on(const WorldState& world, std::uint32_t body) {
-    return world.settings.gravity * world.record(body).definition.gravity_factor;
+    return world.settings.gravity * world.rigid.record(body).definition.gravity_factor;
 }
 
 Conserved sum_of_bodies(const WorldState& world) {
     Conserved sum;
-    for (std::uint32_t body = 0; body < world.bodies.slot_count(); ++body) {
+    for (std::uint32_t body = 0; body < world.rigid.bodies.slot_count(); ++body) {
         if (!is_counted(world, body)) continue;
-        add_conserved(sum, world.motion[body], world.constants[body], gravity_on(world, body));
+        add_conserved(sum, world.rigid.motion[body], world.rigid.constants[body], gravity_on(world, body));
     }
     return sum;
 }
@@ -48,7 +48,7 @@ struct SteadyForces {
     Vec3 user, user_torque, air, coupling, coupling_torque;
 };
 SteadyForces forces_on(const WorldState& world, std::uint32_t body) {
-    const BodyRecord& record = world.record(body);
+    const BodyRecord& record = world.rigid.record(body);
     return {record.definition.force + record.next_force, record.definition.torque + record.next_torque,
             record.definition.drag_area > 0 ? record.drag : Vec3{}, record.deformable_force + record.fluid_force,
             record.deformable_torque + record.fluid_torque};
@@ -64,15 +64,15 @@ void Ledger::add(StepCause cause, double work, Vec3 linear, Vec3 angular) {
 }
 
 // A stage in which nothing else happens: what it did is the difference that it made.
-void Ledger::measure(const WorldState& world, StepCause cause) {
-    const Conserved now = sum_of_bodies(world);
+void Ledger::measure(StepCause cause) {
+    const Conserved now = sum_of_bodies(world_);
     add(cause, now.energy() - last_.energy(), now.linear_momentum - last_.linear_momentum,
         now.angular_momentum - last_.angular_momentum);
     last_ = now;
 }
 
-void Ledger::remember(const WorldState& world, std::uint32_t body) {
-    const BodyState& state = world.motion[body];
+void Ledger::remember(std::uint32_t body) {
+    const BodyState& state = world_.rigid.motion[body];
     Motion& motion = motions_[body];
     motion.center = state.center;
     motion.velocity = motion.mean_velocity = state.linear_velocity;
@@ -83,34 +83,34 @@ void Ledger::remember(const WorldState& world, std::uint32_t body) {
     motion.rolls = false;
 }
 
-void Ledger::remember_totals(const WorldState& world, std::uint32_t contact) {
-    const Contact& from = world.contacts[contact];
+void Ledger::remember_totals(std::uint32_t contact) {
+    const Contact& from = world_.contacts.list[contact];
     ContactTotals& to = contact_totals_[contact];
     for (std::size_t i = 0; i < from.count; ++i) to.normal[i] = from.points[i].total;
     to.friction = {from.friction_total.along_1, from.friction_total.along_2, from.friction_total.twist};
 }
 
 // Of all bodies: those at rest lend their velocities, zero, to what touches them.
-void Ledger::begin_impacts(const WorldState& world) {
-    motions_.resize(world.bodies.slot_count());
-    for (std::uint32_t body = 0; body < world.bodies.slot_count(); ++body) {
-        if (world.is_used(body)) remember(world, body);
+void Ledger::begin_impacts() {
+    motions_.resize(world_.rigid.bodies.slot_count());
+    for (std::uint32_t body = 0; body < world_.rigid.bodies.slot_count(); ++body) {
+        if (world_.rigid.is_used(body)) remember(body);
     }
 }
 
-void Ledger::begin(const WorldState& world) {
+void Ledger::begin() {
     account_ = {};
-    account_.before = last_ = sum_of_bodies(world);
+    account_.before = last_ = sum_of_bodies(world_);
 }
 
-void Ledger::close_wake(const WorldState& world) {
-    if (world.report.limits != 0) measure(world, StepCause::limits);
+void Ledger::close_wake() {
+    if (world_.report.limits != 0) measure(StepCause::limits);
 }
 
-void Ledger::note_impact(std::span<const ImpactSite> sites, double energy_change, const WorldState& world) {
+void Ledger::note_impact(std::span<const ImpactSite> sites, double energy_change) {
     add(StepCause::impacts, energy_change, {}, {});
     for (const ImpactSite& site : sites) {
-        const BodyState &a = world.motion[site.a], &b = world.motion[site.b];
+        const BodyState &a = world_.rigid.motion[site.a], &b = world_.rigid.motion[site.b];
         if (site.impulse == Vec3{} || (a.inverse_mass > 0 && b.inverse_mass > 0)) continue;
         const bool is_on_b = b.inverse_mass > 0;
         const Vec3 impulse = is_on_b ? site.impulse : -site.impulse;
@@ -123,15 +123,15 @@ void Ledger::note_impact(std::span<const ImpactSite> sites, double energy_change
 
 // Bodies that collide start the step elsewhere, on the path that leads through the impact. What flew had the forces'
 // work on both ways; what was carried went without them and only changed its place.
-void Ledger::add_displaced(const WorldState& world, std::uint32_t body) {
-    const BodyState& state = world.motion[body];
+void Ledger::add_displaced(std::uint32_t body) {
+    const BodyState& state = world_.rigid.motion[body];
     const Vec3 way = state.center - motions_[body].center;
-    const Vec3 weight = world.constants[body].mass * gravity_on(world, body);
-    if (world.impact_memory.is_supported[body]) {
+    const Vec3 weight = world_.rigid.constants[body].mass * gravity_on(world_, body);
+    if (world_.impacts.is_supported[body]) {
         add(StepCause::position_correction, -dot(weight, way), {}, {});
         return;
     }
-    const SteadyForces forces = forces_on(world, body);
+    const SteadyForces forces = forces_on(world_, body);
     add(StepCause::gravity, dot(weight, way), {}, {});
     add(StepCause::forces, dot(forces.user, way), {}, {});
     add(StepCause::air, dot(forces.air, way), {}, {});
@@ -140,39 +140,39 @@ void Ledger::add_displaced(const WorldState& world, std::uint32_t body) {
 
 // What a joint passed on in the impacts. That is no work between bodies in free motion, but an impulse where it leads
 // to the ground, and work where that moves: a carrier goes straight on, whatever the joint does to it.
-void Ledger::note_blow(const WorldState& world, const Joint& joint) {
+void Ledger::note_blow(const Joint& joint) {
     joint_totals_.push_back({joint.total_linear, joint.total_angular});
-    const bool ends_at_a = joint.a_is_world || world.motion[joint.a].inverse_mass == 0;
-    const BodyState& b = world.motion[joint.b];
+    const bool ends_at_a = joint.a_is_world || world_.rigid.motion[joint.a].inverse_mass == 0;
+    const BodyState& b = world_.rigid.motion[joint.b];
     if (!ends_at_a && b.inverse_mass > 0) return;
     const double sign = ends_at_a ? 1 : -1;
     const Vec3 place = b.center + rotate(b.rotation, joint.local_b.position);
     const Vec3 impulse = sign * joint.total_linear, moment = sign * joint.total_angular;
     add(has_motor(joint) ? StepCause::motors : StepCause::joints, 0, impulse, cross(place, impulse) + moment);
     if (ends_at_a && joint.a_is_world) return;
-    const BodyState& carrier = ends_at_a ? world.motion[joint.a] : b;
+    const BodyState& carrier = ends_at_a ? world_.rigid.motion[joint.a] : b;
     const Vec3 velocity = velocity_at(carrier, place - carrier.center);
     add(StepCause::moving_bodies, dot(impulse, velocity) + dot(moment, carrier.angular_velocity), {}, {});
 }
 
-void Ledger::close_impacts(const WorldState& world) {
-    contact_totals_.assign(world.contacts.size(), {});
-    for (std::uint32_t i = 0; i < world.contacts.size(); ++i) {
-        if (world.contacts[i].had_impact) remember_totals(world, i);
+void Ledger::close_impacts() {
+    contact_totals_.assign(world_.contacts.list.size(), {});
+    for (std::uint32_t i = 0; i < world_.contacts.list.size(); ++i) {
+        if (world_.contacts.list[i].had_impact) remember_totals(i);
     }
     joint_totals_.clear();
-    for (const Joint& joint : world.active_joints) note_blow(world, joint);
-    if (world.contacts.empty()) return;
-    for (const std::uint32_t body : world.awake) {
-        if (!is_counted(world, body)) continue;
-        if (world.motion[body].center != motions_[body].center) add_displaced(world, body);
-        remember(world, body);
+    for (const Joint& joint : world_.joints.active) note_blow(joint);
+    if (world_.contacts.list.empty()) return;
+    for (const std::uint32_t body : world_.activity.awake) {
+        if (!is_counted(world_, body)) continue;
+        if (world_.rigid.motion[body].center != motions_[body].center) add_displaced(body);
+        remember(body);
     }
 }
 
-void Ledger::set_means(const WorldState& world, std::uint32_t body) {
-    const BodyState& state = world.motion[body];
-    const BodyConstants& constants = world.constants[body];
+void Ledger::set_means(std::uint32_t body) {
+    const BodyState& state = world_.rigid.motion[body];
+    const BodyConstants& constants = world_.rigid.constants[body];
     Motion& motion = motions_[body];
     motion.mean_center = (motion.center + state.center) / 2;
     // What rolls goes along a curve: as far as it came, not as the mean of the ends says.
@@ -187,44 +187,44 @@ void Ledger::set_means(const WorldState& world, std::uint32_t body) {
     motion.mean_spin = rotate(rotation, constants.inverse_inertia * rotate_inverse(rotation, momentum));
 }
 
-void Ledger::add_forces(const WorldState& world, std::uint32_t body) {
+void Ledger::add_forces(std::uint32_t body) {
     const Motion& motion = motions_[body];
     const auto add_force = [&](StepCause cause, Vec3 force, Vec3 torque) {
         if (force == Vec3{} && torque == Vec3{}) return;
         add(cause, (dot(force, motion.mean_velocity) + dot(torque, motion.mean_spin)) * time_, force * time_,
             (cross(motion.mean_center, force) + torque) * time_);
     };
-    const SteadyForces forces = forces_on(world, body);
-    add_force(StepCause::gravity, world.constants[body].mass * gravity_on(world, body), {});
+    const SteadyForces forces = forces_on(world_, body);
+    add_force(StepCause::gravity, world_.rigid.constants[body].mass * gravity_on(world_, body), {});
     add_force(StepCause::forces, forces.user, forces.user_torque);
     add_force(StepCause::air, forces.air, {});
     add_force(StepCause::coupling, forces.coupling, forces.coupling_torque);
 }
 
 // v ← v / (1 + c h/2) twice a substep h: over the step v ← f v, so of the mean (1 + f)/2 v it took (1 − f) v.
-void Ledger::add_damping(const WorldState& world, std::uint32_t body) {
-    const BodyConstants& constants = world.constants[body];
+void Ledger::add_damping(std::uint32_t body) {
+    const BodyConstants& constants = world_.rigid.constants[body];
     if (constants.linear_damping == 0 && constants.angular_damping == 0) return;
     const auto taken_of_mean = [&](double rate) {
-        const double half = world.settings.time_step / world.settings.substeps / 2;
+        const double half = world_.settings.time_step / world_.settings.substeps / 2;
         double kept = 1;
         for (double left = time_; left > half / 2; left -= half) kept /= 1 + rate * half;
         return 2 * (1 - kept) / (1 + kept);
     };
     const Motion& motion = motions_[body];
     const Vec3 impulse = motion.mean_velocity * (-constants.mass * taken_of_mean(constants.linear_damping));
-    const Quat rotation = halfway(motion.rotation, world.motion[body].rotation);
+    const Quat rotation = halfway(motion.rotation, world_.rigid.motion[body].rotation);
     const Vec3 moment =
         spin_momentum(rotation, motion.mean_spin, constants) * -taken_of_mean(constants.angular_damping);
     add(StepCause::damping, dot(impulse, motion.mean_velocity) + dot(moment, motion.mean_spin), impulse,
         cross(motion.mean_center, impulse) + moment);
 }
 
-void Ledger::note_scaled(const WorldState& world, std::uint32_t body, double share) {
+void Ledger::note_scaled(std::uint32_t body, double share) {
     // What was stopped whole tells nothing of its velocity; that was all energy which the joints had no right to.
     if (!(share > 0)) return;
-    const BodyState& state = world.motion[body];
-    const BodyConstants& constants = world.constants[body];
+    const BodyState& state = world_.rigid.motion[body];
+    const BodyConstants& constants = world_.rigid.constants[body];
     const double change = 1 - 1 / share;
     motions_[body].scaled_impulse += constants.mass * change * state.linear_velocity;
     motions_[body].scaled_moment += change * spin_momentum(state.rotation, state.angular_velocity, constants);
@@ -239,15 +239,15 @@ void Ledger::add_scaling(std::uint32_t body) {
 }
 
 // The way that no mean velocity tells: it lifts, and carries the momentum along.
-void Ledger::add_correction(const WorldState& world, std::uint32_t body) {
+void Ledger::add_correction(std::uint32_t body) {
     const Motion& motion = motions_[body];
-    const double mass = world.constants[body].mass;
-    const Vec3 way = world.motion[body].center - motion.center - motion.mean_velocity * time_;
-    add(StepCause::position_correction, -mass * dot(gravity_on(world, body), way), {},
+    const double mass = world_.rigid.constants[body].mass;
+    const Vec3 way = world_.rigid.motion[body].center - motion.center - motion.mean_velocity * time_;
+    add(StepCause::position_correction, -mass * dot(gravity_on(world_, body), way), {},
         cross(way, mass * motion.mean_velocity));
 }
 
-void Ledger::add_push(const WorldState& world, const Push& push, StepCause cause) {
+void Ledger::add_push(const Push& push, StepCause cause) {
     const Motion &a = motions_[push.a], &b = motions_[push.b];
     const Vec3 speed_a = a.mean_velocity + cross(a.mean_spin, push.arm_a);
     const Vec3 speed_b = b.mean_velocity + cross(b.mean_spin, push.arm_b);
@@ -260,10 +260,10 @@ void Ledger::add_push(const WorldState& world, const Push& push, StepCause cause
     const auto moment_on = [&](const Motion& motion, Vec3 arm) {
         return cross(motion.mean_center + arm, push.impulse) + push.moment;
     };
-    if (world.motion[push.a].inverse_mass == 0) {
+    if (world_.rigid.motion[push.a].inverse_mass == 0) {
         add(cause, 0, push.impulse, moment_on(b, push.arm_b));
         add(StepCause::moving_bodies, work_a, {}, {});
-    } else if (world.motion[push.b].inverse_mass == 0) {
+    } else if (world_.rigid.motion[push.b].inverse_mass == 0) {
         add(cause, 0, -push.impulse, -moment_on(a, push.arm_a));
         add(StepCause::moving_bodies, -work_b, {}, {});
     }
@@ -271,11 +271,12 @@ void Ledger::add_push(const WorldState& world, const Push& push, StepCause cause
 
 // The impulses of the substeps, each at its own place. Of rolling resistance a contact knows the last part's.
 template <class Visit>
-void Ledger::for_each_push(const WorldState& world, const Island& island, Visit visit) const {
-    const int parts = island.joint_count > 0 ? 1 : contact_plan(island.contact_count, world.settings.substeps).substeps;
+void Ledger::for_each_push(const Island& island, Visit visit) const {
+    const int parts =
+        island.joint_count > 0 ? 1 : contact_plan(island.contact_count, world_.settings.substeps).substeps;
     for (std::uint32_t k = 0; k < island.contact_count; ++k) {
-        const std::uint32_t index = world.islands.contacts[island.first_contact + k];
-        const Contact& contact = world.contacts[index];
+        const std::uint32_t index = world_.islands.contacts[island.first_contact + k];
+        const Contact& contact = world_.contacts.list[index];
         const ContactTotals& before = contact_totals_[index];
         const double share = std::min(motions_[contact.a].kept_share, motions_[contact.b].kept_share);
         const auto change = [share](float now, float then) {
@@ -299,22 +300,22 @@ void Ledger::for_each_push(const WorldState& world, const Island& island, Visit 
 }
 
 // Contacts alone are solved with the inertia that each body has at the start, in the mean velocity of its free turning.
-void Ledger::set_spins(const WorldState& world, const Island& island) {
+void Ledger::set_spins(const Island& island) {
     if (island.joint_count > 0) return;
-    for_each_push(world, island, [&](const Push& push) {
+    for_each_push(island, [&](const Push& push) {
         motions_[push.a].moment -= cross(push.arm_a, push.impulse) + push.moment;
         motions_[push.b].moment += cross(push.arm_b, push.impulse) + push.moment;
     });
     for (std::uint32_t k = 0; k < island.body_count; ++k) {
-        const std::uint32_t body = world.islands.bodies[island.first_body + k];
-        const BodyConstants& constants = world.constants[body];
+        const std::uint32_t body = world_.islands.bodies[island.first_body + k];
+        const BodyConstants& constants = world_.rigid.constants[body];
         Motion& motion = motions_[body];
         if (motion.moment == Vec3{} || constants.is_isotropic || constants.angular_damping > 0) continue;
         BodyState start;
         start.rotation = motion.rotation;
         start.angular_velocity = motion.spin;
-        if (has_gyroscopic_torque(start, constants, world.settings.time_step)) {
-            split_gyroscopic_of_turns(start, constants, world.settings.time_step, world.settings.substeps);
+        if (has_gyroscopic_torque(start, constants, world_.settings.time_step)) {
+            split_gyroscopic_of_turns(start, constants, world_.settings.time_step, world_.settings.substeps);
         }
         const Vec3 moment = motion.moment + constants.torque * time_;
         const Vec3 change =
@@ -325,18 +326,18 @@ void Ledger::set_spins(const WorldState& world, const Island& island) {
 
 // Where it holds, its bodies have one velocity before and after, not in the mean of a turning arm: so the mean of both
 // ends is taken.
-void Ledger::add_joint(const WorldState& world, std::uint32_t index) {
-    const Joint& joint = world.active_joints[index];
+void Ledger::add_joint(std::uint32_t index) {
+    const Joint& joint = world_.joints.active[index];
     const Vec3 force = joint.total_linear - joint_totals_[index].linear;
     const Vec3 torque = joint.total_angular - joint_totals_[index].angular;
     joint_totals_[index] = {joint.total_linear, joint.total_angular};
     if (force == Vec3{} && torque == Vec3{}) return;
-    const BodyState& b = world.motion[joint.b];
+    const BodyState& b = world_.rigid.motion[joint.b];
     const Motion& start_b = motions_[joint.b];
     const Vec3 first = start_b.center + rotate(start_b.rotation, joint.local_b.position);
     const Vec3 last = b.center + rotate(b.rotation, joint.local_b.position);
     const auto work_on = [&](std::uint32_t body) {
-        const BodyState& end = world.motion[body];
+        const BodyState& end = world_.rigid.motion[body];
         const Motion& start = motions_[body];
         const Vec3 speed =
             start.velocity + cross(start.spin, first - start.center) + velocity_at(end, last - end.center);
@@ -346,7 +347,7 @@ void Ledger::add_joint(const WorldState& world, std::uint32_t index) {
     const double work_a = joint.a_is_world ? 0 : work_on(joint.a), work_b = work_on(joint.b);
     const Vec3 moment = cross((first + last) / 2, force) + torque;
     add(cause, work_b - work_a, {}, {});
-    if (joint.a_is_world || world.motion[joint.a].inverse_mass == 0) {
+    if (joint.a_is_world || world_.rigid.motion[joint.a].inverse_mass == 0) {
         add(cause, 0, force, moment);
         add(StepCause::moving_bodies, work_a, {}, {});
     } else if (b.inverse_mass == 0) {
@@ -355,58 +356,58 @@ void Ledger::add_joint(const WorldState& world, std::uint32_t index) {
     }
 }
 
-void Ledger::close_island(const WorldState& world, const Island& island, double time) {
+void Ledger::close_island(const Island& island, double time) {
     time_ = time;
-    const auto bodies = std::span(world.islands.bodies).subspan(island.first_body, island.body_count);
-    for (const std::uint32_t body : bodies) set_means(world, body);
-    set_spins(world, island);
+    const auto bodies = std::span(world_.islands.bodies).subspan(island.first_body, island.body_count);
+    for (const std::uint32_t body : bodies) set_means(body);
+    set_spins(island);
     for (const std::uint32_t body : bodies) {
-        add_forces(world, body);
-        add_damping(world, body);
+        add_forces(body);
+        add_damping(body);
         add_scaling(body);
-        add_correction(world, body);
+        add_correction(body);
     }
-    for_each_push(world, island, [&](const Push& push) { add_push(world, push, StepCause::contacts); });
+    for_each_push(island, [&](const Push& push) { add_push(push, StepCause::contacts); });
     if (island.joint_count == 0) return;
 
     // On to the next substep.
-    for (const std::uint32_t joint : std::span(world.islands.joints).subspan(island.first_joint, island.joint_count)) {
-        add_joint(world, joint);
+    for (const std::uint32_t joint : std::span(world_.islands.joints).subspan(island.first_joint, island.joint_count)) {
+        add_joint(joint);
     }
-    for (const std::uint32_t body : bodies) remember(world, body);
+    for (const std::uint32_t body : bodies) remember(body);
     for (std::uint32_t k = 0; k < island.contact_count; ++k) {
-        remember_totals(world, world.islands.contacts[island.first_contact + k]);
+        remember_totals(world_.islands.contacts[island.first_contact + k]);
     }
 }
 
-void Ledger::close_substeps(const WorldState& world) {
-    for (const Island& island : world.islands.list) {
-        if (island.joint_count == 0) close_island(world, island, world.settings.time_step);
+void Ledger::close_substeps() {
+    for (const Island& island : world_.islands.list) {
+        if (island.joint_count == 0) close_island(island, world_.settings.time_step);
     }
 
     // What was shifted since the last substep.
     time_ = 0;
-    for (const Island& island : world.islands.list) {
+    for (const Island& island : world_.islands.list) {
         if (island.joint_count == 0) continue;
         for (std::uint32_t k = 0; k < island.body_count; ++k) {
-            add_correction(world, world.islands.bodies[island.first_body + k]);
+            add_correction(world_.islands.bodies[island.first_body + k]);
         }
     }
-    last_ = sum_of_bodies(world);
+    last_ = sum_of_bodies(world_);
 }
 
-void Ledger::close_limits(const WorldState& world) {
-    if (world.report.limits != 0) measure(world, StepCause::limits);
+void Ledger::close_limits() {
+    if (world_.report.limits != 0) measure(StepCause::limits);
 }
 
-void Ledger::close_continuous(const WorldState& world) { measure(world, StepCause::position_correction); }
+void Ledger::close_continuous() { measure(StepCause::position_correction); }
 
-void Ledger::close_deformables(const WorldState& world) {
-    if (world.deformables.count() > 0) measure(world, StepCause::coupling);
+void Ledger::close_deformables() {
+    if (world_.deformables.records.count() > 0) measure(StepCause::coupling);
 }
 
-void Ledger::close_sleep(const WorldState& world) {
-    if (!world.sleep_events.empty()) measure(world, StepCause::sleep);
+void Ledger::close_sleep() {
+    if (!world_.events.sleep.empty()) measure(StepCause::sleep);
 }
 
 StepAccount Ledger::finish() {

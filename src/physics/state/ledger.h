@@ -22,28 +22,32 @@ struct WorldState;
 /// nothing. The steps of a world call these in the order of its stages.
 class Ledger {
 public:
-    void begin(const WorldState& world);
-    void close_wake(const WorldState& world);
-    void begin_impacts(const WorldState& world);
+    /// Lives no longer than the world.
+    explicit Ledger(const WorldState& world) : world_(world) {}
+
+    void begin();
+    void close_wake();
+    void begin_impacts();
     /// A group that eq. (3) has solved, its bodies at the place and time of the impact.
-    void note_impact(std::span<const ImpactSite> sites, double energy_change, const WorldState& world);
-    void close_impacts(const WorldState& world);
+    void note_impact(std::span<const ImpactSite> sites, double energy_change);
+    void close_impacts();
     /// Of the impulses that its contacts report, the share that a body was given.
     void note_kept_share(std::uint32_t body, double share) { motions_[body].kept_share = share; }
     /// Its velocities were scaled to this share, which keeps energy from growing.
-    void note_scaled(const WorldState& world, std::uint32_t body, double share);
+    void note_scaled(std::uint32_t body, double share);
     /// It was taken through the step by the equations of pure rolling.
     void note_rolled(std::uint32_t body) { motions_[body].rolls = true; }
     /// An island was solved through the next `time`, s: a substep where there are joints, else the step.
-    void close_island(const WorldState& world, const Island& island, double time);
-    void close_substeps(const WorldState& world);
-    void close_limits(const WorldState& world);
-    void close_continuous(const WorldState& world);
-    void close_deformables(const WorldState& world);
-    void close_sleep(const WorldState& world);
+    void close_island(const Island& island, double time);
+    void close_substeps();
+    void close_limits();
+    void close_continuous();
+    void close_deformables();
+    void close_sleep();
     [[nodiscard]] StepAccount finish();
 
 private:
+    const WorldState& world_;
     /// Of a body, when the running stage began, and its means over the stage.
     struct Motion {
         Vec3 center, velocity, spin;
@@ -68,22 +72,22 @@ private:
         Vec3 arm_a, arm_b;  ///< from the centres of mass
         Vec3 impulse, moment;
     };
-    void remember(const WorldState& world, std::uint32_t body);
-    void remember_totals(const WorldState& world, std::uint32_t contact);
-    void set_means(const WorldState& world, std::uint32_t body);
-    void set_spins(const WorldState& world, const Island& island);
-    void add_displaced(const WorldState& world, std::uint32_t body);
-    void add_forces(const WorldState& world, std::uint32_t body);
-    void add_damping(const WorldState& world, std::uint32_t body);
+    void remember(std::uint32_t body);
+    void remember_totals(std::uint32_t contact);
+    void set_means(std::uint32_t body);
+    void set_spins(const Island& island);
+    void add_displaced(std::uint32_t body);
+    void add_forces(std::uint32_t body);
+    void add_damping(std::uint32_t body);
     void add_scaling(std::uint32_t body);
-    void add_correction(const WorldState& world, std::uint32_t body);
+    void add_correction(std::uint32_t body);
     template <class Visit>
-    void for_each_push(const WorldState& world, const Island& island, Visit visit) const;
-    void add_push(const WorldState& world, const Push& push, StepCause cause);
-    void note_blow(const WorldState& world, const Joint& joint);
-    void add_joint(const WorldState& world, std::uint32_t index);
+    void for_each_push(const Island& island, Visit visit) const;
+    void add_push(const Push& push, StepCause cause);
+    void note_blow(const Joint& joint);
+    void add_joint(std::uint32_t index);
     void add(StepCause cause, double work, Vec3 linear, Vec3 angular);
-    void measure(const WorldState& world, StepCause cause);
+    void measure(StepCause cause);
 
     StepAccount account_;
     Conserved last_;                             // sums when a measured stage began

@@ -3,14 +3,17 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <utility>
 #include <vector>
 
+#include "physics/constraint/direct/direct_contact_solver.h"
 #include "physics/constraint/joint/joint_system.h"
 #include "physics/constraint/sweeps/contact_solver.h"
 #include "physics/constraint/sweeps/wide_contact_solver.h"
 #include "physics/dynamic/body_state.h"
 #include "physics/optimization/islands.h"
+#include "physics/optimization/solve_schedule.h"
 #include "physics/state/namespace.h"
 
 namespace embody::physics::state {
@@ -42,8 +45,22 @@ struct IslandsBySolver {
     }
 };
 
-/// Memory of the substeps, so that a steady step allocates nothing. Nothing in it outlives a step.
+/// When the last impulses of a body's island held it where it was.
+struct HeldRecord {
+    std::uint64_t step = 0;
+    std::uint32_t contacts = 0;  ///< of the island
+};
+
+/// The solvers of the substeps and their memory, so that a steady step allocates nothing. Of the last step they know
+/// what was held, which islands the direct solver gave up, and the joints' systems.
 struct SubstepMemory {
+    WideContactSolver wide_solver{widest_contact_kernels()};
+    DirectContactSolver direct_solver;
+    std::vector<HeldRecord> held;                        ///< by slot
+    std::map<std::uint32_t, JointSystem> joint_systems;  ///< by an island's first body
+    SolveSchedule schedule;
+    std::vector<PreparedContact> prepared_contacts;
+    std::vector<Vec3> kicked_velocity;  ///< linear velocity before the constraints, m/s
     IslandsBySolver islands;
 
     // Of the islands that the wide solver takes together.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "physics/state/world_state.h"
+#include "physics/stages/access.h"
 #include "physics/step/namespace.h"
 
 namespace embody::physics::step {
 
 /// The last stage: contact events, counts and energies of the step. What was told for one step only is forgotten.
-void write_report(WorldState& world);
+void write_report(const ReportAccess& world);
 
 }  // namespace embody::physics::step

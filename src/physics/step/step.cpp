@@ -6,6 +6,7 @@
 
 #include "physics/stages/rigid/roll_balls.h"
 #include "physics/stages/stages.h"
+#include "physics/state/world_state.h"
 #include "physics/step/report.h"
 
 namespace embody::physics::step {
@@ -18,10 +19,11 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-// Runs one stage, or a part of it, and notes its time.
-void run(WorldState& world, StepStage stage, void (*work)(WorldState&)) {
+// Runs one stage, or a part of it, with what it may touch, and notes its time.
+template <class Access>
+void run(WorldState& world, StepStage stage, void (*work)(const Access&)) {
     const auto start = Clock::now();
-    work(world);
+    work(Access(world));
     world.report.stage_milliseconds[static_cast<std::size_t>(stage)] += milliseconds_since(start);
 }
 
@@ -30,8 +32,8 @@ void advance(WorldState& world, bool is_long) {
     std::optional<TaskPool::StayAwake> stay_awake;
     if (is_long) stay_awake.emplace(*world.workers);
 
-    const auto account = [&](void (Ledger::*note)(const WorldState&)) {
-        if (world.ledger) (world.ledger.get()->*note)(world);
+    const auto account = [&](void (Ledger::*note)()) {
+        if (world.ledger) (world.ledger.get()->*note)();
     };
     run(world, StepStage::find_pairs, find_pairs);  // broad phase
     run(world, StepStage::touch, find_contacts);    // narrow phase → contact regions, warm start
@@ -57,15 +59,16 @@ void step(WorldState& world) {
     constexpr double long_step = 0.2;  // ms; to wake the workers takes 0.015
     const auto start = Clock::now();
     const bool is_long = world.report.milliseconds > long_step;
-    world.rope_break_events.clear();
+    world.events.rope_breaks.clear();
     world.report = {.step = world.report.step + 1, .time = world.report.time + world.settings.time_step};
-    if (world.ledger) world.ledger->begin(world);
+    if (world.ledger) world.ledger->begin();
     run(world, StepStage::wake, wake_bodies);       // apply commands, wake touched islands
     run(world, StepStage::fluids, advance_fluids);  // particles, and forces of their pressure on bodies
-    if (world.ledger) world.ledger->close_wake(world);
-    if (!world.awake.empty() || !world.contacts.empty() || world.deformables.count() > 0) advance(world, is_long);
+    if (world.ledger) world.ledger->close_wake();
+    if (!world.activity.awake.empty() || !world.contacts.list.empty() || world.deformables.records.count() > 0)
+        advance(world, is_long);
     run(world, StepStage::fluids, settle_fluids);  // liquids follow bodies to where these came to
-    write_report(world);                           // events, counts
+    write_report(ReportAccess(world));             // events, counts
     if (world.ledger) world.report.account = world.ledger->finish();
     world.report.milliseconds = milliseconds_since(start);
 }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "physics/state/world_state.h"
 #include "physics/step/namespace.h"
+
+namespace embody::physics::state {
+struct WorldState;
+}
 
 namespace embody::physics::step {
 

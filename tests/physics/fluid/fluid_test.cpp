@@ -197,7 +197,7 @@ TEST(Fluid, ALeakIsReportedAndNumbersStayFinite) {
 }
 
 // A fluid whose particles have that velocity, which no definition allows.
-FluidRecord fluid_gone_wrong(const WorldState& world, const FluidDefinition& definition, Vec3 velocity) {
+FluidRecord fluid_gone_wrong(const ObstacleAccess& world, const FluidDefinition& definition, Vec3 velocity) {
     FluidRecord record = set_up_fluid(world, definition).value();
     std::vector<Vec3f> places = record.positions;
     record.solver = std::make_unique<FluidSolver>(record.solver->origin(), definition.cell_size,
@@ -209,12 +209,13 @@ TEST(Fluid, NumbersThatAreNoneFreezeItAndAreReported) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
     for (const Vec3 velocity : {Vec3{nan, 0, 0}, Vec3{0, -inf, 0}, Vec3{3e38, 3e38, 0}}) {
         WorldState world;
-        const FluidHandle water = world.fluids.insert(fluid_gone_wrong(world, cube_of_water(0.2, 0.02), velocity));
-        const std::vector<Vec3f> before = world.fluids.find(water)->positions;
+        const FluidHandle water =
+            world.fluids.records.insert(fluid_gone_wrong(ObstacleAccess(world), cube_of_water(0.2, 0.02), velocity));
+        const std::vector<Vec3f> before = world.fluids.records.find(water)->positions;
         for (int i = 0; i < 3; ++i) {
-            advance_fluids(world);
+            advance_fluids(FluidAccess(world));
             EXPECT_NE(world.report.limits & static_cast<std::uint32_t>(StepLimit::not_finite_fluid_frozen), 0u);
-            const FluidRecord& record = *world.fluids.find(water);
+            const FluidRecord& record = *world.fluids.records.find(water);
             EXPECT_TRUE(record.is_frozen);
             ASSERT_EQ(record.positions.size(), before.size());
             for (std::size_t k = 0; k < before.size(); ++k) {

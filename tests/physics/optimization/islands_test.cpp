@@ -7,8 +7,8 @@
 namespace embody::physics::optimization {
 namespace {
 
-ContactGlance between(std::uint32_t a, std::uint32_t b) {
-    ContactGlance contact;
+ContactSummary between(std::uint32_t a, std::uint32_t b) {
+    ContactSummary contact;
     contact.a = a;
     contact.b = b;
     return contact;
@@ -18,7 +18,7 @@ TEST(Islands, GroundDoesNotConnectAndLevelsCountFromIt) {
     // Body 0 is the ground; 1 and 2 stand on each other, 3 stands alone, 4 flies.
     std::vector<BodyState> bodies(5);
     for (std::size_t i = 1; i < 5; ++i) bodies[i].inverse_mass = 1;
-    const std::vector<ContactGlance> contacts{between(1, 2), between(0, 3), between(0, 1)};
+    const std::vector<ContactSummary> contacts{between(1, 2), between(0, 3), between(0, 1)};
     const std::vector<std::uint32_t> awake{1, 2, 3, 4};
     Islands islands;
     build_islands(awake, bodies, contacts, {}, islands);

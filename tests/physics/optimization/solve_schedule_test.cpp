@@ -14,7 +14,7 @@ namespace {
 
 struct Graph {
     std::vector<BodyState> bodies;
-    std::vector<ContactGlance> contacts;
+    std::vector<ContactSummary> contacts;
     std::vector<std::uint32_t> order;
 };
 
@@ -26,7 +26,7 @@ Graph random_graph(std::uint32_t bodies, std::uint32_t contacts) {
     Random random(5);
     while (graph.contacts.size() < contacts) {
         const auto pick = [&] { return static_cast<std::uint32_t>(random.between(1, bodies - 0.001)); };
-        ContactGlance contact;
+        ContactSummary contact;
         contact.a = graph.contacts.size() % 3 == 0 ? 0 : pick();
         contact.b = pick();
         contact.count = static_cast<std::uint8_t>(1 + graph.contacts.size() % 4);
@@ -51,7 +51,7 @@ TEST(SolveSchedule, HoldsEachContactOnceInStagesOfDifferentBodies) {
             const auto& batch = schedule.batches[stage.first_batch + i];
             ASSERT_LE(batch.count, 8);
             for (std::uint32_t k = 0; k < batch.count; ++k) {
-                const ContactGlance& contact = graph.contacts[schedule.contacts[batch.first + k]];
+                const ContactSummary& contact = graph.contacts[schedule.contacts[batch.first + k]];
                 EXPECT_LE(contact.count, batch.points);
                 for (const std::uint32_t body : {contact.a, contact.b}) {
                     if (body != 0) {
@@ -68,7 +68,7 @@ TEST(SolveSchedule, TakesMoreThanSixtyFourColoursWhereOneBodyMeetsMany) {
     graph.contacts.clear();
     graph.order.clear();
     for (std::uint32_t i = 2; i < 202; ++i) {
-        ContactGlance contact;
+        ContactSummary contact;
         contact.a = 1;
         contact.b = i;
         contact.count = 1;

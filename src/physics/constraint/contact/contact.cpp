@@ -62,18 +62,18 @@ void set_material(Contact& contact, const Material& material) {
     contact.bounces = material.restitution > 0;
 }
 
-ContactGlance glance_at(const Contact& contact) {
-    ContactGlance glance{.a = contact.a,
-                         .b = contact.b,
-                         .approach_speed = contact.approach_speed,
-                         .count = contact.count,
-                         .was_touching = contact.was_touching,
-                         .was_loaded = contact.was_loaded,
-                         .bounces = contact.bounces};
+ContactSummary summary_of(const Contact& contact) {
+    ContactSummary summary{.a = contact.a,
+                           .b = contact.b,
+                           .approach_speed = contact.approach_speed,
+                           .count = contact.count,
+                           .was_touching = contact.was_touching,
+                           .was_loaded = contact.was_loaded,
+                           .bounces = contact.bounces};
     for (int i = 0; i < contact.count; ++i) {
-        if (contact.points[static_cast<std::size_t>(i)].separation <= -deep_penetration) glance.is_deep = true;
+        if (contact.points[static_cast<std::size_t>(i)].separation <= -deep_penetration) summary.is_deep = true;
     }
-    return glance;
+    return summary;
 }
 
 Anchor anchor_of(const Contact& contact) {

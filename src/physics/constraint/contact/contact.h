@@ -74,7 +74,7 @@ inline Vec3 tangent_2(const Contact& contact) { return cross(Vec3(contact.normal
 void set_material(Contact& contact, const Material& material);
 
 /// What most stages must know of every contact, small enough to walk through all of them.
-struct ContactGlance {
+struct ContactSummary {
     std::uint32_t a = 0, b = 0;
     float approach_speed = 0;
     std::uint8_t count = 0;         ///< of points
@@ -87,10 +87,10 @@ struct ContactGlance {
     bool is_kept : 1 = false;  ///< as in the last step: both bodies stand
     bool is_idle : 1 = false;  ///< connects nothing: its bodies fly free and keep apart through the step
 };
-static_assert(sizeof(ContactGlance) == 16);
+static_assert(sizeof(ContactSummary) == 16);
 
 /// Before the contact was solved.
-ContactGlance glance_at(const Contact& contact);
+ContactSummary summary_of(const Contact& contact);
 
 /// Arms to the middle of the region's points, where its friction acts.
 struct Anchor {

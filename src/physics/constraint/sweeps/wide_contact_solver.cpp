@@ -288,14 +288,14 @@ void WideContactSolver::solve_share(const Work& work, int worker) {
         const Batch& batch = batches_[i];
         for (std::uint32_t lane = 0; lane < batch.contacts.size(); ++lane) {
             const std::size_t contact = contact_of(batch.first_lane + lane);
-            write_contact(batch, lane, work.softness, work.contacts[contact], work.glances[contact]);
+            write_contact(batch, lane, work.softness, work.contacts[contact], work.summaries[contact]);
         }
     }
 }
 
 void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::span<BodyState> bodies,
                               std::span<const BodyConstants> constants, std::span<Contact> contacts,
-                              std::span<ContactGlance> glances, TaskPool& pool) {
+                              std::span<ContactSummary> summaries, TaskPool& pool) {
     if (lines_.size() < used_lines_) {
         // What they held is of the last step.
         lines_.clear();
@@ -315,7 +315,7 @@ void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::
         batches_.size() < worth_a_worker * static_cast<std::size_t>(pool.workers()) ? 1 : pool.workers();
     deal_batches(workers);
     Barrier barrier(workers);
-    const Work work{bodies, constants, contacts, glances, softness, sweep, passes, workers, barrier};
+    const Work work{bodies, constants, contacts, summaries, softness, sweep, passes, workers, barrier};
     if (workers == 1) {
         solve_share(work, 0);
     } else {
@@ -371,7 +371,7 @@ void WideContactSolver::write_body(std::size_t row, BodyState& state, const Body
 }
 
 void WideContactSolver::write_contact(const Batch& batch, std::uint32_t lane, const ContactSoftness& softness,
-                                      Contact& contact, ContactGlance& glance) const {
+                                      Contact& contact, ContactSummary& summary) const {
     const int lanes = kernels_->lanes;
     const float* head = lines_[batch.first_line].value + lane;
     const auto read = [&](int quantity) { return head[quantity * lanes]; };
@@ -386,12 +386,12 @@ void WideContactSolver::write_contact(const Batch& batch, std::uint32_t lane, co
         const float* from = head + (BatchHead::size + i * BatchPoint::size) * lanes;
         point.impulse = from[BatchPoint::impulse * lanes];
         point.total = from[BatchPoint::total * lanes];
-        glance.touches = glance.touches || point.total > 0 || point.separation <= 0;
+        summary.touches = summary.touches || point.total > 0 || point.separation <= 0;
         is_pressed = is_pressed || point.impulse > 0;
         const double sag = softness.sag(from[BatchPoint::normal_response * lanes], point.impulse);
         is_deep = is_deep || -from[BatchPoint::separation * lanes] > sag + penetration_slop;
     }
-    glance.is_sunk = is_pressed && is_deep;
+    summary.is_sunk = is_pressed && is_deep;
 }
 
 }  // namespace embody::physics::constraint

@@ -42,10 +42,11 @@ public:
     /// one stage have no movable body in common. The list of contacts stays where it is until they are solved.
     void add_batch(std::span<const std::uint32_t> batch, int points);
     /// Solves the step, with `passes` sweeps before and after the drift of each substep, and hands the motion to the
-    /// bodies, the impulses to the contacts and what came of them to their glances. The same for any number of workers.
+    /// bodies, the impulses to the contacts and what came of them to their summaries. The same for any number of
+    /// workers.
     void solve(int passes, const ContactSoftness& softness, std::span<BodyState> bodies,
-               std::span<const BodyConstants> constants, std::span<Contact> contacts, std::span<ContactGlance> glances,
-               TaskPool& pool);
+               std::span<const BodyConstants> constants, std::span<Contact> contacts,
+               std::span<ContactSummary> summaries, TaskPool& pool);
     /// Of what the contacts did to a movable body, how much it kept in the last solve(), see contact_work.h: impulses
     /// are handed out as they were before.
     [[nodiscard]] double kept_share(std::uint32_t body) const {
@@ -70,7 +71,7 @@ private:
         std::span<BodyState> bodies;
         std::span<const BodyConstants> constants;
         std::span<Contact> contacts;
-        std::span<ContactGlance> glances;
+        std::span<ContactSummary> summaries;
         const ContactSoftness& softness;
         ContactSweep sweep;
         int passes;
@@ -103,7 +104,7 @@ private:
     void bound_work(std::size_t row);
     void write_body(std::size_t row, BodyState& state, const BodyConstants& constants) const;
     void write_contact(const Batch& batch, std::uint32_t lane, const ContactSoftness& softness, Contact& contact,
-                       ContactGlance& glance) const;
+                       ContactSummary& summary) const;
 
     const ContactKernels* kernels_;
     double substep_ = 0;  // s

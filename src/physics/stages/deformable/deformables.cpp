@@ -5,11 +5,19 @@
 #include <atomic>
 #include <cmath>
 
+#include "foundation/task_pool.h"
+#include "physics/definitions/step_report.h"
+#include "physics/definitions/world_settings.h"
 #include "physics/dynamic/equations_of_motion.h"
+#include "physics/stages/access.h"
 #include "physics/stages/deformable/solid_contact_search.h"
 #include "physics/stages/deformable/solid_ties.h"
 #include "physics/stages/deformable/thin_groups.h"
 #include "physics/stages/stages.h"
+#include "physics/state/activity_state.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/deformable_state.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
@@ -22,32 +30,33 @@ constexpr int most_corrections = 3;      // rounds besides the first
 constexpr double noticed_speed = 0.05;   // m/s: a body as fast as this wakes what it is near
 
 template <class Visit>
-void for_each_body_near(const WorldState& world, const DeformableRecord& record, Visit visit) {
-    world.broad_phase.query(enlarged(record.bounds(), reach_of(world, record)), [&](std::uint32_t slot) {
-        if (world.record(slot).shape && may_collide(record.definition, world.record(slot).definition)) visit(slot);
+void for_each_body_near(const DeformableAccess& world, const DeformableRecord& record, Visit visit) {
+    world.contacts.broad_phase.query(enlarged(record.bounds(), reach_of(world, record)), [&](std::uint32_t slot) {
+        if (world.rigid.record(slot).shape && may_collide(record.definition, world.rigid.record(slot).definition))
+            visit(slot);
     });
 }
 
 // A body with the path that it has gone in this step; one that sleeps or is fixed stands where it is.
-TouchedBody touched(const WorldState& world, std::uint32_t slot) {
-    const BodyRecord& record = world.record(slot);
-    const BodyState& state = world.motion[slot];
+TouchedBody touched(const DeformableAccess& world, std::uint32_t slot) {
+    const BodyRecord& record = world.rigid.record(slot);
+    const BodyState& state = world.rigid.motion[slot];
     const double dt = world.settings.time_step;
-    const bool moves = record.definition.kind != BodyKind::static_body && !world.is_asleep(slot);
+    const bool moves = record.definition.kind != BodyKind::static_body && !world.activity.is_asleep(slot);
     TouchedBody body;
     body.body = slot;
     body.shape = record.shape;
-    body.is_dynamic = world.is_dynamic(slot);
+    body.is_dynamic = world.rigid.is_dynamic(slot);
     body.friction = record.definition.material.friction_dynamic;
     body.start_center = moves ? state.start_center : state.center;
     const Quat rotation = moves ? state.start_rotation : state.rotation;
-    body.start = {body.start_center - rotate(rotation, world.constants[slot].local_center), rotation};
+    body.start = {body.start_center - rotate(rotation, world.rigid.constants[slot].local_center), rotation};
     if (!moves) return body;
     const Quat turn = state.rotation * conjugate(rotation);
     const Vec3 half_sine = (turn.w < 0 ? -1.0 : 1.0) * Vec3{turn.x, turn.y, turn.z};
     const double half_cosine = std::fabs(turn.w), sine = length(half_sine);
     body.step_time = dt;
-    if (world.is_dynamic(slot)) {
+    if (world.rigid.is_dynamic(slot)) {
         body.path_acceleration = (state.linear_velocity - record.start_linear_velocity) / dt;
         body.path_spin_up = (state.angular_velocity - record.start_angular_velocity) / dt;
     }
@@ -70,35 +79,36 @@ double fastest_node(const DeformableRecord& record) {
 }
 
 // Whether somebody moves it by hand, however slowly.
-bool is_led(const WorldState& world, std::uint32_t slot) {
-    const BodyState& state = world.motion[slot];
-    return world.record(slot).definition.kind == BodyKind::kinematic_body && !world.is_asleep(slot) &&
+bool is_led(const DeformableAccess& world, std::uint32_t slot) {
+    const BodyState& state = world.rigid.motion[slot];
+    return world.rigid.record(slot).definition.kind == BodyKind::kinematic_body && !world.activity.is_asleep(slot) &&
            (state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{});
 }
 
 // Whether something has happened around a sleeping deformable.
-bool is_disturbed(const WorldState& world, const DeformableRecord& record) {
+bool is_disturbed(const DeformableAccess& world, const DeformableRecord& record) {
     for (const DeformableRecord::Support& support : record.supports) {
         const std::uint32_t slot = support.body.index;
-        if (world.bodies.find(support.body) == nullptr || world.record(slot).version != support.version) return true;
-        if (world.is_dynamic(slot) ? !world.is_asleep(slot) : is_led(world, slot)) return true;
+        if (world.rigid.bodies.find(support.body) == nullptr || world.rigid.record(slot).version != support.version)
+            return true;
+        if (world.rigid.is_dynamic(slot) ? !world.activity.is_asleep(slot) : is_led(world, slot)) return true;
     }
     for (const std::uint32_t slot : record.touched_deformables) {
-        if (!world.deformables.used(slot) || !world.deformables.at(slot).is_asleep) return true;
+        if (!world.deformables.records.used(slot) || !world.deformables.records.at(slot).is_asleep) return true;
     }
     for (const Attachment& attachment : record.definition.attachments) {
-        if (world.bodies.find(attachment.body) != nullptr && is_led(world, attachment.body.index)) return true;
+        if (world.rigid.bodies.find(attachment.body) != nullptr && is_led(world, attachment.body.index)) return true;
     }
     bool is_disturbed = false;
     for_each_body_near(world, record, [&](std::uint32_t slot) {
-        if (world.record(slot).definition.kind == BodyKind::static_body || world.is_asleep(slot)) return;
-        const BodyState& state = world.motion[slot];
+        if (world.rigid.record(slot).definition.kind == BodyKind::static_body || world.activity.is_asleep(slot)) return;
+        const BodyState& state = world.rigid.motion[slot];
         is_disturbed = is_disturbed || length(state.linear_velocity) > noticed_speed ||
-                       length(state.angular_velocity) * world.record(slot).reach > noticed_speed;
+                       length(state.angular_velocity) * world.rigid.record(slot).reach > noticed_speed;
     });
-    for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
-        if (!world.deformables.used(slot)) continue;
-        const DeformableRecord& other = world.deformables.at(slot);
+    for (std::uint32_t slot = 0; slot < world.deformables.records.slot_count(); ++slot) {
+        if (!world.deformables.records.used(slot)) continue;
+        const DeformableRecord& other = world.deformables.records.at(slot);
         is_disturbed = is_disturbed || (other.definition.enabled && !other.is_asleep &&
                                         may_collide(record.definition, other.definition) &&
                                         overlaps(enlarged(record.bounds(), reach_of(world, other)), other.bounds()) &&
@@ -108,11 +118,11 @@ bool is_disturbed(const WorldState& world, const DeformableRecord& record) {
 }
 
 // Whether any was: it may disturb others.
-bool wake_disturbed(WorldState& world) {
+bool wake_disturbed(const DeformableAccess& world) {
     bool has_woken = false;
-    for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
-        if (!world.deformables.used(slot)) continue;
-        DeformableRecord& record = world.deformables.at(slot);
+    for (std::uint32_t slot = 0; slot < world.deformables.records.slot_count(); ++slot) {
+        if (!world.deformables.records.used(slot)) continue;
+        DeformableRecord& record = world.deformables.records.at(slot);
         if (!record.definition.enabled || !record.is_asleep || !is_disturbed(world, record)) continue;
         record.is_asleep = false;
         record.quiet_time = 0;
@@ -136,16 +146,16 @@ struct MovingDeformables {
     }
 };
 
-void gather_bodies(const WorldState& world, MovingDeformables& moving) {
+void gather_bodies(const DeformableAccess& world, MovingDeformables& moving) {
     std::vector<std::uint32_t> slots;
     for (const DeformableRecord* record : moving.records) {
         for_each_body_near(world, *record, [&](std::uint32_t slot) { slots.push_back(slot); });
         for (const Attachment& attachment : record->definition.attachments) {
-            if (world.bodies.find(attachment.body) != nullptr) slots.push_back(attachment.body.index);
+            if (world.rigid.bodies.find(attachment.body) != nullptr) slots.push_back(attachment.body.index);
         }
     }
-    for (const std::uint32_t slot : world.pushed_bodies) {
-        if (world.is_used(slot) && !world.is_asleep(slot)) slots.push_back(slot);
+    for (const std::uint32_t slot : world.deformables.pushed_bodies) {
+        if (world.rigid.is_used(slot) && !world.activity.is_asleep(slot)) slots.push_back(slot);
     }
     std::ranges::sort(slots);
     slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
@@ -153,26 +163,26 @@ void gather_bodies(const WorldState& world, MovingDeformables& moving) {
 }
 
 // What a sheet or rope may touch.
-void find_contacts_of(const WorldState& world, const MovingDeformables& moving, ThinDeformable& thin) {
+void find_contacts_of(const DeformableAccess& world, const MovingDeformables& moving, ThinDeformable& thin) {
     std::vector<bool> colliding;
     for (const TouchedBody& body : moving.bodies) {
-        colliding.push_back(body.shape && may_collide(thin.record->definition, world.record(body.body).definition));
+        colliding.push_back(body.shape &&
+                            may_collide(thin.record->definition, world.rigid.record(body.body).definition));
     }
     thin.attachments = thin.record->definition.attachments;
     for (const Attachment& attachment : thin.attachments) {
-        const bool is_there = world.bodies.find(attachment.body) != nullptr;
+        const bool is_there = world.rigid.bodies.find(attachment.body) != nullptr;
         thin.attachment_bodies.push_back(is_there ? moving.index_of(attachment.body.index) : no_body);
     }
-    find_thin_contacts(moving.bodies, colliding, world.settings.time_step, world.settings.gravity, thin,
-                       *world.workers);
+    find_thin_contacts(moving.bodies, colliding, world.settings.time_step, world.settings.gravity, thin, world.workers);
 }
 
 // What sheets and ropes pushed the solids in their last substep.
-void push_solids(WorldState& world, MovingDeformables& moving) {
+void push_solids(const DeformableAccess& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.solid_records) SolidTies::push(world, record->slot, *record->solid);
-    for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
-        if (!world.deformables.used(slot) || !world.deformables.at(slot).definition.enabled) continue;
-        for (const SurfacePush& push : world.deformables.at(slot).surface_pushes) {
+    for (std::uint32_t slot = 0; slot < world.deformables.records.slot_count(); ++slot) {
+        if (!world.deformables.records.used(slot) || !world.deformables.records.at(slot).definition.enabled) continue;
+        for (const SurfacePush& push : world.deformables.records.at(slot).surface_pushes) {
             const auto record = std::ranges::lower_bound(moving.solid_records, push.slot, {}, &DeformableRecord::slot);
             if (record == moving.solid_records.end() || (*record)->slot != push.slot) continue;
             for (std::size_t k = 0; k < 3; ++k) (*record)->solid->push(push.triangle[k], push.weight[k] * push.force);
@@ -181,21 +191,21 @@ void push_solids(WorldState& world, MovingDeformables& moving) {
 }
 
 // Several solids each by one worker, a single one by all.
-void share_solids(const WorldState& world, const MovingDeformables& moving, const auto& work) {
+void share_solids(const DeformableAccess& world, const MovingDeformables& moving, const auto& work) {
     const std::size_t count = moving.solids.size();
-    if (count <= 1 || world.workers->workers() == 1) {
-        for (std::size_t i = 0; i < count; ++i) work(i, *world.workers);
+    if (count <= 1 || world.workers.workers() == 1) {
+        for (std::size_t i = 0; i < count; ++i) work(i, world.workers);
         return;
     }
     std::atomic<std::size_t> next = 0;
-    world.workers->run([&](int) {
+    world.workers.run([&](int) {
         TaskPool alone(1);
         for (std::size_t i = next++; i < count; i = next++) work(i, alone);
     });
 }
 
 // A further round for solids whose moves make energy; returns whether there is any.
-bool correct_solids(const WorldState& world, const MovingDeformables& moving) {
+bool correct_solids(const DeformableAccess& world, const MovingDeformables& moving) {
     std::atomic<bool> is_any = false;
     share_solids(world, moving, [&](std::size_t i, TaskPool& workers) {
         if (!moving.solids[i]->gains_energy()) return;
@@ -205,7 +215,7 @@ bool correct_solids(const WorldState& world, const MovingDeformables& moving) {
     return is_any;
 }
 
-void run_substeps(WorldState& world, MovingDeformables& moving) {
+void run_substeps(const DeformableAccess& world, MovingDeformables& moving) {
     const int substeps = world.settings.deformable_substeps;
     const double h = world.settings.time_step / substeps;
     for (int k = 1; k <= substeps; ++k) {
@@ -218,7 +228,8 @@ void run_substeps(WorldState& world, MovingDeformables& moving) {
         share_solids(world, moving, [&](std::size_t i, TaskPool& workers) { moving.solids[i]->solve(workers); });
         int corrections = 0;
         do {
-            world.solid_contacts.solve(moving.contacts, moving.solids, moving.bodies, h, k * h, *world.workers);
+            world.deformables.solid_contacts.solve(moving.contacts, moving.solids, moving.bodies, h, k * h,
+                                                   world.workers);
         } while (corrections++ < most_corrections && correct_solids(world, moving));
         share_solids(world, moving, [&](std::size_t i, TaskPool&) { moving.solids[i]->finish(); });
         advance_thin_groups(world, moving.groups, moving.thin, moving.bodies, k);
@@ -227,35 +238,35 @@ void run_substeps(WorldState& world, MovingDeformables& moving) {
 
 // The bodies where the pushes have brought them; what the rigid bodies will feel in their next step. Sleepers wake if
 // they are pushed otherwise than when they fell asleep.
-void put_back_bodies(WorldState& world, const MovingDeformables& moving) {
+void put_back_bodies(const DeformableAccess& world, const MovingDeformables& moving) {
     const double dt = world.settings.time_step;
-    std::erase_if(world.pushed_bodies,
-                  [&](std::uint32_t slot) { return !world.is_used(slot) || !world.is_asleep(slot); });
+    std::erase_if(world.deformables.pushed_bodies,
+                  [&](std::uint32_t slot) { return !world.rigid.is_used(slot) || !world.activity.is_asleep(slot); });
     for (const TouchedBody& body : moving.bodies) {
-        BodyRecord& record = world.record(body.body);
-        if (!world.is_dynamic(body.body)) continue;
+        BodyRecord& record = world.rigid.record(body.body);
+        if (!world.rigid.is_dynamic(body.body)) continue;
         const Vec3 force = body.impulse / dt, torque = body.angular_impulse / dt;
-        if (world.is_asleep(body.body)) {
-            const double mass = 1 / world.motion[body.body].inverse_mass;
+        if (world.activity.is_asleep(body.body)) {
+            const double mass = 1 / world.rigid.motion[body.body].inverse_mass;
             const double weight = mass * length(world.settings.gravity);
             const double more = std::max(length(force - record.deformable_force),
                                          length(torque - record.deformable_torque) / std::max(record.reach, 1e-6));
-            if (more > noticed_change * weight) world.to_wake.push_back(body.body);
+            if (more > noticed_change * weight) world.activity.to_wake.push_back(body.body);
             continue;
         }
         record.deformable_force = force;
         record.deformable_torque = torque;
         record.late_force = body.late_impulse / dt;
         record.late_torque = body.late_angular_impulse / dt;
-        if (force != Vec3{} || torque != Vec3{}) world.pushed_bodies.push_back(body.body);
+        if (force != Vec3{} || torque != Vec3{}) world.deformables.pushed_bodies.push_back(body.body);
         if (force == Vec3{} && body.expected_force == Vec3{} && torque == Vec3{} && body.expected_torque == Vec3{})
             continue;
-        BodyState& state = world.motion[body.body];
+        BodyState& state = world.rigid.motion[body.body];
         state.center += body.shift;
         state.rotation = normalized(cayley(body.turn) * state.rotation);
         state.linear_velocity += body.velocity;
         state.angular_velocity += body.spin;
-        refresh_inertia(state, world.constants[body.body]);
+        refresh_inertia(state, world.rigid.constants[body.body]);
     }
 }
 
@@ -266,7 +277,7 @@ void sort_out(std::vector<std::uint32_t>& slots) {
 }
 
 // What each solid remembers of its contacts.
-void keep_contacts(WorldState& world, MovingDeformables& moving) {
+void keep_contacts(const DeformableAccess& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.records) {
         record->contacts.clear();
         record->touched_bodies.clear();
@@ -288,34 +299,34 @@ void keep_contacts(WorldState& world, MovingDeformables& moving) {
         if (!record->solid) record->touched_bodies = bodies_pushed_by(*record, moving.bodies);
         for (const SurfacePush& push : record->surface_pushes) {
             record->touched_deformables.push_back(push.slot);
-            world.deformables.at(push.slot).touched_deformables.push_back(record->slot);
+            world.deformables.records.at(push.slot).touched_deformables.push_back(record->slot);
         }
     }
     for (DeformableRecord* record : moving.records) {
         for (const Tie& tie : record->definition.ties) {
-            DeformableRecord* other = world.deformables.find(tie.other);
+            DeformableRecord* other = world.deformables.records.find(tie.other);
             if (other == nullptr || !other->definition.enabled) continue;
             record->touched_deformables.push_back(tie.other.index);
             other->touched_deformables.push_back(record->slot);
         }
     }
-    for (const auto& [slots, contacts] : world.thin_contacts) {
-        if (world.deformables.at(slots.first).is_asleep) continue;  // it keeps what it touched
+    for (const auto& [slots, contacts] : world.deformables.thin_contacts) {
+        if (world.deformables.records.at(slots.first).is_asleep) continue;  // it keeps what it touched
         if (std::ranges::none_of(contacts, [](const ThinContact& contact) { return contact.push > 0; })) continue;
-        world.deformables.at(slots.first).touched_deformables.push_back(slots.second);
-        world.deformables.at(slots.second).touched_deformables.push_back(slots.first);
+        world.deformables.records.at(slots.first).touched_deformables.push_back(slots.second);
+        world.deformables.records.at(slots.second).touched_deformables.push_back(slots.first);
     }
     for (DeformableRecord* record : moving.records) {
         sort_out(record->touched_bodies);
         sort_out(record->touched_deformables);
         record->supports.clear();
         for (const std::uint32_t slot : record->touched_bodies)
-            record->supports.push_back({world.bodies.handle_at(slot), world.record(slot).version});
+            record->supports.push_back({world.rigid.bodies.handle_at(slot), world.rigid.record(slot).version});
     }
 }
 
 // Those whose numbers are none are stopped where they last were.
-void freeze_broken(WorldState& world, MovingDeformables& moving) {
+void freeze_broken(const DeformableAccess& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.records) {
         if (!record->is_finite()) {
             record->stop_at(record->last_positions);
@@ -327,15 +338,15 @@ void freeze_broken(WorldState& world, MovingDeformables& moving) {
 }
 
 // Whether it and all that it touches, directly or by others, are ready to sleep: bodies asleep, deformables quiet.
-bool may_sleep(const WorldState& world, const DeformableRecord& record, std::vector<std::uint32_t>& seen) {
+bool may_sleep(const DeformableAccess& world, const DeformableRecord& record, std::vector<std::uint32_t>& seen) {
     seen.push_back(record.slot);
     if (record.quiet_time < world.settings.time_to_sleep) return false;
     for (const std::uint32_t slot : record.touched_bodies) {
-        if (world.is_used(slot) && world.is_dynamic(slot) && !world.is_asleep(slot)) return false;
+        if (world.rigid.is_used(slot) && world.rigid.is_dynamic(slot) && !world.activity.is_asleep(slot)) return false;
     }
     return std::ranges::all_of(record.touched_deformables, [&](std::uint32_t slot) {
-        return std::ranges::find(seen, slot) != seen.end() || !world.deformables.used(slot) ||
-               may_sleep(world, world.deformables.at(slot), seen);
+        return std::ranges::find(seen, slot) != seen.end() || !world.deformables.records.used(slot) ||
+               may_sleep(world, world.deformables.records.at(slot), seen);
     });
 }
 
@@ -351,25 +362,25 @@ bool is_quiet(DeformableRecord& record) {
 }
 
 // Bodies that they touch stay awake while they are not quiet.
-void note_quiet(WorldState& world, MovingDeformables& moving) {
+void note_quiet(const DeformableAccess& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.records) {
-        const bool is_blown = record->cloth && world.wind().is_gusty();
+        const bool is_blown = record->cloth && wind_at(world.settings, world.report.time).is_gusty();
         record->quiet_time = !is_blown && is_quiet(*record) ? record->quiet_time + world.settings.time_step : 0;
         for (const std::uint32_t slot : record->touched_bodies) {
-            if (!world.is_used(slot) || !world.is_dynamic(slot)) continue;
-            world.sleep[slot].quiet_time = std::min(world.sleep[slot].quiet_time, record->quiet_time);
+            if (!world.rigid.is_used(slot) || !world.rigid.is_dynamic(slot)) continue;
+            world.activity.sleep[slot].quiet_time = std::min(world.activity.sleep[slot].quiet_time, record->quiet_time);
         }
     }
 }
 
 // Deformables sleep when they are quiet and so is all that they touch: at once with the bodies, for forces found while
 // these stand as if fixed would be no longer those that they were held by.
-void let_deformables_sleep(WorldState& world) {
+void let_deformables_sleep(const DeformableAccess& world) {
     if (!world.settings.sleeping) return;
     std::vector<DeformableRecord*> ready;
-    for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
-        if (!world.deformables.used(slot)) continue;
-        DeformableRecord& record = world.deformables.at(slot);
+    for (std::uint32_t slot = 0; slot < world.deformables.records.slot_count(); ++slot) {
+        if (!world.deformables.records.used(slot)) continue;
+        DeformableRecord& record = world.deformables.records.at(slot);
         if (!record.definition.enabled || record.is_asleep) continue;
         std::vector<std::uint32_t> seen;
         if (may_sleep(world, record, seen)) ready.push_back(&record);
@@ -382,14 +393,14 @@ void let_deformables_sleep(WorldState& world) {
 
 }  // namespace
 
-void advance_deformables(WorldState& world) {
+void advance_deformables(const DeformableAccess& world) {
     MovingDeformables moving;
     let_deformables_sleep(world);
     while (wake_disturbed(world) || wake_touched_thin(world)) {
     }
-    for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
-        if (!world.deformables.used(slot)) continue;
-        DeformableRecord& record = world.deformables.at(slot);
+    for (std::uint32_t slot = 0; slot < world.deformables.records.slot_count(); ++slot) {
+        if (!world.deformables.records.used(slot)) continue;
+        DeformableRecord& record = world.deformables.records.at(slot);
         if (!record.definition.enabled || record.is_asleep) continue;
         record.slot = slot;
         moving.records.push_back(&record);
@@ -406,7 +417,8 @@ void advance_deformables(WorldState& world) {
     moving.groups = find_thin_groups(world, moving.thin);
     run_substeps(world, moving);
     put_back_bodies(world, moving);
-    if (!moving.records.empty()) limit_speeds(world);
+    if (!moving.records.empty())
+        limit_speeds({world.settings, world.activity, world.workers, world.report, world.rigid});
     keep_contacts(world, moving);
     freeze_broken(world, moving);
     note_quiet(world, moving);

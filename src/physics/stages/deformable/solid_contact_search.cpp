@@ -6,9 +6,13 @@
 #include <numeric>
 #include <tuple>
 
+#include "foundation/task_pool.h"
+#include "physics/definitions/world_settings.h"
 #include "physics/deformable/contact/body_features.h"
 #include "physics/deformable/contact/node_contacts.h"
 #include "physics/deformable/solid/surface_pairs.h"
+#include "physics/stages/access.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
@@ -24,18 +28,18 @@ std::uint32_t index_of(std::span<const TouchedBody> bodies, std::uint32_t slot) 
 /// The search for one solid.
 class Search {
 public:
-    Search(const WorldState& world, const DeformableRecord& record, std::uint32_t number,
+    Search(const DeformableAccess& world, const DeformableRecord& record, std::uint32_t number,
            std::span<const TouchedBody> bodies)
         : world_(world), record_(record), number_(number), bodies_(bodies) {
         for (const TouchedBody& body : bodies) {
-            if (body.shape && may_collide(record.definition, world.record(body.body).definition))
+            if (body.shape && may_collide(record.definition, world.rigid.record(body.body).definition))
                 colliding_.push_back(body);
         }
     }
 
     void add_attachments(std::vector<SolidContact>& contacts) const {
         for (const Attachment& attachment : record_.definition.attachments) {
-            if (world_.bodies.find(attachment.body) == nullptr) continue;
+            if (world_.rigid.bodies.find(attachment.body) == nullptr) continue;
             SolidContact contact;
             contact.body = index_of(bodies_, attachment.body.index);
             const TouchedBody& body = bodies_[contact.body];
@@ -55,7 +59,7 @@ public:
         std::vector<std::uint32_t> all(solid.nodes().size());
         std::iota(all.begin(), all.end(), 0u);
         find_node_contacts(solid.nodes(), all, *record_.node_ball, radius(), colliding_, world_.settings.time_step,
-                           world_.settings.gravity, found, *world_.workers);
+                           world_.settings.gravity, found, world_.workers);
         for (auto first = found.begin(); first != found.end();) {
             const auto last = std::find_if(first, found.end(), [&](const auto& at) { return at.body != first->body; });
             add_node_contacts(colliding_[first->body], std::span(first, last), contacts);
@@ -63,7 +67,7 @@ public:
         }
         std::optional<PlacedSurface> surface;
         for (const TouchedBody& body : colliding_) {
-            if (world_.record(body.body).reach < small_body * solid.mean_side())
+            if (world_.rigid.record(body.body).reach < small_body * solid.mean_side())
                 add_feature_contacts(body, surface, contacts);
         }
     }
@@ -124,7 +128,7 @@ private:
                               std::vector<SolidContact>& contacts) const {
         const double dt = world_.settings.time_step;
         const double body_way =
-            (length(body.path_velocity) + length(body.path_spin) * world_.record(body.body).reach) * dt;
+            (length(body.path_velocity) + length(body.path_spin) * world_.rigid.record(body.body).reach) * dt;
         const double reach = reach_of(world_, record_) + body_way + radius();
         const Bounds bounds = record_.bounds();
         const std::vector<BodyFeature> features = find_features(body.shape->definition());
@@ -154,7 +158,7 @@ private:
         return contact;
     }
 
-    const WorldState& world_;
+    const DeformableAccess world_;
     const DeformableRecord& record_;
     std::uint32_t number_;
     std::span<const TouchedBody> bodies_;
@@ -166,7 +170,7 @@ bool are_parting(const DeformableRecord& one, const DeformableRecord& two) {
     return std::ranges::any_of(one.contacts, [&](const SolidContact& c) { return c.parts && c.partner == partner; });
 }
 
-void add_pairs(const WorldState& world, std::span<DeformableRecord* const> records, std::uint32_t number,
+void add_pairs(const DeformableAccess& world, std::span<DeformableRecord* const> records, std::uint32_t number,
                std::vector<SolidContact>& contacts) {
     const DeformableRecord& record = *records[number];
     const double reach = reach_of(world, record);
@@ -198,14 +202,14 @@ bool may_collide(const DeformableDefinition& a, const DeformableDefinition& b) {
     return (a.collision_group & b.collision_mask) != 0 && (b.collision_group & a.collision_mask) != 0;
 }
 
-double reach_of(const WorldState& world, const DeformableRecord& record) {
+double reach_of(const DeformableAccess& world, const DeformableRecord& record) {
     double fastest = 0;
     for (const Vec3 v : record.nodes().mean_velocity) fastest = std::max(fastest, length(v));
     const double dt = world.settings.time_step;
     return 2 * record.definition.contact_radius + (fastest + length(world.settings.gravity) * dt) * dt;
 }
 
-std::vector<SolidContact> find_solid_contacts(const WorldState& world, std::span<DeformableRecord* const> records,
+std::vector<SolidContact> find_solid_contacts(const DeformableAccess& world, std::span<DeformableRecord* const> records,
                                               std::span<const TouchedBody> bodies) {
     std::vector<SolidContact> all;
     for (std::uint32_t number = 0; number < records.size(); ++number) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/definitions/body_definition.h"
+#include "physics/stages/access.h"
 #include "physics/stages/namespace.h"
-#include "physics/state/world_state.h"
+#include "physics/state/deformable_record.h"
 
 namespace embody::physics::stages {
 
@@ -10,11 +12,11 @@ namespace embody::physics::stages {
 bool may_collide(const DeformableDefinition& deformable, const BodyDefinition& body);
 bool may_collide(const DeformableDefinition& a, const DeformableDefinition& b);
 /// How far its nodes may come within a step, and a little more, m.
-double reach_of(const WorldState& world, const DeformableRecord& record);
+double reach_of(const DeformableAccess& world, const DeformableRecord& record);
 
 /// All contacts and attachments of soft solids for this step, record after record, with what is remembered of their
 /// forces. `bodies` by slot.
-std::vector<SolidContact> find_solid_contacts(const WorldState& world, std::span<DeformableRecord* const> records,
+std::vector<SolidContact> find_solid_contacts(const DeformableAccess& world, std::span<DeformableRecord* const> records,
                                               std::span<const TouchedBody> bodies);
 
 /// A contact's `partner` where that is another deformable.

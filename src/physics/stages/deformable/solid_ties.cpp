@@ -4,6 +4,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "foundation/task_pool.h"
+#include "physics/definitions/world_settings.h"
+#include "physics/stages/access.h"
+#include "physics/state/deformable_state.h"
+
 namespace embody::physics::stages {
 
 namespace {
@@ -17,8 +22,8 @@ void for_each_node(const Tie& tie, Visit visit) {
     }
 }
 
-const DeformableRecord* solid_of(const WorldState& world, const Tie& tie) {
-    const DeformableRecord* other = world.deformables.find(tie.other);
+const DeformableRecord* solid_of(const DeformableAccess& world, const Tie& tie) {
+    const DeformableRecord* other = world.deformables.records.find(tie.other);
     return other != nullptr && other->solid && other->definition.enabled && !other->is_asleep ? other : nullptr;
 }
 
@@ -29,7 +34,7 @@ bool is_tied(const DeformableRecord& thin, std::uint32_t node, DeformableHandle 
                                [&](const Tie& tie) { return tie.node == node && tie.other == other; });
 }
 
-bool has_solid_ties(const WorldState& world, const DeformableRecord& thin) {
+bool has_solid_ties(const DeformableAccess& world, const DeformableRecord& thin) {
     return std::ranges::any_of(thin.definition.ties, [&](const Tie& tie) { return solid_of(world, tie) != nullptr; });
 }
 
@@ -43,12 +48,12 @@ void SolidTies::add(ThinDeformable& thin, std::vector<TouchedBody>& bodies, doub
     std::ranges::stable_sort(held_, {}, &Held::slot);
     for (auto first = held_.begin(); first != held_.end();) {
         const auto last = std::find_if(first, held_.end(), [&](const Held& at) { return at.slot != first->slot; });
-        find_compliance(record, *world_.deformables.at(first->slot).solid, std::span(first, last));
+        find_compliance(record, *world_.deformables.records.at(first->slot).solid, std::span(first, last));
         first = last;
     }
     for (Held& held : held_) {
         const Tie& tie = record.definition.ties[held.tie];
-        const SolidDeformable& solid = *world_.deformables.at(held.slot).solid;
+        const SolidDeformable& solid = *world_.deformables.records.at(held.slot).solid;
         Vec3 apart = record.nodes().position[tie.node], place;  // when the substep began; the solid's at its end
         for_each_node(tie, [&](std::uint32_t node, double weight) {
             apart -= weight * solid.start(node);
@@ -79,7 +84,7 @@ void SolidTies::find_compliance(const DeformableRecord& thin, SolidDeformable& s
         for_each_node(thin.definition.ties[at.tie],
                       [&](std::uint32_t node, double weight) { force_[node] += weight * way; });
     }
-    solid.find_response(force_, move_, *world_.workers);
+    solid.find_response(force_, move_, world_.workers);
     for (Held& at : held) {
         Vec3 moved;
         for_each_node(thin.definition.ties[at.tie],
@@ -100,7 +105,7 @@ void SolidTies::take(ThinDeformable& thin) {
 }
 
 void SolidTies::move_solid(DeformableRecord& thin, std::span<const Held> held) {
-    SolidDeformable& solid = *world_.deformables.at(held[0].slot).solid;
+    SolidDeformable& solid = *world_.deformables.records.at(held[0].slot).solid;
     force_.assign(solid.nodes().size(), {});
     for (const Held& at : held) {
         const auto springs = springs_of(thin);
@@ -110,16 +115,16 @@ void SolidTies::move_solid(DeformableRecord& thin, std::span<const Held> held) {
         for_each_node(thin.definition.ties[at.tie],
                       [&](std::uint32_t node, double weight) { force_[node] -= weight * more; });
     }
-    solid.go_on_with(force_, *world_.workers);
+    solid.go_on_with(force_, world_.workers);
 }
 
-void SolidTies::push(WorldState& world, std::uint32_t slot, SolidDeformable& solid) {
-    for (std::uint32_t other = 0; other < world.deformables.slot_count(); ++other) {
-        if (!world.deformables.used(other)) continue;
-        const DeformableRecord& thin = world.deformables.at(other);
+void SolidTies::push(const DeformableAccess& world, std::uint32_t slot, SolidDeformable& solid) {
+    for (std::uint32_t other = 0; other < world.deformables.records.slot_count(); ++other) {
+        if (!world.deformables.records.used(other)) continue;
+        const DeformableRecord& thin = world.deformables.records.at(other);
         for (std::size_t t = 0; t < std::min(thin.tie_pulls.size(), thin.definition.ties.size()); ++t) {
             const Tie& tie = thin.definition.ties[t];
-            if (tie.other != world.deformables.handle_at(slot) || !thin.definition.enabled) continue;
+            if (tie.other != world.deformables.records.handle_at(slot) || !thin.definition.enabled) continue;
             for_each_node(tie,
                           [&](std::uint32_t node, double weight) { solid.push(node, -weight * thin.tie_pulls[t]); });
         }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/stages/access.h"
 #include "physics/stages/deformable/thin_deformables.h"
 #include "physics/stages/namespace.h"
-#include "physics/state/world_state.h"
 
 namespace embody::physics::stages {
 
@@ -12,14 +12,14 @@ namespace embody::physics::stages {
 /// substep, and acts on it in the next (docs/physics/cloth.md).
 class SolidTies {
 public:
-    explicit SolidTies(WorldState& world) : world_(world) {}
+    explicit SolidTies(const DeformableAccess& world) : world_(world) {}
 
     /// Appends a body and an attachment for each tie of `thin`. `h` is its substep, s.
     void add(ThinDeformable& thin, std::vector<TouchedBody>& bodies, double h);
     /// After its substep: moves the solids, remembers the pulls and takes the attachments away again.
     void take(ThinDeformable& thin);
     /// Lets the pulls of the last substep act on the solid of that slot.
-    static void push(WorldState& world, std::uint32_t slot, SolidDeformable& solid);
+    static void push(const DeformableAccess& world, std::uint32_t slot, SolidDeformable& solid);
 
 private:
     struct Held {
@@ -30,7 +30,7 @@ private:
     void find_compliance(const DeformableRecord& thin, SolidDeformable& solid, std::span<Held> held);
     void move_solid(DeformableRecord& thin, std::span<const Held> held);
 
-    WorldState& world_;
+    const DeformableAccess world_;
     std::vector<Held> held_;  // by slot
     std::vector<Vec3> force_, move_;
 };
@@ -38,6 +38,6 @@ private:
 /// Whether a tie holds that node to that other.
 bool is_tied(const DeformableRecord& thin, std::uint32_t node, DeformableHandle other);
 /// Whether it has a tie to a soft solid that is there.
-bool has_solid_ties(const WorldState& world, const DeformableRecord& thin);
+bool has_solid_ties(const DeformableAccess& world, const DeformableRecord& thin);
 
 }  // namespace embody::physics::stages

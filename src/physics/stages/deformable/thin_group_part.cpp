@@ -5,6 +5,13 @@
 #include <cmath>
 #include <utility>
 
+#include "foundation/task_pool.h"
+#include "physics/definitions/step_report.h"
+#include "physics/definitions/world_settings.h"
+#include "physics/stages/access.h"
+#include "physics/state/deformable_state.h"
+#include "physics/state/event_state.h"
+
 namespace embody::physics::stages {
 
 ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<std::uint32_t, 2>>& segments) {
@@ -33,25 +40,25 @@ ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<st
     return surface;
 }
 
-Substep substep_of(const WorldState& world, const DeformableRecord& record, double h, double time) {
+Substep substep_of(const DeformableAccess& world, const DeformableRecord& record, double h, double time) {
     Substep substep{.h = h, .time = time};
     substep.gravity = record.acceleration(world.settings.gravity);
-    substep.wind = world.wind();
+    substep.wind = wind_at(world.settings, world.report.time);
     substep.air_density = world.settings.air_density;
     return substep;
 }
 
-void note_breaks(WorldState& world, const DeformableRecord& record) {
+void note_breaks(const DeformableAccess& world, const DeformableRecord& record) {
     const std::vector<Vec3>& nodes = record.nodes().position;
     for (const auto& [segment, tension] : record.rope->new_breaks()) {
-        const DeformableHandle rope = world.deformables.handle_at(record.slot);
-        world.rope_break_events.push_back(
+        const DeformableHandle rope = world.deformables.records.handle_at(record.slot);
+        world.events.rope_breaks.push_back(
             {rope, record.definition.user_data, segment, tension, (nodes[segment] + nodes[segment + 1]) / 2});
     }
 }
 
-ThinGroupPart::ThinGroupPart(WorldState& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h,
-                             double time)
+ThinGroupPart::ThinGroupPart(const DeformableAccess& world, const ThinGroup& group, std::span<ThinDeformable> thin,
+                             double h, double time)
     : world_(world), group_(group), h_(h), place_(group.members.size()) {
     for (const bool is_sheet : {true, false}) {
         for (std::size_t i = 0; i < group.members.size(); ++i) {
@@ -77,7 +84,7 @@ void ThinGroupPart::begin_members(std::span<const TouchedBody> bodies, std::span
         if (record.cloth) {
             record.cloth->set_attachments(thin.attachments);
             record.cloth->begin(member.substep, thin.contacts, thin.sheet_contacts, thin.attachment_bodies, bodies,
-                                *world_.workers);
+                                world_.workers);
             member.touch = record.cloth->touch();
             member.layers = record.cloth->layers();
         } else {
@@ -121,7 +128,7 @@ void ThinGroupPart::begin_pairs(std::span<const ThinMember> seen) {
         pair.a = place_[pair.a];
         pair.b = place_[pair.b];
     }
-    pairs_.begin(seen, pairs, world_.thin_contacts, h_, pull);
+    pairs_.begin(seen, pairs, world_.deformables.thin_contacts, h_, pull);
     std::vector<PlacedTie> ties;
     for (const ThinTie& tie : group_.ties) {
         const Member &own = members_[place_[tie.member]], &other = members_[place_[tie.other]];
@@ -241,8 +248,8 @@ bool ThinGroupPart::solve(std::span<const TouchedBody> bodies) {
         gather_springs();
         from_ = moves_;
         body_from_ = body_moves_;
-        const int rounds =
-            world_.pair_solver.solve(sheets, lines, springs_, inertias, moves_, body_moves_, *world_.workers);
+        const int rounds = world_.deformables.pair_solver.solve(sheets, lines, springs_, inertias, moves_, body_moves_,
+                                                                world_.workers);
         if (rounds == ClothSolver::not_finite) return false;
         const double way = has_ropes() ? go_as_far_as_it_pays(sheets, inertias) : 0;
         if (solves == most_solves || (!choose_again() && way < small)) break;
@@ -279,7 +286,7 @@ std::vector<TouchSpring> ThinGroupPart::springs_of_others(const Member& member) 
 void ThinGroupPart::end(std::span<TouchedBody> bodies) {
     given_.assign(moves_.size(), {});
     const std::vector<double> shares = shares_of(springs_, moves_, body_moves_, inertias_of(bodies, h_), h_);
-    pairs_.finish(moves_, given_, world_.thin_contacts);
+    pairs_.finish(moves_, given_, world_.deformables.thin_contacts);
     ties_.finish(moves_, given_);
     for (Member& member : members_) {
         DeformableRecord& record = member.record();
@@ -287,7 +294,7 @@ void ThinGroupPart::end(std::span<TouchedBody> bodies) {
         if (record.cloth) {
             record.cloth->touch() = std::move(member.touch);
             record.cloth->layers() = std::move(member.layers);
-            record.cloth->end(member.substep, moves, body_moves_, given, bodies, *world_.workers);
+            record.cloth->end(member.substep, moves, body_moves_, given, bodies, world_.workers);
         } else if (record.rope->has_clamps()) {
             record.rope->advance(member.substep, member.thin->contacts, member.thin->segment_contacts,
                                  member.thin->attachment_bodies, bodies, springs_of_others(member));
@@ -304,7 +311,7 @@ void ThinGroupPart::advance(std::span<TouchedBody> bodies) {
     if (solve(bodies)) return end(bodies);
     // What is broken freezes on its own.
     for (Member& member : members_) {
-        advance_thin(*member.thin, member.substep, bodies, *world_.workers);
+        advance_thin(*member.thin, member.substep, bodies, world_.workers);
         if (member.record().rope) note_breaks(world_, member.record());
     }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "physics/deformable/contact/tie_springs.h"
+#include "physics/stages/access.h"
 #include "physics/stages/deformable/thin_groups.h"
 #include "physics/stages/namespace.h"
 
@@ -11,7 +12,8 @@ namespace embody::physics::stages {
 class ThinGroupPart {
 public:
     /// `h`: of the part, which begins at `time` in the step, s. What is given outlives it.
-    ThinGroupPart(WorldState& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h, double time);
+    ThinGroupPart(const DeformableAccess& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h,
+                  double time);
     /// Pushes the bodies, notes ropes that break. What is broken freezes.
     void advance(std::span<TouchedBody> bodies);
 
@@ -43,7 +45,7 @@ private:
     [[nodiscard]] std::vector<TouchSpring> springs_of_others(const Member& member) const;
     void end(std::span<TouchedBody> bodies);
 
-    WorldState& world_;
+    const DeformableAccess world_;
     const ThinGroup& group_;
     double h_ = 0;
     std::vector<Member> members_;       // sheets first
@@ -57,9 +59,9 @@ private:
 };
 
 /// What a sheet or rope has of a substep of h seconds that begins at `time` in the step.
-Substep substep_of(const WorldState& world, const DeformableRecord& record, double h, double time);
+Substep substep_of(const DeformableAccess& world, const DeformableRecord& record, double h, double time);
 /// Tells of what broke in the last substep.
-void note_breaks(WorldState& world, const DeformableRecord& record);
+void note_breaks(const DeformableAccess& world, const DeformableRecord& record);
 /// What others meet of it. `segments`: keeps those of a rope.
 ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<std::uint32_t, 2>>& segments);
 

@@ -5,23 +5,28 @@
 #include <cmath>
 #include <numeric>
 
+#include "foundation/task_pool.h"
+#include "physics/definitions/world_settings.h"
+#include "physics/stages/access.h"
 #include "physics/stages/deformable/solid_contact_search.h"
 #include "physics/stages/deformable/solid_ties.h"
 #include "physics/stages/deformable/thin_group_part.h"
 #include "physics/stages/deformable/thin_on_solids.h"
+#include "physics/state/deformable_state.h"
 
 namespace embody::physics::stages {
 
 namespace {
 
 // The nodes of `own` that a tie between the two holds.
-std::vector<bool> tied_nodes(const WorldState& world, const DeformableRecord& own, const DeformableRecord& other) {
+std::vector<bool> tied_nodes(const DeformableAccess& world, const DeformableRecord& own,
+                             const DeformableRecord& other) {
     std::vector<bool> is_tied(own.nodes().size(), false);
     for (const Tie& tie : own.definition.ties) {
-        if (world.deformables.find(tie.other) == &other) is_tied[tie.node] = true;
+        if (world.deformables.records.find(tie.other) == &other) is_tied[tie.node] = true;
     }
     for (const Tie& tie : other.definition.ties) {
-        if (world.deformables.find(tie.other) != &own) continue;
+        if (world.deformables.records.find(tie.other) != &own) continue;
         for (std::size_t k = 0; k < 3; ++k) {
             if (tie.weight[k] > 0) is_tied[tie.other_nodes[k]] = true;
         }
@@ -30,7 +35,7 @@ std::vector<bool> tied_nodes(const WorldState& world, const DeformableRecord& ow
 }
 
 // What holds the two together does not push them apart as well.
-void leave_out_tied(const WorldState& world, const DeformableRecord& a, const ThinSurface& on_a,
+void leave_out_tied(const DeformableAccess& world, const DeformableRecord& a, const ThinSurface& on_a,
                     const DeformableRecord& b, const ThinSurface& on_b, std::vector<ThinCandidate>& candidates) {
     if (a.definition.ties.empty() && b.definition.ties.empty()) return;
     const std::vector<bool> tied_a = tied_nodes(world, a, b), tied_b = tied_nodes(world, b, a);
@@ -50,18 +55,18 @@ void leave_out_tied(const WorldState& world, const DeformableRecord& a, const Th
 }
 
 // What gravity and its constant force give it, m/s².
-double pull_on(const WorldState& world, const DeformableRecord& record) {
+double pull_on(const DeformableAccess& world, const DeformableRecord& record) {
     return length(record.acceleration(world.settings.gravity));
 }
 
 // What may touch of two whose bounds, as far as each may go, overlap.
-std::vector<ThinCandidate> candidates_of(const WorldState& world, const DeformableRecord& a,
+std::vector<ThinCandidate> candidates_of(const DeformableAccess& world, const DeformableRecord& a,
                                          const DeformableRecord& b) {
     std::vector<ThinCandidate> candidates;
     std::vector<std::array<std::uint32_t, 2>> segments_a, segments_b;
     const ThinSurface on_a = surface_of(a, segments_a), on_b = surface_of(b, segments_b);
     find_thin_candidates(on_a, on_b, world.settings.time_step, std::max(pull_on(world, a), pull_on(world, b)),
-                         *world.workers, candidates);
+                         world.workers, candidates);
     leave_out_tied(world, a, on_a, b, on_b, candidates);
     return candidates;
 }
@@ -82,13 +87,14 @@ std::uint32_t root_of(std::vector<std::uint32_t>& group, std::uint32_t i) {
     return i;
 }
 
-void advance_alone(WorldState& world, ThinDeformable& thin, double h, double time, std::vector<TouchedBody>& bodies) {
-    advance_thin(thin, substep_of(world, *thin.record, h, time), bodies, *world.workers);
+void advance_alone(const DeformableAccess& world, ThinDeformable& thin, double h, double time,
+                   std::vector<TouchedBody>& bodies) {
+    advance_thin(thin, substep_of(world, *thin.record, h, time), bodies, world.workers);
     if (thin.record->rope) note_breaks(world, *thin.record);
 }
 
-void advance_group(WorldState& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h, double time,
-                   std::vector<TouchedBody>& bodies, ThinOnSolids::Surfaces& surfaces) {
+void advance_group(const DeformableAccess& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h,
+                   double time, std::vector<TouchedBody>& bodies, ThinOnSolids::Surfaces& surfaces) {
     const std::size_t first = bodies.size();
     std::vector<ThinOnSolids> solids(group.members.size(), ThinOnSolids(world, surfaces));
     std::vector<SolidTies> ties(group.members.size(), SolidTies(world));
@@ -102,7 +108,7 @@ void advance_group(WorldState& world, const ThinGroup& group, std::span<ThinDefo
         int parts = 1;
         for (const std::uint32_t member : group.members) {
             ClothSheet* sheet = thin[member].record->cloth.get();
-            if (sheet != nullptr) parts = std::max(parts, sheet->parts_of(h, *world.workers));
+            if (sheet != nullptr) parts = std::max(parts, sheet->parts_of(h, world.workers));
         }
         const PartPushes pushes(bodies);
         for (int k = 0; k < parts; ++k) {
@@ -118,13 +124,13 @@ void advance_group(WorldState& world, const ThinGroup& group, std::span<ThinDefo
 }
 
 // By index in `thin`; those to what is gone, or does not move, hold nothing.
-std::vector<ThinTie> find_ties(const WorldState& world, std::span<const ThinDeformable> thin) {
+std::vector<ThinTie> find_ties(const DeformableAccess& world, std::span<const ThinDeformable> thin) {
     std::vector<ThinTie> ties;
     for (std::uint32_t i = 0; i < thin.size(); ++i) {
         DeformableRecord& record = *thin[i].record;
         record.tie_pulls.resize(record.definition.ties.size());
         for (std::size_t t = 0; t < record.definition.ties.size(); ++t) {
-            const DeformableRecord* other = world.deformables.find(record.definition.ties[t].other);
+            const DeformableRecord* other = world.deformables.records.find(record.definition.ties[t].other);
             const auto found = std::ranges::find(thin, other, &ThinDeformable::record);
             if (found != thin.end()) ties.push_back({i, static_cast<std::uint32_t>(found - thin.begin()), t});
         }
@@ -133,16 +139,16 @@ std::vector<ThinTie> find_ties(const WorldState& world, std::span<const ThinDefo
 }
 
 // What is tied to what is awake is awake.
-bool wake_tied(WorldState& world) {
+bool wake_tied(const DeformableAccess& world) {
     bool has_woken_any = false;
     for (bool has_woken = true; has_woken; has_woken_any |= has_woken) {
         has_woken = false;
-        for (std::uint32_t slot = 0; slot < world.deformables.slot_count(); ++slot) {
-            if (!world.deformables.used(slot)) continue;
-            DeformableRecord& own = world.deformables.at(slot);
+        for (std::uint32_t slot = 0; slot < world.deformables.records.slot_count(); ++slot) {
+            if (!world.deformables.records.used(slot)) continue;
+            DeformableRecord& own = world.deformables.records.at(slot);
             if (!own.definition.enabled) continue;
             for (const Tie& tie : own.definition.ties) {
-                DeformableRecord* other = world.deformables.find(tie.other);
+                DeformableRecord* other = world.deformables.records.find(tie.other);
                 if (other == nullptr || !other->definition.enabled || other->is_asleep == own.is_asleep) continue;
                 own.is_asleep = other->is_asleep = false;
                 own.quiet_time = other->quiet_time = 0;
@@ -154,7 +160,8 @@ bool wake_tied(WorldState& world) {
 }
 
 // Contacts of a pair that has parted, or of what is gone, are forgotten; sleepers keep theirs.
-void forget_parted(WorldState& world, std::span<const ThinGroup> groups, std::span<const ThinDeformable> thin) {
+void forget_parted(const DeformableAccess& world, std::span<const ThinGroup> groups,
+                   std::span<const ThinDeformable> thin) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> together;
     for (const ThinGroup& group : groups) {
         for (const ThinPair& pair : group.pairs)
@@ -162,9 +169,9 @@ void forget_parted(WorldState& world, std::span<const ThinGroup> groups, std::sp
     }
     std::ranges::sort(together);
     const auto sleeps = [&](std::uint32_t slot) {
-        return world.deformables.used(slot) && world.deformables.at(slot).is_asleep;
+        return world.deformables.records.used(slot) && world.deformables.records.at(slot).is_asleep;
     };
-    std::erase_if(world.thin_contacts, [&](const auto& memory) {
+    std::erase_if(world.deformables.thin_contacts, [&](const auto& memory) {
         return !std::ranges::binary_search(together, memory.first) &&
                !(sleeps(memory.first.first) && sleeps(memory.first.second));
     });
@@ -172,18 +179,18 @@ void forget_parted(WorldState& world, std::span<const ThinGroup> groups, std::sp
 
 }  // namespace
 
-bool wake_touched_thin(WorldState& world) {
+bool wake_touched_thin(const DeformableAccess& world) {
     const double h = world.settings.time_step;
-    const std::uint32_t count = world.deformables.slot_count();
+    const std::uint32_t count = world.deformables.records.slot_count();
     bool has_woken = wake_tied(world);
     for (std::uint32_t slot = 0; slot < count; ++slot) {
-        if (!world.deformables.used(slot)) continue;
-        DeformableRecord& sleeper = world.deformables.at(slot);
+        if (!world.deformables.records.used(slot)) continue;
+        DeformableRecord& sleeper = world.deformables.records.at(slot);
         if (!is_thin(sleeper) || !sleeper.is_asleep) continue;
         const Bounds bounds = enlarged(sleeper.bounds(), reach_of(world, sleeper));
         for (std::uint32_t other = 0; other < count && sleeper.is_asleep; ++other) {
-            if (!world.deformables.used(other)) continue;
-            const DeformableRecord& awake = world.deformables.at(other);
+            if (!world.deformables.records.used(other)) continue;
+            const DeformableRecord& awake = world.deformables.records.at(other);
             if (!is_thin(awake) || awake.is_asleep || !may_collide(awake.definition, sleeper.definition)) continue;
             const Bounds reach = enlarged(awake.bounds(), reach_of(world, awake));
             if (!overlaps(bounds, reach) || !may_touch_others(reach)) continue;
@@ -199,7 +206,7 @@ bool wake_touched_thin(WorldState& world) {
     return has_woken;
 }
 
-std::vector<ThinGroup> find_thin_groups(WorldState& world, std::span<const ThinDeformable> thin) {
+std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span<const ThinDeformable> thin) {
     std::vector<std::uint32_t> group(thin.size());
     std::iota(group.begin(), group.end(), 0u);
     std::vector<Bounds> bounds;
@@ -247,8 +254,8 @@ std::vector<ThinGroup> find_thin_groups(WorldState& world, std::span<const ThinD
     return groups;
 }
 
-void advance_thin_groups(WorldState& world, std::span<const ThinGroup> groups, std::span<ThinDeformable> thin,
-                         std::vector<TouchedBody>& bodies, int k) {
+void advance_thin_groups(const DeformableAccess& world, std::span<const ThinGroup> groups,
+                         std::span<ThinDeformable> thin, std::vector<TouchedBody>& bodies, int k) {
     const int substeps = world.settings.deformable_substeps;
     const double step = world.settings.time_step, h = step / substeps;
     ThinOnSolids::Surfaces surfaces;
@@ -270,8 +277,8 @@ void advance_thin_groups(WorldState& world, std::span<const ThinGroup> groups, s
     }
 }
 
-void forget_thin_contacts(WorldState& world, std::uint32_t slot) {
-    std::erase_if(world.thin_contacts,
+void forget_thin_contacts(DeformableState& deformables, std::uint32_t slot) {
+    std::erase_if(deformables.thin_contacts,
                   [&](const auto& memory) { return memory.first.first == slot || memory.first.second == slot; });
 }
 

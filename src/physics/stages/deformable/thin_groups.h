@@ -2,9 +2,9 @@
 #pragma once
 
 #include "physics/deformable/contact/pair_springs.h"
+#include "physics/stages/access.h"
 #include "physics/stages/deformable/thin_deformables.h"
 #include "physics/stages/namespace.h"
-#include "physics/state/world_state.h"
 
 namespace embody::physics::stages {
 
@@ -24,14 +24,14 @@ struct ThinGroup {
 
 /// Wakes sleeping sheets and ropes that one that is awake is going to touch, and what is tied to what is awake. Whether
 /// any was.
-bool wake_touched_thin(WorldState& world);
+bool wake_touched_thin(const DeformableAccess& world);
 /// Each of `thin` in one group; forgets contacts of pairs that have parted. Ascending by first member.
-std::vector<ThinGroup> find_thin_groups(WorldState& world, std::span<const ThinDeformable> thin);
+std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span<const ThinDeformable> thin);
 /// Substep k (1 …) of the deformables' substeps for all groups: groups with ropes or tied to solids in each, sheets
 /// alone once for the whole step, in the last. Pushes the bodies, notes ropes that break.
-void advance_thin_groups(WorldState& world, std::span<const ThinGroup> groups, std::span<ThinDeformable> thin,
-                         std::vector<TouchedBody>& bodies, int k);
+void advance_thin_groups(const DeformableAccess& world, std::span<const ThinGroup> groups,
+                         std::span<ThinDeformable> thin, std::vector<TouchedBody>& bodies, int k);
 /// What the deformable of that slot has touched of others is no more.
-void forget_thin_contacts(WorldState& world, std::uint32_t slot);
+void forget_thin_contacts(DeformableState& deformables, std::uint32_t slot);
 
 }  // namespace embody::physics::stages

@@ -3,24 +3,27 @@
 
 #include <algorithm>
 
+#include "foundation/task_pool.h"
+#include "physics/definitions/world_settings.h"
 #include "physics/stages/deformable/solid_contact_search.h"
 #include "physics/stages/deformable/solid_ties.h"
+#include "physics/state/deformable_state.h"
 
 namespace embody::physics::stages {
 
 const PlacedSurface& ThinOnSolids::surface(std::uint32_t slot) {
     const auto known = surfaces_.find(slot);
     if (known != surfaces_.end()) return known->second;
-    return surfaces_.emplace(slot, PlacedSurface(*world_.deformables.at(slot).solid)).first->second;
+    return surfaces_.emplace(slot, PlacedSurface(*world_.deformables.records.at(slot).solid)).first->second;
 }
 
 void ThinOnSolids::add(ThinDeformable& thin, std::vector<TouchedBody>& bodies, double h) {
     with_bodies_ = thin.contacts;
     between_ = thin.sheet_contacts;
     held_.clear();
-    for (std::uint32_t slot = 0; slot < world_.deformables.slot_count(); ++slot) {
-        if (!world_.deformables.used(slot)) continue;
-        const DeformableRecord& solid = world_.deformables.at(slot);
+    for (std::uint32_t slot = 0; slot < world_.deformables.records.slot_count(); ++slot) {
+        if (!world_.deformables.records.used(slot)) continue;
+        const DeformableRecord& solid = world_.deformables.records.at(slot);
         if (solid.solid && solid.definition.enabled && may_collide(thin.record->definition, solid.definition))
             add_solid(thin, slot, bodies, h);
     }
@@ -28,7 +31,7 @@ void ThinOnSolids::add(ThinDeformable& thin, std::vector<TouchedBody>& bodies, d
 
 void ThinOnSolids::add_solid(ThinDeformable& thin, std::uint32_t slot, std::vector<TouchedBody>& bodies, double h) {
     const DeformableRecord& sheet = *thin.record;
-    const DeformableRecord& other = world_.deformables.at(slot);
+    const DeformableRecord& other = world_.deformables.records.at(slot);
     const Nodes& nodes = sheet.nodes();
     const double radius = sheet.definition.contact_radius + other.definition.contact_radius;
     const Bounds near = enlarged(other.bounds(), reach_of(world_, sheet) + radius);
@@ -43,7 +46,7 @@ void ThinOnSolids::add_solid(ThinDeformable& thin, std::uint32_t slot, std::vect
     const double fall = length(world_.settings.gravity) * h;
     for (std::uint32_t node = 0; node < nodes.size(); ++node) {
         const Vec3 at = nodes.position[node];
-        if (!contains(near, at) || is_tied(sheet, node, world_.deformables.handle_at(slot))) continue;
+        if (!contains(near, at) || is_tied(sheet, node, world_.deformables.records.handle_at(slot))) continue;
         const double reach = 2 * radius + (length(nodes.mean_velocity[node]) + fall) * h;
         const auto place = surface(slot).find(at, std::max(reach, surface(slot).deepest()));
         if (!place) continue;
@@ -84,7 +87,7 @@ void ThinOnSolids::find_following(SolidDeformable& solid, const Nodes& sheet, do
     for (const Held& at : held) {
         for (std::size_t k = 0; k < 3; ++k) push_[at.place.triangle[k]] += at.place.weight[k] * at.place.normal;
     }
-    solid.find_response(push_, move_, *world_.workers);
+    solid.find_response(push_, move_, world_.workers);
     for (Held& at : held) {
         Vec3 way;
         for (std::size_t k = 0; k < 3; ++k) way += at.place.weight[k] * move_[at.place.triangle[k]];

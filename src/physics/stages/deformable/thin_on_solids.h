@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "physics/deformable/solid/surface_pairs.h"
+#include "physics/stages/access.h"
 #include "physics/stages/deformable/thin_deformables.h"
 #include "physics/stages/namespace.h"
-#include "physics/state/world_state.h"
 
 namespace embody::physics::stages {
 
@@ -18,7 +18,7 @@ public:
     /// Surfaces of solids as they lie now, by slot, found when they are asked for.
     using Surfaces = std::map<std::uint32_t, PlacedSurface>;
     /// All enabled solids of the world as they lie now, asleep or not.
-    ThinOnSolids(WorldState& world, Surfaces& surfaces) : world_(world), surfaces_(surfaces) {}
+    ThinOnSolids(const DeformableAccess& world, Surfaces& surfaces) : world_(world), surfaces_(surfaces) {}
 
     /// Appends the solids near `thin` to the bodies that it touches, and contacts of its nodes with them. `h` is its
     /// substep, s.
@@ -42,7 +42,7 @@ private:
     void uncover(ThinDeformable& thin, std::uint32_t solid, double distance) const;
     void find_following(SolidDeformable& solid, const Nodes& sheet, double h, std::span<Held> held);
 
-    WorldState& world_;
+    const DeformableAccess world_;
     Surfaces& surfaces_;
     std::vector<Held> held_;                // of the sheet at hand, in the order of its contacts
     std::vector<NodeContact> with_bodies_;  // its contacts without solids

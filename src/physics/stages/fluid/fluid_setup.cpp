@@ -3,9 +3,12 @@
 #include <cmath>
 #include <string>
 
+#include "foundation/task_pool.h"
 #include "physics/fluid/obstacles/obstacle_probe.h"
+#include "physics/stages/access.h"
 #include "physics/stages/fluid/fluids.h"
-#include "physics/state/world_state.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
@@ -97,13 +100,13 @@ Result<void> fill_hulls(const FluidDefinition& definition, Filling& filling) {
 }
 
 // Those in obstacles are left out.
-void leave_out_obstacles(const WorldState& world, double cell_size, std::vector<Vec3>& places) {
+void leave_out_obstacles(const ObstacleAccess& world, double cell_size, std::vector<Vec3>& places) {
     Bounds bounds;
     for (const Vec3 p : places) bounds.add(p);
-    world.broad_phase.query(bounds, [&](std::uint32_t slot) {
-        const BodyRecord& record = world.record(slot);
+    world.contacts.broad_phase.query(bounds, [&](std::uint32_t slot) {
+        const BodyRecord& record = world.rigid.record(slot);
         if (!record.shape || !record.definition.enabled) return;
-        ObstacleProbe probe(*record.shape, world.pose(slot));
+        ObstacleProbe probe(*record.shape, world.rigid.pose(slot));
         if (!probe.look_at(bounds, cell_size)) return;
         std::erase_if(places, [&](Vec3 p) {
             return !(contains(enlarged(probe.bounds(), cell_size), p)) ? false : probe.nearest(p).distance < 0;
@@ -146,7 +149,7 @@ void read_particles(FluidRecord& record, TaskPool& workers) {
     record.bounds.add(origin + Vec3{reach.upper[0], reach.upper[1], reach.upper[2]});
 }
 
-Result<FluidIds> add_particles(const WorldState& world, FluidRecord& fluid, std::span<const Vec3> places) {
+Result<FluidIds> add_particles(const ObstacleAccess& world, FluidRecord& fluid, std::span<const Vec3> places) {
     for (std::size_t i = 0; i < places.size(); ++i) {
         if (!is_finite(places[i])) return Error{"places[" + std::to_string(i) + "]", "must be finite"};
     }
@@ -158,11 +161,11 @@ Result<FluidIds> add_particles(const WorldState& world, FluidRecord& fluid, std:
     positions.reserve(free.size());
     for (const Vec3 p : free) positions.push_back(to_vec3f(p - fluid.solver->origin()));
     const FluidIds ids = fluid.solver->add_particles(positions);
-    read_particles(fluid, *world.workers);
+    read_particles(fluid, world.workers);
     return ids;
 }
 
-Result<FluidRecord> set_up_fluid(const WorldState& world, const FluidDefinition& definition) {
+Result<FluidRecord> set_up_fluid(const ObstacleAccess& world, const FluidDefinition& definition) {
     if (auto result = validate(definition); !result) return result.error();
     Filling filling;
     if (auto result = fill_boxes(definition, filling); !result) return result.error();
@@ -189,7 +192,7 @@ Result<FluidRecord> set_up_fluid(const WorldState& world, const FluidDefinition&
     record.definition = definition;
     record.solver =
         std::make_unique<FluidSolver>(origin, definition.cell_size, properties, positions, definition.velocity);
-    read_particles(record, *world.workers);
+    read_particles(record, world.workers);
     return record;
 }
 

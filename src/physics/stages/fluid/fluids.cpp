@@ -4,9 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/task_pool.h"
+#include "physics/definitions/step_report.h"
+#include "physics/definitions/world_settings.h"
+#include "physics/stages/access.h"
 #include "physics/stages/fluid/fluids.h"
 #include "physics/stages/rigid/wake.h"
 #include "physics/stages/stages.h"
+#include "physics/state/activity_state.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/fluid_state.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
@@ -19,9 +27,9 @@ constexpr double noticed_change = 0.05;  // of a sleeping body's weight: another
 constexpr double most_support = 1.5;     // of the weight of a body and of its volume of the fluid, or what it carries
 constexpr double farthest_jump = 0.5;    // m: a body that was put farther away was not moved through the fluid
 
-Vec3 angular_momentum_of(const WorldState& world, std::uint32_t slot, Vec3 angular_velocity) {
-    const Quat rotation = world.motion[slot].rotation;
-    return rotate(rotation, world.constants[slot].inertia * rotate_inverse(rotation, angular_velocity));
+Vec3 angular_momentum_of(const FluidAccess& world, std::uint32_t slot, Vec3 angular_velocity) {
+    const Quat rotation = world.rigid.motion[slot].rotation;
+    return rotate(rotation, world.rigid.constants[slot].inertia * rotate_inverse(rotation, angular_velocity));
 }
 
 Vec3 at_most(Vec3 v, double most) {
@@ -35,13 +43,13 @@ struct Support {
 };
 
 // Contacts and joints of this step will do what they did in the last one, as far as that was no impact.
-Support support_of(const WorldState& world, std::uint32_t slot, double density) {
-    const FluidTouch& touch = world.fluid_touches[slot];
+Support support_of(const FluidAccess& world, std::uint32_t slot, double density) {
+    const FluidTouch& touch = world.fluids.touches[slot];
     if (touch.step + 1 != world.report.step) return {};
     const double dt = world.settings.time_step;
-    const BodyState& state = world.motion[slot];
-    const BodyRecord& record = world.record(slot);
-    const double mass = world.constants[slot].mass;
+    const BodyState& state = world.rigid.motion[slot];
+    const BodyRecord& record = world.rigid.record(slot);
+    const double mass = world.rigid.constants[slot].mass;
     const Vec3 linear = (state.linear_velocity - touch.linear_velocity - touch.acceleration * dt) * mass;
     const Vec3 angular =
         angular_momentum_of(world, slot, state.angular_velocity - touch.angular_velocity) - touch.torque * dt;
@@ -56,22 +64,22 @@ Vec3 turn_between(Quat from, Quat to) {
 }
 
 // A body that nothing but the user moves. One that was put somewhere else goes there in this step.
-FluidObstacle fixed_obstacle(const WorldState& world, const FluidRecord& fluid, std::uint32_t slot) {
-    const BodyRecord& record = world.record(slot);
-    const BodyState& state = world.motion[slot];
+FluidObstacle fixed_obstacle(const FluidAccess& world, const FluidRecord& fluid, std::uint32_t slot) {
+    const BodyRecord& record = world.rigid.record(slot);
+    const BodyState& state = world.rigid.motion[slot];
     const double dt = world.settings.time_step;
     FluidObstacle obstacle;
     obstacle.body = slot;
     obstacle.shape = record.shape;
     obstacle.version = record.version;
-    obstacle.pose = world.pose(slot);
+    obstacle.pose = world.rigid.pose(slot);
     obstacle.center = state.center;
     obstacle.linear_velocity = state.linear_velocity;
     obstacle.angular_velocity = state.angular_velocity;
     obstacle.is_static = record.definition.kind == BodyKind::static_body;
     const auto seen = fluid.seen.find(slot);
     if (seen == fluid.seen.end() || seen->second.version == record.version) return obstacle;
-    const Vec3 local_center = world.constants[slot].local_center;
+    const Vec3 local_center = world.rigid.constants[slot].local_center;
     const Vec3 last_center = transform_point(seen->second.pose, local_center);
     const Vec3 way = state.center - last_center,
                turn = turn_between(seen->second.pose.rotation, obstacle.pose.rotation);
@@ -85,101 +93,103 @@ FluidObstacle fixed_obstacle(const WorldState& world, const FluidRecord& fluid, 
     return obstacle;
 }
 
-FluidObstacle dynamic_obstacle(WorldState& world, std::uint32_t slot, double density) {
-    const BodyState& state = world.motion[slot];
+FluidObstacle dynamic_obstacle(const FluidAccess& world, std::uint32_t slot, double density) {
+    const BodyState& state = world.rigid.motion[slot];
     FluidObstacle obstacle;
     obstacle.body = slot;
-    obstacle.shape = world.record(slot).shape;
-    obstacle.version = world.record(slot).version;
-    obstacle.pose = world.pose(slot);
+    obstacle.shape = world.rigid.record(slot).shape;
+    obstacle.version = world.rigid.record(slot).version;
+    obstacle.pose = world.rigid.pose(slot);
     obstacle.center = state.center;
-    if (world.is_asleep(slot)) return obstacle;
+    if (world.activity.is_asleep(slot)) return obstacle;
     const double dt = world.settings.time_step;
     const Support support = support_of(world, slot, density);
     obstacle.linear_velocity = state.linear_velocity;
     obstacle.angular_velocity = state.angular_velocity;
     obstacle.inverse_mass = state.inverse_mass;
     obstacle.inverse_inertia = state.inverse_inertia;
-    obstacle.acceleration = world.constants[slot].acceleration + support.linear * (state.inverse_mass / dt);
-    obstacle.angular_acceleration = state.inverse_inertia * (world.constants[slot].torque + support.angular / dt);
+    obstacle.acceleration = world.rigid.constants[slot].acceleration + support.linear * (state.inverse_mass / dt);
+    obstacle.angular_acceleration = state.inverse_inertia * (world.rigid.constants[slot].torque + support.angular / dt);
     return obstacle;
 }
 
 // Slots of the bodies that the fluid may meet in this step, ascending.
-std::vector<std::uint32_t> bodies_near(const WorldState& world, const FluidRecord& fluid) {
+std::vector<std::uint32_t> bodies_near(const FluidAccess& world, const FluidRecord& fluid) {
     const double dt = world.settings.time_step, h = fluid.definition.cell_size;
     const double way = (fluid.fastest + length(world.settings.gravity) * dt) * dt;
     std::vector<std::uint32_t> slots;
-    world.broad_phase.query(enlarged(fluid.bounds, 4 * h + way), [&](std::uint32_t slot) {
-        if (world.record(slot).shape && world.record(slot).definition.enabled) slots.push_back(slot);
+    world.contacts.broad_phase.query(enlarged(fluid.bounds, 4 * h + way), [&](std::uint32_t slot) {
+        if (world.rigid.record(slot).shape && world.rigid.record(slot).definition.enabled) slots.push_back(slot);
     });
     return slots;
 }
 
 // Whether anything has happened around a sleeping fluid.
-bool is_disturbed(const WorldState& world, const FluidRecord& fluid, const std::vector<std::uint32_t>& slots) {
+bool is_disturbed(const FluidAccess& world, const FluidRecord& fluid, const std::vector<std::uint32_t>& slots) {
     if (slots.size() != fluid.seen.size()) return true;
     for (const std::uint32_t slot : slots) {
         const auto seen = fluid.seen.find(slot);
-        if (seen == fluid.seen.end() || seen->second.version != world.record(slot).version) return true;
-        const BodyState& state = world.motion[slot];
+        if (seen == fluid.seen.end() || seen->second.version != world.rigid.record(slot).version) return true;
+        const BodyState& state = world.rigid.motion[slot];
         if (state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{}) return true;
-        if (world.is_dynamic(slot) && !world.is_asleep(slot)) return true;
+        if (world.rigid.is_dynamic(slot) && !world.activity.is_asleep(slot)) return true;
     }
     return false;
 }
 
 // Forces of this step on the bodies, and what is remembered of them.
-void push_bodies(WorldState& world, FluidRecord& fluid, std::span<const FluidObstacle> obstacles) {
+void push_bodies(const FluidAccess& world, FluidRecord& fluid, std::span<const FluidObstacle> obstacles) {
     const double dt = world.settings.time_step;
     fluid.seen.clear();
     for (const FluidObstacle& obstacle : obstacles) {
-        const BodyRecord& record = world.record(obstacle.body);
-        fluid.seen[obstacle.body] = {record.version, world.pose(obstacle.body), obstacle.impulse / dt,
+        const BodyRecord& record = world.rigid.record(obstacle.body);
+        fluid.seen[obstacle.body] = {record.version, world.rigid.pose(obstacle.body), obstacle.impulse / dt,
                                      obstacle.angular_impulse / dt};
     }
 }
 
-void add_forces(WorldState& world, const FluidRecord& fluid) {
+void add_forces(const FluidAccess& world, const FluidRecord& fluid) {
     for (const auto& [slot, seen] : fluid.seen) {
         if (seen.force == Vec3{} && seen.torque == Vec3{}) continue;
-        world.record(slot).fluid_force += seen.force;
-        world.record(slot).fluid_torque += seen.torque;
-        world.pushed_by_fluids.push_back(slot);
+        world.rigid.record(slot).fluid_force += seen.force;
+        world.rigid.record(slot).fluid_torque += seen.torque;
+        world.fluids.pushed_bodies.push_back(slot);
     }
 }
 
 // Bodies that sleep and feel another force than when they fell asleep wake.
-void wake_pushed(WorldState& world) {
-    for (const std::uint32_t slot : world.pushed_by_fluids) {
-        if (!world.is_dynamic(slot) || !world.is_asleep(slot)) continue;
-        const Vec3 change = world.record(slot).fluid_force - world.fluid_touches[slot].force_asleep;
-        const double weight = world.constants[slot].mass * length(world.settings.gravity);
+void wake_pushed(const FluidAccess& world) {
+    for (const std::uint32_t slot : world.fluids.pushed_bodies) {
+        if (!world.rigid.is_dynamic(slot) || !world.activity.is_asleep(slot)) continue;
+        const Vec3 change = world.rigid.record(slot).fluid_force - world.fluids.touches[slot].force_asleep;
+        const double weight = world.rigid.constants[slot].mass * length(world.settings.gravity);
         if (length(change) > noticed_change * weight) wake_group_of(world, slot);
     }
 }
 
-void note_touches(WorldState& world) {
-    for (const std::uint32_t slot : world.pushed_by_fluids) {
-        if (!world.is_dynamic(slot) || world.is_asleep(slot)) continue;
-        const BodyState& state = world.motion[slot];
-        const FluidTouch& before = world.fluid_touches[slot];
+void note_touches(const FluidAccess& world) {
+    for (const std::uint32_t slot : world.fluids.pushed_bodies) {
+        if (!world.rigid.is_dynamic(slot) || world.activity.is_asleep(slot)) continue;
+        const BodyState& state = world.rigid.motion[slot];
+        const FluidTouch& before = world.fluids.touches[slot];
         if (before.step == world.report.step) continue;  // pushed by several
         const double last = before.step + 1 == world.report.step ? length(before.force_asleep) : 0;
-        const double carried = std::min(length(world.record(slot).fluid_force), last);
-        world.fluid_touches[slot] = {world.report.step,
-                                     state.linear_velocity,
-                                     state.angular_velocity,
-                                     world.constants[slot].acceleration,
-                                     world.constants[slot].torque,
-                                     world.record(slot).fluid_force,
-                                     carried};
+        const double carried = std::min(length(world.rigid.record(slot).fluid_force), last);
+        world.fluids.touches[slot] = {world.report.step,
+                                      state.linear_velocity,
+                                      state.angular_velocity,
+                                      world.rigid.constants[slot].acceleration,
+                                      world.rigid.constants[slot].torque,
+                                      world.rigid.record(slot).fluid_force,
+                                      carried};
     }
 }
 
-void report_limit(WorldState& world, StepLimit limit) { world.report.limits |= static_cast<std::uint32_t>(limit); }
+void report_limit(const FluidAccess& world, StepLimit limit) {
+    world.report.limits |= static_cast<std::uint32_t>(limit);
+}
 
-void note_outcome(WorldState& world, FluidRecord& fluid, const FluidOutcome& outcome) {
+void note_outcome(const FluidAccess& world, FluidRecord& fluid, const FluidOutcome& outcome) {
     fluid.lost += outcome.lost;
     if (outcome.lost > 0) report_limit(world, StepLimit::fluid_particles_lost);
     if (outcome.is_slowed) report_limit(world, StepLimit::fluid_too_fast);
@@ -204,106 +214,107 @@ double height_of(const FluidSolver& solver, Vec3 gravity) {
 }
 
 // Honey that runs is slower than water at rest trembles: what still sinks as a whole does not sleep.
-bool has_sunk(const WorldState& world, const FluidRecord& fluid) {
+bool has_sunk(const FluidAccess& world, const FluidRecord& fluid) {
     const double sunk = fluid.quiet_height - height_of(*fluid.solver, world.settings.gravity);
     return sunk > quiet_sinking * fluid.definition.cell_size * fluid.quiet_time;
 }
 
-void fall_asleep_if_quiet(WorldState& world, FluidRecord& fluid) {
-    const bool is_quiet = fluid.solver->particles().empty() || fluid.solver->usual_speed(*world.workers) < quiet_speed;
+void fall_asleep_if_quiet(const FluidAccess& world, FluidRecord& fluid) {
+    const bool is_quiet = fluid.solver->particles().empty() || fluid.solver->usual_speed(world.workers) < quiet_speed;
     if (is_quiet && fluid.quiet_time == 0) fluid.quiet_height = height_of(*fluid.solver, world.settings.gravity);
     fluid.quiet_time = is_quiet ? fluid.quiet_time + world.settings.time_step : 0;
     if (fluid.quiet_time >= time_to_sleep && has_sunk(world, fluid)) fluid.quiet_time = 0;
     if (!is_quiet) {
         // What floats is quiet at its turning points, too: it waits for the liquid.
         for (const auto& [slot, seen] : fluid.seen) {
-            if (seen.force != Vec3{}) world.sleep[slot].quiet_time = 0;
+            if (seen.force != Vec3{}) world.activity.sleep[slot].quiet_time = 0;
         }
     }
     if (fluid.quiet_time < time_to_sleep || !world.settings.sleeping || !fluid.definition.allow_sleep) return;
     for (const auto& [slot, seen] : fluid.seen) {
-        const BodyState& state = world.motion[slot];
-        if (world.is_dynamic(slot) && !world.is_asleep(slot)) return;
+        const BodyState& state = world.rigid.motion[slot];
+        if (world.rigid.is_dynamic(slot) && !world.activity.is_asleep(slot)) return;
         if (state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{}) return;
     }
     fluid.is_asleep = true;
     fluid.solver->stop();
-    read_particles(fluid, *world.workers);
+    read_particles(fluid, world.workers);
 }
 
-std::vector<FluidObstacle> obstacles_near(WorldState& world, const FluidRecord& fluid,
+std::vector<FluidObstacle> obstacles_near(const FluidAccess& world, const FluidRecord& fluid,
                                           const std::vector<std::uint32_t>& slots) {
     std::vector<FluidObstacle> obstacles;
     obstacles.reserve(slots.size());
     for (const std::uint32_t slot : slots) {
-        obstacles.push_back(world.is_dynamic(slot) ? dynamic_obstacle(world, slot, fluid.definition.density)
-                                                   : fixed_obstacle(world, fluid, slot));
+        obstacles.push_back(world.rigid.is_dynamic(slot) ? dynamic_obstacle(world, slot, fluid.definition.density)
+                                                         : fixed_obstacle(world, fluid, slot));
     }
     return obstacles;
 }
 
-void advance_fluid(WorldState& world, FluidRecord& fluid) {
+void advance_fluid(const FluidAccess& world, FluidRecord& fluid) {
     const std::vector<std::uint32_t> slots = bodies_near(world, fluid);
     if (fluid.is_asleep && !is_disturbed(world, fluid, slots)) return;
     if (fluid.is_asleep) fluid.quiet_time = 0;
     fluid.is_asleep = false;
-    const TaskPool::StayAwake stay_awake(*world.workers);
+    const TaskPool::StayAwake stay_awake(world.workers);
     std::vector<FluidObstacle> obstacles = obstacles_near(world, fluid, slots);
     const FluidOutcome outcome = fluid.solver->advance(
-        world.settings.time_step, world.settings.gravity * fluid.definition.gravity_factor, obstacles, *world.workers);
+        world.settings.time_step, world.settings.gravity * fluid.definition.gravity_factor, obstacles, world.workers);
     note_outcome(world, fluid, outcome);
     push_bodies(world, fluid, obstacles);
-    if (fluid.is_frozen) read_particles(fluid, *world.workers);
+    if (fluid.is_frozen) read_particles(fluid, world.workers);
     fall_asleep_if_quiet(world, fluid);
 }
 
 // Particles stay outside of the bodies where these came to.
-void follow_bodies(WorldState& world, FluidRecord& fluid) {
+void follow_bodies(const FluidAccess& world, FluidRecord& fluid) {
     std::vector<std::uint32_t> slots;
     for (const auto& [slot, seen] : fluid.seen) {
-        if (world.is_used(slot)) slots.push_back(slot);
+        if (world.rigid.is_used(slot)) slots.push_back(slot);
     }
     std::vector<FluidObstacle> obstacles = obstacles_near(world, fluid, slots);
-    const FluidSolver::Followed followed = fluid.solver->follow(obstacles, *world.workers);
+    const FluidSolver::Followed followed = fluid.solver->follow(obstacles, world.workers);
     fluid.lost += followed.lost;
     if (followed.lost > 0) report_limit(world, StepLimit::fluid_particles_lost);
     if (!followed.is_solved) report_limit(world, StepLimit::fluid_unsolved);
-    read_particles(fluid, *world.workers);
+    read_particles(fluid, world.workers);
 }
 
 }  // namespace
 
-void prepare_fluid(WorldState& world, FluidRecord& fluid) {
-    world.fluid_touches.resize(world.bodies.slot_count());
+void prepare_fluid(const FluidAccess& world, FluidRecord& fluid) {
+    world.fluids.touches.resize(world.rigid.bodies.slot_count());
     std::vector<FluidObstacle> obstacles = obstacles_near(world, fluid, bodies_near(world, fluid));
-    fluid.solver->prepare(obstacles, *world.workers);
+    fluid.solver->prepare(obstacles, world.workers);
 }
 
-void advance_fluids(WorldState& world) {
-    for (const std::uint32_t slot : world.pushed_by_fluids) {
-        if (world.is_used(slot)) world.record(slot).fluid_force = world.record(slot).fluid_torque = {};
+void advance_fluids(const FluidAccess& world) {
+    for (const std::uint32_t slot : world.fluids.pushed_bodies) {
+        if (world.rigid.is_used(slot))
+            world.rigid.record(slot).fluid_force = world.rigid.record(slot).fluid_torque = {};
     }
-    const bool had_pushed = !world.pushed_by_fluids.empty();
-    world.pushed_by_fluids.clear();
-    if (world.fluids.count() == 0 && !had_pushed) return;
-    world.fluid_touches.resize(world.bodies.slot_count());
-    for (std::uint32_t slot = 0; slot < world.fluids.slot_count(); ++slot) {
-        if (!world.fluids.used(slot) || world.fluids.at(slot).is_frozen) continue;
+    const bool had_pushed = !world.fluids.pushed_bodies.empty();
+    world.fluids.pushed_bodies.clear();
+    if (world.fluids.records.count() == 0 && !had_pushed) return;
+    world.fluids.touches.resize(world.rigid.bodies.slot_count());
+    for (std::uint32_t slot = 0; slot < world.fluids.records.slot_count(); ++slot) {
+        if (!world.fluids.records.used(slot) || world.fluids.records.at(slot).is_frozen) continue;
         gather_awake(world);
-        advance_fluid(world, world.fluids.at(slot));
-        add_forces(world, world.fluids.at(slot));
+        advance_fluid(world, world.fluids.records.at(slot));
+        add_forces(world, world.fluids.records.at(slot));
     }
     wake_pushed(world);
     gather_awake(world);
     note_touches(world);
 }
 
-void settle_fluids(WorldState& world) {
-    for (std::uint32_t slot = 0; slot < world.fluids.slot_count(); ++slot) {
-        if (!world.fluids.used(slot)) continue;
-        FluidRecord& fluid = world.fluids.at(slot);
+void settle_fluids(const FluidAccess& world) {
+    for (std::uint32_t slot = 0; slot < world.fluids.records.slot_count(); ++slot) {
+        if (!world.fluids.records.used(slot)) continue;
+        FluidRecord& fluid = world.fluids.records.at(slot);
         if (fluid.is_frozen || fluid.is_asleep) continue;
-        const TaskPool::StayAwake stay_awake(*world.workers);
+        const TaskPool::StayAwake stay_awake(world.workers);
         follow_bodies(world, fluid);
     }
 }

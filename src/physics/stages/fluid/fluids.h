@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "foundation/result.h"
+#include "physics/stages/access.h"
 #include "physics/stages/namespace.h"
-#include "physics/state/world_state.h"
+#include "physics/state/fluid_record.h"
 
 namespace embody::physics::stages {
 
 /// Particles that fill the definition's volume and no obstacle. Fails where there are none or too many, or a hull is
 /// flat.
-Result<FluidRecord> set_up_fluid(const WorldState& world, const FluidDefinition& definition);
+Result<FluidRecord> set_up_fluid(const ObstacleAccess& world, const FluidDefinition& definition);
 /// More particles for it, at rest, where no obstacle is. Fails where there are none or too many.
-Result<FluidIds> add_particles(const WorldState& world, FluidRecord& fluid, std::span<const Vec3> places);
+Result<FluidIds> add_particles(const ObstacleAccess& world, FluidRecord& fluid, std::span<const Vec3> places);
 /// A fluid of the same matter and as large particles, without any yet, around the places of these.
 FluidRecord fluid_around(const FluidRecord& other, FluidIds ids);
 /// From one fluid to another, as they are; their ids there. read_particles has to follow for both.
 FluidIds move_particles(FluidRecord& from, FluidIds ids, FluidRecord& to);
 /// Measures the obstacles around a new fluid, which the first step would have to do.
-void prepare_fluid(WorldState& world, FluidRecord& fluid);
+void prepare_fluid(const FluidAccess& world, FluidRecord& fluid);
 /// Fills what is read of a fluid from its solver.
 void read_particles(FluidRecord& record, TaskPool& workers);
 

@@ -4,7 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/task_pool.h"
+#include "physics/definitions/world_settings.h"
 #include "physics/dynamic/equations_of_motion.h"
+#include "physics/stages/access.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/impact_memory.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
@@ -28,28 +34,28 @@ Quat turn_evenly(Quat rotation, Vec3 omega, double time, double substep) {
 
 }  // namespace
 
-BodyPaths::BodyPaths(WorldState& world)
+BodyPaths::BodyPaths(const ImpactAccess& world)
     : world_(world),
-      memory_(world.impact_memory),
+      memory_(world.impacts),
       step_(world.settings.time_step),
       substep_(step_ / world.settings.substeps),
       states_(static_cast<std::size_t>(world.settings.substeps)) {
-    memory_.is_supported.assign(world.motion.size(), 0);
-    for (const ContactGlance& contact : world.contact_glances) {
+    memory_.is_supported.assign(world.rigid.motion.size(), 0);
+    for (const ContactSummary& contact : world.contacts.summaries) {
         if (contact.was_loaded) memory_.is_supported[contact.a] = memory_.is_supported[contact.b] = 1;
     }
-    memory_.path_of_body.assign(world.motion.size(), not_remembered);
+    memory_.path_of_body.assign(world.rigid.motion.size(), not_remembered);
     memory_.path_states.clear();
 }
 
 Vec3 BodyPaths::free_acceleration(std::uint32_t body) const {
-    const bool is_free = world_.motion[body].inverse_mass > 0 && !memory_.is_supported[body];
-    return is_free ? world_.constants[body].acceleration : Vec3{};
+    const bool is_free = world_.rigid.motion[body].inverse_mass > 0 && !memory_.is_supported[body];
+    return is_free ? world_.rigid.constants[body].acceleration : Vec3{};
 }
 
 bool BodyPaths::turns_evenly(std::uint32_t body, const BodyState& state) const {
     return state.inverse_mass == 0 || memory_.is_supported[body] ||
-           !has_gyroscopic_torque(state, world_.constants[body], step_);
+           !has_gyroscopic_torque(state, world_.rigid.constants[body], step_);
 }
 
 void BodyPaths::move_evenly(std::uint32_t body, BodyState& state, double time) const {
@@ -59,11 +65,11 @@ void BodyPaths::move_evenly(std::uint32_t body, BodyState& state, double time) c
     if (state.angular_velocity == Vec3{}) return;
     state.rotation = turn_evenly(state.rotation, state.angular_velocity, time, substep_);
     state.turn = state.rotation * conjugate(state.start_rotation);
-    if (state.inverse_mass > 0) refresh_inertia(state, world_.constants[body]);
+    if (state.inverse_mass > 0) refresh_inertia(state, world_.rigid.constants[body]);
 }
 
 BodyState BodyPaths::state_at(std::uint32_t body, double time) const {
-    BodyState state = world_.motion[body];
+    BodyState state = world_.rigid.motion[body];
     if (time == 0) return state;
     if (turns_evenly(body, state)) {
         move_evenly(body, state, time);
@@ -73,7 +79,7 @@ BodyState BodyPaths::state_at(std::uint32_t body, double time) const {
     // From the end of the last whole substep on.
     const auto whole = std::min(static_cast<std::size_t>(time / substep_), states_);
     const std::uint32_t path = memory_.path_of_body[body];
-    const BodyConstants& constants = world_.constants[body];
+    const BodyConstants& constants = world_.rigid.constants[body];
     if (path != not_remembered && whole > 0) {
         state = memory_.path_states[path + whole - 1];
     } else {
@@ -92,7 +98,7 @@ BodyPaths::Motion BodyPaths::motion_about(std::uint32_t body, double time) const
     const std::uint32_t path = memory_.path_of_body[body];
     if (path == not_remembered) return motion_of(state_at(body, time));
     const auto whole = std::min(static_cast<std::size_t>(time / substep_), states_);
-    const BodyState& before = whole == 0 ? world_.motion[body] : memory_.path_states[path + whole - 1];
+    const BodyState& before = whole == 0 ? world_.rigid.motion[body] : memory_.path_states[path + whole - 1];
     Motion motion = motion_of(before);
     const double rest = time - static_cast<double>(whole) * substep_;
     if (whole == states_ || rest <= 0) return motion;
@@ -121,7 +127,7 @@ const BodyState& BodyPaths::kept_state_at(std::uint32_t body, double time) {
 }
 
 Transform BodyPaths::pose_at(std::uint32_t body, double time) {
-    return body_pose(kept_state_at(body, time), world_.constants[body].local_center);
+    return body_pose(kept_state_at(body, time), world_.rigid.constants[body].local_center);
 }
 
 void BodyPaths::lead_through(std::uint32_t body, BodyState state, double time) {
@@ -130,26 +136,26 @@ void BodyPaths::lead_through(std::uint32_t body, BodyState state, double time) {
     } else {
         const auto whole = std::min(static_cast<std::size_t>(time / substep_), states_);
         const double rest = time - static_cast<double>(whole) * substep_;
-        if (rest > 0) move_freely(state, world_.constants[body], -rest);
-        for (std::size_t k = 0; k < whole; ++k) move_freely(state, world_.constants[body], -substep_);
-        refresh_inertia(state, world_.constants[body]);
+        if (rest > 0) move_freely(state, world_.rigid.constants[body], -rest);
+        for (std::size_t k = 0; k < whole; ++k) move_freely(state, world_.rigid.constants[body], -substep_);
+        refresh_inertia(state, world_.rigid.constants[body]);
     }
     begin_anew(body, state);
 }
 
 void BodyPaths::change_velocities(std::uint32_t body, Vec3 linear, Vec3 angular, double time) {
-    BodyState state = world_.motion[body];
+    BodyState state = world_.rigid.motion[body];
     state.center -= linear * time;
     state.rotation = turn_evenly(state.rotation, angular, -time, substep_);
     state.turn = state.rotation * conjugate(state.start_rotation);
     state.linear_velocity += linear;
     state.angular_velocity += angular;
-    refresh_inertia(state, world_.constants[body]);
+    refresh_inertia(state, world_.rigid.constants[body]);
     begin_anew(body, state);
 }
 
 void BodyPaths::begin_anew(std::uint32_t body, const BodyState& state) {
-    world_.motion[body] = state;
+    world_.rigid.motion[body] = state;
     for (KeptState& kept : kept_) {
         if (kept.body == body) kept.body = not_remembered;
     }
@@ -157,10 +163,10 @@ void BodyPaths::begin_anew(std::uint32_t body, const BodyState& state) {
 }
 
 void BodyPaths::fill_path(std::uint32_t body) {
-    BodyState state = world_.motion[body];
+    BodyState state = world_.rigid.motion[body];
     const std::size_t first = memory_.path_of_body[body];
     for (std::size_t k = 0; k < states_; ++k) {
-        move_freely(state, world_.constants[body], substep_);
+        move_freely(state, world_.rigid.constants[body], substep_);
         memory_.path_states[first + k] = state;
     }
 }
@@ -170,12 +176,12 @@ void BodyPaths::remember(std::span<const std::uint32_t> bodies) {
     std::vector<std::uint32_t>& remembered = memory_.remembered_bodies;
     remembered.clear();
     for (const std::uint32_t body : bodies) {
-        if (memory_.path_of_body[body] != not_remembered || turns_evenly(body, world_.motion[body])) continue;
+        if (memory_.path_of_body[body] != not_remembered || turns_evenly(body, world_.rigid.motion[body])) continue;
         memory_.path_of_body[body] = static_cast<std::uint32_t>(memory_.path_states.size());
         memory_.path_states.resize(memory_.path_states.size() + states_);
         remembered.push_back(body);
     }
-    share_among(*world_.workers, remembered.size(), remembered.size() >= fewest_shared, [&](int, Share share) {
+    share_among(world_.workers, remembered.size(), remembered.size() >= fewest_shared, [&](int, Share share) {
         for (std::size_t i = share.first; i < share.last; ++i) fill_path(remembered[i]);
     });
 }

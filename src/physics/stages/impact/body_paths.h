@@ -5,8 +5,9 @@
 #include <cstdint>
 #include <span>
 
+#include "physics/stages/access.h"
 #include "physics/stages/namespace.h"
-#include "physics/state/world_state.h"
+#include "physics/state/impact_memory.h"
 
 namespace embody::physics::stages {
 
@@ -17,7 +18,7 @@ namespace embody::physics::stages {
 /// one up to the time asked for. What others carry goes straight on and turns evenly: they cancel its weight.
 class BodyPaths {
 public:
-    explicit BodyPaths(WorldState& world);
+    explicit BodyPaths(const ImpactAccess& world);
 
     /// The body at `time` (s since the step began): pose, velocities and inertia.
     [[nodiscard]] BodyState state_at(std::uint32_t body, double time) const;
@@ -58,7 +59,7 @@ private:
         BodyState state;
     };
 
-    WorldState& world_;
+    const ImpactAccess world_;
     ImpactMemory& memory_;
     const double step_, substep_;
     std::array<KeptState, 4> kept_;

@@ -18,10 +18,19 @@
 #include <cmath>
 #include <functional>
 
+#include "foundation/task_pool.h"
+#include "physics/definitions/step_report.h"
+#include "physics/definitions/world_settings.h"
 #include "physics/dynamic/equations_of_motion.h"
+#include "physics/stages/access.h"
 #include "physics/stages/impact/impact_assembly.h"
 #include "physics/stages/impact/impact_regions.h"
 #include "physics/stages/stages.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/impact_memory.h"
+#include "physics/state/joint_state.h"
+#include "physics/state/ledger.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
@@ -36,9 +45,9 @@ constexpr std::size_t nodes_as_bounce = 32;          // of an assembly's bodies 
 
 class ImpactStage {
 public:
-    explicit ImpactStage(WorldState& world)
+    explicit ImpactStage(const ImpactAccess& world)
         : world_(world),
-          memory_(world.impact_memory),
+          memory_(world.impacts),
           bodies_(world),
           paths_(world, bodies_),
           regions_(world, bodies_, paths_),
@@ -73,7 +82,7 @@ private:
     void go_back(double time);
     void note_impulse(Contact& contact, Vec3 position, Vec3 impulse, double time);
 
-    WorldState& world_;
+    const ImpactAccess world_;
     ImpactMemory& memory_;
     BodyPaths bodies_;
     ImpactPaths paths_;
@@ -92,11 +101,11 @@ void ImpactStage::predict(std::uint32_t contact) {
     memory_.is_open[contact] = 0;
     memory_.next_time[contact] = ImpactPaths::never;
     if (memory_.impacts[contact] >= most_impacts) return;
-    note(contact, paths_.predict(world_.contacts[contact]));
+    note(contact, paths_.predict(world_.contacts.list[contact]));
 }
 
 void ImpactStage::note(std::uint32_t contact, ImpactPaths::Prediction next) {
-    if (next.may_hide) next.time = regions_.first_touch(world_.contacts[contact]);
+    if (next.may_hide) next.time = regions_.first_touch(world_.contacts.list[contact]);
     memory_.is_open[contact] = next.is_open && next.time > step_ ? 1 : 0;
     if (next.time <= step_) push(next.time, contact);
 }
@@ -104,13 +113,13 @@ void ImpactStage::note(std::uint32_t contact, ImpactPaths::Prediction next) {
 // Contacts are looked at on their own, so all workers can; the events are listed in the order of the contacts.
 void ImpactStage::predict_all() {
     constexpr std::size_t fewest_shared = 1000;
-    const std::size_t count = world_.contacts.size();
+    const std::size_t count = world_.contacts.list.size();
     std::vector<ImpactPaths::Prediction>& first = memory_.first;
     first.assign(count, {});
-    share_among(*world_.workers, count, count >= fewest_shared, [&](int, Share share) {
+    share_among(world_.workers, count, count >= fewest_shared, [&](int, Share share) {
         for (auto i = static_cast<std::uint32_t>(share.first); i < share.last; ++i) {
-            if (paths_.is_surely_slow(world_.contact_glances[i])) continue;
-            first[i] = paths_.predict_straight(world_.contacts[i]);
+            if (paths_.is_surely_slow(world_.contacts.summaries[i])) continue;
+            first[i] = paths_.predict_straight(world_.contacts.list[i]);
         }
     });
 
@@ -120,16 +129,16 @@ void ImpactStage::predict_all() {
     for (std::uint32_t i = 0; i < count; ++i) {
         if (first[i].is_certain) continue;
         memory_.uncertain.push_back(i);
-        for (const std::uint32_t body : {world_.contact_glances[i].a, world_.contact_glances[i].b}) {
+        for (const std::uint32_t body : {world_.contacts.summaries[i].a, world_.contacts.summaries[i].b}) {
             if (paths_.turns_far(body)) memory_.uncertain_bodies.push_back(body);
         }
     }
     bodies_.remember(memory_.uncertain_bodies);
-    share_among(*world_.workers, memory_.uncertain.size(), memory_.uncertain.size() >= fewest_shared / 4,
+    share_among(world_.workers, memory_.uncertain.size(), memory_.uncertain.size() >= fewest_shared / 4,
                 [&](int, Share share) {
                     for (std::size_t k = share.first; k < share.last; ++k) {
                         const std::uint32_t i = memory_.uncertain[k];
-                        first[i] = paths_.predict_exactly(world_.contacts[i]);
+                        first[i] = paths_.predict_exactly(world_.contacts.list[i]);
                     }
                 });
     for (std::uint32_t i = 0; i < count; ++i) note(i, first[i]);
@@ -139,10 +148,10 @@ void ImpactStage::predict_all() {
 void ImpactStage::list_contacts() {
     if (memory_.has_lists) return;
     memory_.has_lists = true;
-    const std::vector<ContactGlance>& contacts = world_.contact_glances;
+    const std::vector<ContactSummary>& contacts = world_.contacts.summaries;
     std::vector<std::uint32_t>& first = memory_.first_of_body;
-    first.assign(world_.motion.size() + 2, 0);
-    for (const ContactGlance& contact : contacts) {
+    first.assign(world_.rigid.motion.size() + 2, 0);
+    for (const ContactSummary& contact : contacts) {
         ++first[contact.a + 2];
         ++first[contact.b + 2];
     }
@@ -162,7 +171,7 @@ void ImpactStage::note_impulse(Contact& contact, Vec3 position, Vec3 impulse, do
     for (int i = 1; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const auto far = [&](const ContactPoint& p) {
-            return length_squared(position_of(contact, p, world_.motion) - position);
+            return length_squared(position_of(contact, p, world_.rigid.motion) - position);
         };
         if (far(point) < far(*nearest)) nearest = &point;
     }
@@ -175,7 +184,7 @@ void ImpactStage::note_impulse(Contact& contact, Vec3 position, Vec3 impulse, do
     // Until then the bodies' new paths overlap where they part.
     for (int i = 0; i < contact.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        const double parting = dot(relative_velocity(contact, point, world_.motion), contact.normal);
+        const double parting = dot(relative_velocity(contact, point, world_.rigid.motion), contact.normal);
         point.inactive_until = parting > 0 ? static_cast<float>(time) : 0;
     }
 }
@@ -186,7 +195,8 @@ void ImpactStage::list_bodies(std::size_t first) {
         for (const std::uint32_t body : {site.a, site.b}) {
             const auto is_it = [body](const ImpactMemory::Moved& moved) { return moved.body == body; };
             const bool is_known = std::any_of(memory_.bodies.begin(), memory_.bodies.end(), is_it);
-            if (world_.motion[body].inverse_mass > 0 && !is_known) memory_.bodies.push_back({body, false, {}, {}, {}});
+            if (world_.rigid.motion[body].inverse_mass > 0 && !is_known)
+                memory_.bodies.push_back({body, false, {}, {}, {}});
         }
     }
 }
@@ -222,7 +232,7 @@ bool ImpactStage::is_left_to_contacts(const Contact& contact) const {
 
 // The bodies at the place of the impact. Joints have kept what they hold from falling on its way there.
 void ImpactStage::go_to(double time) {
-    for (ImpactMemory::Moved& moved : memory_.bodies) moved.start = world_.motion[moved.body];
+    for (ImpactMemory::Moved& moved : memory_.bodies) moved.start = world_.rigid.motion[moved.body];
     ImpactJoints& joints = memory_.group.joints;
     const auto bounces = [](const ImpactSite& site) { return site.coefficients.restitution > 0; };
     memory_.is_flown = !memory_.jointed.empty() && can_fly_jointed(world_) &&
@@ -231,19 +241,19 @@ void ImpactStage::go_to(double time) {
     for (ImpactMemory::Moved& moved : memory_.bodies) {
         const bool is_there =
             memory_.is_flown && std::binary_search(memory_.jointed.begin(), memory_.jointed.end(), moved.body);
-        if (!is_there) world_.motion[moved.body] = bodies_.state_at(moved.body, time);
+        if (!is_there) world_.rigid.motion[moved.body] = bodies_.state_at(moved.body, time);
     }
     joints.clear();
     if (!memory_.jointed.empty()) {
-        const ImpactJoints::View view{world_.motion, world_.constants, world_.active_joints};
+        const ImpactJoints::View view{world_.rigid.motion, world_.rigid.constants, world_.joints.active};
         move_carriers(world_, time);
         joints.set({memory_.jointed, memory_.jointed_joints}, view);
         joints.project(view);
         put_carriers_back(world_);
     }
     for (ImpactMemory::Moved& moved : memory_.bodies) {
-        moved.linear_velocity = world_.motion[moved.body].linear_velocity;
-        moved.angular_velocity = world_.motion[moved.body].angular_velocity;
+        moved.linear_velocity = world_.rigid.motion[moved.body].linear_velocity;
+        moved.angular_velocity = world_.rigid.motion[moved.body].angular_velocity;
     }
 }
 
@@ -253,17 +263,17 @@ void ImpactStage::solve(double time, SlidePath path) {
     gather(time);
     count_assembly();
     go_to(time);
-    const ImpactReport report = solve_impact_group(memory_.sites, world_.motion, memory_.group, path);
+    const ImpactReport report = solve_impact_group(memory_.sites, world_.rigid.motion, memory_.group, path);
     if (!report.converged) {
         world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
     }
-    if (world_.ledger) world_.ledger->note_impact(memory_.sites, report.energy_change, world_);
+    if (world_.ledger) world_.ledger->note_impact(memory_.sites, report.energy_change);
     for (std::size_t i = 0; i < memory_.sites.size(); ++i) {
         const ImpactSite& site = memory_.sites[i];
         if (site.impulse == Vec3{}) continue;
-        const BodyState& b = world_.motion[site.b];
+        const BodyState& b = world_.rigid.motion[site.b];
         const Vec3 center = b.inverse_mass > 0 ? b.center : bodies_.kept_state_at(site.b, time).center;
-        note_impulse(world_.contacts[memory_.site_contact[i]], site.arm_b + center, site.impulse, time);
+        note_impulse(world_.contacts.list[memory_.site_contact[i]], site.arm_b + center, site.impulse, time);
     }
     note_joint_impulses();
     go_back(time);
@@ -277,12 +287,13 @@ void ImpactStage::note_joint_impulses() {
         memory_.pushes.push_back({site.a, -site.impulse, site.arm_a});
         memory_.pushes.push_back({site.b, site.impulse, site.arm_b});
     }
-    memory_.group.joints.add_to_totals(memory_.pushes, {world_.motion, world_.constants, world_.active_joints});
+    memory_.group.joints.add_to_totals(memory_.pushes,
+                                       {world_.rigid.motion, world_.rigid.constants, world_.joints.active});
 }
 
 void ImpactStage::go_back(double time) {
     for (ImpactMemory::Moved& moved : memory_.bodies) {
-        const BodyState& state = world_.motion[moved.body];
+        const BodyState& state = world_.rigid.motion[moved.body];
         moved.has_changed =
             state.linear_velocity != moved.linear_velocity || state.angular_velocity != moved.angular_velocity;
     }
@@ -293,8 +304,8 @@ void ImpactStage::go_back(double time) {
     const bool joints_answer = std::any_of(memory_.bodies.begin(), memory_.bodies.end(), is_changed);
     if (memory_.is_flown && joints_answer) fly_jointed(world_, -time);
     for (const ImpactMemory::Moved& moved : memory_.bodies) {
-        const BodyState state = world_.motion[moved.body];
-        world_.motion[moved.body] = moved.start;
+        const BodyState state = world_.rigid.motion[moved.body];
+        world_.rigid.motion[moved.body] = moved.start;
         if (!moved.has_changed) continue;
         if (joints.number_of(moved.body) < 0) {
             bodies_.lead_through(moved.body, state, time);
@@ -311,7 +322,7 @@ void ImpactStage::go_back(double time) {
 // Whether the contact may bounce once more.
 bool ImpactStage::count_impact(std::uint32_t contact) {
     std::uint8_t& count = memory_.impacts[contact];
-    const bool may_bounce = count < most_bounces && paths_.bounces(world_.contacts[contact]);
+    const bool may_bounce = count < most_bounces && paths_.bounces(world_.contacts.list[contact]);
     if (count < most_impacts) ++count;
     return may_bounce;
 }
@@ -319,11 +330,11 @@ bool ImpactStage::count_impact(std::uint32_t contact) {
 // The sites of the contact, whose region is `manifold`, and of those that come down with it. Whether it bounces.
 bool ImpactStage::add_region(std::uint32_t contact, const Manifold& manifold, double time) {
     const bool may_bounce = count_impact(contact);
-    regions_.add_manifold_sites(world_.contacts[contact], manifold, time, may_bounce);
+    regions_.add_manifold_sites(world_.contacts.list[contact], manifold, time, may_bounce);
     memory_.site_contact.resize(memory_.sites.size(), contact);
     if (!may_bounce) return false;
     regions_.add_sites_beside(contact, manifold, time, [this](std::uint32_t other) { return count_impact(other); });
-    paths_.note_bounce(world_.contacts[contact]);
+    paths_.note_bounce(world_.contacts.list[contact]);
     return true;
 }
 
@@ -332,10 +343,10 @@ bool ImpactStage::joins_in(std::uint32_t contact, double time) {
     const double latest = time + same_instant * step_;
     const auto& known = memory_.site_contact;
     double own_time = memory_.next_time[contact];
-    if (own_time > latest || !paths_.bounces(world_.contacts[contact])) return false;
+    if (own_time > latest || !paths_.bounces(world_.contacts.list[contact])) return false;
     if (std::find(known.begin(), known.end(), contact) != known.end()) return false;
     Manifold manifold;
-    if (!regions_.refine(world_.contacts[contact], own_time, manifold) || own_time > latest) return false;
+    if (!regions_.refine(world_.contacts.list[contact], own_time, manifold) || own_time > latest) return false;
 
     // Its event is void.
     ++memory_.version[contact];
@@ -361,7 +372,7 @@ void ImpactStage::add_simultaneous(double time) {
 
 // The next impact, if its place and time are right; else it comes back with better ones.
 void ImpactStage::take(const ImpactEvent& event) {
-    Contact& contact = world_.contacts[event.contact];
+    Contact& contact = world_.contacts.list[event.contact];
     if (is_left_to_contacts(contact)) return;
     double time = event.time;
     Manifold manifold;
@@ -403,8 +414,8 @@ void ImpactStage::predict_again() {
         if (paths_.turns_far(moved.body)) bodies_.remember({&moved.body, 1});
         for (std::uint32_t k = memory_.first_of_body[moved.body]; k < memory_.first_of_body[moved.body + 1]; ++k) {
             const std::uint32_t other = memory_.of_body[k];
-            const ContactGlance& glance = world_.contact_glances[other];
-            if (glance.was_touching && !glance.bounces) continue;
+            const ContactSummary& summary = world_.contacts.summaries[other];
+            if (summary.was_touching && !summary.bounces) continue;
             ++memory_.version[other];
             predict(other);
         }
@@ -414,9 +425,9 @@ void ImpactStage::predict_again() {
 // Joints turn what they hold from its free path. Their contacts are open if they carried nothing and the surfaces keep
 // apart on paths that joints change as in the last step, and still if that is wrong by a tenth.
 void ImpactStage::open_jointed_contacts() {
-    if (world_.active_joints.empty()) return;
-    for (std::uint32_t i = 0; i < world_.contacts.size(); ++i) {
-        const Contact& contact = world_.contacts[i];
+    if (world_.joints.active.empty()) return;
+    for (std::uint32_t i = 0; i < world_.contacts.list.size(); ++i) {
+        const Contact& contact = world_.contacts.list[i];
         if (!memory_.has_jointed_path[contact.a] && !memory_.has_jointed_path[contact.b]) continue;
         memory_.is_open[i] = !contact.was_loaded && keeps_apart_when_held(contact) ? 1 : 0;
     }
@@ -431,7 +442,8 @@ bool ImpactStage::keeps_apart_when_held(const Contact& contact) const {
         HeldAcceleration now = memory_.held_accelerations[body];
 
         // The path of what is carried goes without its weight.
-        now.linear = to_vec3f(Vec3(now.linear) + world_.constants[body].acceleration - bodies_.free_acceleration(body));
+        now.linear =
+            to_vec3f(Vec3(now.linear) + world_.rigid.constants[body].acceleration - bodies_.free_acceleration(body));
         return now;
     };
     const HeldAcceleration a = held(contact.a), b = held(contact.b);
@@ -447,7 +459,7 @@ bool ImpactStage::keeps_apart_when_held(const Contact& contact) const {
 }
 
 void ImpactStage::run() {
-    const std::size_t count = world_.contacts.size();
+    const std::size_t count = world_.contacts.list.size();
     memory_.version.assign(count, 0);
     memory_.next_time.assign(count, ImpactPaths::never);
     memory_.is_open.assign(count, 0);
@@ -473,8 +485,8 @@ void ImpactStage::run() {
 
 }  // namespace
 
-void solve_impacts(WorldState& world) {
-    if (!world.contacts.empty()) ImpactStage(world).run();
+void solve_impacts(const ImpactAccess& world) {
+    if (!world.contacts.list.empty()) ImpactStage(world).run();
 }
 
 }  // namespace embody::physics::stages

@@ -4,7 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/definitions/world_settings.h"
 #include "physics/dynamic/equations_of_motion.h"
+#include "physics/stages/access.h"
+#include "physics/state/impact_memory.h"
+#include "physics/state/joint_state.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
@@ -13,18 +18,18 @@ namespace {
 constexpr std::size_t most_flown_bodies = 8;
 constexpr std::size_t most_flights = 16;  // remembered
 
-bool is_movable(const WorldState& world, std::uint32_t body) { return world.motion[body].inverse_mass > 0; }
+bool is_movable(const ImpactAccess& world, std::uint32_t body) { return world.rigid.motion[body].inverse_mass > 0; }
 
 // The active joints of each movable body.
-void list_joints_of_bodies(WorldState& world) {
-    ImpactMemory& memory = world.impact_memory;
+void list_joints_of_bodies(const ImpactAccess& world) {
+    ImpactMemory& memory = world.impacts;
     if (memory.has_joint_lists) return;
     memory.has_joint_lists = true;
     std::vector<std::uint32_t>& first = memory.first_joint_of_body;
-    first.assign(world.motion.size() + 2, 0);
+    first.assign(world.rigid.motion.size() + 2, 0);
     const auto for_each_end = [&](auto visit) {
-        for (std::uint32_t i = 0; i < world.active_joints.size(); ++i) {
-            const Joint& joint = world.active_joints[i];
+        for (std::uint32_t i = 0; i < world.joints.active.size(); ++i) {
+            const Joint& joint = world.joints.active[i];
             if (!joint.a_is_world && is_movable(world, joint.a)) visit(joint.a, i);
             if (is_movable(world, joint.b)) visit(joint.b, i);
         }
@@ -45,7 +50,7 @@ std::span<const std::uint32_t> joints_of(const ImpactMemory& memory, std::uint32
 // Calls move(h) for the whole substeps from the step's start to `time`, s, and for the rest; from there back, with
 // negative ones, if the time is negative.
 template <class Move>
-void for_each_substep(const WorldState& world, double time, Move move) {
+void for_each_substep(const ImpactAccess& world, double time, Move move) {
     const double substep = world.settings.time_step / world.settings.substeps, length = std::fabs(time);
     const int whole = std::min(static_cast<int>(length / substep), world.settings.substeps);
     const double rest = std::copysign(length - whole * substep, time);
@@ -81,10 +86,10 @@ void sort_once(std::vector<std::uint32_t>& list) {
 
 }  // namespace
 
-bool has_joints(const WorldState& world, std::uint32_t body) { return !joints_of(world.impact_memory, body).empty(); }
+bool has_joints(const ImpactAccess& world, std::uint32_t body) { return !joints_of(world.impacts, body).empty(); }
 
-bool can_fly_jointed(const WorldState& world) {
-    const ImpactMemory& memory = world.impact_memory;
+bool can_fly_jointed(const ImpactAccess& world) {
+    const ImpactMemory& memory = world.impacts;
     const std::size_t nodes = memory.jointed.size() + memory.jointed_joints.size();
     if (memory.jointed.size() > most_flown_bodies || nodes >= BlockPattern::most_nodes) return false;
     const auto has_way_back = [&](std::uint32_t body) {
@@ -93,15 +98,15 @@ bool can_fly_jointed(const WorldState& world) {
     return std::all_of(memory.jointed.begin(), memory.jointed.end(), has_way_back);
 }
 
-void fly_jointed(WorldState& world, double time) {
-    ImpactMemory& memory = world.impact_memory;
+void fly_jointed(const ImpactAccess& world, double time) {
+    ImpactMemory& memory = world.impacts;
     memory.flown_joints.clear();
     memory.flown_list.clear();
     for (const std::uint32_t index : memory.jointed_joints) {
         memory.flown_list.push_back(static_cast<std::uint32_t>(memory.flown_joints.size()));
-        memory.flown_joints.push_back(world.active_joints[index]);
+        memory.flown_joints.push_back(world.joints.active[index]);
     }
-    const JointSystem::View view{world.motion, world.constants, memory.flown_joints};
+    const JointSystem::View view{world.rigid.motion, world.rigid.constants, memory.flown_joints};
     JointSystem& system = flight_of_jointed(memory);
     system.set({memory.jointed, memory.flown_list}, view);
     system.start_cold();
@@ -110,11 +115,11 @@ void fly_jointed(WorldState& world, double time) {
     put_carriers_back(world);
 }
 
-void move_carriers(WorldState& world, double time) {
-    ImpactMemory& memory = world.impact_memory;
+void move_carriers(const ImpactAccess& world, double time) {
+    ImpactMemory& memory = world.impacts;
     memory.carriers.clear();
     const auto add = [&](std::uint32_t body) {
-        const BodyState& state = world.motion[body];
+        const BodyState& state = world.rigid.motion[body];
         const bool moves = state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{};
         const auto is_it = [body](const ImpactMemory::Carrier& carrier) { return carrier.body == body; };
         if (is_movable(world, body) || !moves) return;
@@ -122,25 +127,25 @@ void move_carriers(WorldState& world, double time) {
             memory.carriers.push_back({body, state});
     };
     for (const std::uint32_t index : memory.jointed_joints) {
-        const Joint& joint = world.active_joints[index];
+        const Joint& joint = world.joints.active[index];
         if (!joint.a_is_world) add(joint.a);
         add(joint.b);
     }
     for (const ImpactMemory::Carrier& carrier : memory.carriers) {
-        for_each_substep(world, time, [&](double h) { drift_kinematic(world.motion[carrier.body], h); });
+        for_each_substep(world, time, [&](double h) { drift_kinematic(world.rigid.motion[carrier.body], h); });
     }
 }
 
-void put_carriers_back(WorldState& world) {
-    for (const ImpactMemory::Carrier& carrier : world.impact_memory.carriers)
-        world.motion[carrier.body] = carrier.start;
+void put_carriers_back(const ImpactAccess& world) {
+    for (const ImpactMemory::Carrier& carrier : world.impacts.carriers)
+        world.rigid.motion[carrier.body] = carrier.start;
 }
 
-void gather_jointed(WorldState& world) {
-    ImpactMemory& memory = world.impact_memory;
+void gather_jointed(const ImpactAccess& world) {
+    ImpactMemory& memory = world.impacts;
     memory.jointed.clear();
     memory.jointed_joints.clear();
-    if (world.active_joints.empty()) return;
+    if (world.joints.active.empty()) return;
     list_joints_of_bodies(world);
 
     // Breadth first from what collides.
@@ -153,7 +158,7 @@ void gather_jointed(WorldState& world) {
     }
     for (std::size_t i = 0; i < found.size() && found.size() < most_jointed_bodies; ++i) {
         for (const std::uint32_t index : joints_of(memory, found[i])) {
-            const Joint& joint = world.active_joints[index];
+            const Joint& joint = world.joints.active[index];
             const std::uint32_t other = joint.b == found[i] && !joint.a_is_world ? joint.a : joint.b;
             if (is_movable(world, other) && found.size() < most_jointed_bodies && !is_found(other))
                 found.push_back(other);
@@ -163,7 +168,7 @@ void gather_jointed(WorldState& world) {
     // Their joints, but those to bodies too far away.
     for (const std::uint32_t body : found) {
         for (const std::uint32_t index : joints_of(memory, body)) {
-            const Joint& joint = world.active_joints[index];
+            const Joint& joint = world.joints.active[index];
             const auto takes_part = [&](std::uint32_t end) { return !is_movable(world, end) || is_found(end); };
             if (takes_part(joint.b) && (joint.a_is_world || takes_part(joint.a)))
                 memory.jointed_joints.push_back(index);

@@ -1,31 +1,32 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/stages/access.h"
 #include "physics/stages/namespace.h"
-#include "physics/state/world_state.h"
+#include "physics/state/impact_memory.h"
 
 namespace embody::physics::stages {
 
 /// Adds to the bodies of the present impact (ImpactMemory::bodies) those that joints connect with them, at most
 /// `most_jointed_bodies` and as many joints as a direct solve takes, the fewest joints away first; lists them and their
 /// joints (jointed, jointed_joints). Farther ones learn of the impact from the substeps.
-void gather_jointed(WorldState& world);
+void gather_jointed(const ImpactAccess& world);
 
 inline constexpr std::size_t most_jointed_bodies = 64;
 
 /// Whether an active joint holds the body. Needs an impact of jointed bodies before in this step.
-bool has_joints(const WorldState& world, std::uint32_t body);
+bool has_joints(const ImpactAccess& world, std::uint32_t body);
 
 /// Whether the jointed bodies of the present impact can be flown as the substeps will move them: few, all of what
 /// joints connect, carried by nothing, without motors and limits, which have no way back.
-bool can_fly_jointed(const WorldState& world);
+bool can_fly_jointed(const ImpactAccess& world);
 /// Moves them from the step's start to `time`, s; from there back to the start if the time is negative.
-void fly_jointed(WorldState& world, double time);
+void fly_jointed(const ImpactAccess& world, double time);
 
 /// Puts the moving bodies without a free motion that the joints of the present impact hold on to where they are at
 /// `time`, s since the step began.
-void move_carriers(WorldState& world, double time);
+void move_carriers(const ImpactAccess& world, double time);
 /// Puts them back to where they are at the step's start.
-void put_carriers_back(WorldState& world);
+void put_carriers_back(const ImpactAccess& world);
 
 }  // namespace embody::physics::stages

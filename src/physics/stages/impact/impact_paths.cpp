@@ -5,27 +5,35 @@
 #include <array>
 #include <cmath>
 
+#include "physics/definitions/step_report.h"
+#include "physics/definitions/world_settings.h"
 #include "physics/dynamic/equations_of_motion.h"
-#include "physics/state/share_awake.h"
+#include "physics/stages/access.h"
+#include "physics/stages/share_awake.h"
+#include "physics/state/activity_state.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/impact_memory.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
-ImpactPaths::ImpactPaths(WorldState& world, const BodyPaths& bodies)
+ImpactPaths::ImpactPaths(const ImpactAccess& world, const BodyPaths& bodies)
     : world_(world),
       bodies_(bodies),
-      memory_(world.impact_memory),
+      memory_(world.impacts),
       step_(world.settings.time_step),
       substep_(step_ / world.settings.substeps),
-      most_heap_bounces_(500 + world.awake.size() / 8) {
+      most_heap_bounces_(500 + world.activity.awake.size() / 8) {
     memory_.heap_bounces = 0;
-    const std::size_t count = world.motion.size();
+    const std::size_t count = world.rigid.motion.size();
     memory_.last_time.assign(count, 0);
     memory_.liveliness.assign(count, 1);
 
     // What the end of a free path can be faster than its start.
     memory_.speed_gain.assign(count, 0);
     for_each_awake(world, [&](std::uint32_t body) {
-        const double turning = length_squared(world.motion[body].angular_velocity) * world.record(body).reach;
+        const double turning =
+            length_squared(world.rigid.motion[body].angular_velocity) * world.rigid.record(body).reach;
         memory_.speed_gain[body] = static_cast<float>(step_ * (length(bodies.free_acceleration(body)) + turning));
     });
 }
@@ -35,8 +43,8 @@ double ImpactPaths::earliest_time(const Contact& contact) const {
 }
 
 Material ImpactPaths::material_of(const Contact& contact) const {
-    return combine(world_.record(contact.a).definition.material, world_.record(contact.b).definition.material,
-                   world_.surface_pairs);
+    return combine(world_.rigid.record(contact.a).definition.material,
+                   world_.rigid.record(contact.b).definition.material, world_.rigid.surface_pairs);
 }
 
 bool ImpactPaths::bounces(const Contact& contact) const {
@@ -51,13 +59,13 @@ void ImpactPaths::note_bounce(const Contact& contact) {
     }
     const double restitution = material_of(contact).restitution;
     for (const std::uint32_t body : {contact.a, contact.b}) {
-        if (world_.motion[body].inverse_mass > 0) memory_.liveliness[body] *= restitution;
+        if (world_.rigid.motion[body].inverse_mass > 0) memory_.liveliness[body] *= restitution;
     }
 }
 
 bool ImpactPaths::hits_heap(const Contact& contact) const {
     const auto is_carried = [&](std::uint32_t body) {
-        return memory_.is_supported[body] && world_.motion[body].inverse_mass > 0;
+        return memory_.is_supported[body] && world_.rigid.motion[body].inverse_mass > 0;
     };
     return is_carried(contact.a) || is_carried(contact.b);
 }
@@ -72,10 +80,10 @@ double ImpactPaths::slowest_speed(const Contact& contact) const {
     return contact.was_loaded || !can_bounce ? 5 * slowest : slowest;
 }
 
-bool ImpactPaths::is_surely_slow(const ContactGlance& glance) const {
-    if (glance.was_touching && !glance.bounces) return true;
-    const double slowest = glance.was_loaded || !glance.bounces ? 5 * slowest_impact : slowest_impact;
-    return glance.approach_speed + memory_.speed_gain[glance.a] + memory_.speed_gain[glance.b] < slowest;
+bool ImpactPaths::is_surely_slow(const ContactSummary& summary) const {
+    if (summary.was_touching && !summary.bounces) return true;
+    const double slowest = summary.was_loaded || !summary.bounces ? 5 * slowest_impact : slowest_impact;
+    return summary.approach_speed + memory_.speed_gain[summary.a] + memory_.speed_gain[summary.b] < slowest;
 }
 
 // Prediction needs no more of a path than half a millimetre; what turns slowly turns evenly for that.
@@ -84,7 +92,7 @@ ImpactPaths::Motion ImpactPaths::motion_at(std::uint32_t body, double time) cons
         const Quat& turn = motion.turn;
         return Motion{motion, (turn.w < 0 ? -2 : 2) * Vec3{turn.x, turn.y, turn.z}};
     };
-    const BodyState& now = world_.motion[body];
+    const BodyState& now = world_.rigid.motion[body];
     BodyPaths::Motion motion{now.center - now.start_center, now.linear_velocity, now.angular_velocity, now.turn};
     if (time <= 0) return with_tilt(motion);
     if (turns_far(body)) return with_tilt(bodies_.motion_about(body, time));
@@ -96,8 +104,8 @@ ImpactPaths::Motion ImpactPaths::motion_at(std::uint32_t body, double time) cons
 }
 
 bool ImpactPaths::turns_far(std::uint32_t body) const {
-    const TouchBody& touch = world_.touch_memory.bodies[body];
-    const Vec3 turn = world_.motion[body].angular_velocity * step_;
+    const TouchBody& touch = world_.contacts.touch.bodies[body];
+    const Vec3 turn = world_.rigid.motion[body].angular_velocity * step_;
     return !touch.is_ball && length_squared(turn) * touch.size / 2 > patch_gap;
 }
 
@@ -238,7 +246,7 @@ ImpactPaths::Prediction ImpactPaths::predict_exactly(Contact& contact) {
     if (first < never) return {.time = first};
     const double farthest_turn = widest_followed_turn / step_;
     const auto is_fast = [&](std::uint32_t body, const Motion& m) {
-        return !world_.touch_memory.bodies[body].is_ball && length_squared(m.spin) > farthest_turn * farthest_turn;
+        return !world_.contacts.touch.bodies[body].is_ball && length_squared(m.spin) > farthest_turn * farthest_turn;
     };
     const bool is_clear = start == 0 && nearest > deviation_of(contact, now.a, now.b).distance;
     return {.is_open = is_clear || keeps_apart(contact, start),

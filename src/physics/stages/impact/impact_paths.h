@@ -4,8 +4,10 @@
 #include <array>
 #include <cstdint>
 
+#include "physics/stages/access.h"
 #include "physics/stages/impact/body_paths.h"
 #include "physics/stages/namespace.h"
+#include "physics/state/impact_memory.h"
 
 namespace embody::physics::stages {
 
@@ -22,7 +24,7 @@ public:
     static constexpr double slowest_impact = 0.02;  ///< m/s: slower contacts rest
     static constexpr double least_liveliness = 0.05;
 
-    ImpactPaths(WorldState& world, const BodyPaths& bodies);
+    ImpactPaths(const ImpactAccess& world, const BodyPaths& bodies);
 
     /// The last impact of either body in this step, s.
     [[nodiscard]] double earliest_time(const Contact& contact) const;
@@ -45,7 +47,7 @@ public:
     [[nodiscard]] bool hits_heap(const Contact& contact) const;
     /// Whether no point can close as fast as an impact does: most contacts of a heap at rest, told by what the touch
     /// stage noted of them. Holds for bodies that had no impact in this step.
-    [[nodiscard]] bool is_surely_slow(const ContactGlance& glance) const;
+    [[nodiscard]] bool is_surely_slow(const ContactSummary& summary) const;
 
     /// Along straight paths: certain for what keeps away or is slow, and enough for what hits a heap. Points that close
     /// as fast as an impact but meet after the step are the next step's impact: they are left open, so that the
@@ -78,7 +80,7 @@ private:
     [[nodiscard]] Deviation deviation_of(const Contact& contact, const Motion& a, const Motion& b) const;
     [[nodiscard]] bool keeps_apart(const Contact& contact, double start) const;
 
-    WorldState& world_;
+    const ImpactAccess world_;
     const BodyPaths& bodies_;
     ImpactMemory& memory_;
     const double step_, substep_;

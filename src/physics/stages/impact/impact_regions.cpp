@@ -5,6 +5,10 @@
 #include <array>
 #include <cmath>
 
+#include "physics/definitions/world_settings.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/rigid_state.h"
+
 namespace embody::physics::stages {
 
 namespace {
@@ -21,11 +25,11 @@ ImpactCoefficients coefficients_of(const Material& material, double restitution)
 
 void ImpactRegions::collide_at(const Contact& contact, double time) {
     memory_.manifolds.clear();
-    const BodyRecord &a = world_.record(contact.a), &b = world_.record(contact.b);
+    const BodyRecord &a = world_.rigid.record(contact.a), &b = world_.rigid.record(contact.b);
 
     // The touch stage's memory of the pair is of other poses, and stays so.
     const BroadPhase::Pair pair{contact.a, contact.b};
-    const TouchMemory& touch = world_.touch_memory;
+    const TouchMemory& touch = world_.contacts.touch;
     const auto watch = std::lower_bound(touch.watches.begin(), touch.watches.end(), pair,
                                         [](const PairWatch& w, const BroadPhase::Pair& p) { return w.pair < p; });
     PairMemory pair_memory = touch.records[watch->record].memory;
@@ -50,12 +54,12 @@ bool ImpactRegions::is_beside(const Manifold& first, double nearest, const Manif
 }
 
 std::optional<std::uint32_t> ImpactRegions::find_contact(std::uint32_t beside, const Manifold& manifold) const {
-    const Contact& known = world_.contacts[beside];
+    const Contact& known = world_.contacts.list[beside];
     const std::array<std::uint32_t, 5> key{known.a, known.b, manifold.piece_a, manifold.piece_b, manifold.part};
-    const auto found = std::lower_bound(world_.contacts.begin(), world_.contacts.end(), key,
+    const auto found = std::lower_bound(world_.contacts.list.begin(), world_.contacts.list.end(), key,
                                         [](const Contact& c, const auto& k) { return contact_key(c) < k; });
-    if (found == world_.contacts.end() || contact_key(*found) != key) return std::nullopt;
-    return static_cast<std::uint32_t>(found - world_.contacts.begin());
+    if (found == world_.contacts.list.end() || contact_key(*found) != key) return std::nullopt;
+    return static_cast<std::uint32_t>(found - world_.contacts.list.begin());
 }
 
 // How fast the nearest points of the region close, m/s.
@@ -72,8 +76,8 @@ double ImpactRegions::closing_speed(const Contact& contact, const Manifold& mani
 }
 
 bool ImpactRegions::is_near(const Contact& contact, double time) const {
-    const BodyState &a = world_.motion[contact.a], &b = world_.motion[contact.b];
-    const double reach_a = world_.record(contact.a).reach, reach_b = world_.record(contact.b).reach;
+    const BodyState &a = world_.rigid.motion[contact.a], &b = world_.rigid.motion[contact.b];
+    const double reach_a = world_.rigid.record(contact.a).reach, reach_b = world_.rigid.record(contact.b).reach;
     const double way = time * (length(b.linear_velocity - a.linear_velocity) + length(a.angular_velocity) * reach_a +
                                length(b.angular_velocity) * reach_b);
     double size = ImpactPaths::never;
@@ -212,14 +216,14 @@ bool ImpactRegions::passes_on(const Contact& contact) const {
 // own events, and so have elastic ones: one after the other, as the balls of Newton's cradle do it, keeps their energy.
 void ImpactRegions::add_loaded_neighbours(std::span<const std::uint32_t> bodies, double time) {
     for (const std::uint32_t body : bodies) {
-        if (world_.motion[body].inverse_mass == 0) continue;
+        if (world_.rigid.motion[body].inverse_mass == 0) continue;
         for (std::uint32_t k = memory_.first_of_body[body]; k < memory_.first_of_body[body + 1]; ++k) {
             const std::uint32_t other = memory_.of_body[k];
-            if (!world_.contact_glances[other].was_loaded) continue;
+            if (!world_.contacts.summaries[other].was_loaded) continue;
             const auto& known = memory_.site_contact;
             if (std::find(known.begin(), known.end(), other) != known.end()) continue;
-            if (passes_on(world_.contacts[other])) continue;
-            const Contact& contact = world_.contacts[other];
+            if (passes_on(world_.contacts.list[other])) continue;
+            const Contact& contact = world_.contacts.list[other];
             add_points_below(contact, straight_gaps(contact, time), patch_gap, time);
             memory_.site_contact.resize(memory_.sites.size(), other);
         }

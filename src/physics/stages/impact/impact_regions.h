@@ -3,8 +3,12 @@
 
 #include <optional>
 
+#include "physics/definitions/world_settings.h"
+#include "physics/stages/access.h"
 #include "physics/stages/impact/impact_paths.h"
 #include "physics/stages/namespace.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/impact_memory.h"
 
 namespace embody::physics::stages {
 
@@ -12,12 +16,8 @@ namespace embody::physics::stages {
 /// view of the world for one step.
 class ImpactRegions {
 public:
-    ImpactRegions(WorldState& world, BodyPaths& bodies, const ImpactPaths& paths)
-        : world_(world),
-          memory_(world.impact_memory),
-          bodies_(bodies),
-          paths_(paths),
-          step_(world.settings.time_step) {}
+    ImpactRegions(const ImpactAccess& world, BodyPaths& bodies, const ImpactPaths& paths)
+        : world_(world), memory_(world.impacts), bodies_(bodies), paths_(paths), step_(world.settings.time_step) {}
 
     /// Whether the region found at the start of the step is still right at `time`: the bodies have hardly moved on.
     [[nodiscard]] bool is_near(const Contact& contact, double time) const;
@@ -40,10 +40,10 @@ public:
     void add_sites_beside(std::uint32_t contact, const Manifold& first, double time, const MayBounce& may_bounce) {
         const double nearest = least_separation(first);
         for (const Manifold& other : memory_.manifolds) {
-            if (!is_beside(first, nearest, other, world_.contacts[contact], time)) continue;
+            if (!is_beside(first, nearest, other, world_.contacts.list[contact], time)) continue;
             const auto found = find_contact(contact, other);
             if (!found) continue;
-            add_manifold_sites(world_.contacts[*found], other, time, may_bounce(*found));
+            add_manifold_sites(world_.contacts.list[*found], other, time, may_bounce(*found));
             memory_.site_contact.resize(memory_.sites.size(), *found);
         }
     }
@@ -69,7 +69,7 @@ private:
     };
     void add_site(const Contact& contact, const SitePlace& place, double time, bool may_bounce);
 
-    WorldState& world_;
+    const ImpactAccess world_;
     ImpactMemory& memory_;
     BodyPaths& bodies_;
     const ImpactPaths& paths_;

@@ -9,8 +9,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/definitions/step_report.h"
+#include "physics/definitions/world_settings.h"
+#include "physics/stages/access.h"
 #include "physics/stages/impact/impact_paths.h"
 #include "physics/stages/rigid/ball_ground.h"
+#include "physics/state/ball_memory.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
@@ -25,7 +30,7 @@ constexpr double least_share = 1e-6;   // of a part: a shorter rest is none
 
 class BallCluster {
 public:
-    BallCluster(const WorldState& world, BallMemory& memory, std::span<const std::uint32_t> members,
+    BallCluster(const RollAccess& world, BallMemory& memory, std::span<const std::uint32_t> members,
                 std::span<BallMemory::Pair> pairs)
         : world_(world), memory_(memory), members_(members), pairs_(pairs) {}
     bool roll();
@@ -56,7 +61,7 @@ private:
     bool collide_all();
     bool end();
 
-    const WorldState& world_;
+    const RollAccess world_;
     BallMemory& memory_;
     const std::span<const std::uint32_t> members_;
     const std::span<BallMemory::Pair> pairs_;
@@ -124,8 +129,8 @@ double BallCluster::meeting(const Pair& pair) const {
 bool BallCluster::collide(Pair& pair) {
     Candidate &a = ball(pair.a), &b = ball(pair.b);
     const Vec3 direction = normalized(b.at.center - a.at.center);
-    const Material material = combine(world_.record(a.body).definition.material,
-                                      world_.record(b.body).definition.material, world_.surface_pairs);
+    const Material material = combine(world_.rigid.record(a.body).definition.material,
+                                      world_.rigid.record(b.body).definition.material, world_.rigid.surface_pairs);
     const double before = energy(a) + energy(b);
     const double closing = dot(direction, a.at.motion.velocity - b.at.motion.velocity);
     const double restitution = closing >= material.restitution_threshold ? material.restitution : 0;
@@ -194,8 +199,8 @@ bool BallCluster::roll() {
 
 }  // namespace
 
-bool roll_cluster(WorldState& world, std::span<const std::uint32_t> members, std::span<BallMemory::Pair> pairs) {
-    BallCluster cluster(world, world.ball_memory, members, pairs);
+bool roll_cluster(const RollAccess& world, std::span<const std::uint32_t> members, std::span<BallMemory::Pair> pairs) {
+    BallCluster cluster(world, world.balls, members, pairs);
     const bool has_rolled = cluster.roll();
     if (cluster.is_exhausted()) {
         world.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);

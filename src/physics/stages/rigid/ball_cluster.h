@@ -4,14 +4,15 @@
 #include <cstdint>
 #include <span>
 
+#include "physics/stages/access.h"
 #include "physics/stages/namespace.h"
-#include "physics/state/world_state.h"
+#include "physics/state/ball_memory.h"
 
 namespace embody::physics::stages {
 
 /// Takes balls that roll on still ground near each other through the step, together with their collisions: the members
-/// (indices of candidates) and their pairs, of world.ball_memory. False where one of them cannot be followed so; then
+/// (indices of candidates) and their pairs, of world.balls. False where one of them cannot be followed so; then
 /// nothing is told but the limit, where their collisions have no end.
-bool roll_cluster(WorldState& world, std::span<const std::uint32_t> members, std::span<BallMemory::Pair> pairs);
+bool roll_cluster(const RollAccess& world, std::span<const std::uint32_t> members, std::span<BallMemory::Pair> pairs);
 
 }  // namespace embody::physics::stages

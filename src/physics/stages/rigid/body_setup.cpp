@@ -6,16 +6,23 @@
 
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/dynamic/mass.h"
+#include "physics/stages/access.h"
 #include "physics/stages/rigid/wake.h"
 #include "physics/stages/touch/pair_watch.h"
+#include "physics/state/activity_state.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/impact_memory.h"
+#include "physics/state/joint_state.h"
+#include "physics/state/rigid_state.h"
+#include "physics/state/substep_memory.h"
 
 namespace embody::physics::stages {
 
 namespace {
 
-Result<void> set_up_shape(const WorldState& world, const BodyDefinition& definition, BodySetup& setup) {
+Result<void> set_up_shape(const RigidState& rigid, const BodyDefinition& definition, BodySetup& setup) {
     if (definition.shape.is_null()) return {};
-    const ShapeRecord* shape = world.shapes.find(definition.shape);
+    const ShapeRecord* shape = rigid.shapes.find(definition.shape);
     if (!shape) return Error{"shape", "is not a shape of this world"};
     setup.record.shape = shape->shape.get();
     if (definition.kind != BodyKind::static_body && is_static_only(shape->shape->definition())) {
@@ -35,19 +42,19 @@ void set_up_sizes(BodySetup& setup) {
     setup.record.inner_radius = std::min({half.x, half.y, half.z});
 }
 
-void remove_contacts_of(WorldState& world, std::span<const std::uint32_t> bodies) {
-    if (world.contacts.empty()) return;
-    const std::vector<bool> is_meant = marked(world, bodies);
-    std::erase_if(world.contacts, [&](const Contact& c) { return is_meant[c.a] || is_meant[c.b]; });
+void remove_contacts_of(const WakeAccess& world, std::span<const std::uint32_t> bodies) {
+    if (world.contacts.list.empty()) return;
+    const std::vector<bool> is_meant = marked(world.rigid, bodies);
+    std::erase_if(world.contacts.list, [&](const Contact& c) { return is_meant[c.a] || is_meant[c.b]; });
 }
 
 }  // namespace
 
-Result<BodySetup> set_up_body(const WorldState& world, const BodyDefinition& definition) {
+Result<BodySetup> set_up_body(const RigidState& rigid, const BodyDefinition& definition) {
     if (auto result = validate(definition); !result) return result.error();
     BodySetup setup;
     setup.record.definition = definition;
-    if (auto result = set_up_shape(world, definition, setup); !result) return result.error();
+    if (auto result = set_up_shape(rigid, definition, setup); !result) return result.error();
 
     const bool is_dynamic = definition.kind == BodyKind::dynamic_body;
     if (is_dynamic) {
@@ -80,73 +87,74 @@ Result<BodySetup> set_up_body(const WorldState& world, const BodyDefinition& def
     return setup;
 }
 
-void place_body(WorldState& world, std::uint32_t body, BodySetup setup) {
-    world.awake_changed = true;
-    const std::size_t slots = world.bodies.slot_count();
-    world.motion.resize(slots);
-    world.constants.resize(slots);
-    world.sleep.resize(slots);
-    world.record(body) = setup.record;
-    world.record(body).version = ++world.last_body_version;
-    world.constants[body] = setup.constants;
-    world.motion[body] = setup.state;
-    world.sleep[body] = setup.sleep;
-    auto& held_accelerations = world.impact_memory.held_accelerations;
+void place_body(const WakeAccess& world, ImpactMemory& impacts, std::uint32_t body, BodySetup setup) {
+    world.activity.awake_changed = true;
+    const std::size_t slots = world.rigid.bodies.slot_count();
+    world.rigid.motion.resize(slots);
+    world.rigid.constants.resize(slots);
+    world.activity.sleep.resize(slots);
+    world.rigid.record(body) = setup.record;
+    world.rigid.record(body).version = ++world.rigid.last_body_version;
+    world.rigid.constants[body] = setup.constants;
+    world.rigid.motion[body] = setup.state;
+    world.activity.sleep[body] = setup.sleep;
+    auto& held_accelerations = impacts.held_accelerations;
     if (body < held_accelerations.size()) held_accelerations[body] = {};
-    introduce_body(world, body);
+    introduce_body(world.rigid, body, world.contacts.touch);
 
-    const BodyRecord& record = world.record(body);
+    const BodyRecord& record = world.rigid.record(body);
     const BodyDefinition& definition = record.definition;
     if (!definition.enabled) return;
     if (record.shape) {
-        world.broad_phase.insert(body, record.shape->bounds(world.pose(body)),
-                                 definition.kind != BodyKind::static_body);
+        world.contacts.broad_phase.insert(body, record.shape->bounds(world.rigid.pose(body)),
+                                          definition.kind != BodyKind::static_body);
     }
-    if (definition.start_asleep && definition.allow_sleep && world.is_dynamic(body)) {
-        world.sleep[body].state = SleepState::asleep;
-        world.sleep[body].group = world.next_group;
-        world.motion[body].linear_velocity = world.motion[body].angular_velocity = {};
-        world.sleepers[world.next_group++].bodies.push_back(body);
+    if (definition.start_asleep && definition.allow_sleep && world.rigid.is_dynamic(body)) {
+        world.activity.sleep[body].state = SleepState::asleep;
+        world.activity.sleep[body].group = world.activity.next_group;
+        world.rigid.motion[body].linear_velocity = world.rigid.motion[body].angular_velocity = {};
+        world.activity.sleepers[world.activity.next_group++].bodies.push_back(body);
     } else {
         wake_around(world, body);
     }
 }
 
-void lift_bodies(WorldState& world, std::span<const std::uint32_t> bodies) {
-    world.awake_changed = true;
+void lift_bodies(const WakeAccess& world, std::span<const std::uint32_t> bodies) {
+    world.activity.awake_changed = true;
     // Only those around these bodies: who was named before keeps until the next step.
-    std::vector<std::uint32_t> named_before = std::exchange(world.to_wake, {});
+    std::vector<std::uint32_t> named_before = std::exchange(world.activity.to_wake, {});
     wake_around(world, bodies);
     for (const std::uint32_t body : bodies) wake_group_of(world, body);
-    for (const std::uint32_t other : world.to_wake) {
-        if (world.is_used(other)) wake_group_of(world, other);
+    for (const std::uint32_t other : world.activity.to_wake) {
+        if (world.rigid.is_used(other)) wake_group_of(world, other);
     }
-    named_before.swap(world.to_wake);
-    for (const std::uint32_t other : named_before) wake_later(world, other);
+    named_before.swap(world.activity.to_wake);
+    for (const std::uint32_t other : named_before) wake_later(world.activity, other);
     remove_contacts_of(world, bodies);
-    world.contact_glances.clear();
-    world.touch_memory.is_laid_out = false;
+    world.contacts.summaries.clear();
+    world.contacts.touch.is_laid_out = false;
     for (const std::uint32_t body : bodies) {
-        if (world.record(body).shape && world.record(body).definition.enabled) world.broad_phase.remove(body);
+        if (world.rigid.record(body).shape && world.rigid.record(body).definition.enabled)
+            world.contacts.broad_phase.remove(body);
     }
 }
 
-Result<void> choose_lanes(WorldState& world, int lanes) {
+Result<void> choose_lanes(SubstepMemory& substeps, int lanes) {
     const ContactKernels* kernels = lanes == 0 ? &widest_contact_kernels() : contact_kernels(lanes);
     if (!kernels) return Error{"lanes", "are more than this processor has", "set fewer, or 0 for the most it has"};
-    if (kernels->lanes != world.wide_solver.lanes()) world.wide_solver = WideContactSolver(*kernels);
+    if (kernels->lanes != substeps.wide_solver.lanes()) substeps.wide_solver = WideContactSolver(*kernels);
     return {};
 }
 
-Result<Joint> set_up_joint(const WorldState& world, const JointDefinition& definition) {
+Result<Joint> set_up_joint(const RigidState& rigid, const JointDefinition& definition) {
     if (auto result = validate(definition); !result) return result.error();
-    if (!world.bodies.contains(definition.body_b)) return Error{"body_b", "is not a body of this world"};
+    if (!rigid.bodies.contains(definition.body_b)) return Error{"body_b", "is not a body of this world"};
     const bool a_is_world = definition.body_a.is_null();
-    if (!a_is_world && !world.bodies.contains(definition.body_a)) {
+    if (!a_is_world && !rigid.bodies.contains(definition.body_a)) {
         return Error{"body_a", "is not a body of this world"};
     }
     const auto frame_about_center = [&](const Transform& frame, std::uint32_t body) {
-        return Transform{frame.position - world.constants[body].local_center, normalized(frame.rotation)};
+        return Transform{frame.position - rigid.constants[body].local_center, normalized(frame.rotation)};
     };
     Joint joint;
     joint.kind = definition.joint;
@@ -162,26 +170,26 @@ Result<Joint> set_up_joint(const WorldState& world, const JointDefinition& defin
     return joint;
 }
 
-void list_jointed_pairs(WorldState& world) {
-    world.jointed_pairs.clear();
-    for (std::uint32_t slot = 0; slot < world.joints.slot_count(); ++slot) {
-        if (world.joints.used(slot)) add_jointed_pair(world, world.joints.at(slot).definition);
+void list_jointed_pairs(JointState& joints) {
+    joints.jointed_pairs.clear();
+    for (std::uint32_t slot = 0; slot < joints.records.slot_count(); ++slot) {
+        if (joints.records.used(slot)) add_jointed_pair(joints, joints.records.at(slot).definition);
     }
 }
 
-void add_jointed_pair(WorldState& world, const JointDefinition& joint) {
+void add_jointed_pair(JointState& joints, const JointDefinition& joint) {
     if (joint.bodies_collide || joint.body_a.is_null()) return;
-    world.jointed_pairs.insert(std::minmax(joint.body_a.index, joint.body_b.index));
+    joints.jointed_pairs.insert(std::minmax(joint.body_a.index, joint.body_b.index));
 }
 
-BodyDefinition current_definition(const WorldState& world, std::uint32_t body) {
-    BodyDefinition definition = world.record(body).definition;
-    const Transform pose = world.pose(body);
+BodyDefinition current_definition(const RigidState& rigid, const ActivityState& activity, std::uint32_t body) {
+    BodyDefinition definition = rigid.record(body).definition;
+    const Transform pose = rigid.pose(body);
     definition.position = pose.position;
     definition.rotation = pose.rotation;
-    definition.linear_velocity = world.motion[body].linear_velocity;
-    definition.angular_velocity = world.motion[body].angular_velocity;
-    definition.start_asleep = world.is_asleep(body);
+    definition.linear_velocity = rigid.motion[body].linear_velocity;
+    definition.angular_velocity = rigid.motion[body].angular_velocity;
+    definition.start_asleep = activity.is_asleep(body);
     return definition;
 }
 

@@ -3,8 +3,13 @@
 
 #include <span>
 
+#include "physics/stages/access.h"
 #include "physics/stages/namespace.h"
-#include "physics/state/world_state.h"
+#include "physics/state/activity_state.h"
+#include "physics/state/impact_memory.h"
+#include "physics/state/joint_state.h"
+#include "physics/state/rigid_state.h"
+#include "physics/state/substep_memory.h"
 
 namespace embody::physics::stages {
 
@@ -18,26 +23,26 @@ struct BodySetup {
 
 /// Fails where the definition is out of range, the shape handle is stale, a movable body has a static-only shape, or
 /// the mass is unknown.
-Result<BodySetup> set_up_body(const WorldState& world, const BodyDefinition& definition);
+Result<BodySetup> set_up_body(const RigidState& rigid, const BodyDefinition& definition);
 
 /// Puts a set-up body into the slot's arrays and the broad phase.
-void place_body(WorldState& world, std::uint32_t body, BodySetup setup);
+void place_body(const WakeAccess& world, ImpactMemory& impacts, std::uint32_t body, BodySetup setup);
 
 /// Takes them (each once) out of the broad phase, their sleeping groups and the contact lists; wakes what touched them.
-void lift_bodies(WorldState& world, std::span<const std::uint32_t> bodies);
+void lift_bodies(const WakeAccess& world, std::span<const std::uint32_t> bodies);
 
 /// The width of the contact solver; 0: the widest. Fails where the processor cannot.
-Result<void> choose_lanes(WorldState& world, int lanes);
+Result<void> choose_lanes(SubstepMemory& substeps, int lanes);
 
 /// Start of the constraint of a joint record.
-Result<Joint> set_up_joint(const WorldState& world, const JointDefinition& definition);
+Result<Joint> set_up_joint(const RigidState& rigid, const JointDefinition& definition);
 
 /// Rebuilds the list of pairs that joints keep from colliding.
-void list_jointed_pairs(WorldState& world);
+void list_jointed_pairs(JointState& joints);
 /// Adds the pair of a new joint.
-void add_jointed_pair(WorldState& world, const JointDefinition& joint);
+void add_jointed_pair(JointState& joints, const JointDefinition& joint);
 
 /// The definition as it stands now.
-BodyDefinition current_definition(const WorldState& world, std::uint32_t body);
+BodyDefinition current_definition(const RigidState& rigid, const ActivityState& activity, std::uint32_t body);
 
 }  // namespace embody::physics::stages

@@ -7,10 +7,16 @@
 #include <cmath>
 #include <optional>
 
+#include "foundation/task_pool.h"
 #include "physics/dynamic/equations_of_motion.h"
+#include "physics/stages/access.h"
 #include "physics/stages/rigid/roll_balls.h"
+#include "physics/stages/share_awake.h"
 #include "physics/stages/stages.h"
-#include "physics/state/share_awake.h"
+#include "physics/state/activity_state.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/joint_state.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
@@ -44,44 +50,44 @@ bool turns_fast(const BodyRecord& record, const BodyState& state) {
     return half_sine > least_half_sine && 2 * half_sine * (record.reach - record.inner_radius) > thickness_of(record);
 }
 
-bool may_tunnel(const WorldState& world, std::uint32_t body) {
-    const BodyRecord& record = world.record(body);
-    if (!record.shape || !record.definition.enabled || !world.is_dynamic(body)) return false;
-    const BodyState& state = world.motion[body];
+bool may_tunnel(const ContinuousAccess& world, std::uint32_t body) {
+    const BodyRecord& record = world.rigid.record(body);
+    if (!record.shape || !record.definition.enabled || !world.rigid.is_dynamic(body)) return false;
+    const BodyState& state = world.rigid.motion[body];
     const double thickness = thickness_of(record);
     return length_squared(state.center - state.start_center) > thickness * thickness || turns_fast(record, state);
 }
 
 // Things that fly side by side do not pass through each other.
-bool may_pass(const WorldState& world, std::uint32_t a, std::uint32_t b) {
-    const BodyRecord &ra = world.record(a), &rb = world.record(b);
-    const BodyState &sa = world.motion[a], &sb = world.motion[b];
+bool may_pass(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b) {
+    const BodyRecord &ra = world.rigid.record(a), &rb = world.rigid.record(b);
+    const BodyState &sa = world.rigid.motion[a], &sb = world.rigid.motion[b];
     const Vec3 way = (sa.center - sa.start_center) - (sb.center - sb.start_center);
     const double thickness = std::min(thickness_of(ra), thickness_of(rb));
     return length_squared(way) > thickness * thickness || turns_fast(ra, sa) || turns_fast(rb, sb);
 }
 
-bool may_meet(const WorldState& world, std::uint32_t a, std::uint32_t b) {
-    const BodyDefinition &da = world.record(a).definition, &db = world.record(b).definition;
+bool may_meet(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b) {
+    const BodyDefinition &da = world.rigid.record(a).definition, &db = world.rigid.record(b).definition;
     if (!db.enabled || !(da.collision_group & db.collision_mask) || !(db.collision_group & da.collision_mask))
         return false;
-    return !world.jointed_pairs.contains({std::min(a, b), std::max(a, b)});
+    return !world.joints.jointed_pairs.contains({std::min(a, b), std::max(a, b)});
 }
 
-Sweep sweep_of(const WorldState& world, std::uint32_t body) {
-    BodyState start = world.motion[body];
+Sweep sweep_of(const ContinuousAccess& world, std::uint32_t body) {
+    BodyState start = world.rigid.motion[body];
     start.center = start.start_center;
     start.rotation = start.start_rotation;
-    const Vec3 center = world.constants[body].local_center;
-    return {body_pose(start, center), world.pose(body), center};
+    const Vec3 center = world.rigid.constants[body].local_center;
+    return {body_pose(start, center), world.rigid.pose(body), center};
 }
 
 // All places of the body on its way: balls around its centre where it turns much.
-Bounds swept_bounds(const WorldState& world, std::uint32_t body, const Sweep& sweep) {
-    const BodyRecord& record = world.record(body);
+Bounds swept_bounds(const ContinuousAccess& world, std::uint32_t body, const Sweep& sweep) {
+    const BodyRecord& record = world.rigid.record(body);
     Bounds swept = record.shape->bounds(sweep.start);
     swept.add(record.shape->bounds(sweep.end));
-    const BodyState& state = world.motion[body];
+    const BodyState& state = world.rigid.motion[body];
     if (length(Vec3{state.turn.x, state.turn.y, state.turn.z}) < 0.05) return swept;
     const Vec3 reach{record.reach, record.reach, record.reach};
     swept.add(Bounds{state.start_center - reach, state.start_center + reach});
@@ -89,12 +95,13 @@ Bounds swept_bounds(const WorldState& world, std::uint32_t body, const Sweep& sw
     return swept;
 }
 
-std::optional<double> meeting_time(const WorldState& world, std::uint32_t a, std::uint32_t b, const Sweep& path_a,
+std::optional<double> meeting_time(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b, const Sweep& path_a,
                                    const Sweep& path_b) {
     // Sliding and rolling along a thing ends no deeper in it than this.
-    const BodyRecord& record = world.record(a);
+    const BodyRecord& record = world.rigid.record(a);
     const double harmless = record.definition.continuous ? 0 : 0.25 * record.inner_radius;
-    return time_of_impact(*record.shape, path_a, *world.record(b).shape, path_b, {touch_gap / 2, touch_gap, harmless});
+    return time_of_impact(*record.shape, path_a, *world.rigid.record(b).shape, path_b,
+                          {touch_gap / 2, touch_gap, harmless});
 }
 
 // The velocity with which a body that has `velocity` under the constant `acceleration` was at the place `back` from
@@ -110,12 +117,12 @@ Vec3 velocity_before(Vec3 velocity, Vec3 acceleration, Vec3 back) {
 
 // Puts a body back to a share of its way. The spin stays as the body's axes see it: in the world's, the inertia that
 // turns back would take or give energy.
-void put_back(WorldState& world, std::uint32_t body, double share) {
+void put_back(const ContinuousAccess& world, std::uint32_t body, double share) {
     if (share >= 1) return;
-    BodyState& state = world.motion[body];
+    BodyState& state = world.rigid.motion[body];
     const Vec3 spin = rotate_inverse(state.rotation, state.angular_velocity);
     const Vec3 back = (state.start_center - state.center) * (1 - share);
-    state.linear_velocity = velocity_before(state.linear_velocity, world.constants[body].acceleration, back);
+    state.linear_velocity = velocity_before(state.linear_velocity, world.rigid.constants[body].acceleration, back);
     state.center += back;
     const Quat end = dot(state.rotation, state.start_rotation) < 0
                          ? Quat{-state.rotation.x, -state.rotation.y, -state.rotation.z, -state.rotation.w}
@@ -124,14 +131,14 @@ void put_back(WorldState& world, std::uint32_t body, double share) {
     state.rotation = normalized(Quat{begin.x + share * (end.x - begin.x), begin.y + share * (end.y - begin.y),
                                      begin.z + share * (end.z - begin.z), begin.w + share * (end.w - begin.w)});
     state.angular_velocity = rotate(state.rotation, spin);
-    refresh_inertia(state, world.constants[body]);
+    refresh_inertia(state, world.rigid.constants[body]);
 }
 
 // Calls visit(other, its place among the fast ones or their number) for what a body may meet on its way.
 template <class Visit>
-void for_each_met(const WorldState& world, std::uint32_t body, const Sweep& sweep, const std::vector<FastBody>& fast,
-                  Visit&& visit) {
-    world.broad_phase.query(swept_bounds(world, body, sweep), [&](std::uint32_t other) {
+void for_each_met(const ContinuousAccess& world, std::uint32_t body, const Sweep& sweep,
+                  const std::vector<FastBody>& fast, Visit&& visit) {
+    world.contacts.broad_phase.query(swept_bounds(world, body, sweep), [&](std::uint32_t other) {
         if (other == body || !may_meet(world, body, other)) return;
         const auto found =
             std::lower_bound(fast.begin(), fast.end(), other,
@@ -142,14 +149,14 @@ void for_each_met(const WorldState& world, std::uint32_t body, const Sweep& swee
 }
 
 // Those that may tunnel, in the order of the bodies.
-std::vector<FastBody> list_fast(WorldState& world) {
+std::vector<FastBody> list_fast(const ContinuousAccess& world) {
     thread_local std::vector<std::vector<FastBody>> kept;
     std::vector<std::vector<FastBody>>& found = kept;  // of this thread, for all workers
-    found.resize(static_cast<std::size_t>(world.workers->workers()));
+    found.resize(static_cast<std::size_t>(world.workers.workers()));
     for (std::vector<FastBody>& of_worker : found) of_worker.clear();
     share_awake(world, [&](int worker, Share share) {
         for (std::size_t i = share.first; i < share.last; ++i) {
-            const std::uint32_t body = world.awake[i];
+            const std::uint32_t body = world.activity.awake[i];
             if (may_tunnel(world, body)) found[static_cast<std::size_t>(worker)].push_back({body});
         }
     });
@@ -161,7 +168,7 @@ std::vector<FastBody> list_fast(WorldState& world) {
 }
 
 // Fast bodies that meet each other stop where they do, the earliest first; whoever stopped is met no more.
-void stop_at_meetings(WorldState& world, std::vector<FastBody>& fast) {
+void stop_at_meetings(const ContinuousAccess& world, std::vector<FastBody>& fast) {
     std::vector<Meeting> meetings;
     for (std::size_t i = 0; i < fast.size(); ++i) {
         const std::uint32_t body = fast[i].body;
@@ -183,14 +190,14 @@ void stop_at_meetings(WorldState& world, std::vector<FastBody>& fast) {
 }
 
 // The share of what is left of its way after which a body first touches something that is not fast itself.
-double first_touch(const WorldState& world, std::uint32_t body, const std::vector<FastBody>& fast) {
+double first_touch(const ContinuousAccess& world, std::uint32_t body, const std::vector<FastBody>& fast) {
     const Sweep sweep = sweep_of(world, body);
     double first = 1;
     for_each_met(world, body, sweep, fast, [&](std::uint32_t other, std::size_t place) {
         // What rolls along a surface has followed it all the way; a straight line between its ends would cut into
         // edges.
         if (place < fast.size() || has_rolled_along(world, body, other)) return;
-        const Transform pose = world.pose(other);
+        const Transform pose = world.rigid.pose(other);
         if (const auto time = meeting_time(world, body, other, sweep, {pose, pose, {}})) first = std::min(first, *time);
     });
     return first;
@@ -198,7 +205,7 @@ double first_touch(const WorldState& world, std::uint32_t body, const std::vecto
 
 }  // namespace
 
-void stop_tunnelling(WorldState& world) {
+void stop_tunnelling(const ContinuousAccess& world) {
     std::vector<FastBody> fast = list_fast(world);
     if (fast.empty()) return;
     stop_at_meetings(world, fast);

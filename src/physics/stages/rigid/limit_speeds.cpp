@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <atomic>
 
+#include "physics/definitions/step_report.h"
+#include "physics/definitions/world_settings.h"
+#include "physics/stages/access.h"
+#include "physics/stages/share_awake.h"
 #include "physics/stages/stages.h"
-#include "physics/state/share_awake.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
@@ -18,11 +22,11 @@ bool limit_speed(Vec3& velocity, double most) {
 
 }  // namespace
 
-void limit_speeds(WorldState& world) {
+void limit_speeds(const SpeedAccess& world) {
     std::atomic<std::uint32_t> limits{0};
     for_each_awake(world, [&](std::uint32_t body) {
-        if (!world.is_dynamic(body)) return;
-        BodyState& state = world.motion[body];
+        if (!world.rigid.is_dynamic(body)) return;
+        BodyState& state = world.rigid.motion[body];
         if (limit_speed(state.linear_velocity, world.settings.max_linear_speed)) {
             limits |= static_cast<std::uint32_t>(StepLimit::linear_speed_clamped);
         }

@@ -6,6 +6,11 @@
 #include "physics/collision/pairs/round_features.h"
 #include "physics/collision/shapes/collision_shape_data.h"
 #include "physics/constraint/rolling/rolling_body.h"
+#include "physics/definitions/world_settings.h"
+#include "physics/optimization/islands.h"
+#include "physics/stages/access.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
@@ -41,8 +46,8 @@ bool add_rings(const Convex& shape, Vec3 middle, Vec3 axis, RollingBody& body) {
 }
 
 // The body as rings, if all its pieces are round about one axis; balls roll as well without.
-std::optional<RollingBody> rolling_body(const WorldState& world, std::uint32_t body) {
-    const BodyRecord& record = world.record(body);
+std::optional<RollingBody> rolling_body(const SubstepAccess& world, std::uint32_t body) {
+    const BodyRecord& record = world.rigid.record(body);
     if (!record.is_round || record.is_ball) return std::nullopt;
     const std::vector<ConvexPiece>& pieces = record.shape->data().pieces;
     const auto along_axis = [](const ConvexPiece& piece) { return rotate(piece.local.rotation, {0, 1, 0}); };
@@ -55,7 +60,7 @@ std::optional<RollingBody> rolling_body(const WorldState& world, std::uint32_t b
         const Vec3 own = along_axis(piece), aside = cross(piece.local.position - start, rolling.axis);
         const bool is_aligned = piece.convex.kind == ConvexKind::sphere || length(cross(own, rolling.axis)) < aligned;
         if (!is_aligned || length(aside) > aligned * record.reach) return std::nullopt;
-        if (!add_rings(piece.convex, piece.local.position - world.constants[body].local_center, own, rolling)) {
+        if (!add_rings(piece.convex, piece.local.position - world.rigid.constants[body].local_center, own, rolling)) {
             return std::nullopt;
         }
     }
@@ -63,27 +68,27 @@ std::optional<RollingBody> rolling_body(const WorldState& world, std::uint32_t b
 }
 
 // Whether the contact's normal is that of a face of the ground: beside it an edge or a curve would roll off otherwise.
-bool lies_on_face(const WorldState& world, std::uint32_t ground, std::uint32_t piece, Vec3 up) {
-    const CollisionShape::Data& shape = world.record(ground).shape->data();
+bool lies_on_face(const SubstepAccess& world, std::uint32_t ground, std::uint32_t piece, Vec3 up) {
+    const CollisionShape::Data& shape = world.rigid.record(ground).shape->data();
     if (shape.is_plane) return true;
-    const Transform pose = world.pose(ground);
+    const Transform pose = world.rigid.pose(ground);
     if (shape.surface) return dot(rotate(pose.rotation, shape.surface->normal(piece)), up) >= same_normal;
     return has_aligned_face(place(shape.pieces[piece], pose, pose.position), up, same_normal);
 }
 
 // What still ground the island's contacts all lie on; none if they differ or resist rolling.
-std::optional<DeepestPoint> deepest_on_flat_ground(const WorldState& world, std::span<const std::uint32_t> contacts,
+std::optional<DeepestPoint> deepest_on_flat_ground(const SubstepAccess& world, std::span<const std::uint32_t> contacts,
                                                    std::uint32_t body) {
     std::optional<DeepestPoint> deepest;
     float least = 0;
     const auto up_from = [&](const Contact& contact) {
         return normalized(Vec3(contact.normal)) * (contact.b == body ? 1.0 : -1.0);
     };
-    const Vec3 first_up = up_from(world.contacts[contacts.front()]);
+    const Vec3 first_up = up_from(world.contacts.list[contacts.front()]);
     for (const std::uint32_t index : contacts) {
-        const Contact& contact = world.contacts[index];
+        const Contact& contact = world.contacts.list[index];
         const std::uint32_t other = contact.a == body ? contact.b : contact.a;
-        const BodyState& ground = world.motion[other];
+        const BodyState& ground = world.rigid.motion[other];
         const bool is_still =
             ground.inverse_mass == 0 && ground.linear_velocity == Vec3{} && ground.angular_velocity == Vec3{};
         const bool resists = contact.friction_rolling > 0 || contact.friction_torsional > 0 || contact.had_impact;
@@ -104,16 +109,17 @@ std::optional<DeepestPoint> deepest_on_flat_ground(const WorldState& world, std:
 
 }  // namespace
 
-void note_load(WorldState& world, std::span<const std::uint32_t> contacts, const DeepestPoint& deepest, Vec3 impulse) {
-    const ContactPlan plan = contact_plan(contacts.size(), world.settings.substeps);
+void note_load(const WorldSettings& settings, std::span<const std::uint32_t> contacts, const DeepestPoint& deepest,
+               Vec3 impulse, std::vector<Contact>& list) {
+    const ContactPlan plan = contact_plan(contacts.size(), settings.substeps);
     const auto part = static_cast<float>(1.0 / plan.substeps);
     for (const std::uint32_t index : contacts) {
-        Contact& contact = world.contacts[index];
+        Contact& contact = list[index];
         contact.friction = {};
         contact.rolling = {};
         for (ContactPoint& point : contact.points) point.impulse = 0;
     }
-    Contact& contact = world.contacts[deepest.contact];
+    Contact& contact = list[deepest.contact];
     ContactPoint& point = contact.points[deepest.point];
     const auto along = [&](Vec3 direction) { return static_cast<float>(dot(impulse, direction)); };
     const PatchFriction friction{along(contact.tangent_1), along(tangent_2(contact)), 0};
@@ -125,11 +131,11 @@ void note_load(WorldState& world, std::span<const std::uint32_t> contacts, const
     contact.sticks = true;
 }
 
-bool roll_alone(WorldState& world, const Island& island) {
+bool roll_alone(const SubstepAccess& world, const Island& island) {
     constexpr std::uint32_t most_contacts = 8;  // what rolls on still faces has two rims on two neighbouring triangles
     if (island.body_count != 1 || island.joint_count > 0 || island.contact_count > most_contacts) return false;
     const std::uint32_t body = world.islands.bodies[island.first_body];
-    const BodyConstants& constants = world.constants[body];
+    const BodyConstants& constants = world.rigid.constants[body];
     if (constants.torque != Vec3{} || constants.linear_damping > 0 || constants.angular_damping > 0) return false;
     const std::optional<RollingBody> round = rolling_body(world, body);
     if (!round) return false;
@@ -137,16 +143,16 @@ bool roll_alone(WorldState& world, const Island& island) {
     const std::optional<DeepestPoint> deepest = deepest_on_flat_ground(world, contacts, body);
     if (!deepest) return false;
 
-    const Contact& contact = world.contacts[deepest->contact];
+    const Contact& contact = world.contacts.list[deepest->contact];
     const ContactPoint& point = contact.points[deepest->point];
     const bool is_b = contact.b == body;
     const Vec3 up = normalized(Vec3(contact.normal) * (is_b ? 1.0 : -1.0));
-    BodyState& state = world.motion[body];
+    BodyState& state = world.rigid.motion[body];
     const Vec3 on_body = state.center + Vec3(is_b ? point.arm_b : point.arm_a);
     const RollingGround ground{up, on_body - up * point.separation, contact.friction_static, contact.sticks};
     const std::optional<Vec3> impulse = roll(state, constants, *round, ground, world.settings.time_step);
     if (!impulse) return false;
-    note_load(world, contacts, *deepest, *impulse * (is_b ? 1.0 : -1.0));
+    note_load(world.settings, contacts, *deepest, *impulse * (is_b ? 1.0 : -1.0), world.contacts.list);
     return true;
 }
 

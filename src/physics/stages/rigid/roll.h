@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/optimization/islands.h"
+#include "physics/stages/access.h"
 #include "physics/stages/namespace.h"
-#include "physics/state/world_state.h"
 
 namespace embody::physics::stages {
 
@@ -16,9 +17,11 @@ struct DeepestPoint {
 /// step, or its axis turns: coins that lean, cones on their side, tops on their tip, fast wheels. The contact solver
 /// holds the place of contact fast for a step, and each step's new place would cost (Ω dt)² of the energy. False: the
 /// island is left to the others.
-bool roll_alone(WorldState& world, const Island& island);
+bool roll_alone(const SubstepAccess& world, const Island& island);
 
-/// All of the ground's impulse (N s, on the contact's b) at that point of an island's contacts, in the sweeps' measure.
-void note_load(WorldState& world, std::span<const std::uint32_t> contacts, const DeepestPoint& deepest, Vec3 impulse);
+/// All of the ground's impulse (N s, on the contact's b) at that point of an island's contacts (indices in the list),
+/// in the sweeps' measure.
+void note_load(const WorldSettings& settings, std::span<const std::uint32_t> contacts, const DeepestPoint& deepest,
+               Vec3 impulse, std::vector<Contact>& list);
 
 }  // namespace embody::physics::stages

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/optimization/islands.h"
+#include "physics/stages/access.h"
 #include "physics/stages/namespace.h"
-#include "physics/state/world_state.h"
 
 namespace embody::physics::stages {
 
@@ -11,12 +12,12 @@ namespace embody::physics::stages {
 /// take_rolled_balls(). Its contacts are no impacts any more: the collisions of such balls are solved on the way. The
 /// contact solver holds a plane fast for a step and lifts the ball out of the curved ground for nothing, g dt / 2R of
 /// its energy a second.
-void roll_balls(WorldState& world);
+void roll_balls(const RollAccess& world);
 
 /// Whether the island is balls that were rolled; they are then where the step takes them.
-bool take_rolled_balls(WorldState& world, const Island& island);
+bool take_rolled_balls(const SubstepAccess& world, const Island& island);
 
 /// Whether the body is where it was rolled to in this step, with `ground` among what it rolled along.
-bool has_rolled_along(const WorldState& world, std::uint32_t body, std::uint32_t ground);
+bool has_rolled_along(const ContinuousAccess& world, std::uint32_t body, std::uint32_t ground);
 
 }  // namespace embody::physics::stages

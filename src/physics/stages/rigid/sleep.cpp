@@ -1,20 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
+#include "physics/definitions/world_settings.h"
 #include "physics/optimization/island_sleep.h"
+#include "physics/optimization/islands.h"
+#include "physics/stages/access.h"
+#include "physics/stages/share_awake.h"
 #include "physics/stages/stages.h"
-#include "physics/state/share_awake.h"
+#include "physics/state/activity_state.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/event_state.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
 namespace {
 
 // An island that a moving kinematic body carries or pushes must stay awake.
-bool touches_moving_kinematic(const WorldState& world, const Island& island) {
+bool touches_moving_kinematic(const SleepAccess& world, const Island& island) {
     for (std::uint32_t k = 0; k < island.contact_count; ++k) {
-        const Contact& contact = world.contacts[world.islands.contacts[island.first_contact + k]];
+        const Contact& contact = world.contacts.list[world.islands.contacts[island.first_contact + k]];
         for (const std::uint32_t body : {contact.a, contact.b}) {
-            const BodyState& state = world.motion[body];
+            const BodyState& state = world.rigid.motion[body];
             if (state.inverse_mass == 0 && (state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{})) {
                 return true;
             }
@@ -24,22 +31,22 @@ bool touches_moving_kinematic(const WorldState& world, const Island& island) {
 }
 
 // Moves an island's bodies and contacts out of the awake set.
-void fall_asleep(WorldState& world, const Island& island, std::vector<bool>& leaves) {
-    world.awake_changed = true;
-    const std::uint32_t group = world.next_group++;
-    SleepingGroup& sleepers = world.sleepers[group];
+void fall_asleep(const SleepAccess& world, const Island& island, std::vector<bool>& leaves) {
+    world.activity.awake_changed = true;
+    const std::uint32_t group = world.activity.next_group++;
+    SleepingGroup& sleepers = world.activity.sleepers[group];
     for (std::uint32_t k = 0; k < island.body_count; ++k) {
         const std::uint32_t body = world.islands.bodies[island.first_body + k];
-        world.motion[body].linear_velocity = world.motion[body].angular_velocity = {};
-        world.sleep[body].state = SleepState::asleep;
-        world.sleep[body].group = group;
+        world.rigid.motion[body].linear_velocity = world.rigid.motion[body].angular_velocity = {};
+        world.activity.sleep[body].state = SleepState::asleep;
+        world.activity.sleep[body].group = group;
         sleepers.bodies.push_back(body);
-        world.sleep_events.push_back(
-            {SleepEvent::Kind::fell_asleep, world.bodies.handle_at(body), world.record(body).definition.user_data});
+        world.events.sleep.push_back({SleepEvent::Kind::fell_asleep, world.rigid.bodies.handle_at(body),
+                                      world.rigid.record(body).definition.user_data});
     }
     for (std::uint32_t k = 0; k < island.contact_count; ++k) {
         const std::uint32_t contact = world.islands.contacts[island.first_contact + k];
-        sleepers.contacts.push_back(world.contacts[contact]);
+        sleepers.contacts.push_back(world.contacts.list[contact]);
         leaves[contact] = true;
     }
     std::sort(sleepers.contacts.begin(), sleepers.contacts.end(),
@@ -48,34 +55,35 @@ void fall_asleep(WorldState& world, const Island& island, std::vector<bool>& lea
 
 }  // namespace
 
-void put_to_sleep(WorldState& world) {
+void put_to_sleep(const SleepAccess& world) {
     const WorldSettings& settings = world.settings;
     for_each_awake(world, [&](std::uint32_t body) {
-        if (world.motion[body].inverse_mass == 0) return;
-        const BodyRecord& record = world.record(body);
+        if (world.rigid.motion[body].inverse_mass == 0) return;
+        const BodyRecord& record = world.rigid.record(body);
         const QuietRules rules{settings.time_step, settings.time_to_sleep, record.deformable_force != Vec3{}};
-        track_quietness(world.sleep[body], world.motion[body], world.constants[body], record.reach, rules);
+        track_quietness(world.activity.sleep[body], world.rigid.motion[body], world.rigid.constants[body], record.reach,
+                        rules);
     });
     if (!world.settings.sleeping) return;
 
     std::vector<bool> leaves;
     for (const Island& island : world.islands.list) {
         const auto bodies = std::span(world.islands.bodies).subspan(island.first_body, island.body_count);
-        if (!may_sleep(bodies, world.sleep, world.settings.time_to_sleep)) continue;
+        if (!may_sleep(bodies, world.activity.sleep, world.settings.time_to_sleep)) continue;
         if (touches_moving_kinematic(world, island)) continue;
-        leaves.resize(world.contacts.size(), false);
+        leaves.resize(world.contacts.list.size(), false);
         fall_asleep(world, island, leaves);
     }
     if (leaves.empty()) return;
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < world.contacts.size(); ++i) {
+    for (std::size_t i = 0; i < world.contacts.list.size(); ++i) {
         if (leaves[i]) continue;
-        world.contacts[kept] = world.contacts[i];
-        world.contact_glances[kept++] = world.contact_glances[i];
+        world.contacts.list[kept] = world.contacts.list[i];
+        world.contacts.summaries[kept++] = world.contacts.summaries[i];
     }
-    world.contacts.resize(kept);
-    world.contact_glances.resize(kept);
-    world.touch_memory.is_laid_out = false;
+    world.contacts.list.resize(kept);
+    world.contacts.summaries.resize(kept);
+    world.contacts.touch.is_laid_out = false;
 }
 
 }  // namespace embody::physics::stages

@@ -3,83 +3,95 @@
 #include <atomic>
 #include <cmath>
 
+#include "foundation/task_pool.h"
 #include "physics/constraint/sweeps/substep_solver.h"
+#include "physics/definitions/step_report.h"
+#include "physics/definitions/world_settings.h"
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/optimization/direct_islands.h"
+#include "physics/optimization/islands.h"
 #include "physics/optimization/shock_propagation.h"
 #include "physics/optimization/solve_schedule.h"
+#include "physics/stages/access.h"
 #include "physics/stages/rigid/roll.h"
 #include "physics/stages/rigid/roll_balls.h"
+#include "physics/stages/share_awake.h"
 #include "physics/stages/stages.h"
-#include "physics/state/share_awake.h"
+#include "physics/state/activity_state.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/impact_memory.h"
+#include "physics/state/joint_state.h"
+#include "physics/state/ledger.h"
+#include "physics/state/rigid_state.h"
+#include "physics/state/substep_memory.h"
 
 namespace embody::physics::stages {
 
 namespace {
 
-std::span<const std::uint32_t> contacts_of(const WorldState& world, const Island& island) {
+std::span<const std::uint32_t> contacts_of(const SubstepAccess& world, const Island& island) {
     return std::span(world.islands.contacts).subspan(island.first_contact, island.contact_count);
 }
 
-std::span<const std::uint32_t> joints_of(const WorldState& world, const Island& island) {
+std::span<const std::uint32_t> joints_of(const SubstepAccess& world, const Island& island) {
     return std::span(world.islands.joints).subspan(island.first_joint, island.joint_count);
 }
 
-std::span<const std::uint32_t> bodies_of(const WorldState& world, const Island& island) {
+std::span<const std::uint32_t> bodies_of(const SubstepAccess& world, const Island& island) {
     return std::span(world.islands.bodies).subspan(island.first_body, island.body_count);
 }
 
-JointedList jointed_list(const WorldState& world, const Island& island) {
+JointedList jointed_list(const SubstepAccess& world, const Island& island) {
     return {bodies_of(world, island), joints_of(world, island)};
 }
 
 // The system that solves the island's joints at once; null where there are none or too many.
-JointSystem* joint_system(WorldState& world, const Island& island) {
+JointSystem* joint_system(const SubstepAccess& world, const Island& island) {
     if (island.joint_count == 0 || !JointSystem::fits(jointed_list(world, island))) return nullptr;
-    return &world.joint_systems[world.islands.bodies[island.first_body]];
+    return &world.substeps.joint_systems[world.islands.bodies[island.first_body]];
 }
 
 // The kinematic bodies in motion.
-void list_carriers(const WorldState& world, std::vector<std::uint32_t>& carriers) {
+void list_carriers(const SubstepAccess& world, std::vector<std::uint32_t>& carriers) {
     carriers.clear();
-    if (world.awake.size() == world.islands.bodies.size()) return;
-    for (const std::uint32_t body : world.awake) {
-        const BodyState& state = world.motion[body];
+    if (world.activity.awake.size() == world.islands.bodies.size()) return;
+    for (const std::uint32_t body : world.activity.awake) {
+        const BodyState& state = world.rigid.motion[body];
         const bool moves = state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{};
         if (state.inverse_mass == 0 && moves) carriers.push_back(body);
     }
 }
 
 // Whether a kinematic body may give the island energy by a contact.
-bool is_pushed(const WorldState& world, const Island& island) {
+bool is_pushed(const SubstepAccess& world, const Island& island) {
     const auto pushes = [&](std::uint32_t body) {
-        const BodyState& state = world.motion[body];
+        const BodyState& state = world.rigid.motion[body];
         return state.inverse_mass == 0 && (state.linear_velocity != Vec3{} || state.angular_velocity != Vec3{});
     };
     const auto contacts = contacts_of(world, island);
     return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t index) {
-        return pushes(world.contacts[index].a) || pushes(world.contacts[index].b);
+        return pushes(world.contacts.list[index].a) || pushes(world.contacts.list[index].b);
     });
 }
 
 // Whether the inertia of some body turns with it in this step: then the contacts' frozen axes are not its own, and what
 // held the last step may push in this one.
-bool spins(const WorldState& world, const Island& island) {
+bool spins(const SubstepAccess& world, const Island& island) {
     const auto bodies = bodies_of(world, island);
     return std::any_of(bodies.begin(), bodies.end(), [&](std::uint32_t body) {
-        return has_gyroscopic_torque(world.motion[body], world.constants[body], world.settings.time_step);
+        return has_gyroscopic_torque(world.rigid.motion[body], world.rigid.constants[body], world.settings.time_step);
     });
 }
 
 // Solves all given islands, of contacts only, through the step.
-void solve_wide(WorldState& world, const IslandsBySolver::Wide& way) {
+void solve_wide(const SubstepAccess& world, const IslandsBySolver::Wide& way) {
     if (way.islands.empty()) return;
-    std::vector<std::uint32_t>&order = world.substep_memory.wide_contacts, &bodies = world.substep_memory.wide_bodies;
-    std::vector<WideContactSolver::Group>& groups = world.substep_memory.wide_groups;
+    std::vector<std::uint32_t>&order = world.substeps.wide_contacts, &bodies = world.substeps.wide_bodies;
+    std::vector<WideContactSolver::Group>& groups = world.substeps.wide_groups;
     order.clear();
     bodies.clear();
     groups.clear();
-    list_carriers(world, world.substep_memory.wide_carriers);
+    list_carriers(world, world.substeps.wide_carriers);
     for (const Island& island : way.islands) {
         groups.push_back({island.body_count, spins(world, island) && !is_pushed(world, island)});
         const auto contacts = contacts_of(world, island);
@@ -87,66 +99,68 @@ void solve_wide(WorldState& world, const IslandsBySolver::Wide& way) {
         const auto members = bodies_of(world, island);
         bodies.insert(bodies.end(), members.begin(), members.end());
     }
-    WideContactSolver& solver = world.wide_solver;
-    build_schedule(order, world.contact_glances, world.motion, solver.lanes(), world.schedule);
+    WideContactSolver& solver = world.substeps.wide_solver;
+    build_schedule(order, world.contacts.summaries, world.rigid.motion, solver.lanes(), world.substeps.schedule);
     const ContactSoftness softness = way.plan.softness(world.settings.time_step);
-    solver.begin({bodies, world.substep_memory.wide_carriers, groups}, softness.substep, way.plan.substeps);
-    for (const SolveSchedule::Stage& stage : world.schedule.stages) {
+    solver.begin({bodies, world.substeps.wide_carriers, groups}, softness.substep, way.plan.substeps);
+    for (const SolveSchedule::Stage& stage : world.substeps.schedule.stages) {
         solver.begin_stage();
         for (std::uint32_t i = 0; i < stage.batch_count; ++i) {
-            const SolveSchedule::Batch& batch = world.schedule.batches[stage.first_batch + i];
-            solver.add_batch(std::span(world.schedule.contacts).subspan(batch.first, batch.count), batch.points);
+            const SolveSchedule::Batch& batch = world.substeps.schedule.batches[stage.first_batch + i];
+            solver.add_batch(std::span(world.substeps.schedule.contacts).subspan(batch.first, batch.count),
+                             batch.points);
         }
     }
-    solver.solve(way.plan.passes, softness, world.motion, world.constants, world.contacts, world.contact_glances,
-                 *world.workers);
+    solver.solve(way.plan.passes, softness, world.rigid.motion, world.rigid.constants, world.contacts.list,
+                 world.contacts.summaries, world.workers);
     if (!world.ledger) return;
     for (const std::uint32_t body : bodies) world.ledger->note_kept_share(body, solver.kept_share(body));
 }
 
 // What the report asks of each contact; the wide solver notes its own.
-void note_outcomes(WorldState& world, const Island& island) {
+void note_outcomes(const SubstepAccess& world, const Island& island) {
     for (const std::uint32_t contact : contacts_of(world, island)) {
-        world.contact_glances[contact].touches = is_touching(world.contacts[contact]);
+        world.contacts.summaries[contact].touches = is_touching(world.contacts.list[contact]);
     }
 }
 
 // Whether the last step's impulses held the island and nothing of it has changed since.
-bool is_still_held(const WorldState& world, const Island& island) {
+bool is_still_held(const SubstepAccess& world, const Island& island) {
     const auto bodies = bodies_of(world, island);
     const auto contacts = contacts_of(world, island);
     const auto stands = [&](std::uint32_t body) {
-        const HeldRecord& held = world.held[body];
-        return world.touch_memory.bodies[body].stands && held.step + 1 == world.report.step &&
+        const HeldRecord& held = world.substeps.held[body];
+        return world.contacts.touch.bodies[body].stands && held.step + 1 == world.report.step &&
                held.contacts == island.contact_count;
     };
-    const auto is_kept = [&](std::uint32_t contact) { return world.contact_glances[contact].is_kept; };
+    const auto is_kept = [&](std::uint32_t contact) { return world.contacts.summaries[contact].is_kept; };
     return std::all_of(bodies.begin(), bodies.end(), stands) && std::all_of(contacts.begin(), contacts.end(), is_kept);
 }
 
-void note_held(WorldState& world, const Island& island) {
+void note_held(const SubstepAccess& world, const Island& island) {
     for (const std::uint32_t body : bodies_of(world, island)) {
-        world.held[body] = {world.report.step, island.contact_count};
+        world.substeps.held[body] = {world.report.step, island.contact_count};
     }
 }
 
 // Whether the island was solved directly; else the sweeps have to.
-bool solve_directly(WorldState& world, const Island& island) {
+bool solve_directly(const SubstepAccess& world, const Island& island) {
     // Impulses in the sweeps' measure, so that either way can go on where the other one left off.
     const int parts = contact_plan(island.contact_count, world.settings.substeps).substeps;
     const DirectContactSolver::List list{bodies_of(world, island), contacts_of(world, island), parts};
     if (is_still_held(world, island)) {
-        DirectContactSolver::hold(list, world.contacts);
+        DirectContactSolver::hold(list, world.contacts.list);
         note_held(world, island);
         note_outcomes(world, island);
         return true;
     }
-    const DirectUse use = direct_use_of(island, world.islands, world.contacts, world.motion);
+    const DirectUse use = direct_use_of(island, world.islands, world.contacts.list, world.rigid.motion);
     if (use == DirectUse::never) return false;
     using Effort = DirectContactSolver::Effort;
     const Effort effort = use == DirectUse::always ? Effort::any : Effort::while_slow;
     using Outcome = DirectContactSolver::Outcome;
-    const Outcome outcome = world.direct_solver.solve(list, effort, world.motion, world.constants, world.contacts);
+    const Outcome outcome = world.substeps.direct_solver.solve(list, effort, world.rigid.motion, world.rigid.constants,
+                                                               world.contacts.list);
     if (outcome == Outcome::unsolved) return false;
     if (outcome == Outcome::held) note_held(world, island);
     note_outcomes(world, island);
@@ -154,41 +168,41 @@ bool solve_directly(WorldState& world, const Island& island) {
 }
 
 // The systems of islands that are no more, or sleep, are dropped.
-void set_up_joint_systems(WorldState& world) {
-    std::map<std::uint32_t, JointSystem> last = std::move(world.joint_systems);
-    world.joint_systems.clear();
+void set_up_joint_systems(const SubstepAccess& world) {
+    std::map<std::uint32_t, JointSystem> last = std::move(world.substeps.joint_systems);
+    world.substeps.joint_systems.clear();
     for (const Island& island : world.islands.list) {
         const JointedList list = jointed_list(world, island);
         if (list.joints.empty() || !JointSystem::fits(list)) continue;
         auto known = last.extract(list.bodies.front());
-        JointSystem& system = known.empty() ? world.joint_systems[list.bodies.front()]
-                                            : world.joint_systems.insert(std::move(known)).position->second;
-        system.set(list, {world.motion, world.constants, world.active_joints});
+        JointSystem& system = known.empty() ? world.substeps.joint_systems[list.bodies.front()]
+                                            : world.substeps.joint_systems.insert(std::move(known)).position->second;
+        system.set(list, {world.rigid.motion, world.rigid.constants, world.joints.active});
     }
 }
 
 // Joints only: each island through the whole step. Kinematic bodies go along; others take them from where they were.
-void solve_jointed(WorldState& world, const std::vector<Island>& islands, double h) {
-    const JointSystem::View view{world.motion, world.constants, world.active_joints};
+void solve_jointed(const SubstepAccess& world, const std::vector<Island>& islands, double h) {
+    const JointSystem::View view{world.rigid.motion, world.rigid.constants, world.joints.active};
     for (const Island& island : islands) {
         JointSystem& system = *joint_system(world, island);
-        std::vector<std::pair<std::uint32_t, BodyState>>& carriers = world.substep_memory.carriers;
+        std::vector<std::pair<std::uint32_t, BodyState>>& carriers = world.substeps.carriers;
         system.list_carriers(view, carriers);
         for (int k = 0; k < world.settings.substeps; ++k) {
             system.advance(h, view);
-            if (world.ledger) world.ledger->close_island(world, island, h);
+            if (world.ledger) world.ledger->close_island(island, h);
         }
-        for (const auto& [body, state] : carriers) world.motion[body] = state;
+        for (const auto& [body, state] : carriers) world.rigid.motion[body] = state;
     }
 }
 
 // Solves what is solved directly, and tells how the others have to be.
-const IslandsBySolver& sort_islands(WorldState& world) {
-    IslandsBySolver& ways = world.substep_memory.islands;
+const IslandsBySolver& sort_islands(const SubstepAccess& world) {
+    IslandsBySolver& ways = world.substeps.islands;
     ways.clear();
     set_up_joint_systems(world);
-    world.held.resize(world.bodies.slot_count());
-    world.direct_solver.begin(world.settings.time_step, world.settings.substeps);
+    world.substeps.held.resize(world.rigid.bodies.slot_count());
+    world.substeps.direct_solver.begin(world.settings.time_step, world.settings.substeps);
     for (const Island& island : world.islands.list) {
         if (take_rolled_balls(world, island)) {
             note_outcomes(world, island);
@@ -211,27 +225,28 @@ const IslandsBySolver& sort_islands(WorldState& world) {
     return ways;
 }
 
-void solve_islands(WorldState& world, const std::vector<Island>& islands, SolvePhase phase, double h, double time) {
+void solve_islands(const SubstepAccess& world, const std::vector<Island>& islands, SolvePhase phase, double h,
+                   double time) {
     std::size_t first = 0;
     for (const Island& island : islands) {
         const ConstraintList list{
-            .contacts = world.contacts,
+            .contacts = world.contacts.list,
             .contact_order = std::span(world.islands.contacts).subspan(island.first_contact, island.contact_count),
-            .prepared = std::span(world.prepared_contacts).subspan(first, island.contact_count),
-            .joints = world.active_joints,
+            .prepared = std::span(world.substeps.prepared_contacts).subspan(first, island.contact_count),
+            .joints = world.joints.active,
             .joint_order = joints_of(world, island),
             .system = joint_system(world, island)};
-        solve_phase(list, phase, h, time, world.motion, world.constants);
+        solve_phase(list, phase, h, time, world.rigid.motion, world.rigid.constants);
         first += island.contact_count;
     }
 }
 
 // Calls visit(contact) for each contact of the islands.
 template <class Visit>
-void for_each_contact(WorldState& world, const std::vector<Island>& islands, Visit visit) {
+void for_each_contact(const SubstepAccess& world, const std::vector<Island>& islands, Visit visit) {
     for (const Island& island : islands) {
         for (std::uint32_t k = 0; k < island.contact_count; ++k) {
-            visit(world.contacts[world.islands.contacts[island.first_contact + k]]);
+            visit(world.contacts.list[world.islands.contacts[island.first_contact + k]]);
         }
     }
 }
@@ -241,51 +256,52 @@ void for_each_contact(WorldState& world, const std::vector<Island>& islands, Vis
 // velocity that the contacts must hold, and the warm start fits.
 bool has_split_kick(const Island& island) { return island.contact_count == 0; }
 
-void kick_before_drift(WorldState& world, const std::vector<Island>& islands, double h) {
+void kick_before_drift(const SubstepAccess& world, const std::vector<Island>& islands, double h) {
     for (const Island& island : islands) {
         const double time = has_split_kick(island) ? h / 2 : h;
         for (std::uint32_t k = 0; k < island.body_count; ++k) {
             const std::uint32_t body = world.islands.bodies[island.first_body + k];
-            kick(world.motion[body], world.constants[body], time);
-            split_gyroscopic(world.motion[body], world.constants[body], h);
-            world.kicked_velocity[body] = world.motion[body].linear_velocity;
+            kick(world.rigid.motion[body], world.rigid.constants[body], time);
+            split_gyroscopic(world.rigid.motion[body], world.rigid.constants[body], h);
+            world.substeps.kicked_velocity[body] = world.rigid.motion[body].linear_velocity;
         }
     }
 }
 
-void kick_after_drift(WorldState& world, const std::vector<Island>& islands, double h) {
+void kick_after_drift(const SubstepAccess& world, const std::vector<Island>& islands, double h) {
     for (const Island& island : islands) {
         if (!has_split_kick(island)) continue;
         for (std::uint32_t k = 0; k < island.body_count; ++k) {
             const std::uint32_t body = world.islands.bodies[island.first_body + k];
-            kick(world.motion[body], world.constants[body], h / 2);
+            kick(world.rigid.motion[body], world.rigid.constants[body], h / 2);
         }
     }
 }
 
-void drift_all(WorldState& world, const std::vector<Island>& islands, double h) {
+void drift_all(const SubstepAccess& world, const std::vector<Island>& islands, double h) {
     for (const Island& island : islands) {
         for (std::uint32_t k = 0; k < island.body_count; ++k) {
             const std::uint32_t body = world.islands.bodies[island.first_body + k];
-            BodyState& state = world.motion[body];
+            BodyState& state = world.rigid.motion[body];
 
             // A body near others that nothing touched: its mean velocity lies half a kick behind.
-            const bool is_free = state.linear_velocity == world.kicked_velocity[body];
-            if (!has_split_kick(island) && is_free) state.center -= world.constants[body].acceleration * (h * h / 2);
-            drift(state, world.constants[body], h);
+            const bool is_free = state.linear_velocity == world.substeps.kicked_velocity[body];
+            if (!has_split_kick(island) && is_free)
+                state.center -= world.rigid.constants[body].acceleration * (h * h / 2);
+            drift(state, world.rigid.constants[body], h);
         }
     }
-    for (const std::uint32_t body : world.awake) {
-        if (world.motion[body].inverse_mass == 0) drift_kinematic(world.motion[body], h);
+    for (const std::uint32_t body : world.activity.awake) {
+        if (world.rigid.motion[body].inverse_mass == 0) drift_kinematic(world.rigid.motion[body], h);
     }
 }
 
-void prepare_joints(WorldState& world, const std::vector<Island>& islands) {
+void prepare_joints(const SubstepAccess& world, const std::vector<Island>& islands) {
     for (const Island& island : islands) {
         for (const std::uint32_t index : joints_of(world, island)) {
-            Joint& joint = world.active_joints[index];
-            prepare_joint(joint, world.motion);
-            if (!joint_system(world, island)) factor_joint(joint, world.motion);
+            Joint& joint = world.joints.active[index];
+            prepare_joint(joint, world.rigid.motion);
+            if (!joint_system(world, island)) factor_joint(joint, world.rigid.motion);
         }
     }
 }
@@ -296,15 +312,17 @@ bool is_state_finite(const BodyState& state) {
 }
 
 // What was no number in a lost body leaves none in what it touched.
-void clear_traces_of_lost(WorldState& world) {
-    for (std::uint32_t body = 0; body < world.bodies.slot_count(); ++body) {
-        if (!world.is_used(body) || world.is_dynamic(body) || is_state_finite(world.motion[body])) continue;
-        world.motion[body].linear_velocity = world.motion[body].angular_velocity = {};
+void clear_traces_of_lost(const SubstepAccess& world) {
+    for (std::uint32_t body = 0; body < world.rigid.bodies.slot_count(); ++body) {
+        if (!world.rigid.is_used(body) || world.rigid.is_dynamic(body) || is_state_finite(world.rigid.motion[body]))
+            continue;
+        world.rigid.motion[body].linear_velocity = world.rigid.motion[body].angular_velocity = {};
     }
-    for (std::size_t i = 0; i < world.contacts.size(); ++i) {
-        Contact& contact = world.contacts[i];
-        if (world.record(contact.a).definition.enabled && world.record(contact.b).definition.enabled) continue;
-        world.contact_glances[i].touches = false;
+    for (std::size_t i = 0; i < world.contacts.list.size(); ++i) {
+        Contact& contact = world.contacts.list[i];
+        if (world.rigid.record(contact.a).definition.enabled && world.rigid.record(contact.b).definition.enabled)
+            continue;
+        world.contacts.summaries[i].touches = false;
         for (ContactPoint& point : contact.points) point.impulse = point.total = 0;
         contact.friction = contact.friction_total = {};
         contact.rolling = {};
@@ -314,28 +332,28 @@ void clear_traces_of_lost(WorldState& world) {
 bool is_lost(const BodyState& state) { return !is_state_finite(state) || !(length(state.center) < 1e15); }
 
 // A body that left the finite numbers would take all it touches along: it is put back and switched off.
-void freeze_lost_bodies(WorldState& world) {
+void freeze_lost_bodies(const SubstepAccess& world) {
     std::atomic<bool> lost_any{false};
     for_each_awake(world, [&](std::uint32_t body) {
-        const BodyState& state = world.motion[body];
+        const BodyState& state = world.rigid.motion[body];
         if (is_lost(state)) {
             lost_any = true;
             return;
         }
-        world.record(body).last_center = state.center;
-        world.record(body).last_rotation = state.rotation;
+        world.rigid.record(body).last_center = state.center;
+        world.rigid.record(body).last_rotation = state.rotation;
     });
     if (!lost_any) return;
-    for (const std::uint32_t body : world.awake) {
-        BodyState& state = world.motion[body];
-        BodyRecord& record = world.record(body);
+    for (const std::uint32_t body : world.activity.awake) {
+        BodyState& state = world.rigid.motion[body];
+        BodyRecord& record = world.rigid.record(body);
         if (!is_lost(state)) continue;
         state.center = record.last_center;
         state.rotation = record.last_rotation;
         state.linear_velocity = state.angular_velocity = {};
         record.definition.enabled = false;
-        world.awake_changed = true;
-        if (record.shape) world.broad_phase.remove(body);
+        world.activity.awake_changed = true;
+        if (record.shape) world.contacts.broad_phase.remove(body);
         world.report.limits |= static_cast<std::uint32_t>(StepLimit::not_finite_body_frozen);
     }
     clear_traces_of_lost(world);
@@ -345,10 +363,10 @@ void freeze_lost_bodies(WorldState& world) {
 // end with more energy than the forces gave; before the drift, bodies may also be parting and be mended.
 class EnergyBounds {
 public:
-    EnergyBounds(WorldState& world, const std::vector<Island>& islands)
+    EnergyBounds(const SubstepAccess& world, const std::vector<Island>& islands)
         : world_(world),
-          view_{world.motion, world.constants, world.active_joints},
-          bounds_(world.substep_memory.energy_bounds) {
+          view_{world.rigid.motion, world.rigid.constants, world.joints.active},
+          bounds_(world.substeps.energy_bounds) {
         bounds_.clear();
         for (const Island& island : islands) {
             const JointSystem* system = island.contact_count > 0 ? joint_system(world, island) : nullptr;
@@ -375,43 +393,43 @@ private:
         const double share = bound.system->bound_energy(most, view_);
         if (world_.ledger && share < 1) {
             for (const std::uint32_t body : bodies_of(world_, bound.island)) {
-                world_.ledger->note_scaled(world_, body, share);
+                world_.ledger->note_scaled(body, share);
             }
         }
         if (share > far_off) return;
         for (const std::uint32_t index : contacts_of(world_, bound.island)) {
-            Contact& contact = world_.contacts[index];
+            Contact& contact = world_.contacts.list[index];
             for (ContactPoint& point : contact.points) point.impulse = 0;
             contact.friction = {};
             contact.rolling = {};
         }
     }
 
-    WorldState& world_;
+    const SubstepAccess world_;
     JointSystem::View view_;
     std::vector<Bound>& bounds_;
 };
 
 // Through the whole step: half of the forces before the drift and half after it.
-void solve_free(WorldState& world, const std::vector<std::uint32_t>& bodies, double h) {
+void solve_free(const SubstepAccess& world, const std::vector<std::uint32_t>& bodies, double h) {
     constexpr std::size_t fewest_shared = 200;
-    share_among(*world.workers, bodies.size(), bodies.size() >= fewest_shared, [&](int, Share share) {
+    share_among(world.workers, bodies.size(), bodies.size() >= fewest_shared, [&](int, Share share) {
         for (std::size_t i = share.first; i < share.last; ++i) {
-            BodyState& state = world.motion[bodies[i]];
-            const BodyConstants& constants = world.constants[bodies[i]];
+            BodyState& state = world.rigid.motion[bodies[i]];
+            const BodyConstants& constants = world.rigid.constants[bodies[i]];
             for (int k = 0; k < world.settings.substeps; ++k) fly(state, constants, h);
         }
     });
 }
 
 // What joints and contacts hold: one constraint after the other, in double. Moves the kinematic bodies too.
-void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, double h) {
-    world.prepared_contacts.clear();
+void solve_one_by_one(const SubstepAccess& world, const std::vector<Island>& islands, double h) {
+    world.substeps.prepared_contacts.clear();
     for_each_contact(world, islands, [&](Contact& contact) {
-        world.prepared_contacts.push_back(prepare_contact(contact, world.motion));
+        world.substeps.prepared_contacts.push_back(prepare_contact(contact, world.rigid.motion));
     });
     prepare_joints(world, islands);
-    world.kicked_velocity.resize(world.motion.size());
+    world.substeps.kicked_velocity.resize(world.rigid.motion.size());
     EnergyBounds energy_bounds(world, islands);
     for (int k = 1; k <= world.settings.substeps; ++k) {
         // Forces, constraints that also mend positions, motion.
@@ -428,46 +446,48 @@ void solve_one_by_one(WorldState& world, const std::vector<Island>& islands, dou
         energy_bounds.keep();
         for_each_contact(world, islands, [](Contact& contact) { add_to_totals(contact); });
         for (const Island& island : islands) {
-            if (world.ledger) world.ledger->close_island(world, island, h);
+            if (world.ledger) world.ledger->close_island(island, h);
         }
     }
     for (const Island& island : islands) note_outcomes(world, island);
 }
 
 // What joints hold, at the step's start.
-void note_held_starts(WorldState& world) {
-    std::vector<SubstepMemory::HeldStart>& starts = world.substep_memory.held_starts;
+void note_held_starts(const SubstepAccess& world) {
+    std::vector<SubstepMemory::HeldStart>& starts = world.substeps.held_starts;
     starts.clear();
-    if (world.active_joints.empty()) return;
+    if (world.joints.active.empty()) return;
     for (const Island& island : world.islands.list) {
         if (island.joint_count == 0) continue;
         for (const std::uint32_t body : bodies_of(world, island)) {
-            starts.push_back({body, world.motion[body].linear_velocity, world.motion[body].angular_velocity});
+            starts.push_back(
+                {body, world.rigid.motion[body].linear_velocity, world.rigid.motion[body].angular_velocity});
         }
     }
 }
 
 // How joints and contacts have accelerated it since.
-void note_held_accelerations(WorldState& world) {
-    std::vector<ImpactMemory::HeldAcceleration>& accelerations = world.impact_memory.held_accelerations;
+void note_held_accelerations(const SubstepAccess& world) {
+    std::vector<ImpactMemory::HeldAcceleration>& accelerations = world.impacts.held_accelerations;
     accelerations.clear();
-    if (world.substep_memory.held_starts.empty()) return;
-    accelerations.resize(world.motion.size());
+    if (world.substeps.held_starts.empty()) return;
+    accelerations.resize(world.rigid.motion.size());
     const double time = world.settings.time_step;
-    for (const SubstepMemory::HeldStart& start : world.substep_memory.held_starts) {
-        const BodyState& now = world.motion[start.body];
+    for (const SubstepMemory::HeldStart& start : world.substeps.held_starts) {
+        const BodyState& now = world.rigid.motion[start.body];
         const Vec3 change = (now.linear_velocity - start.linear_velocity) / time;
         const double turning = length(now.angular_velocity - start.angular_velocity) / time;
-        accelerations[start.body] = {to_vec3f(change - world.constants[start.body].acceleration),
-                                     static_cast<float>(turning * world.record(start.body).reach)};
+        accelerations[start.body] = {to_vec3f(change - world.rigid.constants[start.body].acceleration),
+                                     static_cast<float>(turning * world.rigid.record(start.body).reach)};
     }
 }
 
-void propagate_shocks(WorldState& world, const IslandsBySolver& ways) {
+void propagate_shocks(const SubstepAccess& world, const IslandsBySolver& ways) {
     const auto propagate = [&](const Island& island, const ContactPlan& plan) {
-        propagate_shock(island, world.islands, world.contacts, plan.softness(world.settings.time_step), world.motion);
+        propagate_shock(island, world.islands, world.contacts.list, plan.softness(world.settings.time_step),
+                        world.rigid.motion);
     };
-    const auto is_sunk = [&](std::uint32_t contact) { return world.contact_glances[contact].is_sunk; };
+    const auto is_sunk = [&](std::uint32_t contact) { return world.contacts.summaries[contact].is_sunk; };
     for (const IslandsBySolver::Wide& way : ways.wide) {
         for (const Island& island : way.islands) {
             const auto contacts = contacts_of(world, island);
@@ -481,7 +501,7 @@ void propagate_shocks(WorldState& world, const IslandsBySolver& ways) {
 
 }  // namespace
 
-void run_substeps(WorldState& world) {
+void run_substeps(const SubstepAccess& world) {
     const double h = world.settings.time_step / world.settings.substeps;
     note_held_starts(world);
     const IslandsBySolver& ways = sort_islands(world);
@@ -493,11 +513,11 @@ void run_substeps(WorldState& world) {
     solve_one_by_one(world, ways.one_by_one, h);
     if (world.settings.shock_propagation) propagate_shocks(world, ways);
     note_held_accelerations(world);
-    if (world.ledger) world.ledger->close_substeps(world);
-    limit_speeds(world);
+    if (world.ledger) world.ledger->close_substeps();
+    limit_speeds({world.settings, world.activity, world.workers, world.report, world.rigid});
     freeze_lost_bodies(world);
-    for (std::size_t i = 0; i < world.active_joints.size(); ++i) {
-        world.joints.at(world.active_joint_slots[i]).constraint = world.active_joints[i];
+    for (std::size_t i = 0; i < world.joints.active.size(); ++i) {
+        world.joints.records.at(world.joints.active_slots[i]).constraint = world.joints.active[i];
     }
 }
 

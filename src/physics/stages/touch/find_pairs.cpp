@@ -1,26 +1,33 @@
 // SPDX-License-Identifier: MIT
+#include "foundation/task_pool.h"
+#include "physics/definitions/step_report.h"
+#include "physics/definitions/world_settings.h"
 #include "physics/dynamic/equations_of_motion.h"
+#include "physics/stages/access.h"
+#include "physics/stages/share_awake.h"
 #include "physics/stages/stages.h"
-#include "physics/state/share_awake.h"
+#include "physics/state/activity_state.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
 namespace {
 
 // Whether the body is as it was when the last step began (docs/physics/direct-solver.md: at rest).
-bool stands(const WorldState& world, std::uint32_t body) {
-    const BodyState& state = world.motion[body];
+bool stands(const PairsAccess& world, std::uint32_t body) {
+    const BodyState& state = world.rigid.motion[body];
     return state.linear_velocity == Vec3{} && state.angular_velocity == Vec3{} && state.center == state.start_center &&
            state.rotation == state.start_rotation && state.inverse_mass > 0 &&
-           world.constants[body].acceleration == world.touch_memory.bodies[body].acceleration &&
-           world.constants[body].torque == Vec3{};
+           world.rigid.constants[body].acceleration == world.contacts.touch.bodies[body].acceleration &&
+           world.rigid.constants[body].torque == Vec3{};
 }
 
 // All places of the body while it turns in this step by the angle θ: a surface point leaves its first place by at most
 // r θ, and stays in the ball around the centre of mass.
-Bounds turned_bounds(const WorldState& world, std::uint32_t body, const Bounds& now, double angle) {
-    const BodyState& state = world.motion[body];
-    const double reach = world.record(body).reach;
+Bounds turned_bounds(const PairsAccess& world, std::uint32_t body, const Bounds& now, double angle) {
+    const BodyState& state = world.rigid.motion[body];
+    const double reach = world.rigid.record(body).reach;
     const Bounds near = enlarged(now, reach * angle), ball = enlarged({state.center, state.center}, reach);
     Bounds bounds = now;
     bounds.add(Bounds{max(near.lower, ball.lower), min(near.upper, ball.upper)});
@@ -29,40 +36,40 @@ Bounds turned_bounds(const WorldState& world, std::uint32_t body, const Bounds& 
 
 // The same, closer for θ < 1: a point leaves the straight line between its first and its last place by at most r θ²/8,
 // and gyroscopic torque, which changes ω by less than ω² dt, puts its last place off by less than r θ²/3.
-Bounds close_turned_bounds(const WorldState& world, std::uint32_t body, const Bounds& now, double angle) {
-    const BodyState& state = world.motion[body];
-    const BodyRecord& record = world.record(body);
+Bounds close_turned_bounds(const PairsAccess& world, std::uint32_t body, const Bounds& now, double angle) {
+    const BodyState& state = world.rigid.motion[body];
+    const BodyRecord& record = world.rigid.record(body);
     const Quat last = cayley(state.angular_velocity * world.settings.time_step) * state.rotation;
-    Bounds bounds = record.shape->bounds({state.center - rotate(last, world.constants[body].local_center), last});
+    Bounds bounds = record.shape->bounds({state.center - rotate(last, world.rigid.constants[body].local_center), last});
     bounds.add(now);
     return enlarged(bounds, record.reach * angle * angle / 2);
 }
 
 // Lists which of a share of the awake bodies have left their bounds, and the bounds they want.
-void list_leaving(WorldState& world, Share share, std::vector<LeavingBody>& leaving) {
+void list_leaving(const PairsAccess& world, Share share, std::vector<LeavingBody>& leaving) {
     const double dt = world.settings.time_step;
     for (std::size_t i = share.first; i < share.last; ++i) {
-        const std::uint32_t body = world.awake[i];
-        TouchBody& touch = world.touch_memory.bodies[body];
+        const std::uint32_t body = world.activity.awake[i];
+        TouchBody& touch = world.contacts.touch.bodies[body];
         touch.stands = stands(world, body);
         if (touch.stands) continue;
-        const BodyRecord& record = world.record(body);
+        const BodyRecord& record = world.rigid.record(body);
         if (!record.shape) continue;
         const Vec3 motion =
-            world.motion[body].linear_velocity * dt + world.constants[body].acceleration * (dt * dt / 2);
+            world.rigid.motion[body].linear_velocity * dt + world.rigid.constants[body].acceleration * (dt * dt / 2);
 
         // The whole way counts as bounds: what lies on it must be a pair before the body gets there.
-        const Bounds now = record.shape->bounds(world.pose(body));
-        const double angle = record.is_ball ? 0 : length(world.motion[body].angular_velocity) * dt;
+        const Bounds now = record.shape->bounds(world.rigid.pose(body));
+        const double angle = record.is_ball ? 0 : length(world.rigid.motion[body].angular_velocity) * dt;
         const auto swept = [&motion](Bounds bounds) {
             bounds.add(Bounds{bounds.lower + motion, bounds.upper + motion});
             return bounds;
         };
         Bounds wanted = swept(angle > 0 ? turned_bounds(world, body, now, angle) : now);
-        if (world.broad_phase.holds(body, wanted, motion)) continue;
+        if (world.contacts.broad_phase.holds(body, wanted, motion)) continue;
         if (angle > 0 && angle < 1) {
             wanted = swept(close_turned_bounds(world, body, now, angle));
-            if (world.broad_phase.holds(body, wanted, motion)) continue;
+            if (world.contacts.broad_phase.holds(body, wanted, motion)) continue;
         }
         leaving.push_back({body, wanted, motion});
     }
@@ -70,23 +77,23 @@ void list_leaving(WorldState& world, Share share, std::vector<LeavingBody>& leav
 
 }  // namespace
 
-void find_pairs(WorldState& world) {
+void find_pairs(const PairsAccess& world) {
     // Bounds of what moves, and how far it will.
-    world.leaving.resize(static_cast<std::size_t>(world.workers->workers()));
-    for (std::vector<LeavingBody>& leaving : world.leaving) leaving.clear();
+    world.contacts.leaving.resize(static_cast<std::size_t>(world.workers.workers()));
+    for (std::vector<LeavingBody>& leaving : world.contacts.leaving) leaving.clear();
     share_awake(world, [&](int worker, Share share) {
-        list_leaving(world, share, world.leaving[static_cast<std::size_t>(worker)]);
+        list_leaving(world, share, world.contacts.leaving[static_cast<std::size_t>(worker)]);
     });
 
     // In the order of the bodies, whoever looked at them.
-    for (const std::vector<LeavingBody>& leaving : world.leaving) {
-        for (const LeavingBody& l : leaving) world.broad_phase.move(l.body, l.bounds, l.motion);
+    for (const std::vector<LeavingBody>& leaving : world.contacts.leaving) {
+        for (const LeavingBody& l : leaving) world.contacts.broad_phase.move(l.body, l.bounds, l.motion);
     }
-    world.pairs = &world.broad_phase.update_pairs(*world.workers);
-    if (world.broad_phase.has_too_many_pairs()) {
+    world.contacts.pairs = &world.contacts.broad_phase.update_pairs(world.workers);
+    if (world.contacts.broad_phase.has_too_many_pairs()) {
         world.report.limits |= static_cast<std::uint32_t>(StepLimit::too_many_pairs);
     }
-    world.report.pairs = static_cast<std::uint32_t>(world.pairs->size());
+    world.report.pairs = static_cast<std::uint32_t>(world.contacts.pairs->size());
 }
 
 }  // namespace embody::physics::stages

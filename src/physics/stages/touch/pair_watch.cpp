@@ -3,6 +3,12 @@
 
 #include <algorithm>
 
+#include "physics/definitions/world_settings.h"
+#include "physics/stages/access.h"
+#include "physics/state/activity_state.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/rigid_state.h"
+
 namespace embody::physics::stages {
 
 namespace {
@@ -11,7 +17,7 @@ namespace {
 constexpr double longest_way = 1;
 
 // Where free fall takes dynamic bodies relative to immovable ones in the step, m; it is in no body's own bound.
-double common_fall(const WorldState& world) {
+double common_fall(const TouchAccess& world) {
     const double dt = world.settings.time_step;
     return length(world.settings.gravity) * dt * dt / 2;
 }
@@ -28,11 +34,11 @@ std::uint32_t take_record(TouchMemory& memory) {
 }
 
 // In place, both being sorted: what is gone is taken out from the front on, what is new put in from the back on.
-void follow_broad_phase(WorldState& world) {
-    TouchMemory& memory = world.touch_memory;
-    if (memory.watches_version == world.broad_phase.pairs_version()) return;
-    memory.watches_version = world.broad_phase.pairs_version();
-    const std::vector<BroadPhase::Pair>& pairs = *world.pairs;
+void follow_broad_phase(const TouchAccess& world) {
+    TouchMemory& memory = world.contacts.touch;
+    if (memory.watches_version == world.contacts.broad_phase.pairs_version()) return;
+    memory.watches_version = world.contacts.broad_phase.pairs_version();
+    const std::vector<BroadPhase::Pair>& pairs = *world.contacts.pairs;
     std::vector<PairWatch>& watches = memory.watches;
     std::size_t kept = 0, next = 0;
     for (const PairWatch& watch : watches) {
@@ -52,11 +58,11 @@ void follow_broad_phase(WorldState& world) {
 }
 
 // Pairs and contacts are sorted alike: one pass over the two counts the contacts of each pair.
-void count_contacts(WorldState& world) {
-    if (world.touch_memory.is_laid_out) return;
-    world.touch_memory.is_laid_out = true;
-    for (PairWatch& watch : world.touch_memory.watches) watch.count = 0;
-    std::vector<Contact>& contacts = world.contacts;
+void count_contacts(const TouchAccess& world) {
+    if (world.contacts.touch.is_laid_out) return;
+    world.contacts.touch.is_laid_out = true;
+    for (PairWatch& watch : world.contacts.touch.watches) watch.count = 0;
+    std::vector<Contact>& contacts = world.contacts.list;
     std::size_t next = 0, kept = 0;
     const auto pair_of_next = [&] { return BroadPhase::Pair{contacts[next].a, contacts[next].b}; };
     for_each_live_pair(world, [&](PairWatch& watch, std::uint32_t) {
@@ -71,26 +77,26 @@ void count_contacts(WorldState& world) {
 
 }  // namespace
 
-void update_watches(WorldState& world) {
+void update_watches(const TouchAccess& world) {
     follow_broad_phase(world);
     list_live_pairs(world);
     count_contacts(world);
 }
 
-void list_live_pairs(WorldState& world) {
-    TouchMemory& memory = world.touch_memory;
-    if (world.sleepers.empty()) {
+void list_live_pairs(const TouchAccess& world) {
+    TouchMemory& memory = world.contacts.touch;
+    if (world.activity.sleepers.empty()) {
         memory.live_version = 0;
         return;
     }
-    const std::uint64_t pairs_version = world.broad_phase.pairs_version();
-    if (memory.live_version == pairs_version && memory.awake_version == world.awake_version) return;
+    const std::uint64_t pairs_version = world.contacts.broad_phase.pairs_version();
+    if (memory.live_version == pairs_version && memory.awake_version == world.activity.awake_version) return;
     memory.live_version = pairs_version;
-    memory.awake_version = world.awake_version;
+    memory.awake_version = world.activity.awake_version;
     memory.is_laid_out = false;
     memory.live.clear();
     const auto is_awake = [&](std::uint32_t body) {
-        return !world.is_asleep(body) && world.record(body).definition.kind != BodyKind::static_body;
+        return !world.activity.is_asleep(body) && world.rigid.record(body).definition.kind != BodyKind::static_body;
     };
     for (std::uint32_t i = 0; i < memory.watches.size(); ++i) {
         const auto [a, b] = memory.watches[i].pair;
@@ -98,11 +104,10 @@ void list_live_pairs(WorldState& world) {
     }
 }
 
-void introduce_body(WorldState& world, std::uint32_t body) {
-    TouchMemory& memory = world.touch_memory;
-    memory.bodies.resize(world.bodies.slot_count());
-    memory.path_bounds.resize(world.bodies.slot_count());
-    const BodyRecord& record = world.record(body);
+void introduce_body(const RigidState& rigid, std::uint32_t body, TouchMemory& memory) {
+    memory.bodies.resize(rigid.bodies.slot_count());
+    memory.path_bounds.resize(rigid.bodies.slot_count());
+    const BodyRecord& record = rigid.record(body);
     const double path = memory.bodies[body].path + longest_way;
     memory.path_bounds[body] = path;
     const bool is_surface = record.reach == 0 && record.definition.kind == BodyKind::static_body;
@@ -113,17 +118,17 @@ void introduce_body(WorldState& world, std::uint32_t body) {
                            .mask = record.definition.collision_mask,
                            .is_round = record.is_round,
                            .is_ball = record.is_ball,
-                           .yields = world.motion[body].inverse_mass > 0,
+                           .yields = rigid.motion[body].inverse_mass > 0,
                            .stands = record.definition.kind == BodyKind::static_body};
 }
 
 // No surface point goes farther than the centre of mass and the chord of the body's turn at its reach. A ball that
 // turns stays where it is.
-void start_motion(WorldState& world) {
+void start_motion(const TouchAccess& world) {
     const double dt = world.settings.time_step;
-    for (const std::uint32_t body : world.awake) {
-        BodyState& state = world.motion[body];
-        TouchBody& touch = world.touch_memory.bodies[body];
+    for (const std::uint32_t body : world.activity.awake) {
+        BodyState& state = world.rigid.motion[body];
+        TouchBody& touch = world.contacts.touch.bodies[body];
         const double reach = touch.is_ball ? 0 : touch.size;
         const Quat turn = state.rotation * conjugate(state.start_rotation);
         touch.path += distance(state.center, state.start_center) + 2 * length(Vec3{turn.x, turn.y, turn.z}) * reach;
@@ -134,15 +139,15 @@ void start_motion(WorldState& world) {
 
         double speed = length(state.linear_velocity) + touch.turning;
         if (touch.yields) {
-            touch.acceleration = world.constants[body].acceleration;
+            touch.acceleration = world.rigid.constants[body].acceleration;
             speed += length(touch.acceleration - world.settings.gravity) * dt / 2;
         }
-        world.touch_memory.path_bounds[body] = touch.path + speed * dt;
+        world.contacts.touch.path_bounds[body] = touch.path + speed * dt;
     }
 }
 
-void list_near_pairs(WorldState& world) {
-    TouchMemory& memory = world.touch_memory;
+void list_near_pairs(const TouchAccess& world) {
+    TouchMemory& memory = world.contacts.touch;
     memory.pairs.clear();
     const double fall = common_fall(world);
     std::uint32_t first = 0;
@@ -153,8 +158,8 @@ void list_near_pairs(WorldState& world) {
     });
 }
 
-void leave_alone(const WorldState& world, PairWatch& watch, double way) {
-    const std::vector<TouchBody>& bodies = world.touch_memory.bodies;
+void leave_alone(const TouchAccess& world, PairWatch& watch, double way) {
+    const std::vector<TouchBody>& bodies = world.contacts.touch.bodies;
     watch.look_again = bodies[watch.pair.a].path + bodies[watch.pair.b].path + std::min(way, longest_way);
 }
 

@@ -4,6 +4,9 @@
 #include <algorithm>
 
 #include "physics/collision/shapes/collision_shape_data.h"
+#include "physics/definitions/world_settings.h"
+#include "physics/stages/access.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
@@ -15,12 +18,12 @@ constexpr double near_part = 0.1;
 
 // Velocity of the surface's place (not of its matter) at a point of the piece: turning about the axis of what rolls
 // moves none.
-Vec3 surface_velocity(const WorldState& world, std::uint32_t body, std::uint32_t piece, bool is_round, Vec3 point) {
-    const BodyState& state = world.motion[body];
+Vec3 surface_velocity(const TouchAccess& world, std::uint32_t body, std::uint32_t piece, bool is_round, Vec3 point) {
+    const BodyState& state = world.rigid.motion[body];
     const Vec3 velocity = velocity_at(state, point - state.center);
     if (!is_round) return velocity;
-    const ConvexPiece& part = world.record(body).shape->data().pieces[piece];
-    const Transform pose = world.pose(body) * part.local;
+    const ConvexPiece& part = world.rigid.record(body).shape->data().pieces[piece];
+    const Transform pose = world.rigid.pose(body) * part.local;
     const Vec3 axis = rotate(pose.rotation, {0, 1, 0});
     const Vec3 rolling =
         part.convex.kind == ConvexKind::sphere ? state.angular_velocity : axis * dot(state.angular_velocity, axis);
@@ -29,14 +32,14 @@ Vec3 surface_velocity(const WorldState& world, std::uint32_t body, std::uint32_t
 
 }  // namespace
 
-double leave_out_unreachable(const WorldState& world, const BroadPhase::Pair& pair, double near,
+double leave_out_unreachable(const TouchAccess& world, const BroadPhase::Pair& pair, double near,
                              std::vector<Manifold>& manifolds) {
     double least = 1e300;
     for (Manifold& manifold : manifolds) {
         if (manifold.count < 2 || !(manifold.a_is_round || manifold.b_is_round)) continue;
         double limit = near;
-        if (manifold.a_is_round) limit = std::min(limit, near_part * world.record(pair.a).reach);
-        if (manifold.b_is_round) limit = std::min(limit, near_part * world.record(pair.b).reach);
+        if (manifold.a_is_round) limit = std::min(limit, near_part * world.rigid.record(pair.a).reach);
+        if (manifold.b_is_round) limit = std::min(limit, near_part * world.rigid.record(pair.b).reach);
         const auto first = manifold.points.begin(), end = first + manifold.count;
         const auto deepest = std::min_element(
             first, end, [](const ManifoldPoint& p, const ManifoldPoint& q) { return p.separation < q.separation; });

@@ -5,8 +5,8 @@
 
 #include "physics/collision/broad_phase/broad_phase.h"
 #include "physics/collision/pairs/manifold.h"
+#include "physics/stages/access.h"
 #include "physics/stages/namespace.h"
-#include "physics/state/world_state.h"
 
 namespace embody::physics::stages {
 
@@ -14,7 +14,7 @@ namespace embody::physics::stages {
 /// that rolls brings nothing of its rim to the ground but its lowest point, however far it goes. They would draw the
 /// place where friction acts up to the axle. The deepest point of each contact stays. Returns the least separation of
 /// what was left out, m; 1e300 if nothing was.
-double leave_out_unreachable(const WorldState& world, const BroadPhase::Pair& pair, double near,
+double leave_out_unreachable(const TouchAccess& world, const BroadPhase::Pair& pair, double near,
                              std::vector<Manifold>& manifolds);
 
 }  // namespace embody::physics::stages

@@ -2,10 +2,17 @@
 #include <algorithm>
 #include <atomic>
 
+#include "foundation/task_pool.h"
+#include "physics/definitions/world_settings.h"
+#include "physics/stages/access.h"
 #include "physics/stages/rigid/wake.h"
 #include "physics/stages/stages.h"
 #include "physics/stages/touch/pair_watch.h"
 #include "physics/stages/touch/reachable_points.h"
+#include "physics/state/activity_state.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/joint_state.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
@@ -16,18 +23,18 @@ constexpr double base_margin = 0.005;
 // A sleeper is woken by what comes as near as this, m.
 constexpr double wake_gap = 1e-4;
 
-bool may_collide(const WorldState& world, std::uint32_t a, std::uint32_t b) {
-    const TouchBody &ta = world.touch_memory.bodies[a], &tb = world.touch_memory.bodies[b];
+bool may_collide(const TouchAccess& world, std::uint32_t a, std::uint32_t b) {
+    const TouchBody &ta = world.contacts.touch.bodies[a], &tb = world.contacts.touch.bodies[b];
     if (!(ta.group & tb.mask) || !(tb.group & ta.mask)) return false;
-    return world.jointed_pairs.empty() || !world.jointed_pairs.contains({a, b});
+    return world.joints.jointed_pairs.empty() || !world.joints.jointed_pairs.contains({a, b});
 }
 
 // Whether the body moves by itself: an awake dynamic body, or a kinematic one with a velocity.
-bool is_moving(const WorldState& world, std::uint32_t body) {
-    const BodyKind kind = world.record(body).definition.kind;
-    if (kind == BodyKind::dynamic_body) return !world.is_asleep(body);
+bool is_moving(const TouchAccess& world, std::uint32_t body) {
+    const BodyKind kind = world.rigid.record(body).definition.kind;
+    if (kind == BodyKind::dynamic_body) return !world.activity.is_asleep(body);
     return kind == BodyKind::kinematic_body &&
-           (world.motion[body].linear_velocity != Vec3{} || world.motion[body].angular_velocity != Vec3{});
+           (world.rigid.motion[body].linear_velocity != Vec3{} || world.rigid.motion[body].angular_velocity != Vec3{});
 }
 
 // A ball has one point of contact, which does not jump to another corner: a part of its size is far enough. Grains of
@@ -40,15 +47,15 @@ double within_ball(double distance, const TouchBody& a, const TouchBody& b) {
 }
 
 // How near surfaces are looked at whatever their speed, m.
-double base_margin_of(const WorldState& world, const BroadPhase::Pair& pair) {
-    return within_ball(base_margin, world.touch_memory.bodies[pair.a], world.touch_memory.bodies[pair.b]);
+double base_margin_of(const TouchAccess& world, const BroadPhase::Pair& pair) {
+    return within_ball(base_margin, world.contacts.touch.bodies[pair.a], world.contacts.touch.bodies[pair.b]);
 }
 
 // How far the surfaces can approach each other within the step: the margin of the narrow phase.
-double margin_of(const WorldState& world, std::uint32_t a, std::uint32_t b) {
+double margin_of(const TouchAccess& world, std::uint32_t a, std::uint32_t b) {
     const double dt = world.settings.time_step;
-    const TouchBody &ta = world.touch_memory.bodies[a], &tb = world.touch_memory.bodies[b];
-    const Vec3 velocity = world.motion[b].linear_velocity - world.motion[a].linear_velocity;
+    const TouchBody &ta = world.contacts.touch.bodies[a], &tb = world.contacts.touch.bodies[b];
+    const Vec3 velocity = world.rigid.motion[b].linear_velocity - world.rigid.motion[a].linear_velocity;
     const double travel =
         (length(velocity) + (ta.turning + tb.turning)) * dt + length(tb.acceleration - ta.acceleration) * dt * dt / 2;
 
@@ -59,30 +66,30 @@ double margin_of(const WorldState& world, std::uint32_t a, std::uint32_t b) {
     return within_ball(base_margin, ta, tb) + std::min(travel, 2 * size);
 }
 
-void collide_pair(const WorldState& world, std::uint32_t a, std::uint32_t b, std::vector<Manifold>& manifolds) {
+void collide_pair(const TouchAccess& world, std::uint32_t a, std::uint32_t b, std::vector<Manifold>& manifolds) {
     manifolds.clear();
-    collide(*world.record(a).shape, world.pose(a), *world.record(b).shape, world.pose(b), margin_of(world, a, b),
-            manifolds);
+    collide(*world.rigid.record(a).shape, world.rigid.pose(a), *world.rigid.record(b).shape, world.rigid.pose(b),
+            margin_of(world, a, b), manifolds);
 }
 
 // Whether some point of the contact is or comes within wake_gap in this step.
-bool meets_in_step(const WorldState& world, const Contact& contact) {
+bool meets_in_step(const TouchAccess& world, const Contact& contact) {
     for (int i = 0; i < contact.count; ++i) {
         const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        const double approach = -dot(relative_velocity(contact, point, world.motion), contact.normal);
+        const double approach = -dot(relative_velocity(contact, point, world.rigid.motion), contact.normal);
         if (point.separation - std::max(0.0, approach) * world.settings.time_step < wake_gap) return true;
     }
     return false;
 }
 
 // Wakes the sleeping one of two bodies, with its group, if the other one is about to touch it.
-bool wake_if_touched(WorldState& world, const BroadPhase::Pair& pair, std::vector<Manifold>& manifolds) {
-    const bool a_sleeps = world.is_asleep(pair.a), b_sleeps = world.is_asleep(pair.b);
+bool wake_if_touched(const TouchAccess& world, const BroadPhase::Pair& pair, std::vector<Manifold>& manifolds) {
+    const bool a_sleeps = world.activity.is_asleep(pair.a), b_sleeps = world.activity.is_asleep(pair.b);
     if (a_sleeps == b_sleeps || !is_moving(world, a_sleeps ? pair.b : pair.a)) return false;
     if (!may_collide(world, pair.a, pair.b)) return false;
     collide_pair(world, pair.a, pair.b, manifolds);
     for (const Manifold& manifold : manifolds) {
-        if (!meets_in_step(world, make_contact(pair.a, pair.b, manifold, world.motion))) continue;
+        if (!meets_in_step(world, make_contact(pair.a, pair.b, manifold, world.rigid.motion))) continue;
         wake_group_of(world, a_sleeps ? pair.a : pair.b);
         return true;
     }
@@ -90,10 +97,10 @@ bool wake_if_touched(WorldState& world, const BroadPhase::Pair& pair, std::vecto
 }
 
 // Wakes every sleeping group that an awake body is about to touch.
-void wake_touched(WorldState& world, std::vector<Manifold>& manifolds) {
-    if (world.sleepers.empty()) return;
-    const std::vector<BroadPhase::Pair>& pairs = *world.pairs;
-    for (const std::uint32_t live : world.touch_memory.live) {
+void wake_touched(const TouchAccess& world, std::vector<Manifold>& manifolds) {
+    if (world.activity.sleepers.empty()) return;
+    const std::vector<BroadPhase::Pair>& pairs = *world.contacts.pairs;
+    for (const std::uint32_t live : world.contacts.touch.live) {
         if (!wake_if_touched(world, pairs[live], manifolds)) continue;
 
         // What woke may wake more: any later pair counts now.
@@ -123,11 +130,11 @@ struct RelativePose {
     bool has_ball = false;
 };
 
-RelativePose relative_pose(const WorldState& world, const BroadPhase::Pair& pair) {
-    const TouchBody &a = world.touch_memory.bodies[pair.a], &b = world.touch_memory.bodies[pair.b];
+RelativePose relative_pose(const TouchAccess& world, const BroadPhase::Pair& pair) {
+    const TouchBody &a = world.contacts.touch.bodies[pair.a], &b = world.contacts.touch.bodies[pair.b];
     const bool from_b = a.is_ball != b.is_ball ? a.is_ball : b.size > a.size;
-    const BodyState& larger = world.motion[from_b ? pair.b : pair.a];
-    const BodyState& smaller = world.motion[from_b ? pair.a : pair.b];
+    const BodyState& larger = world.rigid.motion[from_b ? pair.b : pair.a];
+    const BodyState& smaller = world.rigid.motion[from_b ? pair.a : pair.b];
     if (a.is_ball && b.is_ball) return {smaller.center - larger.center, {}, {{}, from_b}, true};
     const Vec3 center = rotate_inverse(larger.rotation, smaller.center - larger.center);
     const bool has_ball = a.is_ball || b.is_ball;
@@ -136,10 +143,10 @@ RelativePose relative_pose(const WorldState& world, const BroadPhase::Pair& pair
 }
 
 // Farthest that a surface point of the smaller body has moved relative to the larger one since they were compared.
-double moved_since(const WorldState& world, const BroadPhase::Pair& pair, const PairRecord& record,
+double moved_since(const TouchAccess& world, const BroadPhase::Pair& pair, const PairRecord& record,
                    const RelativePose& now) {
     if (now.has_ball) return distance(now.center, record.relative_center);
-    const double reach = std::min(world.touch_memory.bodies[pair.a].size, world.touch_memory.bodies[pair.b].size);
+    const double reach = std::min(world.contacts.touch.bodies[pair.a].size, world.contacts.touch.bodies[pair.b].size);
     const Quat turn = now.rotation * conjugate(record.relative_rotation);
     const double sine = length(Vec3{turn.x, turn.y, turn.z});
     return distance(now.center, record.relative_center) + 2 * sine * reach;
@@ -173,8 +180,8 @@ struct PairNow {
 };
 
 // Whether the last comparison still tells all: same bodies, hardly moved, and searched as far as now needed.
-bool may_follow(const WorldState& world, const PairRecord& record, const PairNow& now) {
-    const TouchBody &a = world.touch_memory.bodies[now.pair.a], &b = world.touch_memory.bodies[now.pair.b];
+bool may_follow(const TouchAccess& world, const PairRecord& record, const PairNow& now) {
+    const TouchBody &a = world.contacts.touch.bodies[now.pair.a], &b = world.contacts.touch.bodies[now.pair.b];
     if (record.version_a != a.version || record.version_b != b.version) return false;
     if (record.contact_count != now.old.size()) return false;
     if (now.margin + now.moved > record.margin) return false;
@@ -220,16 +227,17 @@ void take_material(const Contact& old, Contact& contact) {
 }
 
 // Finds the contacts of a pair anew and hands them the impulses of the old ones.
-void compare_pair(const WorldState& world, PairRecord& record, const PairNow& now, TouchMemory::Worker& worker) {
+void compare_pair(const TouchAccess& world, PairRecord& record, const PairNow& now, TouchMemory::Worker& worker) {
     const BroadPhase::Pair pair = now.pair;
     const OldContacts old = now.old;
-    const BodyRecord &a = world.record(pair.a), &b = world.record(pair.b);
+    const BodyRecord &a = world.rigid.record(pair.a), &b = world.rigid.record(pair.b);
     const bool is_known = record.version_a == a.version && record.version_b == b.version;
     if (!is_known) record.memory = {};
     worker.manifolds.clear();
-    const TouchMemory& memory = world.touch_memory;
+    const TouchMemory& memory = world.contacts.touch;
     const double searched = now.margin + within_ball(follow_window, memory.bodies[pair.a], memory.bodies[pair.b]);
-    collide(*a.shape, world.pose(pair.a), *b.shape, world.pose(pair.b), searched, record.memory, worker.manifolds);
+    collide(*a.shape, world.rigid.pose(pair.a), *b.shape, world.rigid.pose(pair.b), searched, record.memory,
+            worker.manifolds);
     record.version_a = a.version;
     record.version_b = b.version;
     record.contact_count = static_cast<std::uint32_t>(worker.manifolds.size());
@@ -250,11 +258,11 @@ void compare_pair(const WorldState& world, PairRecord& record, const PairNow& no
     const auto first = static_cast<std::ptrdiff_t>(worker.found.size());
     const bool has_material = is_known && !old.empty();
     const Material material =
-        has_material ? Material{} : combine(a.definition.material, b.definition.material, world.surface_pairs);
+        has_material ? Material{} : combine(a.definition.material, b.definition.material, world.rigid.surface_pairs);
     const std::size_t wanted = worker.found.size() + worker.manifolds.size();
     if (wanted > worker.found.capacity()) worker.found.reserve(wanted + wanted / 2);
     for (const Manifold& manifold : worker.manifolds) {
-        worker.found.push_back(make_contact(pair.a, pair.b, manifold, world.motion, now.pose.seen));
+        worker.found.push_back(make_contact(pair.a, pair.b, manifold, world.rigid.motion, now.pose.seen));
         Contact& contact = worker.found.back();
         has_material ? take_material(old.front(), contact) : set_material(contact, material);
     }
@@ -275,8 +283,8 @@ void compare_pair(const WorldState& world, PairRecord& record, const PairNow& no
     }
 }
 
-FollowedPair followed_pair(const WorldState& world, const PairRecord& record, const PairNow& pair) {
-    const BodyState &a = world.motion[pair.pair.a], &b = world.motion[pair.pair.b];
+FollowedPair followed_pair(const TouchAccess& world, const PairRecord& record, const PairNow& pair) {
+    const BodyState &a = world.rigid.motion[pair.pair.a], &b = world.rigid.motion[pair.pair.b];
     const RelativePose& now = pair.pose;
     const Quat turn = now.rotation * conjugate(record.relative_rotation);
     const double sign = turn.w < 0 ? -1 : 1;
@@ -294,65 +302,66 @@ FollowedPair followed_pair(const WorldState& world, const PairRecord& record, co
 
 // A bouncing contact whose load changes no velocity by more than rounding carries none: bodies that only touch, as the
 // balls of a rack do, are as free as those apart.
-void clear_rounding_load(const WorldState& world, Contact& contact) {
+void clear_rounding_load(const TouchAccess& world, Contact& contact) {
     constexpr double slightest_load = 1e-6;  // m/s
     if (!contact.was_loaded || !contact.bounces) return;
-    const double inverse_masses = world.motion[contact.a].inverse_mass + world.motion[contact.b].inverse_mass;
+    const double inverse_masses =
+        world.rigid.motion[contact.a].inverse_mass + world.rigid.motion[contact.b].inverse_mass;
     contact.was_loaded = load_of(contact) * inverse_masses > slightest_load;
 }
 
-void write_glance(WorldState& world, std::uint32_t index) {
-    Contact& contact = world.contacts[index];
+void write_summary(const TouchAccess& world, std::uint32_t index) {
+    Contact& contact = world.contacts.list[index];
     clear_rounding_load(world, contact);
-    world.contact_glances[index] = glance_at(contact);
+    world.contacts.summaries[index] = summary_of(contact);
 }
 
 // Puts a pair's newly found contacts in the place of as many old ones.
-void replace_contacts(WorldState& world, PairTouch& touch, TouchMemory::Worker& worker) {
+void replace_contacts(const TouchAccess& world, PairTouch& touch, TouchMemory::Worker& worker) {
     for (std::uint32_t k = 0; k < touch.count; ++k) {
-        world.contacts[touch.first + k] = worker.found[touch.found_first + k];
-        write_glance(world, touch.first + k);
+        world.contacts.list[touch.first + k] = worker.found[touch.found_first + k];
+        write_summary(world, touch.first + k);
     }
     worker.found.resize(touch.found_first);
     touch.finder = PairTouch::keeps;
 }
 
-void follow_contacts(WorldState& world, const PairTouch& touch, const FollowedPair& followed) {
+void follow_contacts(const TouchAccess& world, const PairTouch& touch, const FollowedPair& followed) {
     for (std::uint32_t i = touch.first; i < touch.first + touch.count; ++i) {
-        follow_bodies(world.contacts[i], followed);
-        write_glance(world, i);
+        follow_bodies(world.contacts.list[i], followed);
+        write_summary(world, i);
     }
 }
 
 // Whether the pair's contacts are where they were in the last step, since its bodies are.
-bool may_keep(const WorldState& world, const PairWatch& watch, const PairRecord& record) {
-    const TouchBody &a = world.touch_memory.bodies[watch.pair.a], &b = world.touch_memory.bodies[watch.pair.b];
+bool may_keep(const TouchAccess& world, const PairWatch& watch, const PairRecord& record) {
+    const TouchBody &a = world.contacts.touch.bodies[watch.pair.a], &b = world.contacts.touch.bodies[watch.pair.b];
     return a.stands && b.stands && watch.count > 0 && record.contact_count == watch.count &&
            record.version_a == a.version && record.version_b == b.version;
 }
 
-void keep_contacts(WorldState& world, const PairTouch& touch) {
+void keep_contacts(const TouchAccess& world, const PairTouch& touch) {
     for (std::uint32_t i = touch.first; i < touch.first + touch.count; ++i) {
-        begin_step(world.contacts[i]);
-        write_glance(world, i);
-        world.contact_glances[i].is_kept = true;
+        begin_step(world.contacts.list[i]);
+        write_summary(world, i);
+        world.contacts.summaries[i].is_kept = true;
     }
 }
 
 // One of the two must be able to answer an impulse, and neither may sleep.
-bool may_touch(const WorldState& world, const BroadPhase::Pair& pair) {
-    const std::vector<TouchBody>& bodies = world.touch_memory.bodies;
+bool may_touch(const TouchAccess& world, const BroadPhase::Pair& pair) {
+    const std::vector<TouchBody>& bodies = world.contacts.touch.bodies;
     if (!bodies[pair.a].yields && !bodies[pair.b].yields) return false;
-    const bool may_sleep = !world.sleepers.empty();
-    if (may_sleep && (world.is_asleep(pair.a) || world.is_asleep(pair.b))) return false;
+    const bool may_sleep = !world.activity.sleepers.empty();
+    if (may_sleep && (world.activity.is_asleep(pair.a) || world.activity.is_asleep(pair.b))) return false;
     return may_collide(world, pair.a, pair.b);
 }
 
 // Decides what a pair has in this step: what it had follows its bodies, or is found anew.
-void touch_pair(WorldState& world, PairTouch& touch, std::uint8_t finder, TouchMemory::Worker& worker) {
-    PairWatch& watch = world.touch_memory.watches[touch.watch];
+void touch_pair(const TouchAccess& world, PairTouch& touch, std::uint8_t finder, TouchMemory::Worker& worker) {
+    PairWatch& watch = world.contacts.touch.watches[touch.watch];
     if (!may_touch(world, watch.pair)) return;
-    PairRecord& record = world.touch_memory.records[watch.record];
+    PairRecord& record = world.contacts.touch.records[watch.record];
     if (may_keep(world, watch, record)) {
         touch.next_count = touch.count;
         return keep_contacts(world, touch);
@@ -360,7 +369,7 @@ void touch_pair(WorldState& world, PairTouch& touch, std::uint8_t finder, TouchM
     PairNow now{.pair = watch.pair,
                 .pose = relative_pose(world, watch.pair),
                 .margin = margin_of(world, watch.pair.a, watch.pair.b),
-                .old = OldContacts(world.contacts).subspan(touch.first, touch.count)};
+                .old = OldContacts(world.contacts.list).subspan(touch.first, touch.count)};
     now.moved = moved_since(world, watch.pair, record, now.pose);
     if (may_follow(world, record, now)) {
         touch.next_count = touch.count;
@@ -378,21 +387,21 @@ void touch_pair(WorldState& world, PairTouch& touch, std::uint8_t finder, TouchM
 }
 
 // Moves the contacts that a pair keeps to their next place.
-void move_kept(WorldState& world, const PairTouch& touch) {
+void move_kept(const TouchAccess& world, const PairTouch& touch) {
     const auto move = [&](auto& list) {
         const auto from = list.begin() + touch.first, to = list.begin() + touch.next_first;
         touch.next_first < touch.first ? std::copy(from, from + touch.count, to)
                                        : std::copy_backward(from, from + touch.count, to + touch.count);
     };
-    move(world.contacts);
-    move(world.contact_glances);
+    move(world.contacts.list);
+    move(world.contacts.summaries);
 }
 
 // Gives each pair's contacts their place in the order of the pairs, which does not depend on who found them. All move
 // within one list: those that move down in ascending order, then those that move up in descending order, never come to
 // lie on one that has yet to move.
-void lay_out(WorldState& world) {
-    std::vector<PairTouch>& pairs = world.touch_memory.pairs;
+void lay_out(const TouchAccess& world) {
+    std::vector<PairTouch>& pairs = world.contacts.touch.pairs;
     std::uint32_t total = 0;
     bool is_same = true;
     for (PairTouch& touch : pairs) {
@@ -401,8 +410,8 @@ void lay_out(WorldState& world) {
         is_same = is_same && touch.next_count == touch.count;
     }
     if (is_same) return;
-    resize_list(world.contacts, std::max<std::size_t>(world.contacts.size(), total));
-    world.contact_glances.resize(world.contacts.size());
+    resize_list(world.contacts.list, std::max<std::size_t>(world.contacts.list.size(), total));
+    world.contacts.summaries.resize(world.contacts.list.size());
     const auto keeps = [](const PairTouch& t) { return t.finder == PairTouch::keeps && t.next_count > 0; };
     for (auto t = pairs.begin(); t != pairs.end(); ++t) {
         if (keeps(*t) && t->next_first < t->first) move_kept(world, *t);
@@ -414,31 +423,31 @@ void lay_out(WorldState& world) {
     // What is new fills the places between.
     for (const PairTouch& touch : pairs) {
         if (touch.next_count == touch.count) continue;
-        world.touch_memory.watches[touch.watch].count = touch.next_count;
+        world.contacts.touch.watches[touch.watch].count = touch.next_count;
         for (std::uint32_t k = 0; k < touch.next_count; ++k) {
-            const Contact& contact = world.touch_memory.workers[touch.finder].found[touch.found_first + k];
-            world.contacts[touch.next_first + k] = contact;
-            write_glance(world, touch.next_first + k);
+            const Contact& contact = world.contacts.touch.workers[touch.finder].found[touch.found_first + k];
+            world.contacts.list[touch.next_first + k] = contact;
+            write_summary(world, touch.next_first + k);
         }
     }
-    world.contacts.resize(total);
-    world.contact_glances.resize(total);
+    world.contacts.list.resize(total);
+    world.contacts.summaries.resize(total);
 }
 
 // Calls work(worker, share) for shares of the pairs to look at, on all workers where there are enough of them. Some
 // pairs take a hundred times as long as others, so each worker takes the next few when it is done: first of its own
 // part, whose contacts it had in the last step, then of the others'.
 template <class Work>
-void share_pairs(WorldState& world, Work work) {
+void share_pairs(const TouchAccess& world, Work work) {
     constexpr std::size_t fewest_shared = 200, pairs_in_share = 32;
-    const std::size_t count = world.touch_memory.pairs.size();
-    const int workers = world.workers->workers();
+    const std::size_t count = world.contacts.touch.pairs.size();
+    const int workers = world.workers.workers();
     if (count < fewest_shared || workers == 1) return work(0, Share{0, count});
     struct alignas(64) Part {
         std::atomic<std::size_t> next{0};
     };
     std::vector<Part> parts(static_cast<std::size_t>(workers));
-    world.workers->run([&](int worker) {
+    world.workers.run([&](int worker) {
         for (int turn = 0; turn < workers; ++turn) {
             const int owner = (worker + turn) % workers;
             const Share part = share_of(count, owner, workers);
@@ -462,16 +471,16 @@ void fetch(const TouchMemory& memory, const PairTouch& touch) {
 
 }  // namespace
 
-void find_contacts(WorldState& world) {
-    TouchMemory& memory = world.touch_memory;
-    memory.workers.resize(static_cast<std::size_t>(world.workers->workers()));
+void find_contacts(const TouchAccess& world) {
+    TouchMemory& memory = world.contacts.touch;
+    memory.workers.resize(static_cast<std::size_t>(world.workers.workers()));
     update_watches(world);
     start_motion(world);
     wake_touched(world, memory.workers[0].manifolds);
 
     // What each near pair has.
     list_near_pairs(world);
-    world.contact_glances.resize(world.contacts.size());
+    world.contacts.summaries.resize(world.contacts.list.size());
     for (TouchMemory::Worker& worker : memory.workers) worker.found.clear();
     share_pairs(world, [&](int worker, Share share) {
         TouchMemory::Worker& own = memory.workers[static_cast<std::size_t>(worker)];

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/stages/namespace.h"
+
+namespace embody {
+class TaskPool;
+}
+
+namespace embody::physics {
+struct StepReport;
+struct WorldSettings;
+}  // namespace embody::physics
+
+namespace embody::physics::optimization {
+struct Islands;
+}
+
+namespace embody::physics::state {
+class Ledger;
+struct ActivityState;
+struct BallMemory;
+struct ContactState;
+struct DeformableState;
+struct EventState;
+struct FluidState;
+struct ImpactMemory;
+struct JointState;
+struct RigidState;
+struct SubstepMemory;
+struct WorldState;
+}  // namespace embody::physics::state
+
+namespace embody::physics::stages {
+
+// What each stage of a step may touch: what it holds as const it only reads. An access is a view of a world's parts and
+// lives no longer than the world; copies see the same world. A ledger is null where no account is kept.
+
+/// Limits of speed, before a step, for what users did, and after its substeps.
+struct SpeedAccess {
+    const WorldSettings& settings;
+    const ActivityState& activity;
+    TaskPool& workers;
+    StepReport& report;
+    RigidState& rigid;
+};
+
+/// Waking: also of whoever finds out that a sleeper is touched.
+struct WakeAccess {
+    explicit WakeAccess(WorldState& world);
+    const WorldSettings& settings;
+    const JointState& joints;
+    const DeformableState& deformables;
+    TaskPool& workers;
+    StepReport& report;
+    RigidState& rigid;
+    ContactState& contacts;
+    ActivityState& activity;
+    EventState& events;
+};
+
+/// Filling a vessel: a new fluid's particles are where no obstacle is.
+struct ObstacleAccess {
+    explicit ObstacleAccess(WorldState& world);
+    const RigidState& rigid;
+    const ContactState& contacts;
+    TaskPool& workers;
+};
+
+struct FluidAccess : WakeAccess {
+    explicit FluidAccess(WorldState& world);
+    FluidState& fluids;
+};
+
+/// The broad phase.
+struct PairsAccess {
+    explicit PairsAccess(WorldState& world);
+    const WorldSettings& settings;
+    const RigidState& rigid;
+    const ActivityState& activity;
+    TaskPool& workers;
+    StepReport& report;
+    ContactState& contacts;
+};
+
+/// The narrow phase.
+using TouchAccess = WakeAccess;
+
+/// Balls that roll on still ground.
+struct RollAccess {
+    explicit RollAccess(WorldState& world);
+    const WorldSettings& settings;
+    const RigidState& rigid;
+    const JointState& joints;
+    const ActivityState& activity;
+    TaskPool& workers;
+    StepReport& report;
+    Ledger* ledger;
+    ContactState& contacts;
+    BallMemory& balls;
+};
+
+struct ImpactAccess {
+    explicit ImpactAccess(WorldState& world);
+    const WorldSettings& settings;
+    const ActivityState& activity;
+    TaskPool& workers;
+    StepReport& report;
+    Ledger* ledger;
+    RigidState& rigid;
+    JointState& joints;
+    ContactState& contacts;
+    ImpactMemory& impacts;
+};
+
+struct IslandAccess {
+    explicit IslandAccess(WorldState& world);
+    const WorldSettings& settings;
+    const RigidState& rigid;
+    StepReport& report;
+    JointState& joints;
+    ContactState& contacts;
+    ActivityState& activity;
+    ImpactMemory& impacts;
+    Islands& islands;
+};
+
+struct SubstepAccess {
+    explicit SubstepAccess(WorldState& world);
+    const WorldSettings& settings;
+    const Islands& islands;
+    const BallMemory& balls;
+    TaskPool& workers;
+    StepReport& report;
+    Ledger* ledger;
+    RigidState& rigid;
+    JointState& joints;
+    ContactState& contacts;
+    ActivityState& activity;
+    ImpactMemory& impacts;
+    SubstepMemory& substeps;
+};
+
+/// Continuous collision.
+struct ContinuousAccess {
+    explicit ContinuousAccess(WorldState& world);
+    const JointState& joints;
+    const ContactState& contacts;
+    const ActivityState& activity;
+    const BallMemory& balls;
+    TaskPool& workers;
+    RigidState& rigid;
+};
+
+struct DeformableAccess {
+    explicit DeformableAccess(WorldState& world);
+    const WorldSettings& settings;
+    const ContactState& contacts;
+    TaskPool& workers;
+    StepReport& report;
+    RigidState& rigid;
+    ActivityState& activity;
+    DeformableState& deformables;
+    EventState& events;
+};
+
+struct SleepAccess {
+    explicit SleepAccess(WorldState& world);
+    const WorldSettings& settings;
+    const Islands& islands;
+    TaskPool& workers;
+    RigidState& rigid;
+    ContactState& contacts;
+    ActivityState& activity;
+    EventState& events;
+};
+
+/// What is told of a step once it is over.
+struct ReportAccess {
+    explicit ReportAccess(WorldState& world);
+    const ContactState& contacts;
+    const ActivityState& activity;
+    TaskPool& workers;
+    StepReport& report;
+    RigidState& rigid;
+    EventState& events;
+};
+
+}  // namespace embody::physics::stages
