@@ -201,14 +201,14 @@ Result<void> World::set_deformable(DeformableHandle deformable, const Deformable
     if (definition.nodes.size() != record->definition.nodes.size())
         return Error{"nodes", "are not as many as before", "make another deformable in its place"};
     const Nodes& nodes = record->nodes();
-    changed->set_motion(nodes.position, changed->solid ? nodes.velocity : nodes.mean_velocity,
+    changed->set_motion(nodes.position, changed->solid() ? nodes.velocity : nodes.mean_velocity,
                         nearest_rigid_motion(*record).rotation);
-    if (changed->has_tetrahedra_of(*record)) changed->solid->take_plastic_strain(*record->solid);
+    if (changed->has_tetrahedra_of(*record)) changed->solid()->take_plastic_strain(*record->solid());
     changed->last_positions = nodes.position;
     changed->contacts = std::move(record->contacts);
     changed->touched_bodies = std::move(record->touched_bodies);
-    if (changed->rope && record->rope) changed->rope->go_on_from(*record->rope);
-    if (changed->cloth && record->cloth) changed->cloth->go_on_from(*record->cloth);
+    if (changed->rope() && record->rope()) changed->rope()->go_on_from(*record->rope());
+    if (changed->cloth() && record->cloth()) changed->cloth()->go_on_from(*record->cloth());
     *record = std::move(*changed);
     return {};
 }
@@ -243,33 +243,33 @@ std::optional<Tie> World::nearest_tie(std::uint32_t node, DeformableHandle other
         least = length(away);
         nearest = Tie{node, other, nodes, weight};
     };
-    for (std::uint32_t s = 0; record->rope && s + 1 < at.size(); ++s) {
-        if (record->rope->is_broken(s)) continue;
+    for (std::uint32_t s = 0; record->rope() && s + 1 < at.size(); ++s) {
+        if (record->rope()->is_broken(s)) continue;
         const double along = nearest_along(place, at[s], at[s + 1]);
         consider({s, s + 1, s}, {1 - along, along, 0});
     }
     const auto consider_all = [&](const std::vector<std::array<std::uint32_t, 3>>& triangles) {
         for (const auto& t : triangles) consider(t, nearest_weights(place, at[t[0]], at[t[1]], at[t[2]]));
     };
-    if (record->cloth) consider_all(std::get<Cloth>(record->definition.matter).triangles);
-    if (record->solid) consider_all(record->solid->surface());
+    if (record->cloth()) consider_all(std::get<Cloth>(record->definition.matter).triangles);
+    if (record->solid()) consider_all(record->solid()->surface());
     return nearest;
 }
 
 std::span<const double> World::rope_tensions(DeformableHandle rope) const {
     const DeformableRecord* record = state_->deformables.records.find(rope);
-    return record != nullptr && record->rope ? record->rope->tensions() : std::span<const double>();
+    return record != nullptr && record->rope() ? record->rope()->tensions() : std::span<const double>();
 }
 
 std::span<const RopeTwist> World::rope_twists(DeformableHandle rope) const {
     const DeformableRecord* record = state_->deformables.records.find(rope);
-    return record != nullptr && record->rope ? record->rope->twists() : std::span<const RopeTwist>();
+    return record != nullptr && record->rope() ? record->rope()->twists() : std::span<const RopeTwist>();
 }
 
 std::vector<std::uint32_t> World::broken_segments(DeformableHandle rope) const {
     std::vector<std::uint32_t> broken;
     for (std::uint32_t s = 0; s < rope_tensions(rope).size(); ++s) {
-        if (state_->deformables.records.find(rope)->rope->is_broken(s)) broken.push_back(s);
+        if (state_->deformables.records.find(rope)->rope()->is_broken(s)) broken.push_back(s);
     }
     return broken;
 }

@@ -27,8 +27,9 @@ Result<void> make_capsules(DeformableRecord& record) {
     return {};
 }
 
-double elastic_energy(const DeformableRecord& record) {
-    return record.cloth ? record.cloth->elastic_energy() : record.rope->elastic_energy();
+// The nodes of a sheet or rope.
+Nodes& thin_nodes(const DeformableRecord& record) {
+    return record.cloth() ? record.cloth()->nodes() : record.rope()->nodes();
 }
 
 }  // namespace
@@ -40,30 +41,31 @@ Result<DeformableRecord> make_deformable_record(const DeformableDefinition& defi
     if (!ball) return ball.error();
     record.node_ball = std::move(*ball);
     if (std::holds_alternative<Cloth>(definition.matter)) {
-        record.cloth = std::make_unique<ClothSheet>(definition);
+        record.matter = std::make_unique<ClothSheet>(definition);
     } else if (std::holds_alternative<Rope>(definition.matter)) {
-        record.rope = std::make_unique<RopeLine>(definition);
+        record.matter = std::make_unique<RopeLine>(definition);
         if (auto made = make_capsules(record); !made) return made.error();
     } else {
-        record.solid = std::make_unique<SolidDeformable>(definition);
+        record.matter = std::make_unique<SolidDeformable>(definition);
     }
     record.last_positions = record.nodes().position;
     return record;
 }
 
 const Nodes& DeformableRecord::nodes() const {
-    return solid ? solid->nodes() : cloth ? std::as_const(*cloth).nodes() : std::as_const(*rope).nodes();
+    return std::visit([](const auto& own) -> const Nodes& { return std::as_const(*own).nodes(); }, matter);
 }
 
 Bounds DeformableRecord::bounds() const {
-    if (solid) return solid->bounds();
+    if (const SolidDeformable* own = solid()) return own->bounds();
     Bounds box;
     for (const Vec3 position : nodes().position) box.add(position);
     return box;
 }
 
 bool DeformableRecord::is_finite() const {
-    return solid ? solid->is_finite() : !(cloth ? cloth->is_frozen() : rope->is_frozen());
+    if (const SolidDeformable* own = solid()) return own->is_finite();
+    return !(cloth() ? cloth()->is_frozen() : rope()->is_frozen());
 }
 
 Vec3 DeformableRecord::acceleration(Vec3 gravity) const {
@@ -75,7 +77,7 @@ Vec3 DeformableRecord::acceleration(Vec3 gravity) const {
 }
 
 Conserved DeformableRecord::conserved(Vec3 gravity) const {
-    if (solid) return solid->conserved(gravity);
+    if (const SolidDeformable* own = solid()) return own->conserved(gravity);
     Conserved sum;
     const Nodes& all = nodes();
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -86,7 +88,7 @@ Conserved DeformableRecord::conserved(Vec3 gravity) const {
         sum.linear_momentum += momentum;
         sum.angular_momentum += cross(all.position[i], momentum);
     }
-    sum.potential_energy += elastic_energy(*this);
+    sum.potential_energy += cloth() ? cloth()->elastic_energy() : rope()->elastic_energy();
     return sum;
 }
 
@@ -96,27 +98,27 @@ bool DeformableRecord::has_tetrahedra_of(const DeformableRecord& other) const {
     return own != nullptr && others != nullptr && own->tetrahedra == others->tetrahedra;
 }
 
-Quat DeformableRecord::rotation() const { return solid ? solid->rotation(0) : definition.pose.rotation; }
+Quat DeformableRecord::rotation() const { return solid() ? solid()->rotation(0) : definition.pose.rotation; }
 
 void DeformableRecord::set_motion(std::span<const Vec3> positions, std::span<const Vec3> velocities, Quat rotation) {
-    if (solid) return solid->set_motion(positions, velocities, rotation);
-    Nodes& all = cloth ? cloth->nodes() : rope->nodes();
+    if (SolidDeformable* own = solid()) return own->set_motion(positions, velocities, rotation);
+    Nodes& all = thin_nodes(*this);
     std::ranges::copy(positions, all.position.begin());
     for (std::size_t i = 0; i < all.size(); ++i)
         all.velocity[i] = all.mean_velocity[i] = all.inverse_mass[i] > 0 ? velocities[i] : Vec3{};
 }
 
 void DeformableRecord::rest() {
-    if (solid) return solid->rest();
-    Nodes& all = cloth ? cloth->nodes() : rope->nodes();
+    if (SolidDeformable* own = solid()) return own->rest();
+    Nodes& all = thin_nodes(*this);
     std::ranges::fill(all.mean_velocity, Vec3{});
     std::ranges::fill(all.velocity, Vec3{});
 }
 
 void DeformableRecord::stop_at(std::span<const Vec3> positions) {
-    if (solid) return solid->stop_at(positions);
+    if (SolidDeformable* own = solid()) return own->stop_at(positions);
     rest();
-    Nodes& all = cloth ? cloth->nodes() : rope->nodes();
+    Nodes& all = thin_nodes(*this);
     std::ranges::copy(positions, all.position.begin());
 }
 

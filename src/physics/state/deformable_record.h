@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <variant>
 
 #include "math/bounds.h"
 #include "physics/definitions/step_report.h"
@@ -23,9 +24,7 @@ struct SurfacePush {
 /// A deformable with what its contacts and its sleep need.
 struct DeformableRecord {
     DeformableDefinition definition;
-    std::unique_ptr<SolidDeformable> solid;  ///< one of these three
-    std::unique_ptr<ClothSheet> cloth;
-    std::unique_ptr<RopeLine> rope;
+    std::variant<std::unique_ptr<SolidDeformable>, std::unique_ptr<ClothSheet>, std::unique_ptr<RopeLine>> matter;
     std::unique_ptr<CollisionShape> node_ball;              ///< of its contact radius
     std::vector<std::unique_ptr<CollisionShape>> capsules;  ///< of a rope's segments at rest, one a length
     std::vector<std::uint32_t> segment_capsule;             ///< by segment: index of its capsule
@@ -46,6 +45,11 @@ struct DeformableRecord {
     bool is_asleep = false;
     std::vector<Vec3> last_positions;  ///< last finite ones, to freeze it at
 
+    // The matter where it is of that kind; else null.
+    [[nodiscard]] SolidDeformable* solid() const { return of_kind<SolidDeformable>(); }
+    [[nodiscard]] ClothSheet* cloth() const { return of_kind<ClothSheet>(); }
+    [[nodiscard]] RopeLine* rope() const { return of_kind<RopeLine>(); }
+
     [[nodiscard]] const Nodes& nodes() const;
     [[nodiscard]] Bounds bounds() const;
     [[nodiscard]] bool is_finite() const;
@@ -63,6 +67,13 @@ struct DeformableRecord {
     void rest();
     /// Takes it back to where its nodes were, at rest.
     void stop_at(std::span<const Vec3> positions);
+
+private:
+    template <class Matter>
+    [[nodiscard]] Matter* of_kind() const {
+        const auto* found = std::get_if<std::unique_ptr<Matter>>(&matter);
+        return found == nullptr ? nullptr : found->get();
+    }
 };
 
 /// Of a valid definition. Fails where a shape for its contacts cannot be made.

@@ -179,13 +179,13 @@ void find_contacts_of(const DeformableAccess& world, const MovingDeformables& mo
 
 // What sheets and ropes pushed the solids in their last substep.
 void push_solids(const DeformableAccess& world, MovingDeformables& moving) {
-    for (DeformableRecord* record : moving.solid_records) SolidTies::push(world, record->slot, *record->solid);
+    for (DeformableRecord* record : moving.solid_records) SolidTies::push(world, record->slot, *record->solid());
     for (std::uint32_t slot = 0; slot < world.deformables.records.slot_count(); ++slot) {
         if (!world.deformables.records.used(slot) || !world.deformables.records.at(slot).definition.enabled) continue;
         for (const SurfacePush& push : world.deformables.records.at(slot).surface_pushes) {
             const auto record = std::ranges::lower_bound(moving.solid_records, push.slot, {}, &DeformableRecord::slot);
             if (record == moving.solid_records.end() || (*record)->slot != push.slot) continue;
-            for (std::size_t k = 0; k < 3; ++k) (*record)->solid->push(push.triangle[k], push.weight[k] * push.force);
+            for (std::size_t k = 0; k < 3; ++k) (*record)->solid()->push(push.triangle[k], push.weight[k] * push.force);
         }
     }
 }
@@ -296,7 +296,7 @@ void keep_contacts(const DeformableAccess& world, MovingDeformables& moving) {
         }
     }
     for (DeformableRecord* record : moving.records) {
-        if (!record->solid) record->touched_bodies = bodies_pushed_by(*record, moving.bodies);
+        if (!record->solid()) record->touched_bodies = bodies_pushed_by(*record, moving.bodies);
         for (const SurfacePush& push : record->surface_pushes) {
             record->touched_deformables.push_back(push.slot);
             world.deformables.records.at(push.slot).touched_deformables.push_back(record->slot);
@@ -353,7 +353,7 @@ bool may_sleep(const DeformableAccess& world, const DeformableRecord& record, st
 // Where contacts of layers and bodies hold a node in turns it trembles for good.
 bool is_quiet(DeformableRecord& record) {
     if (fastest_node(record) < quiet_speed) return true;
-    if (record.solid) return false;
+    if (record.solid()) return false;
     const std::vector<Vec3>& places = record.nodes().position;
     const auto has_stayed = [](Vec3 a, Vec3 b) { return length(a - b) < quiet_way; };
     if (std::ranges::equal(places, record.quiet_places, has_stayed)) return true;
@@ -364,7 +364,7 @@ bool is_quiet(DeformableRecord& record) {
 // Bodies that they touch stay awake while they are not quiet.
 void note_quiet(const DeformableAccess& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.records) {
-        const bool is_blown = record->cloth && wind_at(world.settings, world.report.time).is_gusty();
+        const bool is_blown = record->cloth() && wind_at(world.settings, world.report.time).is_gusty();
         record->quiet_time = !is_blown && is_quiet(*record) ? record->quiet_time + world.settings.time_step : 0;
         for (const std::uint32_t slot : record->touched_bodies) {
             if (!world.rigid.is_used(slot) || !world.rigid.is_dynamic(slot)) continue;
@@ -404,9 +404,9 @@ void advance_deformables(const DeformableAccess& world) {
         if (!record.definition.enabled || record.is_asleep) continue;
         record.slot = slot;
         moving.records.push_back(&record);
-        if (record.solid) {
+        if (record.solid()) {
             moving.solid_records.push_back(&record);
-            moving.solids.push_back(record.solid.get());
+            moving.solids.push_back(record.solid());
         } else {
             moving.thin.push_back({.record = &record});
         }

@@ -120,7 +120,7 @@ void SheetSearch::find_edge(std::uint32_t a, std::uint32_t b, double reach, std:
 }
 
 void SheetSearch::find_edges() {
-    const auto edges = thin_.record->cloth->edges();
+    const auto edges = thin_.record->cloth()->edges();
     const auto found = gather<SheetContact>(edges.size(), [&](Share share, std::vector<SheetContact>& contacts) {
         std::vector<Manifold> manifolds;
         for (const auto& [a, b] : edges.subspan(share.first, share.last - share.first)) {
@@ -176,14 +176,14 @@ void SheetSearch::find_corners() {
     if (triangles_.empty()) return;
     std::vector<Bounds> boxes;
     for (const NearTriangle& triangle : triangles_) boxes.push_back(triangle.box);
-    grid_.fill(boxes, thin_.record->cloth->edge_length());
+    grid_.fill(boxes, thin_.record->cloth()->edge_length());
     const std::vector<ConvexPiece>& pieces = body_.shape->data().pieces;
     for (std::uint32_t p = 0; p < pieces.size(); ++p) {
         const PlacedConvex piece = place(pieces[p], body_.start, {});
         const Convex& convex = *piece.shape;
         if (convex.kind == ConvexKind::sphere) {
             // Larger ones meet edges first.
-            if (convex.radius < thin_.record->cloth->edge_length())
+            if (convex.radius < thin_.record->cloth()->edge_length())
                 find_corner(piece.position, piece.position, convex.radius, p * most_corners, [](Vec3) { return true; });
             continue;
         }

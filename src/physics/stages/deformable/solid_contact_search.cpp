@@ -53,7 +53,7 @@ public:
     // Nodes over the faces of bodies; then corners and balls of bodies over the triangles between nodes,
     // where the body is so small that nodes may miss it.
     void add_body_contacts(std::vector<SolidContact>& contacts) const {
-        const SolidDeformable& solid = *record_.solid;
+        const SolidDeformable& solid = *record_.solid();
         std::vector<NodeContact> found;
         // Inner ones too: what its own weight squashes flat would hang below the floor by them.
         std::vector<std::uint32_t> all(solid.nodes().size());
@@ -107,7 +107,7 @@ private:
     // would pull it apart; until none of it is inside it leaves by the shortest way.
     [[nodiscard]] std::optional<WayOut> find_way_out(const TouchedBody& body, const Bounds& box,
                                                      std::span<const NodeContact> found) const {
-        const SolidDeformable& solid = *record_.solid;
+        const SolidDeformable& solid = *record_.solid();
         const bool is_parting = std::ranges::any_of(
             record_.contacts, [&](const SolidContact& c) { return c.parts && c.has_body() && c.partner == body.body; });
         if (!is_parting) {
@@ -136,7 +136,7 @@ private:
             const BodyFeature& feature = features[f];
             const Vec3 p = transform_point(body.start, feature.point);
             if (!contains(enlarged(bounds, reach + feature.radius), p)) continue;
-            if (!surface) surface.emplace(*record_.solid);
+            if (!surface) surface.emplace(*record_.solid());
             const auto place = surface->find(p, std::max(reach + feature.radius, surface->deepest()));
             if (!place) continue;
             SolidContact contact = contact_with(body);
@@ -178,7 +178,7 @@ void add_pairs(const DeformableAccess& world, std::span<DeformableRecord* const>
         const DeformableRecord& two = *records[other];
         if (other == number || !may_collide(record.definition, two.definition)) continue;
         const bool is_parting = are_parting(record, two) || are_parting(two, record);
-        find_surface_contacts(*record.solid, number, *two.solid, other, reach + reach_of(world, two),
+        find_surface_contacts(*record.solid(), number, *two.solid(), other, reach + reach_of(world, two),
                               record.definition.contact_radius + two.definition.contact_radius,
                               std::sqrt(record.definition.friction * two.definition.friction), is_parting, contacts);
     }

@@ -24,7 +24,7 @@ void for_each_node(const Tie& tie, Visit visit) {
 
 const DeformableRecord* solid_of(const DeformableAccess& world, const Tie& tie) {
     const DeformableRecord* other = world.deformables.records.find(tie.other);
-    return other != nullptr && other->solid && other->definition.enabled && !other->is_asleep ? other : nullptr;
+    return other != nullptr && other->solid() && other->definition.enabled && !other->is_asleep ? other : nullptr;
 }
 
 }  // namespace
@@ -48,12 +48,12 @@ void SolidTies::add(ThinDeformable& thin, std::vector<TouchedBody>& bodies, doub
     std::ranges::stable_sort(held_, {}, &Held::slot);
     for (auto first = held_.begin(); first != held_.end();) {
         const auto last = std::find_if(first, held_.end(), [&](const Held& at) { return at.slot != first->slot; });
-        find_compliance(record, *world_.deformables.records.at(first->slot).solid, std::span(first, last));
+        find_compliance(record, *world_.deformables.records.at(first->slot).solid(), std::span(first, last));
         first = last;
     }
     for (Held& held : held_) {
         const Tie& tie = record.definition.ties[held.tie];
-        const SolidDeformable& solid = *world_.deformables.records.at(held.slot).solid;
+        const SolidDeformable& solid = *world_.deformables.records.at(held.slot).solid();
         Vec3 apart = record.nodes().position[tie.node], place;  // when the substep began; the solid's at its end
         for_each_node(tie, [&](std::uint32_t node, double weight) {
             apart -= weight * solid.start(node);
@@ -105,7 +105,7 @@ void SolidTies::take(ThinDeformable& thin) {
 }
 
 void SolidTies::move_solid(DeformableRecord& thin, std::span<const Held> held) {
-    SolidDeformable& solid = *world_.deformables.records.at(held[0].slot).solid;
+    SolidDeformable& solid = *world_.deformables.records.at(held[0].slot).solid();
     force_.assign(solid.nodes().size(), {});
     for (const Held& at : held) {
         const auto springs = springs_of(thin);

@@ -24,7 +24,7 @@ void find_segment_contacts(std::span<const TouchedBody> bodies, const std::vecto
         const Bounds bounds = body.shape->bounds(body.start);
         const double body_way = way_of(body, time_step);
         for (std::uint32_t s = 0; s + 1 < nodes.size(); ++s) {
-            if (record.rope->is_broken(s)) continue;
+            if (record.rope()->is_broken(s)) continue;
             const Vec3 from = nodes.position[s], edge = nodes.position[s + 1] - from;
             const double speed = std::max(length(nodes.mean_velocity[s]), length(nodes.mean_velocity[s + 1]));
             const double reach = 2 * radius + body_way + (speed + fall) * time_step;
@@ -52,7 +52,7 @@ void find_segment_contacts(std::span<const TouchedBody> bodies, const std::vecto
 }  // namespace
 
 std::span<const TouchSpring> springs_of(const DeformableRecord& record) {
-    return record.cloth ? record.cloth->springs() : record.rope->springs();
+    return record.cloth() ? record.cloth()->springs() : record.rope()->springs();
 }
 
 void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide, double time_step,
@@ -70,7 +70,7 @@ void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<b
     find_node_contacts(record.nodes(), all, *record.node_ball, record.definition.contact_radius, colliding, time_step,
                        gravity, thin.contacts, workers);
     for (NodeContact& contact : thin.contacts) contact.body = place[contact.body];
-    if (record.rope)
+    if (record.rope())
         find_segment_contacts(bodies, may_collide, time_step, gravity, thin);
     else
         find_sheet_contacts(bodies, may_collide, time_step, gravity, thin, workers);
@@ -78,13 +78,13 @@ void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<b
 
 void advance_thin(ThinDeformable& thin, const Substep& substep, std::span<TouchedBody> bodies, TaskPool& workers) {
     DeformableRecord& record = *thin.record;
-    if (record.cloth) {
-        record.cloth->set_attachments(thin.attachments);
-        record.cloth->advance(substep, thin.contacts, thin.sheet_contacts, thin.attachment_bodies, bodies, workers);
+    if (record.cloth()) {
+        record.cloth()->set_attachments(thin.attachments);
+        record.cloth()->advance(substep, thin.contacts, thin.sheet_contacts, thin.attachment_bodies, bodies, workers);
     } else {
-        record.rope->set_attachments(thin.attachments);
-        record.rope->set_clamps(record.definition.clamps);
-        record.rope->advance(substep, thin.contacts, thin.segment_contacts, thin.attachment_bodies, bodies);
+        record.rope()->set_attachments(thin.attachments);
+        record.rope()->set_clamps(record.definition.clamps);
+        record.rope()->advance(substep, thin.contacts, thin.segment_contacts, thin.attachment_bodies, bodies);
     }
 }
 

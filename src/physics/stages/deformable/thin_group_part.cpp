@@ -19,11 +19,11 @@ ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<st
     surface.nodes = &record.nodes();
     surface.radius = record.definition.contact_radius;
     surface.friction = record.definition.friction;
-    if (record.cloth) {
+    if (record.cloth()) {
         const Cloth& cloth = std::get<Cloth>(record.definition.matter);
         surface.triangles = cloth.triangles;
-        surface.edges = record.cloth->edges();
-        surface.edge_length = record.cloth->edge_length();
+        surface.edges = record.cloth()->edges();
+        surface.edge_length = record.cloth()->edge_length();
         surface.radius = std::max(surface.radius, cloth.thickness / 2);
         return surface;
     }
@@ -33,7 +33,7 @@ ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<st
     for (std::uint32_t s = 0; s + 1 < nodes.size(); ++s) {
         sum += length(nodes[s + 1] - nodes[s]);
         // By its number; of a broken one no more than a node.
-        segments.push_back({s, record.rope->is_broken(s) ? s : s + 1});
+        segments.push_back({s, record.rope()->is_broken(s) ? s : s + 1});
     }
     surface.edges = segments;
     surface.edge_length = std::max(sum / static_cast<double>(nodes.size() - 1), 1e-6);
@@ -50,7 +50,7 @@ Substep substep_of(const DeformableAccess& world, const DeformableRecord& record
 
 void note_breaks(const DeformableAccess& world, const DeformableRecord& record) {
     const std::vector<Vec3>& nodes = record.nodes().position;
-    for (const auto& [segment, tension] : record.rope->new_breaks()) {
+    for (const auto& [segment, tension] : record.rope()->new_breaks()) {
         const DeformableHandle rope = world.deformables.records.handle_at(record.slot);
         world.events.rope_breaks.push_back(
             {rope, record.definition.user_data, segment, tension, (nodes[segment] + nodes[segment + 1]) / 2});
@@ -63,7 +63,7 @@ ThinGroupPart::ThinGroupPart(const DeformableAccess& world, const ThinGroup& gro
     for (const bool is_sheet : {true, false}) {
         for (std::size_t i = 0; i < group.members.size(); ++i) {
             ThinDeformable& one = thin[group.members[i]];
-            if ((one.record->cloth != nullptr) != is_sheet) continue;
+            if ((one.record->cloth() != nullptr) != is_sheet) continue;
             place_[i] = static_cast<std::uint32_t>(members_.size());
             Member& member = members_.emplace_back();
             member.thin = &one;
@@ -81,17 +81,17 @@ void ThinGroupPart::begin_members(std::span<const TouchedBody> bodies, std::span
         Member& member = members_[m];
         const ThinDeformable& thin = *member.thin;
         DeformableRecord& record = member.record();
-        if (record.cloth) {
-            record.cloth->set_attachments(thin.attachments);
-            record.cloth->begin(member.substep, thin.contacts, thin.sheet_contacts, thin.attachment_bodies, bodies,
-                                world_.workers);
-            member.touch = record.cloth->touch();
-            member.layers = record.cloth->layers();
+        if (record.cloth()) {
+            record.cloth()->set_attachments(thin.attachments);
+            record.cloth()->begin(member.substep, thin.contacts, thin.sheet_contacts, thin.attachment_bodies, bodies,
+                                  world_.workers);
+            member.touch = record.cloth()->touch();
+            member.layers = record.cloth()->layers();
         } else {
-            record.rope->set_attachments(thin.attachments);
-            record.rope->set_clamps(record.definition.clamps);
-            record.rope->begin(member.substep, thin.contacts, thin.segment_contacts, thin.attachment_bodies, bodies);
-            member.touch = record.rope->touch();
+            record.rope()->set_attachments(thin.attachments);
+            record.rope()->set_clamps(record.definition.clamps);
+            record.rope()->begin(member.substep, thin.contacts, thin.segment_contacts, thin.attachment_bodies, bodies);
+            member.touch = record.rope()->touch();
         }
         seen[m] = {surface_of(record, member.segments), record.slot, static_cast<std::uint32_t>(member.first),
                    std::vector<double>(member.count, 0)};
@@ -155,7 +155,7 @@ void ThinGroupPart::begin(std::span<const TouchedBody> bodies) {
     for (const Member& member : ropes()) {
         const std::span<Vec3> moves = part(moves_, member);
         const std::vector<Vec3> rest(moves.size());
-        const RopeLine& rope = *member.record().rope;
+        const RopeLine& rope = *member.record().rope();
         if (rope.energy(member.substep, rest) < rope.energy(member.substep, moves))
             std::ranges::copy(rest, moves.begin());
     }
@@ -203,7 +203,7 @@ bool ThinGroupPart::choose_again() {
 double ThinGroupPart::energy(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias) {
     double sum = 0;
     for (std::size_t m = 0; m < sheets_; ++m) sum += energy_of(sheets[m], part(moves_, members_[m]));
-    for (const Member& member : ropes()) sum += member.record().rope->energy(member.substep, part(moves_, member));
+    for (const Member& member : ropes()) sum += member.record().rope()->energy(member.substep, part(moves_, member));
     for (std::size_t b = 0; b < inertias.size(); ++b) sum += energy_of(inertias[b], body_moves_[b]);
     for (const TouchSpring& spring : springs_) sum += energy_of(spring, moves_, body_moves_);
     return sum;
@@ -227,9 +227,9 @@ double ThinGroupPart::go_as_far_as_it_pays(std::span<const SheetSystem> sheets, 
     }
     double way = 0;
     for (const Member& member : ropes()) {
-        member.record().rope->foretell(member.substep, part(from_, member), part(moves_, member));
+        member.record().rope()->foretell(member.substep, part(from_, member), part(moves_, member));
         for (std::size_t i = member.first; i < member.first + member.count; ++i)
-            way = std::max(way, length(moves_[i] - from_[i]) / member.record().rope->segment_length());
+            way = std::max(way, length(moves_[i] - from_[i]) / member.record().rope()->segment_length());
     }
     return way;
 }
@@ -240,11 +240,11 @@ bool ThinGroupPart::solve(std::span<const TouchedBody> bodies) {
     const int most_solves = has_ropes() ? 12 : 4;
     const std::vector<BodyInertia> inertias = inertias_of(bodies, h_);
     std::vector<SheetSystem> sheets;
-    for (std::size_t m = 0; m < sheets_; ++m) sheets.push_back(members_[m].record().cloth->system());
+    for (std::size_t m = 0; m < sheets_; ++m) sheets.push_back(members_[m].record().cloth()->system());
     for (int solves = 1;; ++solves) {
         std::vector<LineSystem> lines;
         for (const Member& member : ropes())
-            lines.push_back(member.record().rope->linearize(member.substep, part(moves_, member)));
+            lines.push_back(member.record().rope()->linearize(member.substep, part(moves_, member)));
         gather_springs();
         from_ = moves_;
         body_from_ = body_moves_;
@@ -291,18 +291,18 @@ void ThinGroupPart::end(std::span<TouchedBody> bodies) {
     for (Member& member : members_) {
         DeformableRecord& record = member.record();
         const std::span<const Vec3> moves = part(moves_, member), given = part(given_, member);
-        if (record.cloth) {
-            record.cloth->touch() = std::move(member.touch);
-            record.cloth->layers() = std::move(member.layers);
-            record.cloth->end(member.substep, moves, body_moves_, given, bodies, world_.workers);
-        } else if (record.rope->has_clamps()) {
-            record.rope->advance(member.substep, member.thin->contacts, member.thin->segment_contacts,
-                                 member.thin->attachment_bodies, bodies, springs_of_others(member));
+        if (record.cloth()) {
+            record.cloth()->touch() = std::move(member.touch);
+            record.cloth()->layers() = std::move(member.layers);
+            record.cloth()->end(member.substep, moves, body_moves_, given, bodies, world_.workers);
+        } else if (record.rope()->has_clamps()) {
+            record.rope()->advance(member.substep, member.thin->contacts, member.thin->segment_contacts,
+                                   member.thin->attachment_bodies, bodies, springs_of_others(member));
         } else {
-            record.rope->touch() = std::move(member.touch);
-            record.rope->end(member.substep, moves, body_moves_, given, bodies, shares);
+            record.rope()->touch() = std::move(member.touch);
+            record.rope()->end(member.substep, moves, body_moves_, given, bodies, shares);
         }
-        if (record.rope) note_breaks(world_, record);
+        if (record.rope()) note_breaks(world_, record);
     }
 }
 
@@ -312,7 +312,7 @@ void ThinGroupPart::advance(std::span<TouchedBody> bodies) {
     // What is broken freezes on its own.
     for (Member& member : members_) {
         advance_thin(*member.thin, member.substep, bodies, world_.workers);
-        if (member.record().rope) note_breaks(world_, member.record());
+        if (member.record().rope()) note_breaks(world_, member.record());
     }
 }
 

@@ -71,7 +71,7 @@ std::vector<ThinCandidate> candidates_of(const DeformableAccess& world, const De
     return candidates;
 }
 
-bool is_thin(const DeformableRecord& record) { return !record.solid && record.definition.enabled; }
+bool is_thin(const DeformableRecord& record) { return !record.solid() && record.definition.enabled; }
 
 // What is wider than this has broken numbers, m: it will freeze, and nothing else is to know of it.
 constexpr double widest = 1e5;
@@ -90,7 +90,7 @@ std::uint32_t root_of(std::vector<std::uint32_t>& group, std::uint32_t i) {
 void advance_alone(const DeformableAccess& world, ThinDeformable& thin, double h, double time,
                    std::vector<TouchedBody>& bodies) {
     advance_thin(thin, substep_of(world, *thin.record, h, time), bodies, world.workers);
-    if (thin.record->rope) note_breaks(world, *thin.record);
+    if (thin.record->rope()) note_breaks(world, *thin.record);
 }
 
 void advance_group(const DeformableAccess& world, const ThinGroup& group, std::span<ThinDeformable> thin, double h,
@@ -107,7 +107,7 @@ void advance_group(const DeformableAccess& world, const ThinGroup& group, std::s
     } else {
         int parts = 1;
         for (const std::uint32_t member : group.members) {
-            ClothSheet* sheet = thin[member].record->cloth.get();
+            ClothSheet* sheet = thin[member].record->cloth();
             if (sheet != nullptr) parts = std::max(parts, sheet->parts_of(h, world.workers));
         }
         const PartPushes pushes(bodies);
@@ -242,7 +242,7 @@ std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span
         number[i] = number[root];
         place[i] = static_cast<std::uint32_t>(own.members.size());
         own.members.push_back(i);
-        own.in_substeps |= thin[i].record->rope != nullptr || has_solid_ties(world, *thin[i].record);
+        own.in_substeps |= thin[i].record->rope() != nullptr || has_solid_ties(world, *thin[i].record);
     }
     for (ThinPair& pair : pairs) {
         ThinGroup& own = groups[number[pair.a]];

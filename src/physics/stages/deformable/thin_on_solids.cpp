@@ -14,7 +14,7 @@ namespace embody::physics::stages {
 const PlacedSurface& ThinOnSolids::surface(std::uint32_t slot) {
     const auto known = surfaces_.find(slot);
     if (known != surfaces_.end()) return known->second;
-    return surfaces_.emplace(slot, PlacedSurface(*world_.deformables.records.at(slot).solid)).first->second;
+    return surfaces_.emplace(slot, PlacedSurface(*world_.deformables.records.at(slot).solid())).first->second;
 }
 
 void ThinOnSolids::add(ThinDeformable& thin, std::vector<TouchedBody>& bodies, double h) {
@@ -24,7 +24,7 @@ void ThinOnSolids::add(ThinDeformable& thin, std::vector<TouchedBody>& bodies, d
     for (std::uint32_t slot = 0; slot < world_.deformables.records.slot_count(); ++slot) {
         if (!world_.deformables.records.used(slot)) continue;
         const DeformableRecord& solid = world_.deformables.records.at(slot);
-        if (solid.solid && solid.definition.enabled && may_collide(thin.record->definition, solid.definition))
+        if (solid.solid() && solid.definition.enabled && may_collide(thin.record->definition, solid.definition))
             add_solid(thin, slot, bodies, h);
     }
 }
@@ -59,7 +59,7 @@ void ThinOnSolids::add_solid(ThinDeformable& thin, std::uint32_t slot, std::vect
         held_.push_back({body, node, *place});
     }
     uncover(thin, body, 2 * radius);
-    if (!other.is_asleep) find_following(*other.solid, nodes, h, std::span(held_).subspan(first));
+    if (!other.is_asleep) find_following(*other.solid(), nodes, h, std::span(held_).subspan(first));
 }
 
 // A rigid body on a sheet on a solid presses on the solid itself, harder than the sheet in between could pass on: where
