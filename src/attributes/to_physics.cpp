@@ -37,19 +37,6 @@ double number_or_standard(const AttributeSet& set, const char* name) {
     return set.number(name, std::get<double>(describe(name)->standard));
 }
 
-physics::Material material_from(const AttributeSet& set) {
-    physics::Material material;
-    material.friction_static = number_or_standard(set, "friction_static");
-    material.friction_dynamic = std::min(number_or_standard(set, "friction_dynamic"), material.friction_static);
-    material.friction_rolling = number_or_standard(set, "friction_rolling");
-    material.friction_torsional = number_or_standard(set, "friction_torsional");
-    material.restitution = number_or_standard(set, "restitution");
-    material.restitution_threshold = number_or_standard(set, "restitution_threshold");
-    material.friction_combine = combine_rule(set.word("friction_combine", ""));
-    material.restitution_combine = combine_rule(set.word("restitution_combine", ""));
-    return material;
-}
-
 // The table speaks for things whose numbers are their material's. A number of a thing's own, from its category or a
 // person, would be lost in it: there friction is the geometric mean with the other's, and a bounciness of its own
 // counts.
@@ -66,6 +53,20 @@ void put_surface_id(const AttributeSet& set, const Taxonomy& taxonomy, physics::
     if (has_bounce && material.restitution != usual->restitution.typical &&
         material.restitution_combine == physics::CombineRule::pair_table)
         material.restitution_combine = physics::CombineRule::own;
+}
+
+physics::Material material_from(const AttributeSet& set, const Taxonomy* taxonomy) {
+    physics::Material material;
+    material.friction_static = number_or_standard(set, "friction_static");
+    material.friction_dynamic = std::min(number_or_standard(set, "friction_dynamic"), material.friction_static);
+    material.friction_rolling = number_or_standard(set, "friction_rolling");
+    material.friction_torsional = number_or_standard(set, "friction_torsional");
+    material.restitution = number_or_standard(set, "restitution");
+    material.restitution_threshold = number_or_standard(set, "restitution_threshold");
+    material.friction_combine = combine_rule(set.word("friction_combine", ""));
+    material.restitution_combine = combine_rule(set.word("restitution_combine", ""));
+    if (taxonomy != nullptr) put_surface_id(set, *taxonomy, material);
+    return material;
 }
 
 physics::MassDefinition mass_from(const AttributeSet& set) {
@@ -178,8 +179,7 @@ Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attribu
     if (attributes.truth("kinematic", false)) body.kind = physics::BodyKind::kinematic_body;
     if (kind == "static") body.kind = physics::BodyKind::static_body;
     body.mass = mass_from(attributes);
-    body.material = material_from(attributes);
-    if (taxonomy != nullptr) put_surface_id(attributes, *taxonomy, body.material);
+    body.material = material_from(attributes, taxonomy);
     body.linear_damping = number_or_standard(attributes, "linear_damping");
     body.angular_damping = number_or_standard(attributes, "angular_damping");
     body.drag_area = number_or_standard(attributes, "drag_coefficient") * attributes.number("drag_area", 0);
@@ -209,9 +209,9 @@ Result<physics::ShapeDefinition> shape_from_attributes(const AttributeSet& attri
     return primitive_shape(shape, facts);
 }
 
-physics::DeformableDefinition deformable_from_attributes(const AttributeSet& attributes) {
+physics::DeformableDefinition deformable_from_attributes(const AttributeSet& attributes, const Taxonomy* taxonomy) {
     physics::DeformableDefinition deformable;
-    deformable.friction = number_or_standard(attributes, "friction_dynamic");
+    deformable.material = material_from(attributes, taxonomy);
     deformable.gravity_factor = number_or_standard(attributes, "gravity_factor");
     deformable.collision_group = static_cast<std::uint32_t>(number_or_standard(attributes, "collision_group"));
     deformable.collision_mask = static_cast<std::uint32_t>(number_or_standard(attributes, "collision_mask"));
@@ -219,11 +219,12 @@ physics::DeformableDefinition deformable_from_attributes(const AttributeSet& att
 }
 
 Result<physics::DeformableDefinition> soft_solid_from_attributes(const AttributeSet& attributes,
-                                                                 const geometry::TetrahedralMesh& mesh) {
+                                                                 const geometry::TetrahedralMesh& mesh,
+                                                                 const Taxonomy* taxonomy) {
     constexpr double least_poisson = -0.9, greatest_poisson = 0.495, least_yield = 1;
     const Result<double> density = spread(attributes, "density", geometry::volume(mesh), "m³", "soft thing");
     if (!density) return density.error();
-    physics::DeformableDefinition deformable = deformable_from_attributes(attributes);
+    physics::DeformableDefinition deformable = deformable_from_attributes(attributes, taxonomy);
     deformable.nodes = mesh.nodes;
     physics::SoftSolid solid;
     solid.tetrahedra = mesh.tetrahedra;
@@ -237,11 +238,12 @@ Result<physics::DeformableDefinition> soft_solid_from_attributes(const Attribute
     return deformable;
 }
 
-Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& attributes, const SheetMesh& sheet) {
+Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& attributes, const SheetMesh& sheet,
+                                                            const Taxonomy* taxonomy) {
     const double area = area_of(sheet);
     const Result<double> area_density = spread(attributes, "area_density", area, "m²", "cloth");
     if (!area_density) return area_density.error();
-    physics::DeformableDefinition deformable = deformable_from_attributes(attributes);
+    physics::DeformableDefinition deformable = deformable_from_attributes(attributes, taxonomy);
     deformable.nodes = sheet.nodes;
     physics::Cloth cloth;
     cloth.triangles = sheet.triangles;
@@ -259,7 +261,8 @@ Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& 
 }
 
 Result<physics::DeformableDefinition> rope_from_attributes(const AttributeSet& attributes,
-                                                           const std::vector<Vec3>& nodes, double diameter) {
+                                                           const std::vector<Vec3>& nodes, double diameter,
+                                                           const Taxonomy* taxonomy) {
     constexpr double least_diameter = 1e-4, greatest_diameter = 1, least_break = 1e-6;
     double along = 0;
     for (std::size_t i = 1; i < nodes.size(); ++i) along += length(nodes[i] - nodes[i - 1]);
@@ -267,7 +270,7 @@ Result<physics::DeformableDefinition> rope_from_attributes(const AttributeSet& a
     along *= 1 + slack;
     const Result<double> linear_density = spread(attributes, "linear_density", along, "m", "rope");
     if (!linear_density) return linear_density.error();
-    physics::DeformableDefinition deformable = deformable_from_attributes(attributes);
+    physics::DeformableDefinition deformable = deformable_from_attributes(attributes, taxonomy);
     deformable.nodes = nodes;
     physics::Rope rope;
     rope.diameter = std::clamp(diameter, least_diameter, greatest_diameter);

@@ -38,14 +38,17 @@ Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attribu
 Result<physics::ShapeDefinition> shape_from_attributes(const AttributeSet& attributes, const GeometryFacts& facts,
                                                        ModelGeometry& geometry);
 
-/// What all deformables have of the attributes, without nodes, matter and pose: friction, gravity factor, groups.
-physics::DeformableDefinition deformable_from_attributes(const AttributeSet& attributes);
+/// What all deformables have of the attributes, without nodes, matter and pose: material, gravity factor, groups. With
+/// a taxonomy as of body_from_attributes().
+physics::DeformableDefinition deformable_from_attributes(const AttributeSet& attributes,
+                                                         const Taxonomy* taxonomy = nullptr);
 
 /// A soft solid of these tetrahedra, without pose. Its density is the one that makes its mass that of the attributes,
 /// since tetrahedra miss what is thinner than they are. Poisson's ratio is taken within -0.9 … 0.495, and a yield
 /// stress of 0 as one of 1 Pa. The error says where the mass gives a density that nothing has.
 Result<physics::DeformableDefinition> soft_solid_from_attributes(const AttributeSet& attributes,
-                                                                 const geometry::TetrahedralMesh& mesh);
+                                                                 const geometry::TetrahedralMesh& mesh,
+                                                                 const Taxonomy* taxonomy = nullptr);
 
 /// Mesh of a sheet at rest, in the thing's frame.
 struct SheetMesh {
@@ -56,12 +59,14 @@ struct SheetMesh {
 /// Cloth of these triangles, without pose. Its area density is the one that makes its mass that of the attributes; a
 /// thickness above the length of an edge is taken as that. The error says where the mass gives a density that no cloth
 /// has.
-Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& attributes, const SheetMesh& sheet);
+Result<physics::DeformableDefinition> cloth_from_attributes(const AttributeSet& attributes, const SheetMesh& sheet,
+                                                            const Taxonomy* taxonomy = nullptr);
 
 /// A rope along these nodes (m, each apart from the one before it), `diameter` (m) thick, without pose. Its linear
 /// density is the one that makes its mass that of the attributes, slack and all. Errors as of cloth.
 Result<physics::DeformableDefinition> rope_from_attributes(const AttributeSet& attributes,
-                                                           const std::vector<Vec3>& nodes, double diameter);
+                                                           const std::vector<Vec3>& nodes, double diameter,
+                                                           const Taxonomy* taxonomy = nullptr);
 
 /// A liquid without volume and velocity: what it is and the cells that it is solved on. Density is taken as 1 kg/m³ or
 /// more, viscosity and yield stress up to 10,000 Pa s and Pa.

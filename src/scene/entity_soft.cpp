@@ -57,7 +57,7 @@ Result<physics::DeformableDefinition> EntityBodies::soft(const Entity& entity,
     if (!mesh.ok()) return mesh.error();
     geometry::TetrahedralMesh scaled = mesh.value()->mesh;
     for (Vec3& node : scaled.nodes) node *= entity.scale;
-    Result<physics::DeformableDefinition> made = attributes::soft_solid_from_attributes(attributes, scaled);
+    Result<physics::DeformableDefinition> made = attributes::soft_solid_from_attributes(attributes, scaled, taxonomy());
     if (!made.ok()) return Error{"attributes: " + made.error().where, made.error().why, made.error().remedy};
     physics::DeformableDefinition soft = std::move(made).value();
     soft.contact_radius = std::clamp(radius_share * mesh.value()->cell * entity.scale, least_radius, greatest_radius);

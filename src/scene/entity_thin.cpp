@@ -75,14 +75,15 @@ Result<physics::DeformableDefinition> EntityBodies::thin(const Entity& entity,
         std::vector<Vec3> nodes = line->nodes;
         for (Vec3& node : nodes) node *= entity.scale;
         const double diameter = line->diameter * entity.scale;
-        Result<physics::DeformableDefinition> rope = attributes::rope_from_attributes(attributes, nodes, diameter);
+        Result<physics::DeformableDefinition> rope =
+            attributes::rope_from_attributes(attributes, nodes, diameter, taxonomy());
         if (!rope.ok()) return in_attributes(rope.error());
         rope.value().contact_radius = std::clamp(diameter / 2, least_rope_radius, greatest_rope_radius);
         return rope;
     }
     attributes::SheetMesh sheet = std::get<attributes::SheetMesh>(*form.value());
     for (Vec3& node : sheet.nodes) node *= entity.scale;
-    Result<physics::DeformableDefinition> cloth = attributes::cloth_from_attributes(attributes, sheet);
+    Result<physics::DeformableDefinition> cloth = attributes::cloth_from_attributes(attributes, sheet, taxonomy());
     if (!cloth.ok()) return in_attributes(cloth.error());
     const double half = std::get<physics::Cloth>(cloth.value().matter).thickness / 2;
     cloth.value().contact_radius =

@@ -176,7 +176,8 @@ TEST(ToPhysics, SoftThingsWeighWhatTheirMassSaysWhateverTheTetrahedraMiss) {
         ASSERT_TRUE(soft.ok()) << name << ": " << soft.error().message();
         EXPECT_TRUE(physics::validate(*soft).ok()) << name;
         EXPECT_DOUBLE_EQ(std::get<physics::SoftSolid>(soft->matter).density, 4.0 * 6) << "in a sixth of a cubic metre";
-        EXPECT_EQ(soft->friction, set.number("friction_dynamic", -1));
+        EXPECT_EQ(soft->material.friction_dynamic, set.number("friction_dynamic", -1));
+        EXPECT_EQ(soft->material.friction_static, set.number("friction_static", -1));
     }
 }
 

@@ -29,7 +29,7 @@ TEST(RopeWinch, ATurningDrumLiftsALoad) {
         auto rope = rope_between({side, 0, 0}, {side, -2, 0}, 0.02,
                                  {.linear_density = 0.05, .axial_stiffness = 3e5, .rayleigh_damping = 0.01});
         rope.contact_radius = rope_radius;
-        rope.friction = 0.5;
+        rope.material = {.friction_static = 0.5, .friction_dynamic = 0.5};
         const auto last = static_cast<std::uint32_t>(rope.nodes.size() - 1);
         const BodyHandle load = load_of(*world, mass, {side, -2, 0});
         const Vec3 on_drum = rotate_inverse(drum.rotation, {side, 0, 0});

@@ -106,7 +106,7 @@ TEST(ThinContact, ARopeAcrossATautRopeHangsThere) {
     taut.contact_radius = 5e-3;
     auto loose = rope_between({0.01, 1.03, -0.51}, {0.01, 1.03, 0.53}, 0.05, {.rayleigh_damping = 0.01});
     loose.contact_radius = 5e-3;
-    loose.friction = taut.friction = 1;
+    loose.material = taut.material = {.friction_static = 1, .friction_dynamic = 1};
     const DeformableHandle line = world->create_deformable(taut).value();
     const DeformableHandle rope = world->create_deformable(loose).value();
     run(*world, 8);
@@ -171,7 +171,7 @@ TEST(ThinContact, FrictionHoldsAStackOfSheetsOnASlope) {
         for (const double height : {0.003, 0.008}) {
             auto sheet = cloth_rectangle(0.3, 0.3, 0.05, {.area_density = 0.3, .rayleigh_damping = 0.01});
             sheet.contact_radius = 2e-3;
-            sheet.friction = mu;
+            sheet.material = {.friction_static = mu, .friction_dynamic = mu};
             sheet.pose.rotation = from_axis_angle({0, 0, 1}, -angle);
             sheet.pose.position = rotate(sheet.pose.rotation, {0, height, 0});
             sheets.push_back(world->create_deformable(sheet).value());

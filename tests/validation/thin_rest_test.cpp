@@ -234,7 +234,7 @@ TEST(ThinRest, ATwistedRopeStaysBetweenSheets) {
     rope.attachments = {{last, hand, {}}};
     rope.clamps = {{0, {1, 0, 0}}, {last, {1, 0, 0}}};
     rope.contact_radius = 4e-3;
-    rope.friction = 0.3;
+    rope.material = {.friction_static = 0.3, .friction_dynamic = 0.3};
     const DeformableHandle line = world->create_deformable(rope).value();
     for (const double side : {-1, 1}) {
         auto wall = cloth_rectangle(0.8, 0.8, 0.04, {.area_density = 0.3});

@@ -177,8 +177,7 @@ Result<void> validate(const DeformableDefinition& definition) {
                        check_vector("linear_velocity", definition.linear_velocity, largest_linear_speed, "m/s"),
                        check_vector("angular_velocity", definition.angular_velocity, largest_angular_speed, "rad/s"),
                        check_number("gravity_factor", definition.gravity_factor, -10, 10),
-                       check_vector("force", definition.force, largest_force, "N"),
-                       check_number("friction", definition.friction, 0, 2),
+                       check_vector("force", definition.force, largest_force, "N"), validate(definition.material),
                        check_number("contact_radius", definition.contact_radius, 1e-5, 1, "m"));
 }
 

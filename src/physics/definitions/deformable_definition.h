@@ -10,6 +10,7 @@
 #include "foundation/result.h"
 #include "math/transform.h"
 #include "physics/definitions/handles.h"
+#include "physics/definitions/material.h"
 
 namespace embody::physics {
 
@@ -92,7 +93,7 @@ struct DeformableDefinition {
     Vec3 angular_velocity;                ///< about the centre of mass, world axes, rad/s
     double gravity_factor = 1;            ///< -10 … 10
     Vec3 force;                           ///< constant, N, world axes, shared among the nodes by mass
-    double friction = 0.5;                ///< Coulomb coefficient of its surface, 0 … 2
+    Material material;                    ///< of its surface, as of bodies; how it bounces follows from its matter
     double contact_radius = 1e-3;         ///< distance that nodes keep from other surfaces, m, 1e-5 … 1
     bool enabled = true;                  ///< a disabled one neither moves nor collides
     std::uint32_t collision_group = 1;    ///< bits; as of bodies

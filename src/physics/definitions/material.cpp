@@ -97,4 +97,9 @@ Material combine(const Material& a, const Material& b, const SurfacePairs& pairs
     return pair;
 }
 
+PairFriction friction_between(const Material& a, const Material& b, const SurfacePairs& pairs) {
+    const Material pair = combine(a, b, pairs);
+    return {pair.friction_static, pair.friction_dynamic};
+}
+
 }  // namespace embody::physics

@@ -31,4 +31,16 @@ Result<void> validate(const Material& material);
 /// The coefficients of a pair; symmetric in the two.
 Material combine(const Material& a, const Material& b, const SurfacePairs& pairs);
 
+/// Coulomb's law of a pair: what sticks holds up to at_rest times the load, what slides is braked by sliding times it.
+struct PairFriction {
+    double at_rest = 0, sliding = 0;
+    /// What slips no faster than this still sticks, m/s: where friction begins to fall from the static to the sliding
+    /// one (R. Stribeck 1902; measured 1e-4 to 1e-1 m/s, B. Armstrong-Hélouvry et al., Automatica 30, 1994). Points of
+    /// what bends share a load unevenly; one that gives way a little hands its part on and is not lost.
+    static constexpr double stribeck_speed = 1e-3;
+    [[nodiscard]] double coefficient(bool sticks) const { return sticks ? at_rest : sliding; }
+};
+/// The same of combine().
+PairFriction friction_between(const Material& a, const Material& b, const SurfacePairs& pairs);
+
 }  // namespace embody::physics

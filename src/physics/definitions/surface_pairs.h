@@ -31,4 +31,6 @@ private:
     std::vector<std::optional<PairCoefficients>> rows_;  ///< lower triangle of the symmetric table
 };
 
+inline const SurfacePairs no_surface_pairs;
+
 }  // namespace embody::physics

@@ -168,7 +168,7 @@ TEST(ClothSheet, SlidesDownAnInclineByCoulombsLaw) {
     for (const double mu : {0.2, 0.6}) {
         const double angle = 0.4;
         auto definition = cloth_rectangle(0.2, 0.2, 0.04);
-        definition.friction = mu;
+        definition.material = sliding(mu);
         definition.pose.rotation = from_axis_angle({0, 0, 1}, -angle);
         definition.pose.position = definition.contact_radius * Vec3{std::sin(angle), std::cos(angle), 0};
         Scene scene(definition);

@@ -13,6 +13,9 @@ namespace embody::physics::deformable {
 
 inline constexpr double gravity = 9.81;
 
+/// A surface with that Coulomb coefficient, whether it sticks or slides.
+inline Material sliding(double friction) { return {.friction_static = friction, .friction_dynamic = friction}; }
+
 /// A body for deformables to touch, still at the start, without a world around it.
 struct LooseBody {
     std::unique_ptr<CollisionShape> shape;
@@ -20,7 +23,7 @@ struct LooseBody {
     LooseBody(const ShapeDefinition& definition, const Transform& pose, double friction)
         : shape(std::move(CollisionShape::create(definition)).value()) {
         body.shape = shape.get();
-        body.friction = friction;
+        body.material = sliding(friction);
         body.start = pose;
         body.start_center = pose.position;
     }

@@ -145,7 +145,7 @@ TEST(RopeLine, GripsADrumAsACapstan) {
         {}, {whole, 0, 0}, whole / count,
         {.linear_density = 0.01, .axial_stiffness = 2e4, .bend_rigidity = 1e-7, .rayleigh_damping = 0.005});
     definition.nodes = nodes;
-    definition.friction = mu;
+    definition.material = sliding(mu);
     definition.contact_radius = thickness;
     const auto last = static_cast<std::uint32_t>(nodes.size() - 1);
     definition.attachments = {{.node = 0}, {.node = last}};

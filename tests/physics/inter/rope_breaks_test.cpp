@@ -52,7 +52,7 @@ TEST(RopeBreaks, AreToldOnceWithPlaceAndTension) {
 
     // It stays broken when something else of it is changed.
     DeformableDefinition changed = hanging_rope(9);
-    changed.friction = 0.1;
+    changed.material = {.friction_static = 0.1, .friction_dynamic = 0.1};
     ASSERT_TRUE(world->set_deformable(*rope, changed));
     EXPECT_EQ(world->broken_segments(*rope), (std::vector<std::uint32_t>{0}));
     world->step();

@@ -67,7 +67,7 @@ ClothSheet::ClothSheet(const DeformableDefinition& definition)
     nodes_.velocity = nodes_.mean_velocity;
     for (double& value : bending_.value) value *= cloth_.bend_stiffness;
     springs_.radius = definition.contact_radius;
-    springs_.friction = definition.friction;
+    springs_.material = definition.material;
     springs_.attachments = definition.attachments;
     make_pattern(bending_);
     layers_.emplace(cloth_.triangles, definition.nodes);
@@ -292,10 +292,11 @@ void ClothSheet::find_layers(const Substep& substep, TaskPool& workers) {
                       .triangles = cloth_.triangles,
                       .edges = layers_->edges(),
                       .radius = apart() / 2,
-                      .edge_length = layers_->edge_length(),
-                      .friction = springs_.friction};
+                      .edge_length = layers_->edge_length()};
     member.load.assign(nodes_.size(), 0);
-    const ThinPair self{0, 0, layers_->near(nodes_, apart() + gravity * substep.h * substep.h, moves, workers)};
+    layer_friction_ = friction_between(springs_.material, springs_.material, *substep.surface_pairs);
+    const ThinPair self{0, 0, layer_friction_,
+                        layers_->near(nodes_, apart() + gravity * substep.h * substep.h, moves, workers)};
     layer_springs_.begin(std::span(&member, 1), std::span(&self, 1), layer_contacts_, substep.h, gravity);
 }
 
@@ -307,7 +308,7 @@ void ClothSheet::part_layers(TaskPool& workers) {
         for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count) && spring.acts; ++k)
             give[spring.node[k]] = give_on_body * nodes_.inverse_mass[spring.node[k]];
     }
-    layers_->part(nodes_, least_share * apart(), springs_.friction, give, moves_, workers);
+    layers_->part(nodes_, least_share * apart(), layer_friction_.sliding, give, moves_, workers);
 }
 
 // Layers are kept apart reliably where they pass each other by no more than half an edge: faster ones take more parts.

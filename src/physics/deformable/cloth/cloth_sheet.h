@@ -111,6 +111,7 @@ private:
     std::vector<std::uint32_t> far_element_;  // of bending_'s elements: which of the row's far ones each is
     TouchSprings springs_;
     std::optional<ClothLayers> layers_;
+    PairFriction layer_friction_;  // of the sheet on itself
     PairSprings layer_springs_;
     ThinContacts layer_contacts_;  // what they have left from the last substep
     std::vector<std::uint8_t> fixed_;

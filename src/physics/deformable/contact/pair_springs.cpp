@@ -22,6 +22,7 @@ struct PairSprings::Search {
     std::span<const ThinContact> memory;
     double h = 0, gravity = 0;
     double radius = 0;  // of both together
+    PairFriction friction;
 
     [[nodiscard]] const ThinMember& first(const ThinCandidate& candidate) const { return candidate.is_swapped ? b : a; }
     [[nodiscard]] const ThinMember& second(const ThinCandidate& candidate) const {
@@ -159,12 +160,13 @@ void PairSprings::add(const Search& search, const Found& found) {
     spring.normal = found.normal;
     const double gap = found.distance - search.radius;
     spring.gap = gap > 0 ? gap : std::max(recovery * gap, -fastest * h);
-    spring.friction = std::sqrt(search.a.surface.friction * search.b.surface.friction);
+    spring.friction = search.friction;
     if (found.memory != nullptr) {
         // Layers that something holds in each other push no harder and harder: the deeper, the more they forget.
         const double kept = is_self ? std::clamp(1 + gap / (forgotten * search.radius), 0.0, 1.0) : 1;
         spring.pull = kept * found.memory->push * found.normal;
         spring.hold = (found.memory->stiffness / spring.stiffness) * across(found.memory->hold, found.normal);
+        spring.sticks = found.memory->sticks;
     }
     springs_.push_back(spring);
     features_.push_back({found.candidate.kind,
@@ -174,6 +176,7 @@ void PairSprings::add(const Search& search, const Found& found) {
                          found.normal,
                          0,
                          {},
+                         true,
                          spring.stiffness,
                          found.memory != nullptr ? found.memory->carried : 0});
 }
@@ -184,13 +187,19 @@ void PairSprings::begin(std::span<const ThinMember> members, std::span<const Thi
     features_.clear();
     last_of_.clear();
     gravity_ = gravity;
+    h_ = h;
     std::vector<Found> kept;
     for (const ThinPair& pair : pairs) {
         const ThinMember &a = members[pair.a], &b = members[pair.b];
         const Slots slots{a.slot, b.slot};
         const auto known = memories.find(slots);
-        const Search search{a, b,       known == memories.end() ? std::span<const ThinContact>() : known->second,
-                            h, gravity, a.surface.radius + b.surface.radius};
+        const Search search{a,
+                            b,
+                            known == memories.end() ? std::span<const ThinContact>() : known->second,
+                            h,
+                            gravity,
+                            a.surface.radius + b.surface.radius,
+                            pair.friction};
         kept.clear();
         std::vector<Vec3> held(a.surface.nodes->size()), held_by_b(pair.a == pair.b ? 0 : b.surface.nodes->size());
         std::vector<Vec3>& held_b = pair.a == pair.b ? held : held_by_b;
@@ -232,7 +241,7 @@ void PairSprings::finish(std::span<const Vec3> moves, std::span<Vec3> given, Thi
         std::vector<ThinContact>& memory = memories[slots];
         memory.clear();
         for (; i < last; ++i) {
-            const TouchSpring& spring = springs_[i];
+            TouchSpring& spring = springs_[i];
             ThinContact& own = memory.emplace_back(features_[i]);
             if (!spring.acts) continue;
             const Vec3 s = spring.lead(moves, {});
@@ -240,9 +249,8 @@ void PairSprings::finish(std::span<const Vec3> moves, std::span<Vec3> given, Thi
             const double push = std::max(0.0, dot(force, spring.normal));
             own.push = std::max(0.0, push + spring.stiffness * std::min(spring.gap, 0.0));
             own.carried = std::max(own.push / std::max(gravity_, 1.0), 0.9 * own.carried);
-            own.hold = spring.hold + across(s, spring.normal);
-            const double most = spring.friction * push / spring.stiffness, size = length(own.hold);
-            if (size > most) own.hold *= most / size;
+            own.hold = held_stretch(spring, spring.hold + across(s, spring.normal), push, h_);
+            own.sticks = spring.sticks;
             for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
                 given[spring.node[k]] += spring.weight[k] * force;
         }

@@ -16,9 +16,10 @@ struct ThinContact {
     ThinFeature kind = ThinFeature::node_on_triangle;
     bool is_swapped = false;
     std::uint32_t first = 0, second = 0;
-    Vec3 normal;           ///< from the second to the first
-    double push = 0;       ///< N, without what parts two that lie in each other
-    Vec3 hold;             ///< m
+    Vec3 normal;      ///< from the second to the first
+    double push = 0;  ///< N, without what parts two that lie in each other
+    Vec3 hold;        ///< m
+    bool sticks = true;
     double stiffness = 0;  ///< N/m
     double carried = 0;    ///< what it has borne lately, as a mass, kg
 
@@ -37,6 +38,7 @@ struct ThinMember {
 /// Two of them, by index, the lower slot first, with what may touch; or a sheet with itself.
 struct ThinPair {
     std::uint32_t a = 0, b = 0;
+    PairFriction friction;
     std::vector<ThinCandidate> candidates;
 };
 
@@ -61,7 +63,7 @@ private:
     struct Search;
     void add(const Search& search, const Found& found);
 
-    double gravity_ = 0;
+    double gravity_ = 0, h_ = 0;
     std::vector<TouchSpring> springs_;
     std::vector<ThinContact> features_;                   // of the springs: what they are of, nothing of forces
     std::vector<std::pair<Slots, std::size_t>> last_of_;  // of each pair, one beyond its last spring

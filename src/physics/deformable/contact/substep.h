@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/definitions/surface_pairs.h"
 #include "physics/deformable/namespace.h"
 #include "physics/dynamic/wind.h"
 
@@ -8,11 +9,12 @@ namespace embody::physics::deformable {
 
 /// What a deformable is told of one substep.
 struct Substep {
-    double h = 1.0 / 60;       ///< its length, s
-    double time = 0;           ///< of its start, s after the step began
-    Vec3 gravity;              ///< m/s², the deformable's own gravity factor in it
-    Wind wind;                 ///< of the air
-    double air_density = 1.2;  ///< kg/m³
+    double h = 1.0 / 60;                                    ///< its length, s
+    double time = 0;                                        ///< of its start, s after the step began
+    Vec3 gravity;                                           ///< m/s², the deformable's own gravity factor in it
+    Wind wind;                                              ///< of the air
+    double air_density = 1.2;                               ///< kg/m³
+    const SurfacePairs* surface_pairs = &no_surface_pairs;  ///< of the world
 };
 
 }  // namespace embody::physics::deformable

@@ -20,7 +20,6 @@ struct ThinSurface {
         edges;               ///< of a rope: its segments, broken ones from a node to itself
     double radius = 0;       ///< what it keeps off from its middle, m
     double edge_length = 0;  ///< mean, m
-    double friction = 0;     ///< Coulomb coefficient
 };
 
 enum class ThinFeature : std::uint8_t { node_on_triangle, node_on_edge, edge_on_edge };

@@ -19,7 +19,7 @@ constexpr double load_factor = 4;        // over the inertia of what weighs on a
 // faster than substeps can follow.
 void begin_recovery(TouchSpring& spring, const TouchedBody& body, double h) {
     spring.is_recovery = true;
-    spring.friction = 0;
+    spring.friction = {};
     spring.stiffness = stiffness_factor * spring.inertia;
     const Vec3 turning = cross(spring.arm, spring.normal);
     const double body_give = body.inverse_mass + dot(turning, body.inverse_inertia * turning);  // 1/kg
@@ -29,9 +29,10 @@ void begin_recovery(TouchSpring& spring, const TouchedBody& body, double h) {
 
 // Friction: k (hold + slip) up to its limit. Beyond it the secant through that limit at the slip to be expected, which
 // can only stop what slides; where the slip is so long that friction cannot end it in this substep, the limit itself.
-// Expected of what stuck is what the point would do alone with the limit instead of the larger force that it had.
-// Returns by how much the force is another than before, N.
-double choose_friction(TouchSpring& spring, Vec3 s, double limit, bool is_foretold) {
+// Expected of what stuck is what the point would do alone with the limit instead of the larger force that it had. What
+// stuck in the last substep does so up to the static limit. Returns by how much the force is another than before, N.
+double choose_friction(TouchSpring& spring, Vec3 s, double load, bool is_foretold) {
+    double limit = spring.friction.coefficient(spring.sticks) * load;
     const Mat3 plane = Mat3::identity() - outer(spring.normal, spring.normal);
     const Vec3 loose = spring.hold - across(spring.carried, spring.normal);  // stretch with s = 0
     const Vec3 stretch = loose + across(s, spring.normal), force = across(spring.force(s), spring.normal);
@@ -40,6 +41,7 @@ double choose_friction(TouchSpring& spring, Vec3 s, double limit, bool is_foreto
     const bool has_stuck = length(force) > 0.99 * spring.stiffness * size;
     const double expected = !is_foretold && has_stuck && excess > 0 ? size + excess / spring.inertia : size;
     const bool sticks = limit > 0 && spring.stiffness * expected <= limit;
+    if (!sticks) limit = spring.friction.sliding * load;
     const double tangent = sticks ? spring.stiffness : limit > 0 ? limit / expected : 0;
     spring.matrix = tangent * plane;
     spring.load = -tangent * loose;
@@ -70,9 +72,16 @@ void choose_contact(TouchSpring& spring, Vec3 s, bool is_foretold, SpringChange&
     sum.acting += std::fabs(push);
     // How deep something came that was not held back tells what it takes to stop it, not what the spring would push.
     const double expected = is_foretold ? push_before : is_new ? push_before + spring.inertia * depth : push;
-    sum.change += choose_friction(spring, s, spring.friction * expected, is_foretold);
+    sum.change += choose_friction(spring, s, expected, is_foretold);
     spring.matrix += spring.stiffness * outer(spring.normal, spring.normal);
     spring.load += (push_before - spring.stiffness * spring.gap) * spring.normal;
+}
+
+Vec3 held_stretch(TouchSpring& spring, Vec3 stretch, double push, double h) {
+    const double size = length(stretch);
+    const double most = spring.friction.coefficient(spring.sticks) * push / spring.stiffness;
+    spring.sticks = size - most <= PairFriction::stribeck_speed * h;
+    return size > most ? (most / size) * stretch : stretch;
 }
 
 double contact_stiffness(double mass, double force, double h, double gravity) {
@@ -157,6 +166,7 @@ bool TouchSprings::recall(const TouchedBody& body, TouchSpring& spring) const {
         nearest = dot(at->normal, spring.normal);
         spring.pull = spring.is_attachment ? at->pull : length(at->pull) * spring.normal;
         spring.hold = across(at->hold, spring.normal);
+        spring.sticks = at->sticks;
     }
     return is_known;
 }
@@ -194,7 +204,7 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
     const double reach = (length(velocity) + length(substep.gravity) * substep.h) * substep.h + radius;
     if (!is_free || spring.gap > reach) return;
     spring.arm += across(offset, spring.normal);
-    spring.friction = std::sqrt(friction * body.friction);
+    spring.friction = friction_between(material, body.material, *substep.surface_pairs);
     spring.carried = place.way_of(spring.arm) + substep.h * plane.velocity;
     const double gap_at_start = spring.gap + dot(spring.carried, spring.normal);
     const double came_in = std::max(0.0, dot(spring.carried - substep.h * velocity, spring.normal));
@@ -297,7 +307,7 @@ bool TouchSprings::stop(TouchSpring& spring, std::span<Vec3> node_moves, std::sp
     if (depth <= 0) return false;
     const double push = spring.inertia * depth, size = length(slip);
     spring.felt = push * spring.normal;
-    if (size > 0) spring.felt -= (std::min(spring.friction * push, spring.inertia * size) / size) * slip;
+    if (size > 0) spring.felt -= (std::min(spring.friction.sliding * push, spring.inertia * size) / size) * slip;
     node_moves[spring.node[0]] += spring.felt / spring.inertia;
     return spring.acts = true;
 }
@@ -315,13 +325,13 @@ void TouchSprings::finish(std::span<Vec3> node_moves, std::span<const BodyMove> 
         const Vec3 s = spring.lead(node_moves, body_moves), force = spring.felt;
         bodies[spring.body].push(-substep.h * force, spring.arm, substep.h);
         if (spring.is_recovery) continue;
-        Memory memory{spring.feature, bodies[spring.body].body, spring.is_attachment, spring.normal, force, {}};
+        Memory memory{spring.feature, bodies[spring.body].body, spring.is_attachment, true, spring.normal, force, {}};
         if (!spring.is_attachment) {
             const double push = std::max(0.0, dot(force, spring.normal));
             memory.pull = push * spring.normal;
-            memory.hold = spring.hold + across(s - spring.carried, spring.normal);
-            const double most = spring.friction * push / spring.stiffness, size = length(memory.hold);
-            if (size > most) memory.hold *= most / size;
+            memory.hold =
+                held_stretch(spring, spring.hold + across(s - spring.carried, spring.normal), push, substep.h);
+            memory.sticks = spring.sticks;
         }
         memory_.push_back(memory);
     }

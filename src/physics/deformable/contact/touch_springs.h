@@ -71,7 +71,8 @@ struct TouchSpring {
     bool is_recovery = false;      ///< of a point that began inside: forgets its force
     Vec3 normal;                   ///< unit, towards the point, at the end of the substep
     Vec3 arm;                      ///< from the body's centre of mass to what is touched, then
-    double friction = 0;           ///< Coulomb coefficient
+    PairFriction friction;         ///< of the two surfaces
+    bool sticks = true;            ///< holds by static friction until its limit is left
     double gap = 0;                ///< at the end of the substep if the point stays, m
     Vec3 carried;                  ///< how far the body's surface goes in the substep on its path, m
     double stiffness = 0;          ///< of both directions at most, N/m
@@ -114,6 +115,9 @@ struct SpringChange {
 /// Whether a contact acts, and how its friction does, for that lead (m). `is_foretold`: of moves by inertia alone, no
 /// measure of forces: those of the last substep are.
 void choose_contact(TouchSpring& spring, Vec3 s, bool is_foretold, SpringChange& sum);
+/// After a substep: what is left of a tangential stretch (m) that the contact cannot hold with that push (N); notes
+/// whether it sticks. `h`: of the substep, s.
+Vec3 held_stretch(TouchSpring& spring, Vec3 stretch, double push, double h);
 /// Of a contact or tie between sheets and ropes, N/m: over the inertia of the heavier point (`mass`, kg), or of what
 /// weighs on it, which `force` (N) tells, in a substep of h seconds. `gravity`: m/s².
 double contact_stiffness(double mass, double force, double h, double gravity);
@@ -126,8 +130,9 @@ inline Vec3 across(Vec3 v, Vec3 normal) { return v - dot(v, normal) * normal; }
 /// plane that gives way at Coulomb's limit.
 class TouchSprings {
 public:
-    /// Begins a substep: `radius`, friction of the deformable; `node_stiffness`: what the node's neighbours resist with
-    /// together, N/m. A contact counts that may close in the substep, but none of a node with what it is attached to.
+    /// Begins a substep: `radius` and `material` of the deformable; `node_stiffness`: what the node's neighbours resist
+    /// with together, N/m. A contact counts that may close in the substep, but none of a node with what it is attached
+    /// to.
     void begin(const Nodes& nodes, std::span<const NodeContact> contacts, std::span<const TouchedBody> bodies,
                const Substep& substep, std::span<const double> node_stiffness);
     /// After begin(): one of a point of a line.
@@ -150,7 +155,7 @@ public:
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_; }
 
     double radius = 1e-3;                          ///< m
-    double friction = 0.5;                         ///< Coulomb coefficient of the deformable
+    Material material;                             ///< of the deformable's surface
     double tolerance = 0.05;                       ///< share of the forces whose change is not worth a solve
     std::vector<Attachment> attachments;           ///< that still hold
     std::vector<std::uint32_t> attachment_bodies;  ///< index of each in the list of bodies, set before begin()
@@ -159,7 +164,7 @@ private:
     struct Memory {
         TouchFeature feature{};
         std::uint32_t slot = 0;
-        bool is_attachment = false;
+        bool is_attachment = false, sticks = true;
         Vec3 normal, pull, hold;
     };
     struct Place {

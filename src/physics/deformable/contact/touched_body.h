@@ -9,6 +9,7 @@
 #include "math/mat3.h"
 #include "math/transform.h"
 #include "physics/collision/shapes/collision_shape.h"
+#include "physics/definitions/material.h"
 #include "physics/deformable/namespace.h"
 
 namespace embody::physics::deformable {
@@ -18,7 +19,7 @@ namespace embody::physics::deformable {
 struct TouchedBody {
     std::uint32_t body = 0;  ///< slot
     const CollisionShape* shape = nullptr;
-    double friction = 0;     ///< Coulomb coefficient of its surface
+    Material material;       ///< of its surface
     Transform start;         ///< pose of the shape's frame when the step began
     Vec3 start_center;       ///< of mass, when the step began, m
     double step_time = 0;    ///< of the whole step, s

@@ -49,7 +49,7 @@ RopeLine::RopeLine(const DeformableDefinition& definition) : rope_(std::get<Rope
     nodes_.velocity = nodes_.mean_velocity;
     tensions_.assign(segments_.size(), 0);
     springs_.radius = definition.contact_radius;
-    springs_.friction = definition.friction;
+    springs_.material = definition.material;
     springs_.attachments = definition.attachments;
     clamps_.set(definition.clamps);
     springs_.tolerance = 0.005;  // along a drum the errors add up in the exponent

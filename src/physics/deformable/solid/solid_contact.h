@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "math/vec3.h"
+#include "physics/definitions/material.h"
 #include "physics/deformable/namespace.h"
 
 namespace embody::physics::deformable {
@@ -28,7 +29,8 @@ struct SolidContact {
     Vec3 anchor;                ///< on the body, from its centre of mass when the step began, m
     Vec3 normal;                ///< from the other to the solid when the step began
     double radius = 0;          ///< distance that the two keep, m
-    double friction = 0;        ///< Coulomb coefficient of the pair
+    PairFriction friction;      ///< of the two surfaces
+    bool sticks = true;         ///< holds by static friction until its limit is left
     bool holds = false;         ///< the point stays at the anchor, whatever it takes
     bool parts = false;         ///< the two solids lie within each other and are being parted
     Vec3 force;                 ///< on the solid in the last substep, N; what the next one begins with

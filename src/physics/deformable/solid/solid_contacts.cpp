@@ -42,6 +42,13 @@ Vec3 within_cone(Vec3 force, Vec3 normal, double friction) {
     return along * normal + (sideways > most ? (most / sideways) * across : across);
 }
 
+double friction_of(const SolidContact& contact) { return contact.friction.coefficient(contact.sticks); }
+
+// Whether a force that pushes by `along` and holds by `across` (N) is within the cone, not on it.
+bool is_within_cone(const SolidContact& contact, double along, double across) {
+    return across < (1 - 1e-6) * friction_of(contact) * along;
+}
+
 }  // namespace
 
 void SolidContacts::begin(std::span<const SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies,
@@ -69,6 +76,7 @@ void SolidContacts::solve(std::span<SolidContact> contacts, Solids solids, std::
     probe_forces_.assign(bodies.size(), {});
     probe_torques_.assign(bodies.size(), {});
     find_forces(h, workers);
+    for (const Active& active : active_) note_sticking(active, h);
     for (std::size_t s = 0; s < solids.size(); ++s) {
         const TouchedNodes& touched = touched_[s];
         if (!touched.is_pushed()) continue;
@@ -318,7 +326,7 @@ double SolidContacts::relax(Active& active, double h) {
     // Against sliding, within Coulomb's cone. The larger of the two tangential compliances is at most their sum.
     const double tangential_give = trace(active.give) - give;
     const Vec3 sliding = relative - dot(relative, n) * n;
-    const Vec3 wanted = within_cone(contact.force + along - sliding / tangential_give, n, contact.friction);
+    const Vec3 wanted = within_cone(contact.force + along - sliding / tangential_give, n, friction_of(contact));
     const Vec3 change = wanted - contact.force, across = change - dot(change, n) * n;
     const double moved_by = std::max(std::fabs(after - before) * give, length(across) * tangential_give);
     if (moved_by > not_worth_it) apply(active, along + across, h);
@@ -353,10 +361,17 @@ void SolidContacts::find_state(Active& active) {
     const SolidContact& contact = *active.contact;
     const double along = dot(contact.force, active.normal);
     const double across = length(contact.force - along * active.normal);
-    active.state = contact.holds                                    ? State::holds
-                   : !(along > 0)                                   ? State::open
-                   : across < (1 - 1e-6) * contact.friction * along ? State::sticks
-                                                                    : State::slides;
+    active.state = contact.holds                            ? State::holds
+                   : !(along > 0)                           ? State::open
+                   : is_within_cone(contact, along, across) ? State::sticks
+                                                            : State::slides;
+}
+
+// For the next substep. Within one a contact has one limit: sweeps pass through forces that none would hold.
+void SolidContacts::note_sticking(const Active& active, double h) {
+    const Vec3 slip = active.slid + moved(active);
+    active.contact->sticks =
+        length(slip - dot(slip, active.normal) * active.normal) <= PairFriction::stribeck_speed * h;
 }
 
 // The part of a vector that the contact's state leaves free.
@@ -455,7 +470,8 @@ void SolidContacts::solve_together(const Group& group, double h, TaskPool& worke
         if (active.state == State::open) continue;
         const SolidContact& contact = *active.contact;
         const Vec3 force = contact.force + active.change;
-        apply(active, (contact.holds ? force : within_cone(force, active.normal, contact.friction)) - contact.force, h);
+        apply(active, (contact.holds ? force : within_cone(force, active.normal, friction_of(contact))) - contact.force,
+              h);
     }
 }
 

@@ -73,6 +73,7 @@ private:
     [[nodiscard]] static Vec3 soft_part(const Active& active, Vec3 force);
     [[nodiscard]] Vec3 missing(const Active& active) const;
     static void find_state(Active& active);
+    void note_sticking(const Active& active, double h);
     [[nodiscard]] static Vec3 free_part(const Active& active, Vec3 v);
 
     std::vector<Active> active_;

@@ -183,8 +183,8 @@ bool may_be_within(const Bounds& one, const Bounds& two) {
 }  // namespace
 
 void find_surface_contacts(const SolidDeformable& one, std::uint32_t one_number, const SolidDeformable& two,
-                           std::uint32_t two_number, double reach, double radius, double friction, bool is_parting,
-                           std::vector<SolidContact>& contacts) {
+                           std::uint32_t two_number, double reach, double radius, PairFriction friction,
+                           bool is_parting, std::vector<SolidContact>& contacts) {
     const Bounds near = enlarged(two.bounds(), reach + radius);
     std::vector<std::uint32_t> nodes;
     for (const std::uint32_t node : one.surface_nodes()) {

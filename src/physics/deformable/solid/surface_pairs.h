@@ -60,7 +60,7 @@ private:
 /// keep. `point` and `other` are of the solids with these numbers. Solids of which much lies within each other are
 /// parted along the axis on which their boxes overlap least; `is_parting`: they were in the last step.
 void find_surface_contacts(const SolidDeformable& one, std::uint32_t one_number, const SolidDeformable& two,
-                           std::uint32_t two_number, double reach, double radius, double friction, bool is_parting,
-                           std::vector<SolidContact>& contacts);
+                           std::uint32_t two_number, double reach, double radius, PairFriction friction,
+                           bool is_parting, std::vector<SolidContact>& contacts);
 
 }  // namespace embody::physics::deformable

@@ -47,7 +47,7 @@ TouchedBody touched(const DeformableAccess& world, std::uint32_t slot) {
     body.body = slot;
     body.shape = record.shape;
     body.is_dynamic = world.rigid.is_dynamic(slot);
-    body.friction = record.definition.material.friction_dynamic;
+    body.material = record.definition.material;
     body.start_center = moves ? state.start_center : state.center;
     const Quat rotation = moves ? state.start_rotation : state.rotation;
     body.start = {body.start_center - rotate(rotation, world.rigid.constants[slot].local_center), rotation};

@@ -154,7 +154,7 @@ private:
         SolidContact contact;
         contact.body = index_of(bodies_, body.body);
         contact.radius = radius();
-        contact.friction = std::sqrt(body.friction * record_.definition.friction);
+        contact.friction = friction_between(body.material, record_.definition.material, world_.rigid.surface_pairs);
         return contact;
     }
 
@@ -178,9 +178,11 @@ void add_pairs(const DeformableAccess& world, std::span<DeformableRecord* const>
         const DeformableRecord& two = *records[other];
         if (other == number || !may_collide(record.definition, two.definition)) continue;
         const bool is_parting = are_parting(record, two) || are_parting(two, record);
-        find_surface_contacts(*record.solid(), number, *two.solid(), other, reach + reach_of(world, two),
-                              record.definition.contact_radius + two.definition.contact_radius,
-                              std::sqrt(record.definition.friction * two.definition.friction), is_parting, contacts);
+        find_surface_contacts(
+            *record.solid(), number, *two.solid(), other, reach + reach_of(world, two),
+            record.definition.contact_radius + two.definition.contact_radius,
+            friction_between(record.definition.material, two.definition.material, world.rigid.surface_pairs),
+            is_parting, contacts);
     }
 }
 
@@ -227,7 +229,10 @@ std::vector<SolidContact> find_solid_contacts(const DeformableAccess& world, std
         auto old = record.contacts.begin();
         for (SolidContact& contact : contacts) {
             while (old != record.contacts.end() && key(*old) < key(contact)) ++old;
-            if (old != record.contacts.end() && key(*old) == key(contact)) contact.force = (old++)->force;
+            if (old != record.contacts.end() && key(*old) == key(contact)) {
+                contact.force = old->force;
+                contact.sticks = (old++)->sticks;
+            }
         }
         all.insert(all.end(), contacts.begin(), contacts.end());
     }

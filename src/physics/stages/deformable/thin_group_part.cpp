@@ -11,6 +11,7 @@
 #include "physics/stages/access.h"
 #include "physics/state/deformable_state.h"
 #include "physics/state/event_state.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
@@ -18,7 +19,6 @@ ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<st
     ThinSurface surface;
     surface.nodes = &record.nodes();
     surface.radius = record.definition.contact_radius;
-    surface.friction = record.definition.friction;
     if (record.cloth()) {
         const Cloth& cloth = std::get<Cloth>(record.definition.matter);
         surface.triangles = cloth.triangles;
@@ -45,6 +45,7 @@ Substep substep_of(const DeformableAccess& world, const DeformableRecord& record
     substep.gravity = record.acceleration(world.settings.gravity);
     substep.wind = wind_at(world.settings, world.report.time);
     substep.air_density = world.settings.air_density;
+    substep.surface_pairs = &world.rigid.surface_pairs;
     return substep;
 }
 

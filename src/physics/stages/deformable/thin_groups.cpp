@@ -13,6 +13,7 @@
 #include "physics/stages/deformable/thin_group_part.h"
 #include "physics/stages/deformable/thin_on_solids.h"
 #include "physics/state/deformable_state.h"
+#include "physics/state/rigid_state.h"
 
 namespace embody::physics::stages {
 
@@ -218,7 +219,9 @@ std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span
             const DeformableRecord &one = *thin[a].record, &two = *thin[b].record;
             if (!overlaps(bounds[a], bounds[b]) || !may_collide(one.definition, two.definition)) continue;
             if (!may_touch_others(bounds[a]) || !may_touch_others(bounds[b])) continue;
-            ThinPair pair{a, b, candidates_of(world, one, two)};
+            ThinPair pair{a, b,
+                          friction_between(one.definition.material, two.definition.material, world.rigid.surface_pairs),
+                          candidates_of(world, one, two)};
             if (pair.candidates.empty()) continue;
             pairs.push_back(std::move(pair));
             const std::uint32_t i = root_of(group, a), k = root_of(group, b);
@@ -246,7 +249,7 @@ std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span
     }
     for (ThinPair& pair : pairs) {
         ThinGroup& own = groups[number[pair.a]];
-        own.pairs.push_back({place[pair.a], place[pair.b], std::move(pair.candidates)});
+        own.pairs.push_back({place[pair.a], place[pair.b], pair.friction, std::move(pair.candidates)});
     }
     for (const ThinTie& tie : ties)
         groups[number[tie.member]].ties.push_back({place[tie.member], place[tie.other], tie.index});

@@ -40,7 +40,7 @@ void ThinOnSolids::add_solid(ThinDeformable& thin, std::uint32_t slot, std::vect
     const std::size_t first = held_.size();
     TouchedBody solid;
     solid.body = first_solid_slot + slot;
-    solid.friction = other.definition.friction;
+    solid.material = other.definition.material;
     solid.start_center = near.center();
     bodies.push_back(solid);
     const double fall = length(world_.settings.gravity) * h;
