@@ -38,7 +38,7 @@ struct Sheet {
     std::size_t count, slices;
     ClothMatrix matrix;
     SliceBlocks own, inverse;
-    SliceVectors direction, product, residual, better, answer;
+    SliceVectors p, q, r, z, x;
     std::vector<Float4> quads;
     std::vector<Element> elements;
 
@@ -50,20 +50,20 @@ struct Sheet {
         for (std::size_t i = count; !of.in_order && i-- > 1;)
             std::swap(number[i], number[static_cast<std::size_t>(random.between(0, static_cast<double>(i)))]);
         std::vector<std::vector<std::uint32_t>> near(count), far(count);
-        const auto join = [&](auto& rows, int x, int y, int u, int v) {
-            if (x + u >= of.width || y + v >= of.height) return;
-            const std::uint32_t a = number[static_cast<std::size_t>(y * of.width + x)],
-                                b = number[static_cast<std::size_t>((y + v) * of.width + x + u)];
+        const auto join = [&](auto& rows, int column, int line, int u, int v) {
+            if (column + u >= of.width || line + v >= of.height) return;
+            const std::uint32_t a = number[static_cast<std::size_t>(line * of.width + column)],
+                                b = number[static_cast<std::size_t>((line + v) * of.width + column + u)];
             rows[a].push_back(b);
             rows[b].push_back(a);
         };
-        for (int y = 0; y < of.height; ++y) {
-            for (int x = 0; x < of.width; ++x) {
+        for (int line = 0; line < of.height; ++line) {
+            for (int column = 0; column < of.width; ++column) {
                 for (const auto& [u, v] : {std::array{0, 1}, {1, 0}, {1, 1}}) {
-                    if (of.has_near) join(near, x, y, u, v);
+                    if (of.has_near) join(near, column, line, u, v);
                 }
                 for (const auto& [u, v] : {std::array{0, 2}, {2, 0}, {1, 2}}) {
-                    if (of.has_far) join(far, x, y, u, v);
+                    if (of.has_far) join(far, column, line, u, v);
                 }
             }
         }
@@ -72,7 +72,7 @@ struct Sheet {
         }
         matrix.set_pattern(near, far);
         for (auto* blocks : {&own, &inverse}) blocks->resize(slices);
-        for (auto* vector : {&direction, &product, &residual, &better, &answer}) vector->resize(slices);
+        for (auto* vector : {&p, &q, &r, &z, &x}) vector->resize(slices);
         for (std::size_t row = 0; row < count; ++row) {
             for (std::size_t k = 0; k < near[row].size(); ++k) {
                 const Mat3 block = random_matrix(random);
@@ -88,16 +88,16 @@ struct Sheet {
             elements.push_back({row, row, block});
             own.set(row / slice_rows, row % slice_rows, to_block(block));
             inverse.set(row / slice_rows, row % slice_rows, to_block(random_matrix(random)));
-            for (auto* vector : {&direction, &residual, &better, &answer}) vector->set(row, random_vector(random));
+            for (auto* vector : {&p, &r, &z, &x}) vector->set(row, random_vector(random));
         }
     }
     ClothVectors vectors() {
-        return {.stride = direction.stride(),
-                .direction = direction.slice(0),
-                .product = product.slice(0),
-                .residual = residual.slice(0),
-                .better = better.slice(0),
-                .answer = answer.slice(0),
+        return {.stride = p.stride(),
+                .p = p.slice(0),
+                .q = q.slice(0),
+                .r = r.slice(0),
+                .z = z.slice(0),
+                .x = x.slice(0),
                 .quads = reinterpret_cast<float*>(quads.data()),
                 .inverse = inverse.slice(0)};
     }
@@ -116,7 +116,7 @@ struct Sheet {
         }
         std::vector<double> result;
         for (const auto* sums : {&bend, &size, &again}) result.insert(result.end(), sums->begin(), sums->end());
-        for (const auto* vector : {&direction, &product, &residual, &better, &answer}) {
+        for (const auto* vector : {&p, &q, &r, &z, &x}) {
             for (std::size_t i = 0; i < slices * slice_rows; ++i) {
                 const Vec3 v = to_vec3(vector->at(i));
                 if (i >= count) {
@@ -134,8 +134,7 @@ class ClothRowKernelTest : public testing::TestWithParam<SheetCase> {};
 TEST_P(ClothRowKernelTest, MultipliesAsTheMatrixDoes) {
     Sheet sheet(GetParam());
     std::vector<Vec3> direction(sheet.count), expected(sheet.count);
-    for (std::size_t i = 0; i < sheet.count; ++i)
-        direction[i] = to_vec3(sheet.better.at(i)) + 0.7 * to_vec3(sheet.direction.at(i));
+    for (std::size_t i = 0; i < sheet.count; ++i) direction[i] = to_vec3(sheet.z.at(i)) + 0.7 * to_vec3(sheet.p.at(i));
     double bend = 0, size = 0;
     for (const Element& element : sheet.elements) expected[element.row] += element.block * direction[element.column];
     for (std::size_t i = 0; i < sheet.count; ++i) {
@@ -147,7 +146,7 @@ TEST_P(ClothRowKernelTest, MultipliesAsTheMatrixDoes) {
     for (std::size_t lane = 0; lane < slice_rows; ++lane) sum += result[lane];
     EXPECT_NEAR(sum, bend, 1e-5 * size);
     for (std::size_t i = 0; i < sheet.count; ++i)
-        EXPECT_LT(length(to_vec3(sheet.product.at(i)) - expected[i]), 1e-5 * (1 + length(expected[i])));
+        EXPECT_LT(length(to_vec3(sheet.q.at(i)) - expected[i]), 1e-5 * (1 + length(expected[i])));
 }
 
 TEST_P(ClothRowKernelTest, AnyNumberOfLanesGivesTheSameBits) {

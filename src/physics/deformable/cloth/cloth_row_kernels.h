@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// How the equations of a sheet lie in memory, and what a round of conjugate gradients does with them. Only numbers
-// here: kernels include this file, and inline code would be merged across instruction sets.
+// How the equations of a sheet lie in memory, and what an iteration of the conjugate gradient does with them. Only
+// numbers here: kernels include this file, and inline code would be merged across instruction sets.
 #pragma once
 
 #include <cstddef>
@@ -33,27 +33,27 @@ struct ClothRows {
     const float* own;  ///< the diagonal: slice_block floats a slice
 };
 
-/// Vectors over nodes: x of all, then y and z, `stride` floats apart; zero in lanes beyond the last node. Begins of the
-/// sheet that a kernel works on.
+/// Vectors over nodes: the first coordinates of all, then the second and third ones, `stride` floats apart; zero in
+/// lanes beyond the last node. Begins of the sheet that a kernel works on.
 struct ClothVectors {
     std::size_t stride;
-    float *direction, *product, *residual, *better, *answer;
-    float* quads;          ///< direction again, x y z 0 of each node, for slots that name columns
-    const float* inverse;  ///< of the preconditioner: slice_block floats a slice
+    float *p, *q, *r, *z, *x;  ///< as in linear/conjugate_gradient.h
+    float* quads;              ///< p again, x y z 0 of each node, for slots that name columns
+    const float* inverse;      ///< of the preconditioner: slice_block floats a slice
 };
 
 /// All work on the slices from `first` to below `last`. `sums`: slice_rows partial sums that are added to. Any width of
 /// the processor's registers gives the same bits.
 struct ClothRowKernels {
-    /// direction = better + turn direction.
-    void (*turn)(const ClothVectors& of, float turn, std::size_t first, std::size_t last);
-    /// product = matrix direction; sums += direction · product. Added in order: a row's own element, then near and far
+    /// p = z + β p.
+    void (*turn)(const ClothVectors& of, float beta, std::size_t first, std::size_t last);
+    /// q = matrix p; sums += p · q. Added in order: a row's own element, then near and far
     /// ones slot by slot.
     void (*multiply)(const ClothRows& matrix, const ClothVectors& of, std::size_t first, std::size_t last,
                      double* sums);
-    /// answer += way direction, residual −= way product, better = inverse residual; sums += better · residual.
-    void (*advance)(const ClothVectors& of, float way, std::size_t first, std::size_t last, double* sums);
-    /// sums += better · residual.
+    /// x += α p, r −= α q, z = inverse r; sums += z · r.
+    void (*advance)(const ClothVectors& of, float alpha, std::size_t first, std::size_t last, double* sums);
+    /// sums += z · r.
     void (*dot)(const ClothVectors& of, std::size_t first, std::size_t last, double* sums);
 };
 

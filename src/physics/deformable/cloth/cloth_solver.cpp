@@ -23,6 +23,8 @@ double product(Float4 a, Float4 b) {
 
 double product(const BodyMove& a, const BodyMove& b) { return dot(a.shift, b.shift) + dot(a.turn, b.turn); }
 
+double sum_of(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
 Vec3 at_arm(const BodyMove& move, Vec3 arm) { return move.shift + cross(move.turn, arm); }
 
 BodyMove solve(const std::array<double, 36>& factor, const BodyMove& rhs) {
@@ -44,18 +46,18 @@ double energy_of(const SheetSystem& sheet, std::span<const Vec3> moves) {
     const ClothMatrix& matrix = *sheet.matrix;
     const std::size_t slices = slices_for(moves.size());
     SliceBlocks own;
-    SliceVectors way, force;
+    SliceVectors move, force;
     std::vector<Float4> quads(slices * slice_rows);
     own.resize(slices);
-    way.resize(slices);
+    move.resize(slices);
     force.resize(slices);
     for (std::size_t i = 0; i < moves.size(); ++i) {
         own.set(i / slice_rows, i % slice_rows, matrix.diagonal[i]);
-        way.set(i, quads[i] = to_float4(moves[i]));
+        move.set(i, quads[i] = to_float4(moves[i]));
     }
-    const ClothVectors vectors{.stride = way.stride(),
-                               .direction = way.slice(0),
-                               .product = force.slice(0),
+    const ClothVectors vectors{.stride = move.stride(),
+                               .p = move.slice(0),
+                               .q = force.slice(0),
                                .quads = reinterpret_cast<float*>(quads.data())};
     double unused[slice_rows] = {};
     widest_cloth_row_kernels().multiply(matrix.rows(own.slice(0)), vectors, 0, slices, unused);
@@ -68,12 +70,12 @@ double energy_of(const SheetSystem& sheet, std::span<const Vec3> moves) {
 
 ClothVectors ClothSolver::vectors_of(std::size_t sheet) {
     const std::size_t slice = sheet_slice_[sheet];
-    return {.stride = direction_.stride(),
-            .direction = direction_.slice(slice),
-            .product = product_.slice(slice),
-            .residual = residual_.slice(slice),
-            .better = better_.slice(slice),
-            .answer = answer_.slice(slice),
+    return {.stride = p_.stride(),
+            .p = p_.slice(slice),
+            .q = q_.slice(slice),
+            .r = r_.slice(slice),
+            .z = z_.slice(slice),
+            .x = x_.slice(slice),
             .quads = reinterpret_cast<float*>(quads_.data() + slice * slice_rows),
             .inverse = inverse_blocks_.slice(slice)};
 }
@@ -92,178 +94,184 @@ void ClothSolver::multiply_rows(std::span<const SheetSystem> sheets, std::size_t
     double sum = sum_of_chunk(chunk, [&](const ClothVectors& vectors, std::size_t first, std::size_t last,
                                          double* sums) { kernels_->multiply(rows, vectors, first, last, sums); });
     for (const Link& link : std::span(links_).subspan(run.first_link, run.last_link - run.first_link)) {
-        const Float4 added = operator_times(link.block, direction_.at(place_[link.column]));
-        product_.add(place_[link.row], added);
-        sum += product(added, direction_.at(place_[link.row]));
+        const Float4 added = operator_times(link.block, p_.at(place_[link.column]));
+        q_.add(place_[link.row], added);
+        sum += product(added, p_.at(place_[link.row]));
     }
-    parts_[chunk] = sum;
+    curvatures_[chunk] = sum;
 }
 
-Vec3 ClothSolver::direction_of(std::uint32_t node) const {
-    return node < nodes_ ? to_vec3(direction_.at(place_[node])) : line_direction_[node - nodes_];
+Vec3 ClothSolver::p_of(std::uint32_t node) const {
+    return node < nodes_ ? to_vec3(p_.at(place_[node])) : line_p_[node - nodes_];
 }
 
 // What springs add between nodes and to bodies: what the blocks of nodes and lines hold is in their products already.
 void ClothSolver::add_springs(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies) {
     double sum = 0;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-        body_product_[b] = {bodies[b].mass * body_direction_[b].shift, bodies[b].inertia * body_direction_[b].turn};
-        sum += product(body_product_[b], body_direction_[b]);
+        body_q_[b] = {bodies[b].mass * body_p_[b].shift, bodies[b].inertia * body_p_[b].turn};
+        sum += product(body_q_[b], body_p_[b]);
     }
-    line_product_ = line_own_product_;
+    line_q_ = line_ap_;
     for (const std::uint32_t index : coupled_) {
         const TouchSpring& spring = springs[index];
         const auto count = static_cast<std::size_t>(spring.count);
         const Mat3& k = spring.matrix;
         const bool has_body = moves_body(spring, bodies);
-        std::array<Vec3, 4> way;
+        std::array<Vec3, 4> move;
         Vec3 stretch;
-        if (has_body) stretch -= at_arm(body_direction_[spring.body], spring.arm);
+        if (has_body) stretch -= at_arm(body_p_[spring.body], spring.arm);
         for (std::size_t n = 0; n < count; ++n) {
-            way[n] = spring.weight[n] * direction_of(spring.node[n]);
-            stretch += way[n];
+            move[n] = spring.weight[n] * p_of(spring.node[n]);
+            stretch += move[n];
         }
         const Vec3 force = k * stretch;
         for (std::size_t n = 0; n < count; ++n) {
             const std::uint32_t node = spring.node[n];
             Vec3 held;
             for (std::size_t m = 0; m < count; ++m) {
-                if (is_same_block(node, spring.node[m])) held += way[m];
+                if (is_same_block(node, spring.node[m])) held += move[m];
             }
             const Vec3 added = spring.weight[n] * (force - k * held);
             if (node < nodes_) {
-                product_.add(place_[node], to_float4(added));
-                sum += dot(added, direction_of(node));
+                q_.add(place_[node], to_float4(added));
+                sum += dot(added, p_of(node));
             } else {
-                line_product_[node - nodes_] += added;
+                line_q_[node - nodes_] += added;
             }
         }
         if (!has_body) continue;
         const BodyMove on_body{-force, -cross(spring.arm, force)};
-        body_product_[spring.body].shift += on_body.shift;
-        body_product_[spring.body].turn += on_body.turn;
-        sum += product(on_body, body_direction_[spring.body]);
+        body_q_[spring.body].shift += on_body.shift;
+        body_q_[spring.body].turn += on_body.turn;
+        sum += product(on_body, body_p_[spring.body]);
     }
-    for (std::size_t i = 0; i < line_product_.size(); ++i) {
-        if (line_fixed_[i]) line_product_[i] = {};
-        sum += dot(line_product_[i], line_direction_[i]);
+    for (std::size_t i = 0; i < line_q_.size(); ++i) {
+        if (line_fixed_[i]) line_q_[i] = {};
+        sum += dot(line_q_[i], line_p_[i]);
     }
-    parts_.back() = sum;
+    curvatures_.back() = sum;
 }
 
 // z = D⁻¹ r is done; now the bodies, and what their moves change at the nodes that they touch.
 void ClothSolver::precondition_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies) {
-    body_better_ = body_residual_;
+    body_z_ = body_r_;
     const auto is_held = [&](std::uint32_t s) {
         return springs[s].count == 1 && springs[s].node[0] < nodes_ && moves_body(springs[s], bodies);
     };
     for (const std::uint32_t s : coupled_) {
         if (!is_held(s)) continue;
         const TouchSpring& spring = springs[s];
-        const Vec3 felt = spring.matrix * to_vec3(better_.at(place_[spring.node[0]]));
-        body_better_[spring.body].shift += felt;
-        body_better_[spring.body].turn += cross(spring.arm, felt);
+        const Vec3 felt = spring.matrix * to_vec3(z_.at(place_[spring.node[0]]));
+        body_z_[spring.body].shift += felt;
+        body_z_[spring.body].turn += cross(spring.arm, felt);
     }
     add_line_pulls();
     for (std::size_t b = 0; b < bodies.size(); ++b)
-        body_better_[b] =
-            bodies[b].moves ? embody::physics::deformable::solve(body_factors_[b].factor, body_better_[b]) : BodyMove{};
+        body_z_[b] =
+            bodies[b].moves ? embody::physics::deformable::solve(body_factors_[b].factor, body_z_[b]) : BodyMove{};
     for (const std::uint32_t s : coupled_) {
         if (!is_held(s)) continue;
         const TouchSpring& spring = springs[s];
-        const Vec3 taken = spring.matrix * at_arm(body_better_[spring.body], spring.arm);
-        better_.add(place_[spring.node[0]], operator_times(inverse_[spring.node[0]], to_float4(taken)));
+        const Vec3 taken = spring.matrix * at_arm(body_z_[spring.body], spring.arm);
+        z_.add(place_[spring.node[0]], operator_times(inverse_[spring.node[0]], to_float4(taken)));
     }
     follow_bodies();
 }
 
-double ClothSolver::sum_of(const std::vector<double>& parts) const {
-    double sum = 0;
-    for (const double part : parts) sum += part;
-    return sum;
-}
-
-// The next direction of bodies and lines. What a line's factor L Lᵀ = A makes of it is known: A z = r less what bodies
-// take along.
-void ClothSolver::go_on(std::span<const BodyInertia> bodies, double turn) {
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-        body_direction_[b] = {body_better_[b].shift + turn * body_direction_[b].shift,
-                              body_better_[b].turn + turn * body_direction_[b].turn};
-    }
-    for (std::size_t i = 0; i < line_direction_.size(); ++i) {
-        line_direction_[i] = line_better_[i] + turn * line_direction_[i];
-        line_own_product_[i] = line_own_better_[i] + turn * line_own_product_[i];
+// p = z + β p of bodies and lines. What a line's factor L Lᵀ = A makes of p is known: A z = r less what bodies take
+// along.
+void ClothSolver::turn_others(double beta) {
+    for (std::size_t b = 0; b < body_p_.size(); ++b)
+        body_p_[b] = {body_z_[b].shift + beta * body_p_[b].shift, body_z_[b].turn + beta * body_p_[b].turn};
+    for (std::size_t i = 0; i < line_p_.size(); ++i) {
+        line_p_[i] = line_z_[i] + beta * line_p_[i];
+        line_ap_[i] = line_az_[i] + beta * line_ap_[i];
     }
 }
 
-void ClothSolver::go_along(double way, std::size_t bodies) {
-    for (std::size_t b = 0; b < bodies; ++b) {
-        body_answer_[b].shift += way * body_direction_[b].shift;
-        body_answer_[b].turn += way * body_direction_[b].turn;
-        body_residual_[b].shift -= way * body_product_[b].shift;
-        body_residual_[b].turn -= way * body_product_[b].turn;
+// x += α p, r −= α q of bodies and lines.
+void ClothSolver::advance_others(double alpha) {
+    for (std::size_t b = 0; b < body_p_.size(); ++b) {
+        body_x_[b].shift += alpha * body_p_[b].shift;
+        body_x_[b].turn += alpha * body_p_[b].turn;
+        body_r_[b].shift -= alpha * body_q_[b].shift;
+        body_r_[b].turn -= alpha * body_q_[b].turn;
     }
-    for (std::size_t i = 0; i < line_answer_.size(); ++i) {
-        line_answer_[i] += way * line_direction_[i];
-        line_residual_[i] -= way * line_product_[i];
+    for (std::size_t i = 0; i < line_x_.size(); ++i) {
+        line_x_[i] += alpha * line_p_[i];
+        line_r_[i] -= alpha * line_q_[i];
     }
 }
 
-void ClothSolver::iterate(std::span<const SheetSystem> sheets, std::span<const TouchSpring> springs,
-                          std::span<const BodyInertia> bodies, double enough, int worker, Barrier& barrier) {
-    const Share share = share_of(chunks_.size(), worker, workers_);
-    const bool has_others = !coupled_.empty() || !factors_.empty();
-    // Goes along the direction and finds better = D⁻¹ residual; returns better · residual.
-    const auto advance = [&](double way) {
-        for (std::size_t c = share.first; c < share.last; ++c) {
-            other_parts_[c] = sum_of_chunk(c, [&](const auto& vectors, auto first, auto last, double* sums) {
-                kernels_->advance(vectors, static_cast<float>(way), first, last, sums);
-            });
-        }
+/// The system as a worker sees it: sheets are shared by their chunks, bodies and lines are the first worker's.
+struct ClothSolver::WorkerSystem {
+    ClothSolver& of;
+    std::span<const SheetSystem> sheets;
+    std::span<const TouchSpring> springs;
+    std::span<const BodyInertia> bodies;
+    Barrier& barrier;
+    bool is_first;
+    Share chunks;
+    bool has_others = !of.coupled_.empty() || !of.factors_.empty();
+
+    // find_residual() has found r.
+    GradientResidual begin() { return advance(0); }
+
+    void turn(double beta) {
+        for_chunks([&](std::size_t c) {
+            const Chunk& chunk = of.chunks_[c];
+            of.kernels_->turn(of.vectors_of(chunk.sheet), static_cast<float>(beta), chunk.first, chunk.last);
+        });
+        if (is_first && has_others) of.turn_others(beta);
+        barrier.wait();
+    }
+
+    double multiply() {
+        for_chunks([&](std::size_t c) { of.multiply_rows(sheets, c); });
         if (has_others) {
-            if (worker == 0) go_along(way, bodies.size());
             barrier.wait();
-            if (worker == 0) {
-                precondition_lines();
-                precondition_bodies(springs, bodies);
+            if (is_first) of.add_springs(springs, bodies);
+        }
+        barrier.wait();
+        return sum_of(of.curvatures_);
+    }
+
+    GradientResidual advance(double alpha) {
+        for_chunks([&](std::size_t c) {
+            of.residuals_[c] = of.sum_of_chunk(c, [&](const auto& vectors, auto first, auto last, double* sums) {
+                of.kernels_->advance(vectors, static_cast<float>(alpha), first, last, sums);
+            });
+        });
+        if (has_others) {
+            if (is_first) of.advance_others(alpha);
+            barrier.wait();
+            if (is_first) {
+                of.precondition_lines();
+                of.precondition_bodies(springs, bodies);
             }
             barrier.wait();
-            for (std::size_t c = share.first; c < share.last; ++c) other_parts_[c] = sum_of_chunk(c, kernels_->dot);
+            for_chunks([&](std::size_t c) { of.residuals_[c] = of.sum_of_chunk(c, of.kernels_->dot); });
         }
-        if (worker == 0) {
-            other_parts_.back() = 0;
-            for (std::size_t b = 0; b < bodies.size() && has_others; ++b)
-                other_parts_.back() += product(body_better_[b], body_residual_[b]);
-            for (std::size_t i = 0; i < line_better_.size(); ++i)
-                other_parts_.back() += dot(line_better_[i], line_residual_[i]);
-        }
+        if (is_first) of.residuals_.back() = has_others ? of.sum_of_others() : 0;
         barrier.wait();
-        return sum_of(other_parts_);
-    };
-    double size = advance(0), previous = 0;
-    // Floats cannot tell less.
-    enough = std::max(enough, 1e-12 * size);
-    int round = 0;
-    bool is_finite = std::isfinite(size);
-    for (; round < most_rounds && size > enough; ++round) {
-        const double turn = round == 0 ? 0 : size / previous;
-        for (std::size_t c = share.first; c < share.last; ++c)
-            kernels_->turn(vectors_of(chunks_[c].sheet), static_cast<float>(turn), chunks_[c].first, chunks_[c].last);
-        if (worker == 0 && has_others) go_on(bodies, turn);
-        barrier.wait();
-        for (std::size_t c = share.first; c < share.last; ++c) multiply_rows(sheets, c);
-        if (has_others) {
-            barrier.wait();
-            if (worker == 0) add_springs(springs, bodies);
-        }
-        barrier.wait();
-        const double bend = sum_of(parts_);
-        is_finite = is_finite && std::isfinite(bend);
-        if (!(bend > 0) || !is_finite) break;
-        previous = size;
-        size = advance(size / bend);
+        const double sum = sum_of(of.residuals_);
+        return {sum, sum};
     }
-    if (worker == 0) rounds_ = is_finite && std::isfinite(size) ? round : not_finite;
+
+private:
+    template <class Work>
+    void for_chunks(const Work& work) {
+        for (std::size_t c = chunks.first; c < chunks.last; ++c) work(c);
+    }
+};
+
+// z · r of bodies and lines.
+double ClothSolver::sum_of_others() const {
+    double sum = 0;
+    for (std::size_t b = 0; b < body_z_.size(); ++b) sum += product(body_z_[b], body_r_[b]);
+    for (std::size_t i = 0; i < line_z_.size(); ++i) sum += dot(line_z_[i], line_r_[i]);
+    return sum;
 }
 
 // Lines begin with what they would do alone. Returns the square of the small loads in the preconditioner's norm.
@@ -274,8 +282,8 @@ double ClothSolver::guess(std::span<const SheetSystem> sheets, std::span<const L
         for (std::size_t i = 0; i < sheets[s].rhs.size(); ++i) {
             const std::size_t at = sheet_first_[s] + i;
             const Float4 move = sheets[s].fixed[i] != 0 ? Float4{} : to_float4(moves[at]);
-            answer_.set(place_[at], move);
-            direction_.set(place_[at], move);
+            x_.set(place_[at], move);
+            p_.set(place_[at], move);
             quads_[place_[at]] = move;
             const Float4 small = to_float4(sheets[s].small_load[i]);
             load += product(operator_times(inverse_[at], small), small);
@@ -284,20 +292,20 @@ double ClothSolver::guess(std::span<const SheetSystem> sheets, std::span<const L
     if (lines.empty()) return load;
     std::vector<Vec3> small;
     for (std::size_t l = 0; l < lines.size(); ++l) {
-        std::ranges::copy(lines[l].rhs, line_own_product_.begin() + static_cast<std::ptrdiff_t>(line_first_[l]));
+        std::ranges::copy(lines[l].rhs, line_ap_.begin() + static_cast<std::ptrdiff_t>(line_first_[l]));
         small.insert(small.end(), lines[l].small_load.begin(), lines[l].small_load.end());
     }
     for (const TouchSpring& spring : springs) {
         for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count) && spring.acts; ++k) {
-            if (spring.node[k] >= nodes_) line_own_product_[spring.node[k] - nodes_] += spring.weight[k] * spring.load;
+            if (spring.node[k] >= nodes_) line_ap_[spring.node[k] - nodes_] += spring.weight[k] * spring.load;
         }
     }
     for (std::size_t i = 0; i < line_of_.size(); ++i) {
-        if (line_fixed_[i]) line_own_product_[i] = small[i] = {};
+        if (line_fixed_[i]) line_ap_[i] = small[i] = {};
     }
-    line_answer_ = line_own_product_;
-    solve_lines(line_answer_);
-    line_direction_ = line_answer_;
+    line_x_ = line_ap_;
+    solve_lines(line_x_);
+    line_p_ = line_x_;
     std::vector<Vec3> given = small;
     solve_lines(given);
     for (std::size_t i = 0; i < small.size(); ++i) load += dot(given[i], small[i]);
@@ -314,24 +322,21 @@ void ClothSolver::find_residual(std::span<const SheetSystem> sheets, std::span<c
     for (std::size_t s = 0; s < sheets.size(); ++s) {
         for (std::size_t i = 0; i < sheets[s].rhs.size(); ++i) {
             const std::uint32_t place = place_[sheet_first_[s] + i];
-            residual_.set(place, to_float4(sheets[s].rhs[i]) - product_.at(place));
+            r_.set(place, to_float4(sheets[s].rhs[i]) - q_.at(place));
         }
     }
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-        body_residual_[b] = {-body_product_[b].shift, -body_product_[b].turn};
+    for (std::size_t b = 0; b < bodies.size(); ++b) body_r_[b] = {-body_q_[b].shift, -body_q_[b].turn};
     for (const TouchSpring& spring : springs) {
         if (!spring.acts) continue;
         for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k) {
-            if (spring.node[k] < nodes_)
-                residual_.add(place_[spring.node[k]], to_float4(spring.weight[k] * spring.load));
+            if (spring.node[k] < nodes_) r_.add(place_[spring.node[k]], to_float4(spring.weight[k] * spring.load));
         }
         if (!moves_body(spring, bodies)) continue;
-        body_residual_[spring.body].shift -= spring.load;
-        body_residual_[spring.body].turn -= cross(spring.arm, spring.load);
+        body_r_[spring.body].shift -= spring.load;
+        body_r_[spring.body].turn -= cross(spring.arm, spring.load);
     }
     // A line's own equations hold, so what is left is what couples it.
-    for (std::size_t i = 0; i < line_of_.size(); ++i)
-        line_residual_[i] = line_fixed_[i] ? Vec3{} : line_own_product_[i] - line_product_[i];
+    for (std::size_t i = 0; i < line_of_.size(); ++i) line_r_[i] = line_fixed_[i] ? Vec3{} : line_ap_[i] - line_q_[i];
 }
 
 int ClothSolver::solve(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
@@ -339,26 +344,32 @@ int ClothSolver::solve(std::span<const SheetSystem> sheets, std::span<const Line
                        std::span<BodyMove> body_moves, TaskPool& workers) {
     lay_out(sheets, lines);
     if (!prepare(sheets, lines, springs, bodies, workers)) return not_finite;
-    parts_.assign(chunks_.size() + 1, 0);
-    other_parts_.assign(chunks_.size() + 1, 0);
-    for (auto* vector : {&body_direction_, &body_product_, &body_residual_, &body_better_, &body_answer_})
-        vector->assign(bodies.size(), {});
+    for (auto* sums : {&curvatures_, &residuals_}) sums->assign(chunks_.size() + 1, 0);
+    for (auto* vector : {&body_p_, &body_q_, &body_r_, &body_z_, &body_x_}) vector->assign(bodies.size(), {});
     const double load = guess(sheets, lines, springs, moves);
-    for (std::size_t b = 0; b < bodies.size(); ++b) body_answer_[b] = body_direction_[b] = body_moves[b];
+    for (std::size_t b = 0; b < bodies.size(); ++b) body_x_[b] = body_p_[b] = body_moves[b];
     find_residual(sheets, springs, bodies, workers);
-    parts_.back() = 0;
-    // Fixed nodes give way to nothing: their part of the residual is the force that holds them.
-    const double enough = tolerance * tolerance * load;
-    workers_ = nodes_ >= worth_sharing ? workers.workers() : 1;
-    Barrier barrier(workers_);
-    if (workers_ > 1)
-        workers.run([&](int worker) { iterate(sheets, springs, bodies, enough, worker, barrier); });
+    curvatures_.back() = 0;
+    // The norm of the preconditioner leaves out fixed nodes: their residual is the force that holds them.
+    constexpr double rounding = 1e-12;  // floats cannot tell less of the first residual
+    const GradientLimits limits{most_rounds, tolerance * tolerance * load, rounding};
+    const int count = nodes_ >= worth_sharing ? workers.workers() : 1;
+    Barrier barrier(count);
+    GradientResult result;
+    const auto work = [&](int worker) {
+        const Share chunks = share_of(chunks_.size(), worker, count);
+        WorkerSystem system{*this, sheets, springs, bodies, barrier, worker == 0, chunks};
+        const GradientResult own = conjugate_gradient(system, limits);
+        if (worker == 0) result = own;
+    };
+    if (count > 1)
+        workers.run(work);
     else
-        iterate(sheets, springs, bodies, enough, 0, barrier);
-    for (std::size_t i = 0; i < nodes_; ++i) moves[i] = to_vec3(answer_.at(place_[i]));
-    std::ranges::copy(line_answer_, moves.begin() + static_cast<std::ptrdiff_t>(nodes_));
-    for (std::size_t b = 0; b < bodies.size(); ++b) body_moves[b] = body_answer_[b];
-    return rounds_;
+        work(0);
+    for (std::size_t i = 0; i < nodes_; ++i) moves[i] = to_vec3(x_.at(place_[i]));
+    std::ranges::copy(line_x_, moves.begin() + static_cast<std::ptrdiff_t>(nodes_));
+    for (std::size_t b = 0; b < bodies.size(); ++b) body_moves[b] = body_x_[b];
+    return result.end == GradientEnd::not_finite ? not_finite : result.iterations;
 }
 
 }  // namespace embody::physics::deformable

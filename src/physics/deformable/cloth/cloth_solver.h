@@ -10,6 +10,7 @@
 #include "physics/deformable/contact/touch_springs.h"
 #include "physics/deformable/namespace.h"
 #include "physics/linear/band_cholesky.h"
+#include "physics/linear/conjugate_gradient.h"
 
 namespace embody::physics::deformable {
 
@@ -32,7 +33,7 @@ struct LineSystem {
     const std::vector<bool>* fixed = nullptr;
 };
 
-/// Conjugate gradients for the moves of nodes and touched bodies,
+/// The conjugate gradient (linear/conjugate_gradient.h) for the moves of nodes and touched bodies,
 ///   (A + springs) d = rhs.
 /// Preconditioned by the inverse of everything that couples a node with itself and with the bodies that hold it, and of
 /// all that couples the nodes of a line: springs and lines of any stiffness cost no rounds. Sheets in floats, sums in
@@ -72,6 +73,7 @@ private:
         std::size_t sheet = 0, first = 0, last = 0;
         std::size_t first_link = 0, last_link = 0;
     };
+    struct WorkerSystem;
     void lay_out(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines);
     bool prepare(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
                  std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies, TaskPool& workers);
@@ -96,26 +98,24 @@ private:
     void add_line_pulls();
     void follow_bodies();
     void solve_lines(std::span<Vec3> rhs) const;
-    void go_on(std::span<const BodyInertia> bodies, double turn);
-    void go_along(double way, std::size_t bodies);
-    [[nodiscard]] Vec3 direction_of(std::uint32_t node) const;
+    void turn_others(double beta);
+    void advance_others(double alpha);
+    [[nodiscard]] double sum_of_others() const;
+    [[nodiscard]] Vec3 p_of(std::uint32_t node) const;
     [[nodiscard]] bool is_contained(const TouchSpring& spring, std::span<const BodyInertia> bodies) const;
     [[nodiscard]] bool is_same_block(std::uint32_t a, std::uint32_t b) const {
         return a == b || (a >= nodes_ && b >= nodes_ && line_of_[a - nodes_] == line_of_[b - nodes_]);
     }
-    void iterate(std::span<const SheetSystem> sheets, std::span<const TouchSpring> springs,
-                 std::span<const BodyInertia> bodies, double enough, int worker, Barrier& barrier);
-    [[nodiscard]] double sum_of(const std::vector<double>& parts) const;
 
     std::vector<Block> own_, inverse_;  // node's own block, springs with it, and its inverse
     SliceBlocks own_blocks_, inverse_blocks_;
-    SliceVectors direction_, product_, residual_, better_, answer_;  // p, q, r, z, d
-    std::vector<Float4> quads_;                                      // p again, node by node
-    std::vector<BodyMove> body_direction_, body_product_, body_residual_, body_better_, body_answer_;
+    // As in linear/conjugate_gradient.h: of nodes of sheets, of bodies, of nodes of lines.
+    SliceVectors p_, q_, r_, z_, x_;
+    std::vector<Float4> quads_;  // p again, node by node
+    std::vector<BodyMove> body_p_, body_q_, body_r_, body_z_, body_x_;
+    std::vector<Vec3> line_p_, line_q_, line_r_, line_z_, line_x_;
+    std::vector<Vec3> line_ap_, line_az_;  // A p and A z, of a line's own factor A; q has what couples it besides
     std::vector<BodyFactor> body_factors_;
-    // Of nodes of lines; product: of the line's own factor, and with what couples it.
-    std::vector<Vec3> line_direction_, line_own_product_, line_product_, line_residual_, line_better_, line_answer_;
-    std::vector<Vec3> line_own_better_;  // the line's own factor times line_better_
     std::vector<LineHold> line_holds_;
     std::vector<std::uint32_t> line_of_;
     std::vector<std::size_t> line_first_;  // of line_of_, one more than lines
@@ -127,9 +127,8 @@ private:
     std::vector<std::uint32_t> coupled_;  // springs that neither the preconditioner's blocks nor links hold
     std::vector<Link> links_;             // by row
     const ClothRowKernels* kernels_ = &widest_cloth_row_kernels();
-    std::vector<double> parts_, other_parts_;
-    std::size_t nodes_ = 0;  // of sheets
-    int workers_ = 1, rounds_ = 0;
+    std::vector<double> curvatures_, residuals_;  // p · q and z · r by chunk; the last one is of all else
+    std::size_t nodes_ = 0;                       // of sheets
 };
 
 }  // namespace embody::physics::deformable

@@ -80,31 +80,31 @@ void ClothSolver::solve_lines(std::span<Vec3> rhs) const {
 }
 
 void ClothSolver::precondition_lines() {
-    line_own_better_ = line_better_ = line_residual_;
-    solve_lines(line_better_);
+    line_az_ = line_z_ = line_r_;
+    solve_lines(line_z_);
 }
 
 void ClothSolver::add_line_pulls() {
     for (const LineHold& hold : line_holds_) {
-        const Vec3* better = line_better_.data() + line_first_[hold.line];
+        const Vec3* z = line_z_.data() + line_first_[hold.line];
         std::array<double, 6> pull{};
         for (std::size_t c = 0; c < 6; ++c) {
-            for (std::size_t i = 0; i < hold.column[c].size(); ++i) pull[c] += dot(hold.column[c][i], better[i]);
+            for (std::size_t i = 0; i < hold.column[c].size(); ++i) pull[c] += dot(hold.column[c][i], z[i]);
         }
-        body_better_[hold.body].shift -= Vec3{pull[0], pull[1], pull[2]};
-        body_better_[hold.body].turn -= Vec3{pull[3], pull[4], pull[5]};
+        body_z_[hold.body].shift -= Vec3{pull[0], pull[1], pull[2]};
+        body_z_[hold.body].turn -= Vec3{pull[3], pull[4], pull[5]};
     }
 }
 
 void ClothSolver::follow_bodies() {
     for (const LineHold& hold : line_holds_) {
         const std::size_t first = line_first_[hold.line];
-        const BodyMove& move = body_better_[hold.body];
+        const BodyMove& move = body_z_[hold.body];
         for (std::size_t c = 0; c < 6; ++c) {
-            const double way = c < 3 ? move.shift[static_cast<int>(c)] : move.turn[static_cast<int>(c) - 3];
+            const double by = c < 3 ? move.shift[static_cast<int>(c)] : move.turn[static_cast<int>(c) - 3];
             for (std::size_t i = 0; i < hold.column[c].size(); ++i) {
-                line_better_[first + i] -= way * hold.given[c][i];
-                line_own_better_[first + i] -= way * hold.column[c][i];
+                line_z_[first + i] -= by * hold.given[c][i];
+                line_az_[first + i] -= by * hold.column[c][i];
             }
         }
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a solve needs before its first round: where everything lies, and the preconditioner.
+// What a solve needs before its first iteration: where everything lies, and the preconditioner.
 #include <algorithm>
 #include <cmath>
 
@@ -73,12 +73,11 @@ void ClothSolver::lay_out(std::span<const SheetSystem> sheets, std::span<const L
         line_fixed_.insert(line_fixed_.end(), lines[l].fixed->begin(), lines[l].fixed->end());
         line_first_.push_back(line_of_.size());
     }
-    for (auto* vector : {&direction_, &product_, &residual_, &better_, &answer_}) vector->resize(slices);
+    for (auto* vector : {&p_, &q_, &r_, &z_, &x_}) vector->resize(slices);
     own_blocks_.resize(slices);
     inverse_blocks_.resize(slices);
     quads_.assign(slices * slice_rows, Float4{});
-    for (auto* vector : {&line_direction_, &line_own_product_, &line_product_, &line_residual_, &line_better_,
-                         &line_answer_, &line_own_better_})
+    for (auto* vector : {&line_p_, &line_ap_, &line_q_, &line_r_, &line_z_, &line_x_, &line_az_})
         vector->assign(line_of_.size(), {});
 }
 

@@ -34,6 +34,8 @@ struct SolidContact {
     bool holds = false;         ///< the point stays at the anchor, whatever it takes
     bool parts = false;         ///< the two solids lie within each other and are being parted
     Vec3 force;                 ///< on the solid in the last substep, N; what the next one begins with
+    /// Coulomb coefficient of its state.
+    [[nodiscard]] double present_friction() const { return friction.coefficient(sticks); }
     [[nodiscard]] bool has_body() const { return other.count == 0; }
 };
 

@@ -10,7 +10,7 @@ namespace embody::physics::deformable {
 
 namespace {
 
-constexpr int most_rounds = 5, sweeps_a_round = 2, most_gradient_rounds = 8, most_leaning_sweeps = 10;
+constexpr int most_rounds = 5, sweeps_a_round = 2, most_leaning_sweeps = 10;
 constexpr double close_enough = 2e-6;   // m: no contact moves by more in the last sweep
 constexpr double small_share = 0.05;    // or by this of what the first sweeps did: forces are kept for the next substep
 constexpr double slid_share = 0.02;     // or by this of the farthest way that two slide or close in the substep
@@ -32,21 +32,6 @@ Vec3 start_position(const CarriedPoint& point, SolidContacts::Solids solids) {
     Vec3 sum;
     for (std::size_t k = 0; k < point.count; ++k) sum += point.weight[k] * solids[point.solid]->start(point.node[k]);
     return sum;
-}
-
-// The nearest force that Coulomb's cone about the normal allows.
-Vec3 within_cone(Vec3 force, Vec3 normal, double friction) {
-    const double along = std::max(0.0, dot(force, normal)), most = friction * along;
-    const Vec3 across = force - dot(force, normal) * normal;
-    const double sideways = length(across);
-    return along * normal + (sideways > most ? (most / sideways) * across : across);
-}
-
-double friction_of(const SolidContact& contact) { return contact.friction.coefficient(contact.sticks); }
-
-// Whether a force that pushes by `along` and holds by `across` (N) is within the cone, not on it.
-bool is_within_cone(const SolidContact& contact, double along, double across) {
-    return across < (1 - 1e-6) * friction_of(contact) * along;
 }
 
 }  // namespace
@@ -144,7 +129,7 @@ void SolidContacts::find_groups(std::size_t solids, std::span<const TouchedBody>
     std::ranges::stable_sort(groups_, std::greater{}, [](const Group& group) { return group.active.size(); });
 }
 
-// Sweeps find which contacts hold, stick and slide; conjugate gradients solve for the forces of these at once
+// Sweeps find which contacts hold, stick and slide; the conjugate gradient solves for the forces of these at once
 // (M. Silcowitz, S. Niebe, K. Erleben, "Projected Gauss-Seidel subspace minimization method", 2010), as long as that
 // helps. Where many contacts say nearly the same, sweeps that lean on the last ones go on (by the same, "A nonsmooth
 // nonlinear conjugate gradient method for interactive contact force problems", 2010).
@@ -326,11 +311,19 @@ double SolidContacts::relax(Active& active, double h) {
     // Against sliding, within Coulomb's cone. The larger of the two tangential compliances is at most their sum.
     const double tangential_give = trace(active.give) - give;
     const Vec3 sliding = relative - dot(relative, n) * n;
-    const Vec3 wanted = within_cone(contact.force + along - sliding / tangential_give, n, friction_of(contact));
+    const Vec3 wanted = within_cone(contact.force + along - sliding / tangential_give, n, contact.present_friction());
     const Vec3 change = wanted - contact.force, across = change - dot(change, n) * n;
     const double moved_by = std::max(std::fabs(after - before) * give, length(across) * tangential_give);
     if (moved_by > not_worth_it) apply(active, along + across, h);
     return moved_by;
+}
+
+// The nearest force that Coulomb's cone about the normal allows.
+Vec3 SolidContacts::within_cone(Vec3 force, Vec3 normal, double friction) {
+    const double along = std::max(0.0, dot(force, normal)), most = friction * along;
+    const Vec3 across = force - dot(force, normal) * normal;
+    const double sideways = length(across);
+    return along * normal + (sideways > most ? (most / sideways) * across : across);
 }
 
 // By how much a contact gives way to a force beyond what bodies and solids do, m.
@@ -340,139 +333,11 @@ Vec3 SolidContacts::soft_part(const Active& active, Vec3 force) {
     return (softness * dot(n, active.give * n) * dot(force, n)) * n;
 }
 
-// What is left of the way to where the contact wants to be, in the directions that its force may change in.
-Vec3 SolidContacts::missing(const Active& active) const {
-    const Vec3 n = active.normal, gone = moved(active) + soft_part(active, active.contact->force);
-    const Vec3 relative = active.slid + gone, along = (active.target - active.gap - dot(n, gone)) * n;
-    switch (active.state) {
-        case State::open:
-            return {};
-        case State::holds:
-            return -relative;
-        case State::sticks:
-            return along - (relative - dot(relative, n) * n);
-        case State::slides:
-            return along;
-    }
-    return {};
-}
-
-void SolidContacts::find_state(Active& active) {
-    const SolidContact& contact = *active.contact;
-    const double along = dot(contact.force, active.normal);
-    const double across = length(contact.force - along * active.normal);
-    active.state = contact.holds                            ? State::holds
-                   : !(along > 0)                           ? State::open
-                   : is_within_cone(contact, along, across) ? State::sticks
-                                                            : State::slides;
-}
-
 // For the next substep. Within one a contact has one limit: sweeps pass through forces that none would hold.
 void SolidContacts::note_sticking(const Active& active, double h) {
     const Vec3 slip = active.slid + moved(active);
     active.contact->sticks =
         length(slip - dot(slip, active.normal) * active.normal) <= PairFriction::stribeck_speed * h;
-}
-
-// The part of a vector that the contact's state leaves free.
-Vec3 SolidContacts::free_part(const Active& active, Vec3 v) {
-    switch (active.state) {
-        case State::open:
-            return {};
-        case State::slides:
-            return dot(v, active.normal) * active.normal;
-        default:
-            return v;
-    }
-}
-
-void SolidContacts::probe(const Group& group, TaskPool& workers) {
-    constexpr std::size_t worth_sharing = 100;  // contacts
-    struct Part {
-        std::uint32_t solid = 0;
-        std::size_t part = 0;
-    };
-    std::vector<Part> parts;
-    for (const std::uint32_t solid : group.solids) {
-        touched_[solid].begin_probe();
-        for (std::size_t part = 0; part < touched_[solid].probe_parts(); ++part) parts.push_back({solid, part});
-    }
-    share_among(workers, parts.size(), group.active.size() >= worth_sharing, [&](int, Share share) {
-        for (std::size_t k = share.first; k < share.last; ++k) touched_[parts[k].solid].run_probe(parts[k].part);
-    });
-    for (const std::uint32_t solid : group.solids) touched_[solid].end_probe();
-}
-
-// Relative motion of each contact by its `direction` and those of all others, into `response`.
-void SolidContacts::respond(const Group& group, double h, TaskPool& workers) {
-    for (const std::uint32_t solid : group.solids) touched_[solid].clear_probe();
-    for (const std::uint32_t body : group.bodies) probe_forces_[body] = probe_torques_[body] = {};
-    for (Active* const one : group.active) {
-        const Active& active = *one;
-        for (std::size_t k = 0; k < active.term_count; ++k) {
-            const Term& term = active.terms[k];
-            touched_[term.solid].add_to_probe(term.number, term.weight * active.direction);
-        }
-        if (active.body == nullptr || !active.body->is_dynamic) continue;
-        probe_forces_[active.contact->body] -= active.direction;
-        probe_torques_[active.contact->body] -= cross(active.arm, active.direction);
-    }
-    probe(group, workers);
-    for (Active* const one : group.active) {
-        Active& active = *one;
-        Vec3 sum;
-        if (active.body != nullptr && active.body->is_dynamic) {
-            const Vec3 turn = active.body->inverse_inertia * probe_torques_[active.contact->body];
-            sum =
-                -(h * h) * (active.body->inverse_mass * probe_forces_[active.contact->body] + cross(turn, active.arm));
-        }
-        for (std::size_t k = 0; k < active.term_count; ++k) {
-            const Term& term = active.terms[k];
-            sum += term.weight * touched_[term.solid].probe_move(term.number);
-        }
-        active.response = sum + soft_part(active, active.direction);
-    }
-}
-
-// The forces of contacts that hold, stick and slide at once, as if they went on doing so; then as far as each may.
-void SolidContacts::solve_together(const Group& group, double h, TaskPool& workers) {
-    double size = 0;
-    for (Active* const one : group.active) {
-        Active& active = *one;
-        find_state(active);
-        active.residual = missing(active);
-        active.direction = free_part(active, embody::solve(active.give, active.residual));
-        active.change = {};
-        size += dot(active.residual, active.direction);
-    }
-    const double enough = 0.01 * size;
-    for (int round = 0; round < most_gradient_rounds && size > enough; ++round) {
-        respond(group, h, workers);
-        double curvature = 0;
-        for (const Active* active : group.active) curvature += dot(active->direction, active->response);
-        if (!(curvature > 0)) break;
-        double next = 0;
-        for (Active* const one : group.active) {
-            Active& active = *one;
-            active.change += (size / curvature) * active.direction;
-            active.residual -= free_part(active, (size / curvature) * active.response);
-            next += dot(active.residual, free_part(active, embody::solve(active.give, active.residual)));
-        }
-        for (Active* const one : group.active) {
-            Active& active = *one;
-            active.direction =
-                free_part(active, embody::solve(active.give, active.residual)) + (next / size) * active.direction;
-        }
-        size = next;
-    }
-    for (Active* const one : group.active) {
-        Active& active = *one;
-        if (active.state == State::open) continue;
-        const SolidContact& contact = *active.contact;
-        const Vec3 force = contact.force + active.change;
-        apply(active, (contact.holds ? force : within_cone(force, active.normal, friction_of(contact))) - contact.force,
-              h);
-    }
 }
 
 }  // namespace embody::physics::deformable

@@ -34,6 +34,11 @@ private:
         std::uint32_t solid = 0, number = 0;
         double weight = 0;  ///< negative on the other side
     };
+    /// A contact's part of the vectors in linear/conjugate_gradient.h.
+    struct ContactGradient {
+        Vec3 x, z, p;  ///< changes of the force, N
+        Vec3 r, q;     ///< relative motions, m
+    };
     /// A contact in this substep, in world axes.
     struct Active {
         SolidContact* contact = nullptr;
@@ -46,9 +51,9 @@ private:
         Vec3 shift, turn;             ///< of the body when `gap` was taken
         Mat3 give = Mat3::zero();     ///< relative motion by a force on it, m/N
         State state = State::open;
-        Vec3 before, best;        ///< force before a sweep, and of the best round, N
-        Vec3 change, direction;   ///< of the force, N: by conjugate gradients
-        Vec3 residual, response;  ///< m
+        Vec3 before, best;         ///< force before a sweep, and of the best round, N
+        Vec3 direction;            ///< of sweeps with conjugate directions, N
+        ContactGradient gradient;  ///< of the solve of all at once
     };
     /// Contacts that have to do with each other, and solids and bodies that no other group moves.
     struct Group {
@@ -70,10 +75,12 @@ private:
     void solve_together(const Group& group, double h, TaskPool& workers);
     void respond(const Group& group, double h, TaskPool& workers);
     void probe(const Group& group, TaskPool& workers);
+    [[nodiscard]] static Vec3 within_cone(Vec3 force, Vec3 normal, double friction);
     [[nodiscard]] static Vec3 soft_part(const Active& active, Vec3 force);
     [[nodiscard]] Vec3 missing(const Active& active) const;
     static void find_state(Active& active);
     void note_sticking(const Active& active, double h);
+    [[nodiscard]] static double precondition(Active& active);
     [[nodiscard]] static Vec3 free_part(const Active& active, Vec3 v);
 
     std::vector<Active> active_;

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Preconditioned conjugate gradients; the preconditioner is the modified incomplete Cholesky factor of level zero (R.
-// Bridson, "Fluid Simulation for Computer Graphics", 2nd edition 2015, 5.8). Workers
-// sweep strips of tiles side by side, each a layer behind the one before: what is computed is the same as row by row.
-// Sums are taken by blocks, whose number depends on the rows alone.
+// The conjugate gradient's preconditioner is the modified incomplete Cholesky factor of level zero (R. Bridson, "Fluid
+// Simulation for Computer Graphics", 2nd edition 2015, 5.8). Workers sweep strips of tiles side by side, each a layer
+// behind the one before: what is computed is the same as row by row. Sums are taken by blocks, whose number depends on
+// the rows alone.
 #include "physics/fluid/pressure/pressure_system.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "physics/fluid/grid/liquid_cells.h"
-#include "physics/linear/dot_product.h"
+#include "physics/linear/conjugate_gradient.h"
+#include "physics/linear/vectors.h"
 
 namespace embody::physics::fluid {
 
@@ -17,7 +18,8 @@ namespace {
 
 constexpr std::size_t rows_of_block = 512, most_blocks = 16;
 
-std::span<const double> part_of(const std::vector<double>& all, Share block) {
+template <class Vector>
+auto part_of(Vector& all, Share block) {
     return std::span(all).subspan(block.first, block.last - block.first);
 }
 
@@ -69,7 +71,7 @@ void PressureSystem::build(FluidGrid& grid, TaskPool& workers) {
     rows_[count] = Row{{none, none, none}, {none, none, none}, {}, {}, {}, {}};
     diagonal_.resize(count);
     scaling_.resize(count);
-    for (auto* vector : {&r_, &z_, &p_, &ap_, &q_}) vector->assign(count + 1, 0);
+    for (auto* vector : {&r_, &z_, &p_, &q_, &y_}) vector->assign(count + 1, 0);
     share_among(workers, blocks_, blocks_ > 1, [&](int, Share share) {
         for (std::size_t block = share.first; block < share.last; ++block) {
             const Share rows = block_of(block);
@@ -152,20 +154,20 @@ void PressureSystem::substitute_forward(Share rows) {
         const Row& row = rows_[i];
         // The row before last: it is what takes time.
         double t = r_[i] * scaling_[i];
-        t += row.factor_lower[2] * q_[row.lower[2]];
-        t += row.factor_lower[1] * q_[row.lower[1]];
-        q_[i] = t + row.factor_lower[0] * q_[row.lower[0]];
+        t += row.factor_lower[2] * y_[row.lower[2]];
+        t += row.factor_lower[1] * y_[row.lower[1]];
+        y_[i] = t + row.factor_lower[0] * y_[row.lower[0]];
     }
 }
 
 void PressureSystem::substitute_backward(Share rows) {
     for (std::size_t i = rows.last; i-- > rows.first;) {
         const Row& row = rows_[i];
-        double t = q_[i];
-        t += row.factor_upper[2] * q_[row.upper[2]];
-        t += row.factor_upper[1] * q_[row.upper[1]];
-        t += row.factor_upper[0] * q_[row.upper[0]];
-        q_[i] = t;
+        double t = y_[i];
+        t += row.factor_upper[2] * y_[row.upper[2]];
+        t += row.factor_upper[1] * y_[row.upper[1]];
+        t += row.factor_upper[0] * y_[row.upper[0]];
+        y_[i] = t;
         z_[i] = t * scaling_[i];
     }
 }
@@ -215,17 +217,13 @@ void PressureSystem::move_body(std::size_t body, std::span<const double> x) {
                          response.angular_change(impulse, moment) * scale_};
 }
 
-/// A solve while its workers run.
+/// What the workers of a solve share.
 struct PressureSystem::Run {
     std::span<const double> b;
     std::vector<double>& x;
-    double tolerance;
-    int most, workers;
     Barrier barrier;
-    struct Sum {
-        double product = 0, largest = 0;
-    };
-    std::array<Sum, most_blocks> curvature{}, residual{};  // by block
+    std::array<double, most_blocks> curvature{};           // by block
+    std::array<GradientResidual, most_blocks> residual{};  // by block
     std::vector<Progress> progress;                        // by worker
 };
 
@@ -248,88 +246,91 @@ void PressureSystem::precondition(Run& run, int worker, std::uint64_t time) {
     }
 }
 
-int PressureSystem::iterate(Run& run, int worker) {
-    const Share blocks = share_of(blocks_, worker, run.workers), bodies = share_of(bodies_.size(), worker, run.workers);
-    const auto for_blocks = [&](auto work) {
-        for (std::size_t block = blocks.first; block < blocks.last; ++block) work(block, block_of(block));
-    };
-    // y = A x; x is known to all workers, y is not yet when it returns.
-    const auto apply = [&](const std::vector<double>& x, std::vector<double>& y) {
-        for (std::size_t i = bodies.first; i < bodies.last; ++i) move_body(i, x);
-        if (!bodies_.empty()) run.barrier.wait();
+/// The system as a worker sees it. When a function returns, all workers know all vectors but q.
+struct PressureSystem::WorkerSystem {
+    PressureSystem& of;
+    Run& run;
+    int worker;
+    Share blocks, bodies;
+    std::uint64_t times = 0;  // that z was found
+
+    GradientResidual begin() {
+        apply(run.x);
+        for_blocks([&](std::size_t, Share rows) {
+            for (std::size_t i = rows.first; i < rows.last; ++i) of.r_[i] = run.b[i] - of.q_[i];
+        });
+        return precondition();
+    }
+    void turn(double beta) {
+        for_blocks([&](std::size_t, Share rows) { turn_direction(beta, part_of(of.z_, rows), part_of(of.p_, rows)); });
+        run.barrier.wait();
+    }
+    double multiply() {
+        apply(of.p_);
         for_blocks([&](std::size_t block, Share rows) {
-            multiply(rows, x, y);
-            for (std::uint32_t i = first_part_[block]; i < first_part_[block + 1]; ++i) {
-                const BodyPart& part = parts_[i];
-                const BodyVelocity& v = velocities_[static_cast<std::size_t>(part.body)];
-                y[part.row] += dot(part.area, v.linear) + dot(part.moment, v.angular);
+            run.curvature[block] = dot_product(part_of(of.p_, rows), part_of(of.q_, rows));
+        });
+        run.barrier.wait();
+        double sum = 0;
+        for (std::size_t block = 0; block < of.blocks_; ++block) sum += run.curvature[block];
+        return sum;
+    }
+    GradientResidual advance(double alpha) {
+        for_blocks([&](std::size_t, Share rows) {
+            step_along(alpha, part_of(of.p_, rows), part_of(of.q_, rows), part_of(run.x, rows), part_of(of.r_, rows));
+        });
+        return precondition();
+    }
+
+private:
+    template <class Work>
+    void for_blocks(const Work& work) {
+        for (std::size_t block = blocks.first; block < blocks.last; ++block) work(block, of.block_of(block));
+    }
+    // q = A x.
+    void apply(const std::vector<double>& x) {
+        for (std::size_t i = bodies.first; i < bodies.last; ++i) of.move_body(i, x);
+        if (!of.bodies_.empty()) run.barrier.wait();
+        for_blocks([&](std::size_t block, Share rows) {
+            of.multiply(rows, x, of.q_);
+            for (std::uint32_t i = of.first_part_[block]; i < of.first_part_[block + 1]; ++i) {
+                const BodyPart& part = of.parts_[i];
+                const BodyVelocity& v = of.velocities_[static_cast<std::size_t>(part.body)];
+                of.q_[part.row] += dot(part.area, v.linear) + dot(part.moment, v.angular);
             }
         });
-    };
-    // Sums over all blocks, the same for each worker.
-    const auto total = [&](const std::array<Run::Sum, most_blocks>& sums) {
+    }
+    GradientResidual precondition() {
         run.barrier.wait();
-        Run::Sum all;
-        for (std::size_t block = 0; block < blocks_; ++block) {
-            all.product += sums[block].product;
-            all.largest = sums[block].largest > all.largest ? sums[block].largest : all.largest;
+        of.precondition(run, worker, times++);
+        run.barrier.wait();
+        for_blocks([&](std::size_t block, Share rows) {
+            const auto r = part_of(of.r_, rows);
+            run.residual[block] = {dot_product(r, part_of(of.z_, rows)), largest_of(r)};
+        });
+        run.barrier.wait();
+        GradientResidual all;
+        for (std::size_t block = 0; block < of.blocks_; ++block) {
+            const GradientResidual& own = run.residual[block];
+            all.product += own.product;
+            all.size = own.size > all.size ? own.size : all.size;
         }
         return all;
-    };
-    std::uint64_t times = 0;
-    const auto look_at_residual = [&] {
-        run.barrier.wait();
-        precondition(run, worker, times++);
-        run.barrier.wait();
-        for_blocks([&](std::size_t block, Share rows) {
-            run.residual[block] = {dot_product(part_of(r_, rows), part_of(z_, rows)), largest_of(part_of(r_, rows))};
-        });
-        return total(run.residual);
-    };
-
-    apply(run.x, ap_);
-    for_blocks([&](std::size_t, Share rows) {
-        for (std::size_t i = rows.first; i < rows.last; ++i) r_[i] = run.b[i] - ap_[i];
-    });
-    Run::Sum rz = look_at_residual();
-    double beta = 0;
-    for (int iteration = 0; iteration <= run.most; ++iteration) {
-        if (rz.largest <= run.tolerance) return iteration;
-        if (iteration == run.most) break;
-        for_blocks([&](std::size_t, Share rows) {
-            for (std::size_t i = rows.first; i < rows.last; ++i) p_[i] = z_[i] + beta * p_[i];
-        });
-        run.barrier.wait();
-        apply(p_, ap_);
-        for_blocks([&](std::size_t block, Share rows) {
-            run.curvature[block].product = dot_product(part_of(p_, rows), part_of(ap_, rows));
-        });
-        const double curvature = total(run.curvature).product;
-        if (!(curvature > 0)) break;
-        const double alpha = rz.product / curvature;
-        for_blocks([&](std::size_t, Share rows) {
-            for (std::size_t i = rows.first; i < rows.last; ++i) {
-                run.x[i] += alpha * p_[i];
-                r_[i] -= alpha * ap_[i];
-            }
-        });
-        const Run::Sum next = look_at_residual();
-        beta = next.product / rz.product;
-        rz = next;
     }
-    return run.most + 1;
-}
+};
 
 int PressureSystem::solve(std::span<const double> b, std::vector<double>& x, double tolerance, int most,
                           TaskPool& workers) {
     const int number = static_cast<int>(strips_.size());
-    Run run{b, x, tolerance, most, number, Barrier(number), {}, {}, std::vector<Progress>(strips_.size())};
+    Run run{b, x, Barrier(number), {}, {}, std::vector<Progress>(strips_.size())};
     x.push_back(0);
     std::fill(p_.begin(), p_.end(), 0);
-    int iterations = 0;
+    GradientResult result;
     const auto work = [&](int worker) {
-        const int own = iterate(run, worker);
-        if (worker == 0) iterations = own;
+        WorkerSystem system{*this, run, worker, share_of(blocks_, worker, number),
+                            share_of(bodies_.size(), worker, number)};
+        const GradientResult own = conjugate_gradient(system, {.iterations = most, .absolute = tolerance});
+        if (worker == 0) result = own;
     };
     if (number == 1) {
         work(0);
@@ -337,7 +338,7 @@ int PressureSystem::solve(std::span<const double> b, std::vector<double>& x, dou
         workers.run(work);
     }
     x.pop_back();
-    return iterations;
+    return result.end == GradientEnd::converged ? result.iterations : most + 1;
 }
 
 }  // namespace embody::physics::fluid

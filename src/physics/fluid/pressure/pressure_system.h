@@ -53,6 +53,7 @@ private:
         Vec3 linear, angular;
     };
     struct Run;
+    struct WorkerSystem;
     void build_row(const FluidGrid& grid, std::size_t row);
     void factor();
     void make_strips(const FluidGrid& grid, int workers);
@@ -61,7 +62,6 @@ private:
     void precondition(Run& run, int worker, std::uint64_t time);
     void multiply(Share block, std::span<const double> x, std::span<double> y) const;
     void move_body(std::size_t body, std::span<const double> x);
-    int iterate(Run& run, int worker);
     [[nodiscard]] Share block_of(std::size_t block) const {
         return share_of(size(), static_cast<int>(block), static_cast<int>(blocks_));
     }
@@ -71,7 +71,8 @@ private:
     std::vector<Row> rows_;
     std::size_t blocks_ = 1;
     std::vector<double> diagonal_, scaling_;
-    std::vector<double> r_, z_, p_, ap_, q_;
+    std::vector<double> r_, z_, p_, q_;  // of the conjugate gradient
+    std::vector<double> y_;              // L y = r
     std::vector<const MovingObstacle*> bodies_;
     std::vector<BodyVelocity> velocities_;
     std::vector<BodyPart> parts_;            // by row, then by body

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/linear/dot_product.h"
+#include "physics/linear/vectors.h"
 
 namespace embody::physics::fluid {
 
@@ -317,32 +317,32 @@ void ViscositySystem::fill_residual() {
     }
 }
 
-int ViscositySystem::iterate(int most) {
+// z = D⁻¹ r, D the diagonal; r·z.
+GradientResidual ViscositySystem::precondition() {
     const std::size_t free = faces_.size(), faces = free + fixed_.size();
-    const std::size_t size = x_.size();
-    constexpr double tolerance = 1e-4;  // of the first residual
-    const auto precondition = [&] {
-        for (std::size_t i = 0; i < size; ++i) z_[i] = i >= free && i < faces ? 0 : r_[i] / diagonal_[i];
-    };
-    precondition();
-    p_ = z_;
-    double rz = dot_product(r_, z_);
-    const double enough = rz * tolerance * tolerance;
-    int iteration = 0;
-    while (rz > enough && rz > 0 && iteration <= most) {
-        ++iteration;
-        multiply(p_, ap_);
-        const double alpha = rz / dot_product(p_, ap_);
-        for (std::size_t i = 0; i < size; ++i) {
-            x_[i] += alpha * p_[i];
-            r_[i] -= alpha * ap_[i];
+    for (std::size_t i = 0; i < z_.size(); ++i) z_[i] = i >= free && i < faces ? 0 : r_[i] / diagonal_[i];
+    const double product = dot_product(r_, z_);
+    return {product, product};
+}
+
+int ViscositySystem::iterate(int most) {
+    struct System {
+        ViscositySystem& of;
+        GradientResidual begin() { return of.precondition(); }
+        void turn(double beta) { turn_direction(beta, of.z_, of.p_); }
+        double multiply() {
+            of.multiply(of.p_, of.q_);
+            return dot_product(of.p_, of.q_);
         }
-        precondition();
-        const double next = dot_product(r_, z_), beta = next / rz;
-        rz = next;
-        for (std::size_t i = 0; i < size; ++i) p_[i] = z_[i] + beta * p_[i];
-    }
-    return iteration;
+        GradientResidual advance(double alpha) {
+            step_along(alpha, of.p_, of.q_, of.x_, of.r_);
+            return of.precondition();
+        }
+    };
+    constexpr double tolerance = 1e-4;  // of the first residual
+    System system{*this};
+    const auto result = conjugate_gradient(system, {.iterations = most, .relative = tolerance * tolerance});
+    return result.end == GradientEnd::converged ? result.iterations : most + 1;
 }
 
 int ViscositySystem::solve(const Viscosity& liquid, double dt, int most, FluidGrid& grid, FluidObstacles& obstacles) {
@@ -352,7 +352,7 @@ int ViscositySystem::solve(const Viscosity& liquid, double dt, int most, FluidGr
     list_strains(grid, obstacles, dt / (liquid.density * h * h));
     list_bodies(liquid, grid, obstacles);
     const std::size_t size = faces_.size() + fixed_.size() + 6 * bodies_.size();
-    for (auto* vector : {&x_, &r_, &z_, &p_, &ap_, &diagonal_}) vector->assign(size, 0);
+    for (auto* vector : {&x_, &r_, &z_, &p_, &q_, &diagonal_}) vector->assign(size, 0);
     start_from(grid, obstacles);
     fill_diagonal();
     fill_residual();

@@ -6,6 +6,7 @@
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/obstacles.h"
+#include "physics/linear/conjugate_gradient.h"
 
 namespace embody::physics::fluid {
 
@@ -53,6 +54,7 @@ private:
     void start_from(const FluidGrid& grid, const FluidObstacles& obstacles);
     void fill_diagonal();
     void fill_residual();
+    GradientResidual precondition();
     int iterate(int most);
     void write_back(const Viscosity& liquid, FluidGrid& grid, FluidObstacles& obstacles);
 
@@ -71,7 +73,7 @@ private:
     std::vector<Body> bodies_;
     std::vector<std::int32_t> body_of_;  // by owner; −1: none
     std::vector<double> inertia_;        // of free faces, in volumes of a cell
-    std::vector<double> x_, r_, z_, p_, ap_, diagonal_;
+    std::vector<double> x_, r_, z_, p_, q_, diagonal_;
 };
 
 }  // namespace embody::physics::fluid
