@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "math/kernel_width.h"
 #include "physics/linear/block6.h"
 #include "physics/linear/block_pattern.h"
 #include "physics/linear/namespace.h"
@@ -31,7 +32,7 @@ public:
 
     /// Replaces the matrix by its factors. A pivot that rounding made zero or negative is replaced by a huge one: what
     /// it stands for then does not move.
-    void factor(const BlockKernels& kernels = widest_block_kernels());
+    void factor(const BlockKernels& kernels = widest_kernels<BlockKernels>());
     /// Solves for one right side, in place; by node.
     void solve(std::span<Vec6> x) const;
 

@@ -91,9 +91,12 @@ void factor(const BlockFactors& matrix) {
 
 void subtract_product(double* target, const double* rows, const double* columns) { subtract(target, rows, columns); }
 
+constexpr physics::linear::BlockKernels kernels{factor, subtract_product};
+
 }  // namespace
 
-extern const physics::linear::BlockKernels block_kernels;
-const physics::linear::BlockKernels block_kernels{factor, subtract_product};
-
 }  // namespace embody::EMBODY_WIDE
+
+namespace embody {
+constinit const physics::linear::BlockKernels physics::linear::BlockKernels::EMBODY_WIDE = EMBODY_WIDE::kernels;
+}

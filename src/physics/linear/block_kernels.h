@@ -32,12 +32,9 @@ struct BlockKernels {
     void (*factor)(const BlockFactors& matrix);
     /// target −= rows columnsᵀ, of blocks.
     void (*subtract_product)(double* target, const double* rows, const double* columns);
-};
 
-/// Of 4, 8 or 16 floats side by side (half as many of these numbers); nothing where this processor has none of that
-/// width.
-const BlockKernels* block_kernels(int lanes);
-/// The widest that this processor has.
-const BlockKernels& widest_block_kernels();
+    /// For each width of math/kernel_width.h.
+    static const BlockKernels lanes_4, lanes_8, lanes_16;
+};
 
 }  // namespace embody::physics::linear

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/kernel_width.h"
+
 namespace embody::physics::linear {
 
 namespace {
@@ -61,8 +63,8 @@ void BlockLu::clear() {
 }
 
 void BlockLu::factor() {
-    const auto subtract_product = [kernel = widest_block_kernels().subtract_product](Block6& target, const Block6& rows,
-                                                                                     const Block6& columns) {
+    const auto subtract_product = [kernel = widest_kernels<BlockKernels>().subtract_product](
+                                      Block6& target, const Block6& rows, const Block6& columns) {
         kernel(target.column[0], rows.column[0], columns.column[0]);
     };
     for (std::size_t place = 0; place < diagonal_.size(); ++place) {

@@ -126,10 +126,13 @@ void add_all_moves(float* moves, const float* compliance, const float* forces, s
     }
 }
 
+constexpr physics::linear::ColumnKernels kernels{add_moves,  subtract_columns, dot_columns,
+                                                 dot_blocks, subtract_scaled,  add_all_moves};
+
 }  // namespace
 
-extern const physics::linear::ColumnKernels column_kernels;
-const physics::linear::ColumnKernels column_kernels{add_moves,  subtract_columns, dot_columns,
-                                                    dot_blocks, subtract_scaled,  add_all_moves};
-
 }  // namespace embody::EMBODY_WIDE
+
+namespace embody {
+constinit const physics::linear::ColumnKernels physics::linear::ColumnKernels::EMBODY_WIDE = EMBODY_WIDE::kernels;
+}

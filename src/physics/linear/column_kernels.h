@@ -35,11 +35,9 @@ struct ColumnKernels {
     /// `last_tile`.
     void (*add_all_moves)(float* moves, const float* compliance, const float* forces, std::size_t stride,
                           std::size_t first_tile, std::size_t last_tile);
-};
 
-/// Of 4, 8 or 16 floats side by side; nothing where this processor has none of that width.
-const ColumnKernels* column_kernels(int lanes);
-/// The widest that this processor has.
-const ColumnKernels& widest_column_kernels();
+    /// For each width of math/kernel_width.h.
+    static const ColumnKernels lanes_4, lanes_8, lanes_16;
+};
 
 }  // namespace embody::physics::linear

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/kernel_width.h"
 #include "physics/linear/column_kernels.h"
 
 namespace embody::physics::linear {
@@ -21,7 +22,7 @@ std::size_t first_row(std::size_t column) { return column / column_multiple * co
 // Right-looking elimination of the first `own` of `size` columns (lower triangle, column by column).
 void eliminate(std::vector<double>& a, std::size_t size, std::size_t own) {
     constexpr double huge = 1e30;  // a pivot of what must not move
-    const auto subtract_scaled = widest_column_kernels().subtract_scaled;
+    const auto subtract_scaled = widest_kernels<ColumnKernels>().subtract_scaled;
     for (std::size_t j = 0; j < own; ++j) {
         double* column = &a[j * size];
         const double pivot = column[j] > 0 ? std::sqrt(column[j]) : huge;
@@ -136,7 +137,7 @@ void DissectedCholesky::gather_children(std::uint32_t index, float* local) const
 
 // L y = b of the own numbers of a front, three columns at a time; what the others are left with.
 void DissectedCholesky::eliminate_down(const Front& front, float* w) const {
-    const auto subtract_columns = widest_column_kernels().subtract_columns;
+    const auto subtract_columns = widest_kernels<ColumnKernels>().subtract_columns;
     const std::size_t stride = stride_of(front);
     for (std::size_t j = 0; j < 3 * front.own(); j += 3) {
         const float *a = column(front, j), *b = a + stride, *c = b + stride;
@@ -175,7 +176,7 @@ void DissectedCholesky::solve_up(std::uint32_t index) {
         row[1] = x.y;
         row[2] = x.z;
     }
-    const auto dot_columns = widest_column_kernels().dot_columns;
+    const auto dot_columns = widest_kernels<ColumnKernels>().dot_columns;
     const std::size_t stride = stride_of(front);
     for (std::size_t j = 3 * front.own(); j > 0;) {
         j -= 3;
@@ -297,7 +298,7 @@ Mat3 DissectedCholesky::inverse_block(const Columns& i, const Columns& j) const 
         earlier = order_.fronts[earlier].parent;
     }
     float product[9];
-    widest_column_kernels().dot_blocks(i.value.data(), i.length, j.value.data(), j.length, depth_[f], product);
+    widest_kernels<ColumnKernels>().dot_blocks(i.value.data(), i.length, j.value.data(), j.length, depth_[f], product);
     Mat3 block;
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c) block(r, c) = static_cast<double>(product[3 * r + c]);

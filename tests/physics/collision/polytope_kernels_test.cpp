@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "foundation/random.h"
+#include "math/kernel_width.h"
 
 namespace embody::physics::collision {
 namespace {
@@ -45,7 +46,7 @@ Extreme first_highest(const std::vector<double>& values) {
 class PolytopeKernelsOf : public testing::TestWithParam<int> {};
 
 TEST_P(PolytopeKernelsOf, find_what_a_plain_loop_finds) {
-    const PolytopeKernels* kernels = polytope_kernels(GetParam());
+    const PolytopeKernels* kernels = kernels_of<PolytopeKernels>(GetParam());
     if (kernels == nullptr) GTEST_SKIP() << "not on this processor";
     Random random(5);
     for (int trial = 0; trial < 200; ++trial) {
@@ -88,7 +89,7 @@ TEST_P(PolytopeKernelsOf, find_what_a_plain_loop_finds) {
 }
 
 TEST_P(PolytopeKernelsOf, find_nothing_farther_than_all_among_no_vectors) {
-    const PolytopeKernels* kernels = polytope_kernels(GetParam());
+    const PolytopeKernels* kernels = kernels_of<PolytopeKernels>(GetParam());
     if (kernels == nullptr) GTEST_SKIP() << "not on this processor";
     const double d[3] = {1, 0, 0};
     EXPECT_EQ(kernels->farthest({nullptr, nullptr, nullptr, 0}, d).along, -1e300);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "foundation/random.h"
+#include "math/kernel_width.h"
 #include "physics/deformable/cloth/cloth_matrix.h"
 
 namespace embody::physics::deformable {
@@ -141,7 +142,7 @@ TEST_P(ClothRowKernelTest, MultipliesAsTheMatrixDoes) {
         bend += dot(expected[i], direction[i]);
         size += length(expected[i]) * length(direction[i]);
     }
-    const std::vector<double> result = sheet.round(widest_cloth_row_kernels());
+    const std::vector<double> result = sheet.round(widest_kernels<ClothRowKernels>());
     double sum = 0;
     for (std::size_t lane = 0; lane < slice_rows; ++lane) sum += result[lane];
     EXPECT_NEAR(sum, bend, 1e-5 * size);
@@ -150,10 +151,10 @@ TEST_P(ClothRowKernelTest, MultipliesAsTheMatrixDoes) {
 }
 
 TEST_P(ClothRowKernelTest, AnyNumberOfLanesGivesTheSameBits) {
-    const std::vector<double> expected = Sheet(GetParam()).round(*cloth_row_kernels(4));
+    const std::vector<double> expected = Sheet(GetParam()).round(*kernels_of<ClothRowKernels>(4));
     int compared = 0;
     for (const int lanes : {8, 16}) {
-        const ClothRowKernels* kernels = cloth_row_kernels(lanes);
+        const ClothRowKernels* kernels = kernels_of<ClothRowKernels>(lanes);
         if (!kernels) continue;
         EXPECT_EQ(Sheet(GetParam()).round(*kernels), expected) << lanes;
         ++compared;

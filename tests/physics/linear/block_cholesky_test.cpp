@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "foundation/random.h"
+#include "math/kernel_width.h"
 
 namespace embody::physics::linear {
 namespace {
@@ -125,9 +126,9 @@ TEST(BlockCholesky, AnyWidthGivesTheSameBits) {
         pair.matrix.solve(x);
         return x;
     };
-    const std::vector<Vec6> expected = solution_of(*block_kernels(4));
+    const std::vector<Vec6> expected = solution_of(*kernels_of<BlockKernels>(4));
     for (const int lanes : {8, 16}) {
-        const BlockKernels* kernels = block_kernels(lanes);
+        const BlockKernels* kernels = kernels_of<BlockKernels>(lanes);
         if (!kernels) continue;
         const std::vector<Vec6> found = solution_of(*kernels);
         for (std::size_t i = 0; i < found.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "foundation/random.h"
+#include "math/kernel_width.h"
 
 namespace embody::physics::linear {
 namespace {
@@ -65,10 +66,10 @@ std::vector<float> results(const ColumnKernels& kernels) {
 }
 
 TEST(ColumnKernels, AnyWidthGivesTheSameBits) {
-    const std::vector<float> expected = results(*column_kernels(4));
+    const std::vector<float> expected = results(*kernels_of<ColumnKernels>(4));
     int widths = 0;
     for (const int lanes : {8, 16}) {
-        const ColumnKernels* kernels = column_kernels(lanes);
+        const ColumnKernels* kernels = kernels_of<ColumnKernels>(lanes);
         if (kernels == nullptr) continue;
         ++widths;
         EXPECT_EQ(results(*kernels), expected) << lanes;
@@ -83,8 +84,8 @@ TEST(ColumnKernels, MovesOfAllAreThoseOfEachPair) {
     std::vector<float> moves(3 * stride, 0.0f);
     // In two parts, as two workers would.
     for (const auto& [first, last] : {std::pair<std::size_t, std::size_t>{0, 2}, {2, tiles}})
-        widest_column_kernels().add_all_moves(moves.data(), matrix.compliance.data(), forces.data(), stride, first,
-                                              last);
+        widest_kernels<ColumnKernels>().add_all_moves(moves.data(), matrix.compliance.data(), forces.data(), stride,
+                                                      first, last);
     for (std::size_t i = 0; i < stride; ++i) {
         for (std::size_t r = 0; r < 3; ++r) {
             double expected = 0;
@@ -102,7 +103,7 @@ TEST(ColumnKernels, SumsAreThoseOfDoubles) {
     constexpr std::size_t stride = 64, count = 61;
     const std::vector<float> a = numbers(3 * stride, 5), b = numbers(3 * stride, 6);
     float blocks[9];
-    widest_column_kernels().dot_blocks(a.data(), stride, b.data(), stride, count, blocks);
+    widest_kernels<ColumnKernels>().dot_blocks(a.data(), stride, b.data(), stride, count, blocks);
     for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 3; ++j) {
             double sum = 0;

@@ -112,10 +112,14 @@ std::uint32_t find_low(const VectorLanes<double>& vectors, const double* d, doub
     return count;
 }
 
+constexpr physics::collision::PolytopeKernels kernels{farthest,           extent,       farthest_roughly,
+                                                      heights_over_faces, lower_bounds, find_low};
+
 }  // namespace
 
-extern const physics::collision::PolytopeKernels polytope_kernels;
-const physics::collision::PolytopeKernels polytope_kernels{farthest,           extent,       farthest_roughly,
-                                                           heights_over_faces, lower_bounds, find_low};
-
 }  // namespace embody::EMBODY_WIDE
+
+namespace embody {
+constinit const physics::collision::PolytopeKernels physics::collision::PolytopeKernels::EMBODY_WIDE =
+    EMBODY_WIDE::kernels;
+}

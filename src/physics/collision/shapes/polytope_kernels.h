@@ -36,9 +36,9 @@ struct PolytopeKernels {
                                  double* heights);
     Extreme (*lower_bounds)(const VectorLanes<double>& normals, const double* reach, const double* d, double* bounds);
     std::uint32_t (*find_low)(const VectorLanes<double>& vectors, const double* d, double limit, std::uint32_t* found);
-};
 
-/// Of 4, 8 or 16 floats side by side; nothing where this processor has none of that width.
-const PolytopeKernels* polytope_kernels(int lanes);
+    /// For each width of math/kernel_width.h.
+    static const PolytopeKernels lanes_4, lanes_8, lanes_16;
+};
 
 }  // namespace embody::physics::collision

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "physics/collision/shapes/polytope_query.h"
 
+#include "math/kernel_width.h"
+
 namespace embody::physics::collision {
 
 namespace {
 
-const PolytopeKernels& widest() {
-    if (const PolytopeKernels* kernels = polytope_kernels(16)) return *kernels;
-    if (const PolytopeKernels* kernels = polytope_kernels(8)) return *kernels;
-    return *polytope_kernels(4);
-}
-
-const PolytopeKernels kernels = widest();
+const PolytopeKernels kernels = widest_kernels<PolytopeKernels>();
 
 VectorLanes<double> view(const Lanes& lanes) { return {lanes.x.data(), lanes.y.data(), lanes.z.data(), lanes.size()}; }
 

@@ -141,11 +141,9 @@ struct ContactKernels {
     void (*kick)(const BodyRows& rows, std::int32_t first, std::int32_t last) = nullptr;
     /// Moves the rows [first, last) by their velocities.
     void (*drift)(const BodyRows& rows, float substep, std::int32_t first, std::int32_t last) = nullptr;
-};
 
-/// Code for that many lanes, or nullptr where the processor or the build has none.
-const ContactKernels* contact_kernels(int lanes);
-/// The widest there is.
-const ContactKernels& widest_contact_kernels();
+    /// For each width of math/kernel_width.h.
+    static const ContactKernels lanes_4, lanes_8, lanes_16;
+};
 
 }  // namespace embody::physics::constraint

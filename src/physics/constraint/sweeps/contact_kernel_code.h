@@ -421,10 +421,14 @@ void drift(const BodyRows& rows, float substep, std::int32_t first, std::int32_t
     }
 }
 
+constexpr physics::constraint::ContactKernels kernels{
+    lanes, fill, warm_start, solve_positions, separate, solve_velocities, kick, drift};
+
 }  // namespace
 
-extern const physics::constraint::ContactKernels kernels;
-const physics::constraint::ContactKernels kernels{lanes, fill, warm_start, solve_positions, separate, solve_velocities,
-                                                  kick,  drift};
-
 }  // namespace embody::EMBODY_WIDE
+
+namespace embody {
+constinit const physics::constraint::ContactKernels physics::constraint::ContactKernels::EMBODY_WIDE =
+    EMBODY_WIDE::kernels;
+}

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "foundation/task_pool.h"
+#include "math/kernel_width.h"
 #include "physics/constraint/contact/contact.h"
 #include "physics/constraint/contact/contact_work.h"
 #include "physics/constraint/namespace.h"
@@ -14,6 +15,11 @@
 #include "physics/constraint/sweeps/contact_solver.h"
 
 namespace embody::physics::constraint {
+
+/// Code for that many lanes, or nullptr where this processor has none of that width.
+inline const ContactKernels* contact_kernels(int lanes) { return kernels_of<ContactKernels>(lanes); }
+/// The widest there is.
+inline const ContactKernels& widest_contact_kernels() { return widest_kernels<ContactKernels>(); }
 
 /// Contacts of bodies without joints, as many at once as the processor has lanes (docs/physics/wide-solver.md). Knows
 /// no island: it is given bodies, and batches in the order in which they are to be solved. Keeps its memory from step

@@ -97,9 +97,13 @@ void dot_residual(const ClothVectors& of, std::size_t first, std::size_t last, d
         add_products(load_planes(of.z + row, of.stride), load_planes(of.r + row, of.stride), sums + row % slice_rows);
 }
 
+constexpr physics::deformable::ClothRowKernels kernels{turn, multiply, advance, dot_residual};
+
 }  // namespace
 
-extern const physics::deformable::ClothRowKernels cloth_row_kernels;
-const physics::deformable::ClothRowKernels cloth_row_kernels{turn, multiply, advance, dot_residual};
-
 }  // namespace embody::EMBODY_WIDE
+
+namespace embody {
+constinit const physics::deformable::ClothRowKernels physics::deformable::ClothRowKernels::EMBODY_WIDE =
+    EMBODY_WIDE::kernels;
+}

@@ -55,11 +55,9 @@ struct ClothRowKernels {
     void (*advance)(const ClothVectors& of, float alpha, std::size_t first, std::size_t last, double* sums);
     /// sums += z · r.
     void (*dot)(const ClothVectors& of, std::size_t first, std::size_t last, double* sums);
-};
 
-/// Of 4, 8 or 16 floats side by side; nothing where this processor has none of that width.
-const ClothRowKernels* cloth_row_kernels(int lanes);
-/// The widest that this processor has.
-const ClothRowKernels& widest_cloth_row_kernels();
+    /// For each width of math/kernel_width.h.
+    static const ClothRowKernels lanes_4, lanes_8, lanes_16;
+};
 
 }  // namespace embody::physics::deformable

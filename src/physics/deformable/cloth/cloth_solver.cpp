@@ -60,7 +60,7 @@ double energy_of(const SheetSystem& sheet, std::span<const Vec3> moves) {
                                .q = force.slice(0),
                                .quads = reinterpret_cast<float*>(quads.data())};
     double unused[slice_rows] = {};
-    widest_cloth_row_kernels().multiply(matrix.rows(own.slice(0)), vectors, 0, slices, unused);
+    widest_kernels<ClothRowKernels>().multiply(matrix.rows(own.slice(0)), vectors, 0, slices, unused);
     double sum = 0;
     for (std::size_t i = 0; i < moves.size(); ++i) {
         if (sheet.fixed[i] == 0) sum += dot(0.5 * to_vec3(force.at(i)) - sheet.rhs[i], moves[i]);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "foundation/task_pool.h"
+#include "math/kernel_width.h"
 #include "physics/deformable/cloth/cloth_matrix.h"
 #include "physics/deformable/contact/touch_springs.h"
 #include "physics/deformable/namespace.h"
@@ -126,7 +127,7 @@ private:
     std::vector<std::uint32_t> place_;                    // of a node: lanes of all slices counted through
     std::vector<std::uint32_t> coupled_;  // springs that neither the preconditioner's blocks nor links hold
     std::vector<Link> links_;             // by row
-    const ClothRowKernels* kernels_ = &widest_cloth_row_kernels();
+    const ClothRowKernels* kernels_ = &widest_kernels<ClothRowKernels>();
     std::vector<double> curvatures_, residuals_;  // p · q and z · r by chunk; the last one is of all else
     std::size_t nodes_ = 0;                       // of sheets
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/kernel_width.h"
 #include "physics/linear/column_kernels.h"
 
 namespace embody::physics::deformable {
@@ -54,8 +55,8 @@ Vec3 TouchedNodes::move_of(std::size_t number, const std::vector<float>& moves) 
 void TouchedNodes::push(std::size_t number, Vec3 force) {
     force_[number] += force;
     const Vec3f own = to_vec3f(transpose(turn_[number]) * (scale_ * force));
-    widest_column_kernels().add_moves(moved_.data(), compliance_->rows(number), compliance_->stride(), own.x, own.y,
-                                      own.z);
+    widest_kernels<ColumnKernels>().add_moves(moved_.data(), compliance_->rows(number), compliance_->stride(), own.x,
+                                              own.y, own.z);
     if (gas_share_ == 0) return;
     const auto taken = static_cast<float>(gas_share_ * dot(move_of(number, gas_), force));
     for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] -= taken * gas_[i];
@@ -83,8 +84,8 @@ void TouchedNodes::run_probe(std::size_t part) {
     };
     std::vector<float>& moves = probe_part_moves_[part];
     moves.assign(3 * stride, 0.0f);
-    widest_column_kernels().add_all_moves(moves.data(), compliance_->rows(0), probe_own_force_.data(), stride,
-                                          tile_of(part), tile_of(part + 1));
+    widest_kernels<ColumnKernels>().add_all_moves(moves.data(), compliance_->rows(0), probe_own_force_.data(), stride,
+                                                  tile_of(part), tile_of(part + 1));
 }
 
 void TouchedNodes::end_probe() {
