@@ -42,7 +42,7 @@ bool BandCholesky::factorize() {
             if (k < i) {
                 at(i, k) = sum / at(k, k);
             } else {
-                if (!(sum > 0)) return false;
+                if (!(sum > 0) || !std::isfinite(sum)) return false;
                 at(i, i) = std::sqrt(sum);
             }
         }

@@ -92,6 +92,53 @@ TEST(BlockCholesky, SolvesMatricesOfRandomGraphs) {
     }
 }
 
+// The same springs between nodes of other numbers.
+TEST(BlockCholesky, TheOrderOfNodesDoesNotMatter) {
+    constexpr std::uint16_t nodes = 15;
+    for (std::uint16_t step = 2; step < nodes; step = static_cast<std::uint16_t>(2 * step)) {
+        // node -> step node + 3 modulo their number, which has no divisor in common with powers of two.
+        const auto number = [&](std::size_t node) { return static_cast<std::uint16_t>((step * node + 3) % nodes); };
+        Edges edges, others;
+        for (std::uint16_t i = 0; i < nodes; ++i) {
+            for (const int far : {1, 4}) {
+                const auto other = static_cast<std::uint16_t>((i + far) % nodes);
+                edges.push_back({i, other});
+                others.push_back({number(other), number(i)});
+            }
+        }
+        BlockCholesky one, two;
+        std::vector<Vec6> x(nodes), y(nodes);
+        Random random(7);
+        for (auto* matrix : {&one, &two}) {
+            matrix->analyse(nodes, matrix == &one ? edges : others);
+            matrix->clear();
+        }
+        for (std::size_t i = 0; i < nodes; ++i) {
+            for (int k = 0; k < 6; ++k) {
+                x[i].value[k] = y[number(i)].value[k] = random.between(-1, 1);
+                one.diagonal(i).column[k][k] = two.diagonal(number(i)).column[k][k] = random.between(20, 30);
+            }
+        }
+        for (std::size_t e = 0; e < edges.size(); ++e) {
+            // Whose rows they are is the pattern's choice; the second list has the ends the other way round.
+            const bool is_turned = one.row_end(e) == two.row_end(e);
+            for (int r = 0; r < 6; ++r) {
+                for (int c = 0; c < 6; ++c) {
+                    const double value = random.between(-0.5, 0.5);
+                    one.off_diagonal(e).column[c][r] = value;
+                    (is_turned ? two.off_diagonal(e).column[r][c] : two.off_diagonal(e).column[c][r]) = value;
+                }
+            }
+        }
+        for (auto* matrix : {&one, &two}) matrix->factor();
+        one.solve(x);
+        two.solve(y);
+        for (std::size_t i = 0; i < nodes; ++i) {
+            for (int k = 0; k < 6; ++k) EXPECT_NEAR(x[i].value[k], y[number(i)].value[k], 1e-14) << step << " " << i;
+        }
+    }
+}
+
 TEST(BlockCholesky, ChainFillsNothing) {
     Edges edges;
     for (std::uint16_t i = 0; i + 1 < 30; ++i) edges.push_back({i, static_cast<std::uint16_t>(i + 1)});
@@ -99,6 +146,34 @@ TEST(BlockCholesky, ChainFillsNothing) {
     matrix.analyse(30, edges);
     // A pivot and a solved block a body, and one product a link.
     EXPECT_LE(matrix.block_products(), 3u * 30u);
+}
+
+TEST(BlockCholesky, PivotsThatAreNotPositiveDoNotMove) {
+    for (const double bad : {0.0, -1.0, -1e6}) {
+        BlockCholesky matrix;
+        matrix.analyse(2, Edges{{0, 1}});
+        matrix.clear();
+        for (int i = 0; i < 6; ++i) matrix.diagonal(0).column[i][i] = matrix.diagonal(1).column[i][i] = 4;
+        matrix.diagonal(1).column[2][2] = bad;
+        matrix.factor();
+        std::vector<Vec6> x(2, Vec6{{1, 1, 1, 1, 1, 1}});
+        matrix.solve(x);
+        for (int i = 0; i < 6; ++i) {
+            EXPECT_EQ(x[0].value[i], 0.25);
+            if (i == 2)
+                EXPECT_LT(std::fabs(x[1].value[i]), 1e-90) << bad;
+            else
+                EXPECT_EQ(x[1].value[i], 0.25) << bad;
+        }
+    }
+}
+
+TEST(BlockCholesky, AnEmptyMatrixIsSolved) {
+    BlockCholesky matrix;
+    matrix.analyse(0, Edges{});
+    matrix.clear();
+    matrix.factor();
+    matrix.solve({});
 }
 
 TEST(BlockCholesky, WhatNothingHoldsDoesNotMoveInASingularMatrix) {

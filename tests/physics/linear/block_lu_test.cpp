@@ -73,6 +73,34 @@ struct Matrix {
     BlockLu lu;
 };
 
+TEST(BlockLu, WhatHasNoPivotDoesNotMove) {
+    BlockLu lu;
+    lu.analyse(2, Edges{{0, 1}}, 0);
+    lu.clear();
+    for (int i = 0; i < 6; ++i) lu.diagonal(0).column[i][i] = lu.diagonal(1).column[i][i] = i == 4 ? 0 : -4;
+    lu.factor();
+    std::vector<Vec6> x(2, Vec6{{1, 1, 1, 1, 1, 1}});
+    lu.solve(x);
+    for (const Vec6& node : x) {
+        for (int i = 0; i < 6; ++i) {
+            if (i == 4)
+                EXPECT_LT(std::fabs(node.value[i]), 1e-90);
+            else
+                EXPECT_EQ(node.value[i], -0.25);
+        }
+    }
+}
+
+TEST(BlockLu, AnEmptyMatrixIsSolved) {
+    BlockLu lu;
+    lu.analyse(0, Edges{}, 0);
+    lu.clear();
+    lu.factor();
+    std::vector<Vec6> none;
+    lu.solve(none);
+    EXPECT_TRUE(none.empty());
+}
+
 TEST(BlockLu, SolvesTreesOfJointedBodies) {
     Random random(11);
     for (int round = 0; round < 60; ++round) {
