@@ -54,7 +54,7 @@ struct HeldRecord {
 /// The solvers of the substeps and their memory, so that a steady step allocates nothing. Of the last step they know
 /// what was held, which islands the direct solver gave up, and the joints' systems.
 struct SubstepMemory {
-    WideContactSolver wide_solver{widest_contact_kernels()};
+    WideContactSolver wide_solver{widest_kernels<ContactKernels>()};
     DirectContactSolver direct_solver;
     std::vector<HeldRecord> held;                        ///< by slot
     std::map<std::uint32_t, JointSystem> joint_systems;  ///< by an island's first body

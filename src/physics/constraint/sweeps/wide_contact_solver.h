@@ -16,11 +16,6 @@
 
 namespace embody::physics::constraint {
 
-/// Code for that many lanes, or nullptr where this processor has none of that width.
-inline const ContactKernels* contact_kernels(int lanes) { return kernels_of<ContactKernels>(lanes); }
-/// The widest there is.
-inline const ContactKernels& widest_contact_kernels() { return widest_kernels<ContactKernels>(); }
-
 /// Contacts of bodies without joints, as many at once as the processor has lanes (docs/physics/wide-solver.md). Knows
 /// no island: it is given bodies, and batches in the order in which they are to be solved. Keeps its memory from step
 /// to step.

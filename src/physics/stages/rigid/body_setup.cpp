@@ -140,7 +140,7 @@ void lift_bodies(const WakeAccess& world, std::span<const std::uint32_t> bodies)
 }
 
 Result<void> choose_lanes(SubstepMemory& substeps, int lanes) {
-    const ContactKernels* kernels = lanes == 0 ? &widest_contact_kernels() : contact_kernels(lanes);
+    const ContactKernels* kernels = lanes == 0 ? &widest_kernels<ContactKernels>() : kernels_of<ContactKernels>(lanes);
     if (!kernels) return Error{"lanes", "are more than this processor has", "set fewer, or 0 for the most it has"};
     if (kernels->lanes != substeps.wide_solver.lanes()) substeps.wide_solver = WideContactSolver(*kernels);
     return {};
