@@ -11,7 +11,7 @@ namespace embody::catalog {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using Json = nlohmann::json;
 
 /// "flightgear, kicad"
 std::string names_in(const fs::path& folder) {
@@ -33,7 +33,7 @@ Result<std::array<double, 9>> rotation_from(const std::string& up) {
     return Error{"up", "must be \"y\" or \"z\", got \"" + up + "\""};
 }
 
-std::optional<Error> read_folders(const json& list, const std::string& where, Collection& collection) {
+std::optional<Error> read_folders(const Json& list, const std::string& where, Collection& collection) {
     for (std::size_t i = 0; i < list.size(); ++i) {
         attributes::FieldReader reader(list[i], where + ".folders[" + std::to_string(i) + "]");
         CollectionFolder folder;
@@ -48,7 +48,7 @@ std::optional<Error> read_folders(const json& list, const std::string& where, Co
     return std::nullopt;
 }
 
-std::optional<Error> read_things(const json& list, const std::string& where, Collection& collection) {
+std::optional<Error> read_things(const Json& list, const std::string& where, Collection& collection) {
     for (std::size_t i = 0; i < list.size(); ++i) {
         attributes::FieldReader reader(list[i], where + ".things[" + std::to_string(i) + "]");
         CollectionThings things;
@@ -86,8 +86,8 @@ Result<Collection> read_collection(const fs::path& folder, const std::string& na
     std::string source;
     reader.word("source", source, true);
     reader.words("leave_out", collection.leave_out, false);
-    const json* folders = reader.list("folders", true);
-    const json* things = reader.list("things", false);
+    const Json* folders = reader.list("folders", true);
+    const Json* things = reader.list("things", false);
     if (auto error = reader.finish()) return *error;
     if (auto error = read_folders(*folders, file.string(), collection)) return *error;
     if (things != nullptr) {

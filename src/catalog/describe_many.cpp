@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "catalog/describe_many.h"
 
+#include <tuple>
+
 #include "catalog/describe_model.h"
 #include "catalog/knowledge_json.h"
 

@@ -17,8 +17,8 @@ namespace {
 constexpr int samples = 6000;
 
 // Hollow things of a household; of each word the best matches.
-constexpr const char* words[] = {"mug",  "cup",   "glass",   "chair", "armchair", "table", "desk",
-                                 "lamp", "shelf", "cabinet", "sofa",  "bottle",   "shoe",  "toy"};
+constexpr const char* decomposed_words[] = {"mug",  "cup",   "glass",   "chair", "armchair", "table", "desk",
+                                            "lamp", "shelf", "cabinet", "sofa",  "bottle",   "shoe",  "toy"};
 constexpr int models_a_word = 3;
 
 struct Row {
@@ -65,7 +65,7 @@ void print_row(const Row& row) {
 int run_decomposition(const BenchArguments& arguments) {
     auto catalog = open_catalog(arguments.database);
     if (!catalog) return report(catalog.error());
-    const auto models = choose_bench_models(**catalog, words, models_a_word, arguments);
+    const auto models = choose_bench_models(**catalog, decomposed_words, models_a_word, arguments);
     if (!models) return report(models.error());
     if (!arguments.json) {
         print_text("Lengths in mm, processor time in s. Added: from the hulls' union to the model; left out: back.\n");

@@ -14,7 +14,7 @@ namespace embody::cli {
 namespace {
 
 constexpr int particles[] = {15'000, 30'000, 60'000};
-constexpr int workers[] = {1, 2};
+constexpr int worker_counts[] = {1, 2};
 constexpr int runs = 3;
 
 }  // namespace
@@ -31,8 +31,8 @@ int run_fluid(const BenchArguments& arguments) {
     for (const int count : particles) {
         std::vector<scenes::TankCost> costs;
         for (int run = 0; run < runs; ++run) {
-            for (std::size_t i = 0; i < std::size(workers); ++i) {
-                auto cost = scenes::time_tank({.particles = count, .workers = workers[i]});
+            for (std::size_t i = 0; i < std::size(worker_counts); ++i) {
+                auto cost = scenes::time_tank({.particles = count, .workers = worker_counts[i]});
                 if (!cost) return report(cost.error());
                 if (run == 0) {
                     costs.push_back(std::move(*cost));
@@ -47,7 +47,7 @@ int run_fluid(const BenchArguments& arguments) {
                          worst = *std::max_element(cost.step_ms.begin(), cost.step_ms.end());
             right = right && cost.wrong.empty();
             rows.push_back({{"particles", cost.particles},
-                            {"workers", workers[i]},
+                            {"workers", worker_counts[i]},
                             {"fluid_ms", fluid},
                             {"step_ms", step},
                             {"worst_step_ms", worst},
@@ -55,8 +55,8 @@ int run_fluid(const BenchArguments& arguments) {
                             {"draft_error", cost.draft_error},
                             {"wrong", cost.wrong}});
             if (arguments.json) continue;
-            print_text("{:>9} {:>8} {:>9.2f} {:>8.2f} {:>9.2f} {:>9.2f} {:>8.1f}  {}\n", cost.particles, workers[i],
-                       fluid, step, worst, 100 * cost.volume_error, 100 * cost.draft_error,
+            print_text("{:>9} {:>8} {:>9.2f} {:>8.2f} {:>9.2f} {:>9.2f} {:>8.1f}  {}\n", cost.particles,
+                       worker_counts[i], fluid, step, worst, 100 * cost.volume_error, 100 * cost.draft_error,
                        cost.wrong.empty() ? "right" : "WRONG: " + cost.wrong);
             std::fflush(stdout);
         }

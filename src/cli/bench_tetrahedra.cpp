@@ -15,7 +15,8 @@ namespace embody::cli {
 namespace {
 
 // Soft things of a household; of each word the best matches.
-constexpr const char* words[] = {"cushion", "pillow", "sofa", "mattress", "teddy", "plush", "ball", "pouf", "armchair"};
+constexpr const char* filled_words[] = {"cushion", "pillow", "sofa", "mattress", "teddy",
+                                        "plush",   "ball",   "pouf", "armchair"};
 constexpr int models_a_word = 6;
 
 struct Row {
@@ -75,7 +76,7 @@ void print_row(const Row& row) {
 int run_tetrahedra(const BenchArguments& arguments) {
     auto catalog = open_catalog(arguments.database);
     if (!catalog) return report(catalog.error());
-    const auto models = choose_bench_models(**catalog, words, models_a_word, arguments);
+    const auto models = choose_bench_models(**catalog, filled_words, models_a_word, arguments);
     if (!models) return report(models.error());
     if (!arguments.json) {
         print_text(

@@ -11,7 +11,7 @@ namespace embody::scene {
 namespace {
 
 // Of cloth: half of its thickness, but not so little beside its edges that every corner between two nodes shows.
-constexpr double radius_share = 0.03, least_radius = 1e-3, greatest_radius = 0.02;
+constexpr double sheet_radius_share = 0.03, sheet_least_radius = 1e-3, sheet_greatest_radius = 0.02;
 constexpr double least_rope_radius = 5e-4, greatest_rope_radius = 0.5;
 
 bool is_cloth(const attributes::AttributeSet& attributes) { return attributes.word("kind", "") == "cloth"; }
@@ -87,7 +87,7 @@ Result<physics::DeformableDefinition> EntityBodies::thin(const Entity& entity,
     if (!cloth.ok()) return in_attributes(cloth.error());
     const double half = std::get<physics::Cloth>(cloth.value().matter).thickness / 2;
     cloth.value().contact_radius =
-        std::clamp(std::max(half, radius_share * mean_edge(sheet)), least_radius, greatest_radius);
+        std::clamp(std::max(half, sheet_radius_share * mean_edge(sheet)), sheet_least_radius, sheet_greatest_radius);
     return cloth;
 }
 

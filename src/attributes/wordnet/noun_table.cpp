@@ -12,7 +12,7 @@
 namespace embody::attributes::wordnet {
 namespace {
 
-constexpr const char* remedy = "build again: the target embody_wordnet_table writes it from Debian's wordnet-base";
+constexpr const char* build_again = "build again: the target embody_wordnet_table writes it from Debian's wordnet-base";
 
 // Index of the text among ascending texts, whose beginnings are given.
 template <class TextOf>
@@ -33,13 +33,14 @@ std::optional<std::uint32_t> find_text(std::uint32_t count, std::string_view wan
 Result<std::vector<std::uint32_t>> read_words(const std::filesystem::path& file) {
     std::error_code failure;
     const auto size = std::filesystem::file_size(file, failure);
-    if (failure) return Error{file.string(), "WordNet's nouns are not there: " + failure.message(), remedy};
+    if (failure) return Error{file.string(), "WordNet's nouns are not there: " + failure.message(), build_again};
     std::ifstream stream(file, std::ios::binary);
     std::vector<std::uint32_t> words(size / sizeof(std::uint32_t));
     stream.read(reinterpret_cast<char*>(words.data()),
                 static_cast<std::streamsize>(words.size() * sizeof(std::uint32_t)));
-    if (!stream) return Error{file.string(), "cannot be read", "look at its permissions, or " + std::string(remedy)};
-    if (size % sizeof(std::uint32_t) != 0) return Error{file.string(), "is cut off", remedy};
+    if (!stream)
+        return Error{file.string(), "cannot be read", "look at its permissions, or " + std::string(build_again)};
+    if (size % sizeof(std::uint32_t) != 0) return Error{file.string(), "is cut off", build_again};
     return words;
 }
 
@@ -63,20 +64,20 @@ Result<NounTable> NounTable::load(const std::filesystem::path& file) {
 
     // Nothing is believed before the checksum says that the file is as it was written.
     TableHeader header{};
-    if (table.words_.size() < header_words) return Error{file.string(), "is cut off", remedy};
+    if (table.words_.size() < header_words) return Error{file.string(), "is cut off", build_again};
     std::memcpy(&header, table.words_.data(), sizeof header);
-    if (header.magic != table_magic) return Error{file.string(), "is no table of WordNet's nouns", remedy};
+    if (header.magic != table_magic) return Error{file.string(), "is no table of WordNet's nouns", build_again};
     if (header.version != table_version) {
         return Error{file.string(),
                      "has version " + std::to_string(header.version) + ", this program reads version " +
                          std::to_string(table_version),
-                     remedy};
+                     build_again};
     }
     std::span<const std::uint32_t> rest = std::span(table.words_).subspan(header_words);
     const std::uint64_t sum = checksum_of(rest);
     if (rest.size() != body_words(header) || header.checksum_low != static_cast<std::uint32_t>(sum) ||
         header.checksum_high != static_cast<std::uint32_t>(sum >> 32)) {
-        return Error{file.string(), "is cut off or was changed (its checksum differs)", remedy};
+        return Error{file.string(), "is cut off or was changed (its checksum differs)", build_again};
     }
 
     const auto take = [&rest](std::size_t count) {

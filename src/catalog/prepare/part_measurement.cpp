@@ -9,10 +9,10 @@
 namespace embody::catalog {
 namespace {
 
-constexpr double weld_share = 1e-6;  // of the part's diagonal
+constexpr double part_weld_share = 1e-6;  // of the part's diagonal
 
 geometry::SolidAndShell measure(const geometry::TriangleMesh& mesh) {
-    const double tolerance = weld_share * length(geometry::bounds(mesh).size());
+    const double tolerance = part_weld_share * length(geometry::bounds(mesh).size());
     return geometry::integrate_solid_and_shell(geometry::oriented_outwards(geometry::weld(mesh, tolerance)));
 }
 

@@ -13,8 +13,8 @@
 namespace embody::geometry {
 namespace {
 
-constexpr double weld_share = 1e-6;
-constexpr double touching = 1e-9;  // m: nearer to a hull counts as on it
+constexpr double measured_weld_share = 1e-6;  // of the longest side
+constexpr double touching = 1e-9;             // m: nearer to a hull counts as on it
 
 double height_over(const ConvexHull& hull, Vec3 p) {
     double most = -std::numeric_limits<double>::infinity();
@@ -44,7 +44,7 @@ DecompositionMeasure measure_decomposition(const TriangleMesh& mesh, std::span<c
     DecompositionMeasure measure;
     if (mesh.triangles.empty() || hulls.empty()) return measure;
     const Vec3 size = bounds(mesh).size();
-    const TriangleMesh welded = oriented_outwards(weld(mesh, weld_share * std::max({size.x, size.y, size.z})));
+    const TriangleMesh welded = oriented_outwards(weld(mesh, measured_weld_share * std::max({size.x, size.y, size.z})));
     const SurfaceDistance surface(welded);
     const WindingNumber winding(welded);
     Random random(1);

@@ -8,7 +8,7 @@
 namespace embody::geometry {
 namespace {
 
-constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t not_numbered = std::numeric_limits<std::uint32_t>::max();
 
 // Sets that grow together; each is known by its least member, so that the order of joining does not matter.
 class Sets {
@@ -42,11 +42,11 @@ void separate_nodes(TetrahedralMesh& mesh, const TetrahedralTopology& topology) 
         }
     }
     std::vector<Vec3> nodes;
-    std::vector<std::uint32_t> number(4 * mesh.tetrahedra.size(), none);
+    std::vector<std::uint32_t> number(4 * mesh.tetrahedra.size(), not_numbered);
     for (std::uint32_t t = 0; t < mesh.tetrahedra.size(); ++t) {
         for (std::uint32_t k = 0; k < 4; ++k) {
             std::uint32_t& given = number[uses.find(4 * t + k)];
-            if (given == none) {
+            if (given == not_numbered) {
                 given = static_cast<std::uint32_t>(nodes.size());
                 nodes.push_back(mesh.nodes[mesh.tetrahedra[t][k]]);
             }
@@ -108,11 +108,11 @@ void drop(TetrahedralMesh& mesh, const std::vector<bool>& left_out) {
 }
 
 void drop_unused_nodes(TetrahedralMesh& mesh) {
-    std::vector<std::uint32_t> number(mesh.nodes.size(), none);
+    std::vector<std::uint32_t> number(mesh.nodes.size(), not_numbered);
     std::vector<Vec3> nodes;
     for (Tetrahedron& t : mesh.tetrahedra) {
         for (std::uint32_t& corner : t) {
-            if (number[corner] == none) {
+            if (number[corner] == not_numbered) {
                 number[corner] = static_cast<std::uint32_t>(nodes.size());
                 nodes.push_back(mesh.nodes[corner]);
             }
@@ -154,7 +154,7 @@ TetrahedralComponents find_components(const TetrahedralMesh& mesh) {
         return a.volume != b.volume ? a.volume > b.volume : a.first < b.first;
     });
     TetrahedralComponents components;
-    std::vector<std::uint32_t> rank(mesh.tetrahedra.size(), none);
+    std::vector<std::uint32_t> rank(mesh.tetrahedra.size(), not_numbered);
     for (const Part& part : parts) {
         rank[part.first] = static_cast<std::uint32_t>(components.volumes.size());
         components.volumes.push_back(part.volume);

@@ -17,7 +17,7 @@
 namespace embody::interchange {
 namespace {
 
-constexpr png_uint_32 longest_side = 32768;
+constexpr png_uint_32 longest_png_side = 32768;
 constexpr png_alloc_size_t most_chunk_bytes = 8 << 20;  // unpacked, of one text or colour profile
 constexpr png_uint_32 most_chunks = 128;                // that libpng keeps
 
@@ -32,7 +32,7 @@ public:
             throw std::bad_alloc();
         }
         png_set_read_fn(png_, this, read_some);
-        png_set_user_limits(png_, longest_side, longest_side);
+        png_set_user_limits(png_, longest_png_side, longest_png_side);
         png_set_chunk_malloc_max(png_, most_chunk_bytes);
         png_set_chunk_cache_max(png_, most_chunks);
     }

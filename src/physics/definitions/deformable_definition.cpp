@@ -13,10 +13,6 @@ namespace {
 
 constexpr double flattest = 1e-6;  // volume or area of an element, of a cube or square over its longest edge
 
-std::string item(const char* field, std::size_t index) {
-    return std::string(field) + "[" + std::to_string(index) + "]";
-}
-
 // Zero, or not a number, or infinite: for attributes where infinite means "never".
 Result<void> check_limit(const char* field, double value) {
     if (value > 0) return {};
@@ -26,21 +22,22 @@ Result<void> check_limit(const char* field, double value) {
 Result<void> check_nodes(const DeformableDefinition& definition) {
     if (definition.nodes.empty()) return Error{"nodes", "are none", "give at least the corners of one element"};
     for (std::size_t i = 0; i < definition.nodes.size(); ++i) {
-        if (auto result = check_vector(item("nodes", i), definition.nodes[i], largest_coordinate, "m"); !result)
+        if (auto result = check_vector(field_item("nodes", i), definition.nodes[i], largest_coordinate, "m"); !result)
             return result;
     }
     std::vector<bool> is_held(definition.nodes.size(), false);
     for (std::size_t i = 0; i < definition.pinned.size(); ++i) {
-        if (definition.pinned[i] >= definition.nodes.size()) return Error{item("pinned", i), "is no node"};
+        if (definition.pinned[i] >= definition.nodes.size()) return Error{field_item("pinned", i), "is no node"};
         is_held[definition.pinned[i]] = true;
     }
     for (std::size_t i = 0; i < definition.attachments.size(); ++i) {
         const Attachment& attachment = definition.attachments[i];
-        if (attachment.node >= definition.nodes.size()) return Error{item("attachments", i), "holds no node"};
+        if (attachment.node >= definition.nodes.size()) return Error{field_item("attachments", i), "holds no node"};
         if (is_held[attachment.node])
-            return Error{item("attachments", i), "holds a node that is pinned or attached already"};
+            return Error{field_item("attachments", i), "holds a node that is pinned or attached already"};
         is_held[attachment.node] = true;
-        if (auto result = check_vector(item("attachments", i), attachment.anchor, largest_coordinate, "m"); !result)
+        if (auto result = check_vector(field_item("attachments", i), attachment.anchor, largest_coordinate, "m");
+            !result)
             return result;
     }
     return {};
@@ -55,14 +52,15 @@ Result<void> check_clamps(const DeformableDefinition& definition) {
     for (const Attachment& attachment : definition.attachments) may_clamp[attachment.node] = true;
     for (std::size_t i = 0; i < definition.clamps.size(); ++i) {
         const Clamp& clamp = definition.clamps[i];
-        if (clamp.node >= definition.nodes.size()) return Error{item("clamps", i), "holds no node"};
+        if (clamp.node >= definition.nodes.size()) return Error{field_item("clamps", i), "holds no node"};
         if (!may_clamp[clamp.node]) {
-            return Error{item("clamps", i), "holds a node that is neither pinned nor attached, or clamped already",
+            return Error{field_item("clamps", i),
+                         "holds a node that is neither pinned nor attached, or clamped already",
                          "pin the node, attach it, or leave the clamp out"};
         }
         may_clamp[clamp.node] = false;
         if (!(std::fabs(length_squared(clamp.direction) - 1) < 1e-6))
-            return Error{item("clamps", i) + ".direction", "has not the length 1", "normalise it"};
+            return Error{field_item("clamps", i) + ".direction", "has not the length 1", "normalise it"};
     }
     return {};
 }
@@ -98,15 +96,16 @@ Result<void> check_ties(const DeformableDefinition& definition) {
     for (const Attachment& attachment : definition.attachments) is_held[attachment.node] = true;
     for (std::size_t i = 0; i < definition.ties.size(); ++i) {
         const Tie& tie = definition.ties[i];
-        if (tie.node >= definition.nodes.size()) return Error{item("ties", i), "holds no node"};
-        if (is_held[tie.node]) return Error{item("ties", i), "holds a node that is pinned, attached or tied already"};
+        if (tie.node >= definition.nodes.size()) return Error{field_item("ties", i), "holds no node"};
+        if (is_held[tie.node])
+            return Error{field_item("ties", i), "holds a node that is pinned, attached or tied already"};
         is_held[tie.node] = true;
         double sum = 0;
         for (const double weight : tie.weight) {
-            if (!(weight >= 0 && weight <= 1)) return Error{item("ties", i) + ".weight", "is not 0 to 1"};
+            if (!(weight >= 0 && weight <= 1)) return Error{field_item("ties", i) + ".weight", "is not 0 to 1"};
             sum += weight;
         }
-        if (!(std::fabs(sum - 1) < 1e-6)) return Error{item("ties", i) + ".weight", "is not 1 together"};
+        if (!(std::fabs(sum - 1) < 1e-6)) return Error{field_item("ties", i) + ".weight", "is not 1 together"};
     }
     return {};
 }
@@ -117,12 +116,12 @@ Result<void> check_elements(const DeformableDefinition& definition, const char* 
     if (elements.empty()) return Error{field, "are none", "a deformable needs elements"};
     std::vector<bool> is_used(definition.nodes.size(), false);
     for (std::size_t i = 0; i < elements.size(); ++i) {
-        if (auto result = check_element(definition, item(field, i), elements[i]); !result) return result;
+        if (auto result = check_element(definition, field_item(field, i), elements[i]); !result) return result;
         for (const std::uint32_t corner : elements[i]) is_used[corner] = true;
     }
     const auto free = std::find(is_used.begin(), is_used.end(), false);
     if (free != is_used.end()) {
-        return Error{item("nodes", static_cast<std::size_t>(free - is_used.begin())), "belongs to no element",
+        return Error{field_item("nodes", static_cast<std::size_t>(free - is_used.begin())), "belongs to no element",
                      "leave it out"};
     }
     return {};
@@ -153,7 +152,7 @@ Result<void> check_matter(const DeformableDefinition& definition, const Rope& ro
     if (definition.nodes.size() < 2) return Error{"nodes", "are too few", "give a rope two ends at least"};
     for (std::size_t i = 1; i < definition.nodes.size(); ++i) {
         if (!(length(definition.nodes[i] - definition.nodes[i - 1]) > 1e-6))
-            return Error{item("nodes", i), "lies on the one before it", "leave it out"};
+            return Error{field_item("nodes", i), "lies on the one before it", "leave it out"};
     }
     return first_error(check_number("diameter", rope.diameter, 1e-4, 1, "m"),
                        check_number("linear_density", rope.linear_density, 1e-6, 1e4, "kg/m"),

@@ -30,6 +30,10 @@ Result<void> check_number(std::string_view field, double value, double lowest, d
     return {};
 }
 
+std::string field_item(std::string_view field, std::size_t index) {
+    return std::string(field) + "[" + std::to_string(index) + "]";
+}
+
 Result<void> check_vector(std::string_view field, Vec3 value, double largest, std::string_view unit) {
     for (int i = 0; i < 3; ++i) {
         const std::string component = std::string(field) + "." + "xyz"[i];

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
+#include <string>
 #include <string_view>
 
 #include "foundation/result.h"
@@ -18,6 +20,9 @@ Result<void> check_number(std::string_view field, double value, double lowest, d
 Result<void> check_vector(std::string_view field, Vec3 value, double largest, std::string_view unit = "");
 /// Finite and long enough to be normalised.
 Result<void> check_rotation(std::string_view field, Quat value);
+
+/// The name of one item of a list: `boxes[3]`.
+std::string field_item(std::string_view field, std::size_t index);
 
 /// Bounds that keep every product of the solver far from overflow.
 inline constexpr double largest_coordinate = 1e9;     ///< m

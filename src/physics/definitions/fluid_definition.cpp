@@ -9,14 +9,10 @@ namespace embody::physics {
 
 namespace {
 
-std::string item(const char* field, std::size_t index) {
-    return std::string(field) + "[" + std::to_string(index) + "]";
-}
-
 Result<void> check_boxes(const FluidDefinition& definition) {
     for (std::size_t i = 0; i < definition.boxes.size(); ++i) {
         const Bounds& box = definition.boxes[i];
-        const std::string name = item("boxes", i);
+        const std::string name = field_item("boxes", i);
         if (auto result = first_error(check_vector(name + ".lower", box.lower, largest_coordinate, "m"),
                                       check_vector(name + ".upper", box.upper, largest_coordinate, "m"));
             !result)
@@ -44,7 +40,7 @@ Result<void> validate(const FluidDefinition& definition) {
         return Error{"boxes", "are none", "give at least one box, hull or point that the liquid fills at the start"};
     if (auto result = check_boxes(d); !result) return result;
     for (std::size_t i = 0; i < d.hulls.size(); ++i) {
-        if (auto result = check_points(item("hulls", i), d.hulls[i]); !result) return result;
+        if (auto result = check_points(field_item("hulls", i), d.hulls[i]); !result) return result;
     }
     if (auto result = check_points("points", d.points); !result) return result;
     return first_error(check_vector("velocity", d.velocity, largest_linear_speed, "m/s"),

@@ -25,6 +25,9 @@ struct BodyState {
     double hidden_energy = 0;  ///< the energy that it does not carry, J
 };
 
+/// Neither fixed nor led by the user: contacts and joints can move it.
+inline bool is_movable(const BodyState& body) { return body.inverse_mass > 0; }
+
 /// What does not move with the body; touched once a half step.
 struct BodyConstants {
     double mass = 0;              ///< kg; 0 for bodies that forces do not move

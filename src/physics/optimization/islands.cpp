@@ -36,8 +36,6 @@ private:
     std::vector<std::uint32_t>& parent_;
 };
 
-bool is_movable(const BodyState& body) { return body.inverse_mass > 0; }
-
 // Breadth first through the contacts, all immovable bodies first.
 void find_levels(std::span<const BodyState> bodies, std::span<const ContactSummary> contacts, Islands::Memory& memory,
                  std::vector<std::uint32_t>& level) {

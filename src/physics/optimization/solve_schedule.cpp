@@ -15,15 +15,13 @@ namespace {
 constexpr std::uint32_t most_points = Manifold::max_points;
 constexpr std::uint32_t widest_batch = 16;  // contacts; whatever the processor has, so that the order is the same
 
-bool is_movable(const BodyState& body) { return body.inverse_mass > 0; }
-
 // The lowest colour that neither body has, of those with a batch to fill if there are any; what finds none is left for
 // another round of 64 colours.
 std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<const ContactSummary> contacts,
                             std::span<const BodyState> bodies, SolveSchedule& s) {
-    constexpr std::uint32_t colours = 64, none = 0xFFFFFFFFu;
+    constexpr std::uint32_t colours = 64, no_stage = 0xFFFFFFFFu;
     s.colours.resize(std::max(s.colours.size(), bodies.size()));
-    std::fill(s.stage_of.begin(), s.stage_of.end(), none);
+    std::fill(s.stage_of.begin(), s.stage_of.end(), no_stage);
     std::uint32_t count = 0;
     std::size_t left = order.size();
     for (std::uint32_t base = 0; left > 0; base += colours) {
@@ -31,7 +29,7 @@ std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<cons
         std::uint64_t open = 0;  // colours with a batch that is not full
         for (const std::uint32_t i : order) s.colours[contacts[i].a] = s.colours[contacts[i].b] = 0;
         for (std::size_t k = 0; k < order.size(); ++k) {
-            if (s.stage_of[k] != none) continue;
+            if (s.stage_of[k] != no_stage) continue;
             const ContactSummary& c = contacts[order[k]];
             const bool a_moves = is_movable(bodies[c.a]), b_moves = is_movable(bodies[c.b]);
             const std::uint64_t used = (a_moves ? s.colours[c.a] : 0) | (b_moves ? s.colours[c.b] : 0);

@@ -181,14 +181,15 @@ Result<json> tell_simulation_mesh(SessionState& state, const json& params) {
     return json{{"mesh", std::move(mesh)}};
 }
 
-constexpr Command commands[] = {{"entity.set_attribute", set_attribute},
-                                {"entity.reset_attribute", reset_attribute},
-                                {"entity.attributes", list_attributes},
-                                {"entity.collision_shape", tell_collision_shape},
-                                {"entity.simulation_mesh", tell_simulation_mesh}};
-
 }  // namespace
 
-std::span<const Command> attribute_commands() { return commands; }
+std::span<const Command> attribute_commands() {
+    static constexpr Command commands[] = {{"entity.set_attribute", set_attribute},
+                                           {"entity.reset_attribute", reset_attribute},
+                                           {"entity.attributes", list_attributes},
+                                           {"entity.collision_shape", tell_collision_shape},
+                                           {"entity.simulation_mesh", tell_simulation_mesh}};
+    return commands;
+}
 
 }  // namespace embody::scene

@@ -281,19 +281,20 @@ Result<json> change_one(SessionState& state, const json& params, bool gives_valu
                 {"batch", report.value().batch != 0 ? json(report.value().batch) : json(nullptr)}};
 }
 
-Result<json> set_attribute(SessionState& state, const json& params) { return change_one(state, params, true); }
-Result<json> reset_attribute(SessionState& state, const json& params) { return change_one(state, params, false); }
-
-constexpr Command commands[] = {{"client.set_name", set_name},
-                                {"catalog.change", change},
-                                {"catalog.undo", undo},
-                                {"catalog.history", history},
-                                {"catalog.stop", stop},
-                                {"catalog.set_attribute", set_attribute},
-                                {"catalog.reset_attribute", reset_attribute}};
+Result<json> set_model_attribute(SessionState& state, const json& params) { return change_one(state, params, true); }
+Result<json> reset_model_attribute(SessionState& state, const json& params) { return change_one(state, params, false); }
 
 }  // namespace
 
-std::span<const Command> catalog_change_commands() { return commands; }
+std::span<const Command> catalog_change_commands() {
+    static constexpr Command commands[] = {{"client.set_name", set_name},
+                                           {"catalog.change", change},
+                                           {"catalog.undo", undo},
+                                           {"catalog.history", history},
+                                           {"catalog.stop", stop},
+                                           {"catalog.set_attribute", set_model_attribute},
+                                           {"catalog.reset_attribute", reset_model_attribute}};
+    return commands;
+}
 
 }  // namespace embody::scene

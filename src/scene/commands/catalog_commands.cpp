@@ -77,11 +77,12 @@ Result<json> model(SessionState& state, const json& params) {
     return json{{"model", model_to_json(found.value())}, {"attributes", std::move(rows).value()}};
 }
 
-constexpr Command commands[] = {
-    {"catalog.search", search}, {"catalog.categories", categories}, {"catalog.model", model}};
-
 }  // namespace
 
-std::span<const Command> catalog_commands() { return commands; }
+std::span<const Command> catalog_commands() {
+    static constexpr Command commands[] = {
+        {"catalog.search", search}, {"catalog.categories", categories}, {"catalog.model", model}};
+    return commands;
+}
 
 }  // namespace embody::scene

@@ -201,14 +201,15 @@ Result<json> duplicate(SessionState& state, const json& params) {
     return json{{"indices", std::move(copies)}};
 }
 
-constexpr Command commands[] = {{"entity.add", add},
-                                {"entity.remove", remove},
-                                {"entity.transform", transform},
-                                {"entity.update", update},
-                                {"entity.duplicate", duplicate}};
-
 }  // namespace
 
-std::span<const Command> entity_commands() { return commands; }
+std::span<const Command> entity_commands() {
+    static constexpr Command commands[] = {{"entity.add", add},
+                                           {"entity.remove", remove},
+                                           {"entity.transform", transform},
+                                           {"entity.update", update},
+                                           {"entity.duplicate", duplicate}};
+    return commands;
+}
 
 }  // namespace embody::scene

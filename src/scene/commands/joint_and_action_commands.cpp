@@ -97,14 +97,15 @@ Result<json> trigger(SessionState& state, const json& params) {
     return json{{"started", state.simulation->signal(key, button)}};
 }
 
-constexpr Command commands[] = {{"joint.add", add_joint},
-                                {"joint.remove", remove_joint},
-                                {"action.add", add_action},
-                                {"action.remove", remove_action},
-                                {"action.trigger", trigger}};
-
 }  // namespace
 
-std::span<const Command> joint_and_action_commands() { return commands; }
+std::span<const Command> joint_and_action_commands() {
+    static constexpr Command commands[] = {{"joint.add", add_joint},
+                                           {"joint.remove", remove_joint},
+                                           {"action.add", add_action},
+                                           {"action.remove", remove_action},
+                                           {"action.trigger", trigger}};
+    return commands;
+}
 
 }  // namespace embody::scene

@@ -165,10 +165,11 @@ Result<json> pick(SessionState& state, const json& params) {
                   {"distance", hit->distance}}}};
 }
 
-constexpr Command commands[] = {{"entity.drop_to_floor", drop_to_floor}, {"scene.pick", pick}};
-
 }  // namespace
 
-std::span<const Command> placement_commands() { return commands; }
+std::span<const Command> placement_commands() {
+    static constexpr Command commands[] = {{"entity.drop_to_floor", drop_to_floor}, {"scene.pick", pick}};
+    return commands;
+}
 
 }  // namespace embody::scene

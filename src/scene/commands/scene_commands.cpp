@@ -186,12 +186,13 @@ Result<json> redo(SessionState& state, const json& params) {
     return json{{"redone", label.value().empty() ? json(nullptr) : json(label.value())}};
 }
 
-constexpr Command commands[] = {{"hello", hello},     {"scene.new", make_new}, {"scene.load", load},
-                                {"scene.save", save}, {"scene.list", list},    {"scene.settings", settings},
-                                {"edit.undo", undo},  {"edit.redo", redo}};
-
 }  // namespace
 
-std::span<const Command> scene_commands() { return commands; }
+std::span<const Command> scene_commands() {
+    static constexpr Command commands[] = {{"hello", hello},     {"scene.new", make_new}, {"scene.load", load},
+                                           {"scene.save", save}, {"scene.list", list},    {"scene.settings", settings},
+                                           {"edit.undo", undo},  {"edit.redo", redo}};
+    return commands;
+}
 
 }  // namespace embody::scene

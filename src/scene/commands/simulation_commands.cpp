@@ -113,13 +113,14 @@ Result<json> release(SessionState& state, const json& params) {
     return json::object();
 }
 
-constexpr Command commands[] = {{"simulation.play", play},           {"simulation.pause", pause},
-                                {"simulation.step", step},           {"simulation.reset", reset},
-                                {"simulation.keep", keep},           {"simulation.grab", grab},
-                                {"simulation.move_grab", move_grab}, {"simulation.release", release}};
-
 }  // namespace
 
-std::span<const Command> simulation_commands() { return commands; }
+std::span<const Command> simulation_commands() {
+    static constexpr Command commands[] = {{"simulation.play", play},           {"simulation.pause", pause},
+                                           {"simulation.step", step},           {"simulation.reset", reset},
+                                           {"simulation.keep", keep},           {"simulation.grab", grab},
+                                           {"simulation.move_grab", move_grab}, {"simulation.release", release}};
+    return commands;
+}
 
 }  // namespace embody::scene

@@ -111,16 +111,16 @@ EdgeAxis best_edge(const BoxView& v, double least) {
 
 /// A corner of the incident face while it is clipped: in the reference face's plane, its height over it, and the edges
 /// that meet there (0-3 the incident's, 4-7 the reference's).
-struct ClipCorner {
+struct FaceCorner {
     double x, y, height;
     std::uint32_t edge_in, edge_out;
 };
 constexpr std::size_t most_corners = 8;
 struct ClipPolygon {
-    std::array<ClipCorner, most_corners + 1> corners;
+    std::array<FaceCorner, most_corners + 1> corners;
     int count = 0;
 
-    void add(const ClipCorner& c) {
+    void add(const FaceCorner& c) {
         if (static_cast<std::size_t>(count) < corners.size()) corners[static_cast<std::size_t>(count++)] = c;
     }
 };
@@ -128,16 +128,16 @@ struct ClipPolygon {
 // Keeps what lies on the inner side of one of the four lines x or y = +-limit.
 template <bool along_x>
 void clip_side(const ClipPolygon& from, double sign, double limit, std::uint32_t name, ClipPolygon& to) {
-    const auto beyond = [&](const ClipCorner& c) { return sign * (along_x ? c.x : c.y) - limit; };
+    const auto beyond = [&](const FaceCorner& c) { return sign * (along_x ? c.x : c.y) - limit; };
     to.count = 0;
-    const ClipCorner* u = &from.corners[static_cast<std::size_t>(from.count - 1)];
+    const FaceCorner* u = &from.corners[static_cast<std::size_t>(from.count - 1)];
     double out_u = beyond(*u);
     for (int i = 0; i < from.count; ++i) {
-        const ClipCorner* v = &from.corners[static_cast<std::size_t>(i)];
+        const FaceCorner* v = &from.corners[static_cast<std::size_t>(i)];
         const double out_v = beyond(*v);
         if ((out_u <= 0) != (out_v <= 0)) {
             const double t = out_u / (out_u - out_v);
-            const ClipCorner c{u->x + (v->x - u->x) * t, u->y + (v->y - u->y) * t,
+            const FaceCorner c{u->x + (v->x - u->x) * t, u->y + (v->y - u->y) * t,
                                u->height + (v->height - u->height) * t, out_u <= 0 ? u->edge_out : name,
                                out_u <= 0 ? name : u->edge_out};
             to.add(c);
@@ -208,8 +208,8 @@ void clip_incident(const BoxView& v, FaceContact& f) {
 constexpr std::uint32_t box_tag = 1u << 16, of_b_tag = 1u << 15;
 
 // Where the boxes overlap the deepest corner belongs to the region even where it lies beside the reference face.
-ClipCorner deepest_corner(const BoxView& v, const FaceContact& f, double separation) {
-    ClipCorner c{v.place[f.across], v.place[f.up], separation, 0, 0};
+FaceCorner deepest_corner(const BoxView& v, const FaceContact& f, double separation) {
+    FaceCorner c{v.place[f.across], v.place[f.up], separation, 0, 0};
     for (std::size_t j = 0; j < 3; ++j) {
         const double s = f.side * v.turn[f.axis][j] < 0 ? v.half_b[j] : -v.half_b[j];
         c.x += v.turn[f.across][j] * s;
@@ -224,7 +224,7 @@ struct FaceRegion {
     std::array<std::uint32_t, most_corners + 2> names{};
     int count = 0;
 
-    void add(const ClipCorner& c, std::uint32_t name) {
+    void add(const FaceCorner& c, std::uint32_t name) {
         points[static_cast<std::size_t>(count)] = {c.x, c.y, c.height};
         names[static_cast<std::size_t>(count++)] = name;
     }
@@ -257,7 +257,7 @@ void fill_face_manifold(const BoxView& v, const FaceAxis& face, bool is_face_of_
     FaceRegion region;
     bool has_deepest = face.separation >= 0;
     for (int i = 0; i < f.polygon.count; ++i) {
-        const ClipCorner& c = f.polygon.corners[static_cast<std::size_t>(i)];
+        const FaceCorner& c = f.polygon.corners[static_cast<std::size_t>(i)];
         if (c.height > margin) continue;
         has_deepest = has_deepest || c.height <= face.separation + bias;
         region.add(c, f.name | c.edge_in << 3 | c.edge_out);

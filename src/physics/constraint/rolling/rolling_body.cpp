@@ -23,12 +23,12 @@ constexpr double side_gap = 5e-5;       // m: no farther apart are both ends of 
 constexpr double most_slip = 0.05;      // of the speed of turning, that is stopped at the start
 constexpr double slow_slip = 0.01;      // m/s: is stopped as well
 constexpr double most_approach = 0.05;  // m/s along the normal: slower than any impact
-constexpr double least_lean = 0.005;   // sine of the angle between axis and normal: flatter, the rim lies on the ground
-constexpr double least_turn = 1e-3;    // rad of the axis in a step: slower, the contact solver loses nothing
-constexpr double fast_turn = 0.5;      // rad of the body in a step: faster, the solver's small turns are none
-constexpr double part_turn = 0.08;     // rad in a part of the step, at most
-constexpr int most_parts = 400;        // of a step
-constexpr double most_mending = 1e-3;  // share of the energy that Runge-Kutta may miss in a step
+constexpr double least_lean = 0.005;  // sine of the angle between axis and normal: flatter, the rim lies on the ground
+constexpr double least_turn = 1e-3;   // rad of the axis in a step: slower, the contact solver loses nothing
+constexpr double fast_turn = 0.5;     // rad of the body in a step: faster, the solver's small turns are none
+constexpr double body_part_turn = 0.08;  // rad in a part of the step, at most
+constexpr int most_parts = 400;          // of a step
+constexpr double most_mending = 1e-3;    // share of the energy that Runge-Kutta may miss in a step
 
 /// Where a ring is lowest, from the centre of mass, and how fast that place moves.
 struct Lowest {
@@ -237,7 +237,7 @@ std::optional<Vec3> Roller::roll(BodyState& state, double time) {
     Moving at;
     if (!begin(state, at)) return std::nullopt;
     const double rate = rate_of(at);
-    const auto parts = static_cast<int>(std::ceil(rate * time / part_turn));
+    const auto parts = static_cast<int>(std::ceil(rate * time / body_part_turn));
     const bool is_slow = axis_rate(at) * time < least_turn && length(at.spin) * time < fast_turn;
     if (is_slow || !(parts <= most_parts)) return std::nullopt;
 

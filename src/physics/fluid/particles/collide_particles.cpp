@@ -13,9 +13,7 @@ namespace {
 // Particles come no nearer to an obstacle than this, in cells.
 constexpr float least_distance = 0.02f;
 // They go no farther in a part of a step than this, in cells.
-constexpr double longest_way = 4;
-
-Vec3 to_vec(const float* p) { return {p[0], p[1], p[2]}; }
+constexpr double longest_part = 4;
 
 void set_position(FluidParticle& particle, Vec3 p) {
     for (int axis = 0; axis < 3; ++axis) particle.position[axis] = static_cast<float>(p[axis]);
@@ -233,7 +231,7 @@ void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to, const 
 
 void ParticleCollider::move(FluidParticle& particle, const float* end) {
     // Nothing goes farther than the tiles around the particles' reach, nor two cells at once.
-    const auto longest = static_cast<float>(longest_way * grid_.cell_size());
+    const auto longest = static_cast<float>(longest_part * grid_.cell_size());
     float way[3], size = 0;
     for (int axis = 0; axis < 3; ++axis) {
         way[axis] = std::clamp(end[axis] - particle.position[axis], -longest, longest);

@@ -7,8 +7,6 @@ namespace embody::physics::fluid {
 
 namespace {
 
-Vec3 to_vec(const float* p) { return {p[0], p[1], p[2]}; }
-
 // The row of the cell that a place lies in or, where that is air, of one beside it; −1: none.
 std::int32_t row_near(const FluidGrid& grid, const float* place) {
     Cell c{};

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "foundation/task_pool.h"
+#include "math/vec3.h"
 #include "physics/fluid/namespace.h"
 
 namespace embody::physics::fluid {
@@ -20,6 +21,9 @@ struct FluidParticle {
     std::uint32_t id = 0;
 };
 static_assert(sizeof(FluidParticle) == 64);
+
+/// A particle's position or velocity.
+inline Vec3 to_vec(const float* p) { return {p[0], p[1], p[2]}; }
 
 /// Loops over fewer particles are not shared among workers.
 inline constexpr std::size_t few_particles = 1000;

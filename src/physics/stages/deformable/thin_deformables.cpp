@@ -13,7 +13,8 @@ namespace {
 // Points of segments between the nodes that may touch: corners and edges of bodies, round ones between two nodes.
 void find_segment_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide, double time_step,
                            Vec3 gravity, ThinDeformable& thin) {
-    constexpr double end_share = 0.05;  // of a segment's length: nearer to its ends the node's own contact holds
+    constexpr double segment_end_share =
+        0.05;  // of a segment's length: nearer to its ends the node's own contact holds
     const DeformableRecord& record = *thin.record;
     const Nodes& nodes = record.nodes();
     const double radius = record.definition.contact_radius, fall = length(gravity) * time_step;
@@ -39,7 +40,7 @@ void find_segment_contacts(std::span<const TouchedBody> bodies, const std::vecto
             for (const Manifold& manifold : manifolds) {
                 const ManifoldPoint& point = manifold.points[0];
                 const double along = dot(point.position - from, way) / std::max(length(edge), 1e-12);
-                if (along < end_share || along > 1 - end_share) continue;
+                if (along < segment_end_share || along > 1 - segment_end_share) continue;
                 const Vec3 normal = -manifold.normal;  // from the body to the rope
                 const Vec3 on_axis = from + along * edge;
                 const Vec3 anchor = on_axis - (point.separation + radius) * normal - body.start_center;

@@ -23,7 +23,7 @@ namespace embody::physics::stages {
 namespace {
 
 // So near to each other the contact solver has them already, m.
-constexpr double touch_gap = 1e-3;
+constexpr double stop_gap = 1e-3;
 
 /// A body on its way through the step, and how much of the way it may go.
 struct FastBody {
@@ -101,7 +101,7 @@ std::optional<double> meeting_time(const ContinuousAccess& world, std::uint32_t 
     const BodyRecord& record = world.rigid.record(a);
     const double harmless = record.definition.continuous ? 0 : 0.25 * record.inner_radius;
     return time_of_impact(*record.shape, path_a, *world.rigid.record(b).shape, path_b,
-                          {touch_gap / 2, touch_gap, harmless});
+                          {stop_gap / 2, stop_gap, harmless});
 }
 
 // The velocity with which a body that has `velocity` under the constant `acceleration` was at the place `back` from
