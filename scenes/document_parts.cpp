@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/document_parts.h"
+#include "attributes/physical_kind.h"
 
 #include <algorithm>
 #include <utility>
@@ -42,7 +43,7 @@ Entity& DocumentParts::add(const std::string& name, physics::ShapeDefinition sha
 Entity& DocumentParts::add_static(const std::string& name, physics::ShapeDefinition shape, Vec3 position, Color color) {
     Entity& entity = add(name, std::move(shape), position, color);
     entity.attributes.erase("density");
-    entity.attributes["kind"] = std::string("static");
+    entity.attributes["kind"] = to_value(attributes::PhysicalKind::static_body);
     return entity;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/paper_scenes.h"
+#include "attributes/physical_kind.h"
 
 #include <cmath>
 #include <numbers>
@@ -140,7 +141,7 @@ scene::Document build_dog_on_terrain() {
     scene::Entity& dog =
         parts.add("dog", make_dog(33854), {0, ground + 1.5, 0}, {0.45, 0.28, 0.14}, from_axis_angle({0, 0, 1}, 0.3));
     dog.attributes.erase("density");
-    dog.attributes["kind"] = std::string("rigid");
+    dog.attributes["kind"] = to_value(attributes::PhysicalKind::rigid);
     dog.attributes["mass"] = 30.0;
     return parts.take();
 }

@@ -2,7 +2,6 @@
 #include "attributes/assemble.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -25,10 +24,10 @@ void put_number(AttributeSet& set, const char* name, double value, std::string s
 
 }  // namespace
 
-bool applies_to(std::string_view attribute, std::string_view physical_kind) {
+bool applies_to(std::string_view attribute, PhysicalKind kind) {
     const AttributeDescription* description = describe(attribute);
     if (description == nullptr) return false;
-    const char letter = letter_of_kind(physical_kind);
+    const char letter = letter_of_kind(kind);
     if (letter == '\0') return description->kind == "identity";
     return description->applies_to.find(letter) != std::string::npos;
 }
@@ -54,7 +53,7 @@ void put_twist_rigidity(AttributeSet& set) {
 }  // namespace
 
 void complete_for_kind(AttributeSet& set) {
-    const std::string kind = set.word("kind", "rigid");
+    const PhysicalKind kind = kind_of(set);
     for (const AttributeDescription& description : registry()) {
         const AttributeEntry* held = set.find(description.name);
         const bool concerns = applies_to(description.name, kind);
@@ -63,7 +62,7 @@ void complete_for_kind(AttributeSet& set) {
             set.put({description.name, description.standard, {}, {}, "default", AttributeLevel::standard});
         }
     }
-    if (kind == "rope") put_twist_rigidity(set);
+    if (kind == PhysicalKind::rope) put_twist_rigidity(set);
 }
 
 bool is_manual(const AttributeSet& set, std::string_view name) {
@@ -106,14 +105,14 @@ void put_mass_dependents(AttributeSet& set, const GeometryFacts& facts, const Fo
     put_number(set, "drag_area", (s.x * s.y + s.y * s.z + s.z * s.x) / 2, "mean projected area of the bounding box",
                level);
 
-    const std::string kind = set.word("kind", "");
-    if (kind == "cloth")
+    const PhysicalKind kind = kind_of(set);
+    if (kind == PhysicalKind::cloth)
         put_number(set, "area_density", mass / form.face_area, "mass / largest face of the box", level);
-    if (kind == "rope") {
+    if (kind == PhysicalKind::rope) {
         put_number(set, "linear_density", mass / std::max({s.x, s.y, s.z}), "mass / largest extent", level);
     }
-    if (kind == "fluid") put_number(set, "rest_density", density, "density of the material", level);
-    if (kind == "granular") put_number(set, "grain_density", density, "density of the material", level);
+    if (kind == PhysicalKind::fluid) put_number(set, "rest_density", density, "density of the material", level);
+    if (kind == PhysicalKind::granular) put_number(set, "grain_density", density, "density of the material", level);
 }
 
 namespace {
@@ -157,15 +156,10 @@ void put_fluid_cells(AttributeSet& set, double volume) {
 }  // namespace
 
 void put_fineness(AttributeSet& set, const GeometryFacts& facts, const Form& form) {
-    const std::string kind = set.word("kind", "");
+    const PhysicalKind kind = kind_of(set);
     const double volume = facts.hull_volume > 0 && std::isfinite(facts.hull_volume) ? facts.hull_volume : form.volume;
-    if (kind == "granular") put_simulated_grains(set, volume, form);
-    if (kind == "fluid") put_fluid_cells(set, volume);
-}
-
-bool changes_form(std::string_view kind) {
-    constexpr std::array<std::string_view, 5> kinds = {"soft", "cloth", "rope", "fluid", "granular"};
-    return std::ranges::find(kinds, kind) != kinds.end();
+    if (kind == PhysicalKind::granular) put_simulated_grains(set, volume, form);
+    if (kind == PhysicalKind::fluid) put_fluid_cells(set, volume);
 }
 
 namespace {
@@ -209,12 +203,12 @@ void put_mass_by_volume(AttributeSet& set, double density, double volume, const 
 }  // namespace
 
 void put_mass_of_primitive(AttributeSet& set, const GeometryFacts& facts) {
-    const std::string kind = set.word("kind", "");
-    if (kind == "cloth") put_mass_of_sheet(set, facts);
-    if (kind == "rope") put_mass_of_line(set, facts);
-    if (kind == "fluid")
+    const PhysicalKind kind = kind_of(set);
+    if (kind == PhysicalKind::cloth) put_mass_of_sheet(set, facts);
+    if (kind == PhysicalKind::rope) put_mass_of_line(set, facts);
+    if (kind == PhysicalKind::fluid)
         put_mass_by_volume(set, set.number("rest_density", 998), facts.volume, "rest density × volume");
-    if (kind == "granular")
+    if (kind == PhysicalKind::granular)
         put_mass_by_volume(set, set.number("grain_density", 2650) * loose_packing, facts.volume,
                            "grain density × 0.55, as poured grains lie, × volume");
 }

@@ -5,12 +5,13 @@
 
 #include "attributes/attribute.h"
 #include "attributes/form.h"
+#include "attributes/physical_kind.h"
 #include "attributes/taxonomy_data.h"
 
 namespace embody::attributes {
 
 /// Whether an attribute concerns things of this physical kind; things that are only drawn have the identity attributes.
-bool applies_to(std::string_view attribute, std::string_view physical_kind);
+bool applies_to(std::string_view attribute, PhysicalKind kind);
 
 /// Defaults for what concerns the set's kind and is missing; what does not concern it goes, unless a person set it. A
 /// rope's twist rigidity follows from its bend rigidity where it is no more than a default.
@@ -28,9 +29,6 @@ inline constexpr double loose_packing = 0.55;
 /// How fine what is simulated by many points is: the size of the balls that stand for the grains of a granular thing
 /// (docs/physics/grains.md), the cells of a liquid (docs/physics/fluids.md). Nothing else is touched.
 void put_fineness(AttributeSet& set, const GeometryFacts& facts, const Form& form);
-
-/// Whether things of this physical kind are no rigid body: soft, cloth, rope, fluid, granular.
-bool changes_form(std::string_view physical_kind);
 
 /// What a primitive (whose volume and size `facts` has) weighs that is no rigid thing, and what goes with that: cloth
 /// by its area, a rope of a category by its length, liquids and bulk by their own density. A mass that a person set

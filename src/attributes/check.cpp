@@ -6,6 +6,7 @@
 
 #include "attributes/assemble.h"
 #include "attributes/form.h"
+#include "attributes/physical_kind.h"
 #include "attributes/registry.h"
 
 namespace embody::attributes {
@@ -25,7 +26,7 @@ void check_entries(const AttributeSet& set, std::vector<Issue>& issues) {
             issues.push_back({entry.name, "lies outside its own interval"});
         }
     }
-    const std::string kind = set.word("kind", "rigid");
+    const PhysicalKind kind = kind_of(set);
     for (const AttributeDescription& description : registry()) {
         if (applies_to(description.name, kind) && set.find(description.name) == nullptr) {
             issues.push_back({description.name, "is missing"});
@@ -76,7 +77,7 @@ std::vector<Issue> check(const AttributeSet& set, const ModelFacts& facts) {
     if (set.number("friction_dynamic", 0) > set.number("friction_static", 0)) {
         issues.push_back({"friction_dynamic", "exceeds the static friction"});
     }
-    if (set.word("collision_shape", "") == "trimesh" && set.word("kind", "") != "static") {
+    if (set.word("collision_shape", "") == "trimesh" && kind_of(set) != PhysicalKind::static_body) {
         issues.push_back({"collision_shape", "only static things collide with their triangles"});
     }
     return issues;

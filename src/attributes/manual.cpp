@@ -5,6 +5,7 @@
 #include "attributes/assemble.h"
 #include "attributes/classify.h"
 #include "attributes/form.h"
+#include "attributes/physical_kind.h"
 #include "attributes/registry.h"
 #include "attributes/resolver.h"
 #include "attributes/taxonomy_data.h"
@@ -44,7 +45,7 @@ void explain_mass(AttributeSet& set) {
 
 // Of cloth by its area, of a rope by its length.
 bool spread_mass(AttributeSet& set, const Form& form) {
-    const bool is_cloth = set.word("kind", "") == "cloth";
+    const bool is_cloth = kind_of(set) == PhysicalKind::cloth;
     const char* name = is_cloth ? "area_density" : "linear_density";
     if (!is_manual(set, name)) return false;
     const double amount = is_cloth ? form.face_area : std::max({form.size.x, form.size.y, form.size.z});
@@ -93,10 +94,10 @@ void order_friction(AttributeSet& set) {
 }
 
 // Only static things collide with their triangles, and they do.
-void update_collision_shape(AttributeSet& set, const GeometryFacts& facts, const std::string& kind_before) {
-    const std::string kind = set.word("kind", "rigid");
+void update_collision_shape(AttributeSet& set, const GeometryFacts& facts, PhysicalKind kind_before) {
+    const PhysicalKind kind = kind_of(set);
     if (kind == kind_before || set.find("collision_shape") == nullptr) return;
-    const ShapeChoice choice = choose_collision_shape(facts, kind == "static");
+    const ShapeChoice choice = choose_collision_shape(facts, kind == PhysicalKind::static_body);
     replace(set, {"collision_shape", choice.shape, {}, {}, choice.source, choice.level});
 }
 
@@ -138,14 +139,14 @@ AttributeSet with_manual(const Taxonomy* taxonomy, const AttributeSet& automatic
     complete_for_kind(set);
     const Form form = form_of(facts.geometry, {0.5, 0.5, 0.5});
     const double mass_before = automatic.number("mass", set.number("mass", 1));
-    const std::string kind_before = automatic.word("kind", "rigid");
+    const PhysicalKind kind_before = kind_of(automatic);
 
     // From the cause to what follows: material, mass, what depends on the mass.
     if (taxonomy != nullptr) update_material(set, *taxonomy);
     update_mass(set, form);
     scale_inertia(set, mass_before);
-    const std::string kind = set.word("kind", "rigid");
-    const bool is_now_thin = kind != kind_before && (kind == "cloth" || kind == "rope");
+    const PhysicalKind kind = kind_of(set);
+    const bool is_now_thin = kind != kind_before && is_thin(kind);
     if (set.number("mass", mass_before) != mass_before || is_now_thin) put_mass_dependents(set, facts.geometry, form);
     order_friction(set);
     update_collision_shape(set, facts.geometry, kind_before);

@@ -14,15 +14,6 @@
 namespace embody::attributes {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, char>, every_kind.size()> kind_letters{{{"static", 'S'},
-                                                                                         {"rigid", 'R'},
-                                                                                         {"articulated", 'A'},
-                                                                                         {"soft", 'V'},
-                                                                                         {"cloth", 'C'},
-                                                                                         {"rope", 'P'},
-                                                                                         {"fluid", 'F'},
-                                                                                         {"granular", 'G'}}};
-
 constexpr const char* type_words[] = {"a number", "a word", "true or false", "three numbers", "a symmetric 3x3 tensor"};
 
 // The shortest text that reads back as the same number.
@@ -184,18 +175,35 @@ const std::vector<AttributeDescription>& registry() {
     return rows;
 }
 
-char letter_of_kind(std::string_view physical_kind) {
-    for (const auto& [kind, letter] : kind_letters) {
-        if (kind == physical_kind) return letter;
+char letter_of_kind(PhysicalKind kind) {
+    switch (kind) {
+        case PhysicalKind::static_body:
+            return 'S';
+        case PhysicalKind::rigid:
+            return 'R';
+        case PhysicalKind::articulated:
+            return 'A';
+        case PhysicalKind::soft:
+            return 'V';
+        case PhysicalKind::cloth:
+            return 'C';
+        case PhysicalKind::rope:
+            return 'P';
+        case PhysicalKind::fluid:
+            return 'F';
+        case PhysicalKind::granular:
+            return 'G';
+        case PhysicalKind::visual:
+            return '\0';
     }
     return '\0';
 }
 
-std::string_view kind_of_letter(char wanted) {
-    for (const auto& [kind, letter] : kind_letters) {
-        if (letter == wanted) return kind;
+std::optional<PhysicalKind> kind_of_letter(char letter) {
+    for (const PhysicalKind kind : physical_kinds) {
+        if (letter != '\0' && letter_of_kind(kind) == letter) return kind;
     }
-    return {};
+    return std::nullopt;
 }
 
 const AttributeDescription* describe(std::string_view name) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "attributes/attribute.h"
+#include "attributes/physical_kind.h"
 #include "foundation/result.h"
 
 namespace embody::attributes {
@@ -33,10 +34,10 @@ struct AttributeDescription {
 
 /// Letters of all physical kinds, as in AttributeDescription::applies_to.
 inline constexpr std::string_view every_kind = "SRAVCPFG";
-/// 'R' for "rigid"; '\0' for "visual" and for what is no kind.
-char letter_of_kind(std::string_view physical_kind);
-/// "rigid" for 'R'; empty for what is no such letter.
-std::string_view kind_of_letter(char letter);
+/// 'R' for rigid; '\0' for visual.
+char letter_of_kind(PhysicalKind kind);
+/// Rigid for 'R'; nothing for what is no such letter.
+std::optional<PhysicalKind> kind_of_letter(char letter);
 
 /// All attributes in the order in which they are shown.
 const std::vector<AttributeDescription>& registry();

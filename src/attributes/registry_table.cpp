@@ -5,6 +5,7 @@
 #include "attributes/registry_table.h"
 
 #include "attributes/model_facts.h"
+#include "attributes/physical_kind.h"
 
 #include <limits>
 #include <utility>
@@ -14,6 +15,12 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr const char* all_kinds = every_kind.data();
+
+std::vector<std::string> names_of_kinds() {
+    std::vector<std::string> names;
+    for (const PhysicalKind kind : physical_kinds) names.push_back(to_text(kind));
+    return names;
+}
 
 using Rows = std::vector<AttributeDescription>;
 
@@ -45,8 +52,8 @@ struct Group {
         number(text, "1", standard, low, high);
         rows.back().whole = true;
     }
-    void word(const Text& text, const char* standard, std::vector<std::string> choices) const {
-        AttributeDescription row = start(text, ValueType::word, "", std::string(standard));
+    void word(const Text& text, const std::string& standard, std::vector<std::string> choices) const {
+        AttributeDescription row = start(text, ValueType::word, "", standard);
         row.choices = std::move(choices);
         rows.push_back(std::move(row));
     }
@@ -83,7 +90,7 @@ private:
 void add_identity(Rows& rows) {
     const Group group{rows, "identity"};
     group.word({"kind", all_kinds, "Physical kind", "What the thing is for physics; static things never move."},
-               "rigid", {"static", "rigid", "articulated", "soft", "cloth", "rope", "fluid", "granular", "visual"});
+               to_text(PhysicalKind::rigid), names_of_kinds());
     group.word({"category", all_kinds, "Category", "What the thing is, from the taxonomy."}, "object", {});
     group.word({"subcategory", all_kinds, "Subcategory", "What it is more exactly, where known."}, "", {});
     group.word({"synset", all_kinds, "WordNet synset", "Meaning in WordNet 3.0, such as chair.n.01, where known."}, "",

@@ -11,6 +11,7 @@
 #include "attributes/mass_estimate.h"
 #include "attributes/material_parts.h"
 #include "attributes/phrase_match.h"
+#include "attributes/physical_kind.h"
 #include "attributes/registry.h"
 
 namespace embody::attributes {
@@ -37,17 +38,20 @@ void put_identity(AttributeSet& set, const ModelFacts& facts, const Classificati
     set.put({"category_confidence", what.confidence, {}, {}, what.reckoning, what.level});
     word("placement", category.placement, usual_for(category, "placement"), what.level);
 
+    const auto kind = [&](PhysicalKind of_it, const std::string& source, AttributeLevel level) {
+        set.put({"kind", to_value(of_it), {}, {}, source, level});
+    };
     // Who says whether it moves: the catalogue's flags before the category.
     if (facts.door_or_window) {
-        word("kind", "static", "the catalogue says that it is a door or window", AttributeLevel::model);
+        kind(PhysicalKind::static_body, "the catalogue says that it is a door or window", AttributeLevel::model);
     } else if (facts.movable) {
         const std::string verdict = *facts.movable ? "the catalogue says movable" : "the catalogue says not movable";
         const bool agrees = *facts.movable == category.movable;
-        word("kind", *facts.movable ? category.kind : "static",
+        kind(*facts.movable ? category.kind : PhysicalKind::static_body,
              verdict + (agrees ? ", as usual for " : ", unlike what is usual for ") + category.name,
              AttributeLevel::model);
     } else {
-        word("kind", category.movable ? category.kind : "static",
+        kind(category.movable ? category.kind : PhysicalKind::static_body,
              usual_for(category, category.said_by.contains("movable") ? "movable" : "kind"), what.level);
     }
 }
@@ -100,13 +104,13 @@ void put_form(AttributeSet& set, const ModelFacts& facts, const std::vector<Mate
     const CenterAndInertia moments = center_and_inertia(facts.geometry, form, mass, spread_over(parts, mass));
     set.put({"center_of_mass", moments.center, {}, {}, moments.source, moments.level});
     set.put({"inertia", moments.inertia, {}, {}, moments.source, moments.level});
-    const ShapeChoice shape = choose_collision_shape(facts.geometry, set.word("kind", "") == "static");
+    const ShapeChoice shape = choose_collision_shape(facts.geometry, kind_of(set) == PhysicalKind::static_body);
     set.put({"collision_shape", shape.shape, {}, {}, shape.source, shape.level});
 }
 
 // What the category says beside mass and material, where it concerns the kind that the model ended with.
 void put_category_attributes(AttributeSet& set, const Classification& what) {
-    const std::string kind = set.word("kind", "");
+    const PhysicalKind kind = kind_of(set);
     for (const CategoryAttribute& usual : what.category->attributes) {
         if (!applies_to(usual.name, kind)) continue;
         replace(set, {usual.name, usual.value.typical, usual.value.low, usual.value.high,

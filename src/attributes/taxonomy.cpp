@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Reads data/taxonomy. Of this layer only this file, field_reader and attribute_json see the JSON library.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include "attributes/assemble.h"
 #include "attributes/field_reader.h"
 #include "attributes/phrase_match.h"
+#include "attributes/physical_kind.h"
 #include "attributes/registry.h"
 #include "attributes/surfaces.h"
 #include "attributes/taxonomy_data.h"
@@ -59,7 +59,7 @@ void read_attributes(FieldReader& reader, const std::string& where, CategoryData
             return reader.fail(field, "the registry has no number of this name");
         }
         if (!applies_to(name, category.kind)) {
-            return reader.fail(field, "is no attribute of the kind " + category.kind);
+            return reader.fail(field, "is no attribute of the kind " + to_text(category.kind));
         }
         CategoryAttribute attribute{name, {}, {}};
         FieldReader inner(content, where + "." + field);
@@ -74,9 +74,14 @@ void read_attributes(FieldReader& reader, const std::string& where, CategoryData
 }
 
 // What has no form of its own, so that a model shows it in a container, on a roll, as one piece.
-bool is_stuff(const CategoryData& category) {
-    constexpr std::array<std::string_view, 4> kinds{"fluid", "granular", "cloth", "rope"};
-    return std::ranges::find(kinds, category.kind) != kinds.end();
+bool is_stuff(const CategoryData& category) { return flows(category.kind) || is_thin(category.kind); }
+
+// What the entry is when it moves.
+void take_kind(FieldReader& reader, const std::string& text, PhysicalKind& kind) {
+    check_choice(reader, "kind", text);
+    kind = kind_from_text(text).value_or(kind);
+    if (kind == PhysicalKind::static_body)
+        reader.fail("kind", "must say what it is when it moves; static is \"movable\": false");
 }
 
 Result<CategoryData> read_category(const json& object, const std::string& where, const CategoryData* parent) {
@@ -90,6 +95,7 @@ Result<CategoryData> read_category(const json& object, const std::string& where,
     if (!top) category.parent = parent->name;
 
     FieldReader reader(object, where);
+    std::string kind;
     std::string scaling = category.scaling == MassScaling::area ? "area" : "volume";
     const bool has_numbers = object.is_object() && (object.contains("mass") || object.contains("at_size") ||
                                                     object.contains("fill_fraction") || object.contains("usual_size"));
@@ -98,7 +104,7 @@ Result<CategoryData> read_category(const json& object, const std::string& where,
     reader.words("words", category.words, true);
     reader.words("catalogue", category.catalogue, false);
     reader.word("modelled_as", category.modelled_as, false);
-    reader.word("kind", category.kind, top);
+    reader.word("kind", kind, top);
     reader.word("placement", category.placement, top);
     reader.truth("movable", category.movable, top);
     reader.interval("mass", category.mass, {1e-5, 1e6}, top);
@@ -112,12 +118,11 @@ Result<CategoryData> read_category(const json& object, const std::string& where,
     reader.word("material", category.material, top);
     reader.word("source", category.source, top || has_numbers);
     if (top) reader.list("subcategories", false);
-    check_choice(reader, "kind", category.kind);
+    take_kind(reader, kind, category.kind);
     check_choice(reader, "placement", category.placement);
-    if (category.kind == "static")
-        reader.fail("kind", "must say what it is when it moves; static is \"movable\": false");
     if (!category.modelled_as.empty() && !is_stuff(category)) {
-        reader.fail("modelled_as", "is for the kinds fluid, granular, cloth and rope; this is " + category.kind);
+        reader.fail("modelled_as",
+                    "is for the kinds fluid, granular, cloth and rope; this is " + to_text(category.kind));
     }
     if (scaling != "volume" && scaling != "area") reader.fail("mass_grows_with", "must be volume or area");
     category.scaling = scaling == "area" ? MassScaling::area : MassScaling::volume;
@@ -294,8 +299,7 @@ Result<void> load_categories_of(Taxonomy::Data& data, const std::filesystem::pat
 }  // namespace
 
 double outside_usual_size(const CategoryData& category, double largest) {
-    const bool folds = category.kind == "cloth" || category.kind == "rope";
-    const double too_small = folds ? 0 : std::log(category.usual_low / largest);
+    const double too_small = is_thin(category.kind) ? 0 : std::log(category.usual_low / largest);
     return std::max({too_small, std::log(largest / category.usual_high), 0.0});
 }
 

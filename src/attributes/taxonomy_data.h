@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "attributes/physical_kind.h"
 #include "attributes/resolver.h"
 #include "attributes/wordnet/noun_table.h"
 
@@ -50,8 +51,8 @@ struct CategoryData {
     std::string domain;  ///< its file without ".json", such as "kitchen"
     std::string synset;  ///< its meaning in WordNet 3.0, such as "chair.n.01"; empty where WordNet has none
     std::vector<std::string> words;
-    std::vector<std::string> catalogue;  ///< names of catalogue categories that mean this where no word tells more
-    std::string kind;                    ///< when movable
+    std::vector<std::string> catalogue;       ///< names of catalogue categories that mean this where no word tells more
+    PhysicalKind kind = PhysicalKind::rigid;  ///< when movable; never static
     std::string placement;
     bool movable = true;
     Interval mass;  ///< kg, of a thing of at_size

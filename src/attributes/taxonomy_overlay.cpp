@@ -8,6 +8,7 @@
 #include "attributes/assemble.h"
 #include "attributes/field_reader.h"
 #include "attributes/phrase_match.h"
+#include "attributes/physical_kind.h"
 
 namespace embody::attributes {
 namespace {
@@ -74,7 +75,7 @@ void sign(json& object, const std::string& file) {
 }
 
 // Numbers of the old kind say nothing of the new one.
-void drop_foreign_attributes(TaxonomyEntry& entry, const std::string& kind) {
+void drop_foreign_attributes(TaxonomyEntry& entry, PhysicalKind kind) {
     if ((*entry.object).contains("attributes") && (*entry.object)["attributes"].is_object()) {
         json kept = json::object();
         for (const auto& [name, content] : (*entry.object)["attributes"].items()) {
@@ -95,7 +96,7 @@ Result<void> change_entry(TaxonomyEntry& entry, const TaxonomyEntry& given, cons
     if ((gives_mass || gives_any({"usual_size"})) && !(*given.object).contains("source")) {
         return Error{given.where + ".source", "is missing", "say where your numbers are from"};
     }
-    if (const std::string kind = text_of((*given.object), "kind"); !kind.empty()) drop_foreign_attributes(entry, kind);
+    if (const auto kind = kind_from_text(text_of((*given.object), "kind"))) drop_foreign_attributes(entry, *kind);
     json signed_object = (*given.object);
     sign(signed_object, file);
     for (const auto& [field, value] : signed_object.items()) {

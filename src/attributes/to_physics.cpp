@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "attributes/form.h"
+#include "attributes/physical_kind.h"
 #include "attributes/registry.h"
 #include "attributes/surfaces.h"
 #include "attributes/taxonomy_data.h"
@@ -170,14 +171,14 @@ double area_of(const SheetMesh& sheet) {
 }  // namespace
 
 Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attributes, const Taxonomy* taxonomy) {
-    const std::string kind = attributes.word("kind", "rigid");
-    if (kind == "visual") {
+    const PhysicalKind kind = kind_of(attributes);
+    if (kind == PhysicalKind::visual) {
         return Error{"kind", "a thing that is only drawn has no body", "set kind to rigid or static"};
     }
     physics::BodyDefinition body;
     body.kind = physics::BodyKind::dynamic_body;
     if (attributes.truth("kinematic", false)) body.kind = physics::BodyKind::kinematic_body;
-    if (kind == "static") body.kind = physics::BodyKind::static_body;
+    if (kind == PhysicalKind::static_body) body.kind = physics::BodyKind::static_body;
     body.mass = mass_from(attributes);
     body.material = material_from(attributes, taxonomy);
     body.linear_damping = number_or_standard(attributes, "linear_damping");
@@ -195,7 +196,7 @@ Result<physics::ShapeDefinition> shape_from_attributes(const AttributeSet& attri
                                                        ModelGeometry& geometry) {
     const std::string shape = attributes.word("collision_shape", "convex_hull");
     if (shape == "trimesh") {
-        if (attributes.word("kind", "rigid") != "static") {
+        if (kind_of(attributes) != PhysicalKind::static_body) {
             return Error{"collision_shape", "only static things collide with their triangles",
                          "set kind to static or collision_shape to convex_hull"};
         }

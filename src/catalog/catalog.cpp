@@ -10,6 +10,7 @@
 #include <limits>
 #include <set>
 
+#include "attributes/physical_kind.h"
 #include "attributes/registry.h"
 #include "catalog/describe_many.h"
 #include "catalog/describe_model.h"
@@ -41,7 +42,7 @@ ModelSummary summary_of(database::ModelRow row) {
     model.author = std::move(row.author);
     model.category = std::move(row.category);
     model.subcategory = std::move(row.subcategory);
-    model.physical_kind = std::move(row.physical_kind);
+    model.physical_kind = attributes::kind_from_text(row.physical_kind).value_or(model.physical_kind);
     model.tags = std::move(row.tags);
     model.size = {row.size[0], row.size[1], row.size[2]};
     model.geometry_kind = kind_from_name(row.geometry_kind);
@@ -279,7 +280,7 @@ void Catalog::prepare_shape(const ChangeReport& report) const {
         return;
     const auto set = attributes(report.models.front().id);
     if (!set) return;
-    if (set->word("kind", "") == "soft") (void)soft_mesh(report.models.front().id);
+    if (attributes::kind_of(*set) == attributes::PhysicalKind::soft) (void)soft_mesh(report.models.front().id);
     if (set->word("collision_shape", "") != "decomposition") return;
     // What fails here fails again where the shape is needed, and is told there.
     const geometry::DecompositionParameters usual;
@@ -533,7 +534,7 @@ Result<ConvexParts> Catalog::convex_parts(std::int64_t id, int max_hulls, double
 
 Result<SoftMesh> Catalog::soft_mesh(std::int64_t id) const {
     database::SimulationMeshTable table(*state_->connection);
-    const auto stored = table.find(id, "soft");
+    const auto stored = table.find(id, attributes::to_text(attributes::PhysicalKind::soft));
     if (!stored) return stored.error();
     if (*stored && is_current(**stored)) {
         auto mesh = soft_mesh_from(**stored);

@@ -13,6 +13,7 @@
 
 #include "attributes/attribute.h"
 #include "attributes/model_facts.h"
+#include "attributes/physical_kind.h"
 #include "attributes/resolver.h"
 #include "catalog/collection.h"
 #include "catalog/geometry_kind.h"
@@ -28,7 +29,7 @@ struct ModelSummary {
     std::int64_t id = 0;  ///< in this database
     std::string key;      ///< the same in every database and after re-import; what a scene file names
     std::string name, source, licence, author, category, subcategory;
-    std::string physical_kind;  ///< static, rigid, soft …: the attribute `kind`
+    attributes::PhysicalKind physical_kind = attributes::PhysicalKind::rigid;
     std::vector<std::string> tags;
     Vec3 size;  ///< m
     GeometryKind geometry_kind = GeometryKind::mesh;

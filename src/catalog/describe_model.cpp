@@ -8,6 +8,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "attributes/physical_kind.h"
 #include "catalog/knowledge_json.h"
 #include "foundation/state_hash.h"
 
@@ -84,7 +85,7 @@ void classify(database::ModelRow& row, const attributes::ModelFacts& facts, cons
     row.category = all.word("category", "");
     if (row.category.empty()) row.category = facts.catalogue_category;
     row.subcategory = all.word("subcategory", "");
-    row.physical_kind = all.word("kind", "");
+    row.physical_kind = attributes::to_text(attributes::kind_of(all));
 }
 
 database::ModelKnowledge describe(database::ModelRow& row, const attributes::ModelFacts& facts,

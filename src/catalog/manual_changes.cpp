@@ -5,6 +5,7 @@
 #include <ctime>
 
 #include "attributes/assemble.h"
+#include "attributes/physical_kind.h"
 #include "attributes/registry.h"
 #include "catalog/knowledge_json.h"
 #include "database/transaction.h"
@@ -36,11 +37,12 @@ Result<void> check_changes(const std::vector<AttributeChange>& changes, const Ch
 }
 
 // The physical kind that the model has once the changes are made.
-std::string kind_after(const database::ModelRow& model, const std::vector<AttributeChange>& changes) {
+attributes::PhysicalKind kind_after(const database::ModelRow& model, const std::vector<AttributeChange>& changes) {
     for (const AttributeChange& change : changes) {
-        if (change.name == "kind" && change.value) return std::get<std::string>(*change.value);
+        if (change.name == "kind" && change.value)
+            return attributes::kind_from_value(*change.value).value_or(attributes::PhysicalKind::rigid);
     }
-    return model.physical_kind;
+    return attributes::kind_from_text(model.physical_kind).value_or(attributes::PhysicalKind::rigid);
 }
 
 std::string time_text(std::int64_t seconds) {
@@ -128,10 +130,11 @@ Result<std::vector<ManualChanges::Step>> ManualChanges::plan(const database::Mod
         for (ManualAttribute& entry : *present) steps.push_back({named, entry.name, std::move(entry), {}, false});
         return steps;
     }
-    const std::string kind = kind_after(model, changes);
+    const attributes::PhysicalKind kind = kind_after(model, changes);
     for (const AttributeChange& change : changes) {
         if (change.value && !attributes::applies_to(change.name, kind)) {
-            refused.push_back({model.key, model.name, change.name, "does not concern things of the kind " + kind});
+            refused.push_back(
+                {model.key, model.name, change.name, "does not concern things of the kind " + to_text(kind)});
             continue;
         }
         auto before = manual_.find(model.key, change.name);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "attributes/physical_kind.h"
 #include "catalog/prepare/byte_stream.h"
 #include "geometry/tetrahedra/fill.h"
 #include "geometry/tetrahedra/separation.h"
@@ -129,7 +130,7 @@ Result<SoftMesh> make_soft_mesh(const geometry::TriangleMesh& surface) {
 }
 
 database::StoredSimulationMesh stored_form(const Result<SoftMesh>& mesh) {
-    database::StoredSimulationMesh stored{"soft", revision, {}, {}};
+    database::StoredSimulationMesh stored{attributes::to_text(attributes::PhysicalKind::soft), revision, {}, {}};
     if (!mesh) {
         stored.problem = mesh.error().why;
         if (!mesh.error().remedy.empty()) stored.problem += "\n" + mesh.error().remedy;

@@ -42,7 +42,7 @@ std::string kinds_text(const AttributeDescription& description) {
     if (description.applies_to == attributes::every_kind) return "all";
     std::string text;
     for (const char letter : description.applies_to)
-        text += (text.empty() ? "" : ", ") + std::string(attributes::kind_of_letter(letter));
+        text += (text.empty() ? "" : ", ") + to_text(*attributes::kind_of_letter(letter));
     return text;
 }
 

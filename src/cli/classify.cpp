@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "attributes/phrase_match.h"
+#include "attributes/physical_kind.h"
 #include "cli/commands.h"
 #include "cli/locations.h"
 #include "cli/output.h"
@@ -79,7 +80,7 @@ void print(const Classification& what, const AttributeSet& set, std::optional<do
     line("because", what.source);
     line("reckoned", what.reckoning);
     line("meaning", what.synset);
-    line("kind", set.word("kind", "") + ", " + set.word("surface_material", ""));
+    line("kind", to_text(kind_of(set)) + ", " + set.word("surface_material", ""));
     if (const AttributeEntry* mass = set.find("mass"); mass != nullptr && mass->low && mass->high) {
         line("mass", fmt::format("{:.3g} kg [{:.3g} … {:.3g}]", set.number("mass", 0), *mass->low, *mass->high));
     }
@@ -108,7 +109,7 @@ int run_classify(const ClassifyArguments& arguments) {
     }
     nlohmann::json answer = to_json(what);
     answer["reckoning"] = what.reckoning;
-    answer["kind"] = set.word("kind", "");
+    answer["kind"] = to_text(kind_of(set));
     answer["material"] = set.word("surface_material", "");
     if (const AttributeEntry* mass = set.find("mass"); mass != nullptr && mass->low && mass->high) {
         answer["mass_kg"] = {{"value", set.number("mass", 0)}, {"low", *mass->low}, {"high", *mass->high}};

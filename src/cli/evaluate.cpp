@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "attributes/physical_kind.h"
 #include "cli/commands.h"
 #include "cli/locations.h"
 #include "cli/output.h"
@@ -152,14 +153,20 @@ int evaluate_masses(const EvaluateArguments& arguments, const attributes::Taxono
     return exit_ok;
 }
 
+std::vector<std::string> names_of(const std::vector<attributes::PhysicalKind>& kinds) {
+    std::vector<std::string> names;
+    for (const attributes::PhysicalKind kind : kinds) names.push_back(to_text(kind));
+    return names;
+}
+
 nlohmann::json kinds_to_json(const KindEvaluation& evaluation) {
     nlohmann::json by_label = nlohmann::json::object(), mistakes = nlohmann::json::array();
     for (const auto& [label, counts] : evaluation.by_label)
-        by_label[label] = {{"words", counts.first}, {"right", counts.second}};
+        by_label[to_text(label)] = {{"words", counts.first}, {"right", counts.second}};
     for (const evaluation::KindMistake& mistake : evaluation.mistakes) {
         mistakes.push_back({{"word", mistake.label.word},
-                            {"right", mistake.label.kinds},
-                            {"kind", mistake.kind},
+                            {"right", names_of(mistake.label.kinds)},
+                            {"kind", to_text(mistake.kind)},
                             {"category", mistake.category}});
     }
     return {{"words", evaluation.words},
@@ -171,10 +178,10 @@ nlohmann::json kinds_to_json(const KindEvaluation& evaluation) {
 void print_kinds(const KindEvaluation& evaluation) {
     print_text("kind as {} labelled words say: {:.1f} %\n", evaluation.words, 100 * evaluation.accuracy());
     for (const auto& [label, counts] : evaluation.by_label)
-        print_text("  {} {:>6} of {:>6}\n", padded(label, 14), counts.second, counts.first);
+        print_text("  {} {:>6} of {:>6}\n", padded(to_text(label), 14), counts.second, counts.first);
     for (const evaluation::KindMistake& mistake : evaluation.mistakes) {
-        print_text("  {} is {}, not {}: taken for {}\n", padded(mistake.label.word, 26), mistake.label.kinds.front(),
-                   mistake.kind, mistake.category);
+        print_text("  {} is {}, not {}: taken for {}\n", padded(mistake.label.word, 26),
+                   to_text(mistake.label.kinds.front()), to_text(mistake.kind), mistake.category);
     }
 }
 

@@ -35,7 +35,7 @@ int run_search(const SearchArguments& arguments) {
                "size (m)");
     for (const catalog::ModelSummary& model : page->models) {
         print_text("{:>6}  {}  {}  {}  {:.2f} × {:.2f} × {:.2f}\n", model.id, padded(model.name, 30),
-                   padded(model.category, 18), padded(model.physical_kind, 8), model.size.x, model.size.y,
+                   padded(model.category, 18), padded(to_text(model.physical_kind), 8), model.size.x, model.size.y,
                    model.size.z);
     }
     print_text("{} of {}\n", page->models.size(), page->total);

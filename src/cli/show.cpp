@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "attributes/attribute_json.h"
+#include "attributes/physical_kind.h"
 #include "attributes/registry.h"
 #include "cli/commands.h"
 #include "cli/locations.h"
@@ -62,7 +63,7 @@ void print_parts(const catalog::ConvexParts& parts) {
 // What a soft thing is computed on, or why it cannot be soft. Made now where the import has not made it.
 std::optional<Result<catalog::SoftMesh>> soft_mesh(const catalog::Catalog& catalog, std::int64_t id,
                                                    const attributes::AttributeSet& set) {
-    if (set.word("kind", "") != "soft") return std::nullopt;
+    if (kind_of(set) != attributes::PhysicalKind::soft) return std::nullopt;
     return catalog.soft_mesh(id);
 }
 

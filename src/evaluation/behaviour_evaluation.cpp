@@ -6,6 +6,7 @@
 #include <memory>
 #include <numbers>
 
+#include "attributes/physical_kind.h"
 #include "attributes/surfaces.h"
 #include "evaluation/found_category.h"
 #include "scene/simulation.h"
@@ -14,6 +15,7 @@ namespace embody::evaluation {
 namespace {
 
 using attributes::AttributeSet;
+using attributes::PhysicalKind;
 
 constexpr double gravity = 9.81;
 constexpr double push_speed = 1;     // m/s
@@ -43,7 +45,8 @@ Result<Stage> stage_of(catalog::Catalog& catalog, const std::string& key, double
     document.settings.workers = 1;
     scene::Entity floor{
         .index = 1, .name = "Floor", .geometry = physics::ShapeDefinition{physics::BoxShape{{50, 1, 50}}}};
-    floor.attributes = {{"kind", std::string("static")}, {"surface_material", std::string(floor_material)}};
+    floor.attributes = {{"kind", to_value(PhysicalKind::static_body)},
+                        {"surface_material", std::string(floor_material)}};
     floor.pose.position = {0, -1, 0};
     scene::Entity model{.index = 2, .name = "Model", .geometry = scene::ModelReference{key}};
     model.pose.position = {0, height, 0};
@@ -228,8 +231,8 @@ Result<BehaviourEvaluation> evaluate_behaviour(catalog::Catalog& catalog, std::s
             if (progress) progress(++done, total);
             const auto attributes = catalog.attributes(model.id);
             if (!attributes) return attributes.error();
-            const std::string kind = attributes->word("kind", "");
-            if (kind == "static" || kind == "visual") continue;
+            const PhysicalKind kind = kind_of(*attributes);
+            if (kind == PhysicalKind::static_body || kind == PhysicalKind::visual) continue;
             auto behaviour = behaviour_of(catalog, model, *attributes);
             if (behaviour)
                 evaluation.models.push_back(std::move(*behaviour));

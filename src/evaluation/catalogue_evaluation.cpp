@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "attributes/physical_kind.h"
 #include "evaluation/found_category.h"
 
 namespace embody::evaluation {
@@ -25,7 +26,7 @@ void compare_movable(const attributes::Taxonomy& taxonomy, ModelFacts facts, con
     facts.door_or_window = false;
     const AttributeSet set = resolve(taxonomy, facts);
     ++evaluation.flagged;
-    if ((set.word("kind", "") != "static") != catalogue_says) {
+    if ((kind_of(set) != attributes::PhysicalKind::static_body) != catalogue_says) {
         evaluation.disagreements.push_back({key, facts.name, found_category(set), catalogue_says});
     }
 }

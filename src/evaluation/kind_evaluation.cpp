@@ -14,12 +14,13 @@ Result<std::vector<LabelledWord>> read_labelled_words(const std::filesystem::pat
     const auto read = read_table(file, {"words", "kinds"}, 2, [&](const TableRow& row) -> Result<void> {
         const std::vector<std::string> names = split_cell(row.cells[0]);
         if (names.empty()) return Error{"words", "is empty"};
-        LabelledWord label{names.front(), split_cell(row.cells[1])};
-        if (label.kinds.empty()) return Error{"kinds", "is empty"};
-        for (const std::string& kind : label.kinds) {
+        LabelledWord label{names.front(), {}};
+        for (const std::string& kind : split_cell(row.cells[1])) {
             if (auto known = attributes::validate("kind", kind); !known)
                 return Error{"kinds", known.error().why, known.error().remedy};
+            label.kinds.push_back(*attributes::kind_from_text(kind));
         }
+        if (label.kinds.empty()) return Error{"kinds", "is empty"};
         words.push_back(std::move(label));
         return {};
     });
@@ -39,7 +40,7 @@ KindEvaluation evaluate_kinds(const attributes::Taxonomy& taxonomy, const std::v
         attributes::ModelFacts facts;
         facts.name = label.word;
         const attributes::AttributeSet set = resolve(taxonomy, facts);
-        const std::string kind = set.word("kind", "");
+        const attributes::PhysicalKind kind = kind_of(set);
         const bool right = std::ranges::find(label.kinds, kind) != label.kinds.end();
         auto& [all, right_ones] = evaluation.by_label[label.kinds.front()];
         ++all;

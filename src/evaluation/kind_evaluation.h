@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "attributes/physical_kind.h"
 #include "attributes/resolver.h"
 #include "foundation/result.h"
 
@@ -17,8 +18,8 @@ namespace embody::evaluation {
 
 /// A thing whose physical kind somebody knows.
 struct LabelledWord {
-    std::string word;                ///< its usual name
-    std::vector<std::string> kinds;  ///< any of these is right
+    std::string word;                             ///< its usual name
+    std::vector<attributes::PhysicalKind> kinds;  ///< any of these is right
 };
 
 /// Reads a table with the columns words (several separated by ";": the first is taken) and kinds (likewise: all are
@@ -28,14 +29,15 @@ Result<std::vector<LabelledWord>> read_labelled_words(const std::filesystem::pat
 /// A word whose kind is wrong.
 struct KindMistake {
     LabelledWord label;
-    std::string kind;      ///< what we think
-    std::string category;  ///< why
+    attributes::PhysicalKind kind = attributes::PhysicalKind::rigid;  ///< what we think
+    std::string category;                                             ///< why
 };
 
 struct KindEvaluation {
     std::size_t words = 0;
     std::vector<KindMistake> mistakes;
-    std::map<std::string, std::pair<std::size_t, std::size_t>> by_label;  ///< first right kind: words, right ones
+    std::map<attributes::PhysicalKind, std::pair<std::size_t, std::size_t>>
+        by_label;  ///< first right kind: words, right ones
 
     [[nodiscard]] double accuracy() const;  ///< share of the words
 };

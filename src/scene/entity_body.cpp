@@ -8,6 +8,7 @@
 #include "attributes/assemble.h"
 #include "attributes/attribute_json.h"
 #include "attributes/form.h"
+#include "attributes/physical_kind.h"
 #include "attributes/registry.h"
 #include "attributes/resolver.h"
 #include "attributes/to_physics.h"
@@ -22,6 +23,7 @@ using attributes::AttributeEntry;
 using attributes::AttributeLevel;
 using attributes::AttributeSet;
 using attributes::ModelFacts;
+using attributes::PhysicalKind;
 
 namespace {
 
@@ -89,11 +91,16 @@ std::string category_of(const Entity& entity) {
     return word ? *word : entity.category;
 }
 
+// That a person gave it.
+std::optional<PhysicalKind> own_kind(const Entity& entity) {
+    const auto own = entity.attributes.find("kind");
+    return own == entity.attributes.end() ? std::nullopt : attributes::kind_from_value(own->second);
+}
+
 // What a person makes of triangles that would be static otherwise.
 bool is_moved(const Entity& entity) {
-    const auto own = entity.attributes.find("kind");
-    if (own == entity.attributes.end()) return !category_of(entity).empty();
-    return own->second != attributes::AttributeValue(std::string("static"));
+    const auto own = own_kind(entity);
+    return own ? *own != PhysicalKind::static_body : !category_of(entity).empty();
 }
 
 // A primitive that no category makes soft or the like is solid, of the default density, and its form is known exactly.
@@ -103,7 +110,8 @@ AttributeSet solid_attributes(const std::string& category, const physics::ShapeD
     const std::string name = physics::shape_name(shape);
     if (!category.empty()) set.put({"category", category, {}, {}, "the entity's category", AttributeLevel::category});
     if (physics::is_static_only(shape) && !(facts.geometry.volume > 0)) {
-        set.put({"kind", std::string("static"), {}, {}, "a " + name + " can't move", AttributeLevel::kind});
+        set.put(
+            {"kind", to_value(PhysicalKind::static_body), {}, {}, "a " + name + " can't move", AttributeLevel::kind});
     } else {
         const double density = std::get<double>(attributes::describe("density")->standard);
         const std::string solid = "homogeneous " + name;
@@ -345,12 +353,11 @@ Result<SharedAttributes> EntityBodies::shared_attributes(const Entity& entity) {
 }
 
 bool EntityBodies::is_liquid(const Entity& entity) {
-    if (const auto own = entity.attributes.find("kind"); own != entity.attributes.end())
-        return own->second == attributes::AttributeValue(std::string("fluid"));
+    if (const auto own = own_kind(entity)) return *own == PhysicalKind::fluid;
     const bool is_primitive = std::holds_alternative<physics::ShapeDefinition>(entity.geometry);
     if (is_primitive && category_of(entity).empty()) return false;
     const Result<AttributeSet> automatic = automatic_attributes(entity);
-    return automatic.ok() && automatic.value().word("kind", "") == "fluid";
+    return automatic.ok() && kind_of(automatic.value()) == PhysicalKind::fluid;
 }
 
 Result<std::vector<attributes::Issue>> EntityBodies::contradictions(const Entity& entity) {
@@ -386,7 +393,7 @@ AttributeSet EntityBodies::lay_over(const AttributeSet& automatic, const std::ve
 
 Result<physics::BodyDefinition> EntityBodies::body(const Entity& entity, const AttributeSet& attributes) {
     physics::BodyDefinition body;
-    if (attributes.word("kind", "rigid") == "visual") {
+    if (kind_of(attributes) == PhysicalKind::visual) {
         body.kind = physics::BodyKind::static_body;
         body.enabled = false;
     } else {
@@ -399,8 +406,6 @@ Result<physics::BodyDefinition> EntityBodies::body(const Entity& entity, const A
     // The physics knows a primitive's centre and moments itself, and its mass from the density; but cloth and ropes
     // that are simulated as rigid weigh by their area and length all the same.
     if (std::holds_alternative<physics::ShapeDefinition>(entity.geometry)) {
-        const std::string kind = attributes.word("kind", "rigid");
-        const bool is_thin = kind == "cloth" || kind == "rope";
         // It collides as its hull, but weighs by what its triangles enclose.
         const bool is_mesh =
             std::holds_alternative<physics::MeshShape>(std::get<physics::ShapeDefinition>(entity.geometry));
@@ -409,7 +414,7 @@ Result<physics::BodyDefinition> EntityBodies::body(const Entity& entity, const A
             return held &&
                    (held->level == AttributeLevel::manual || (is_mesh && held->level != AttributeLevel::standard));
         };
-        if (!is_thin && !is_known("mass")) body.mass.mass.reset();
+        if (!is_thin(kind_of(attributes)) && !is_known("mass")) body.mass.mass.reset();
         if (!is_known("center_of_mass")) body.mass.center_of_mass.reset();
         if (!is_known("inertia")) body.mass.inertia.reset();
         body.mass.density *= attributes.number("fill_fraction", 1);
@@ -433,7 +438,7 @@ Result<physics::ShapeDefinition> EntityBodies::shape(const Entity& entity, const
     if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry)) {
         // Triangles have no inside that could move; a mesh that is made movable collides as its convex hull.
         const auto* mesh = std::get_if<physics::MeshShape>(shape);
-        if (!mesh || attributes.word("kind", "static") == "static") return *shape;
+        if (!mesh || kind_of(attributes) == PhysicalKind::static_body) return *shape;
         physics::HullShape hull;
         hull.points.reserve(mesh->positions.size());
         for (const Vec3f& position : mesh->positions) hull.points.push_back(to_vec3(position));

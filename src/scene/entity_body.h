@@ -89,6 +89,8 @@ private:
     /// The tetrahedra of an entity of kind soft, without its scale; the error says why it cannot be soft. Valid until
     /// the next call.
     Result<const catalog::SoftMesh*> soft_mesh(const Entity& entity);
+    /// Of an entity of kind soft; a note says where it is computed coarsely, or why not at all.
+    EntityForm soft_form(const Entity& entity, const attributes::AttributeSet& attributes);
     Result<catalog::SoftMesh> make_soft_mesh(const Entity& entity);
     Result<physics::DeformableDefinition> soft(const Entity& entity, const attributes::AttributeSet& attributes);
     /// The sheet of an entity of kind cloth, the line of one of kind rope, without its scale. As of soft_mesh().

@@ -2,13 +2,16 @@
 // Which entities are points instead of one body, and of what they are made.
 #include <cmath>
 
+#include "attributes/physical_kind.h"
 #include "scene/entity_body.h"
 
 namespace embody::scene {
 
+using attributes::PhysicalKind;
+
 namespace {
 
-bool is_granular(const attributes::AttributeSet& attributes) { return attributes.word("kind", "") == "granular"; }
+const std::string rigid_because = "is simulated as rigid, because ";
 
 // Equal where geometry and size of the grains are.
 std::string grains_key(const Entity& entity, const attributes::AttributeSet& attributes) {
@@ -17,8 +20,6 @@ std::string grains_key(const Entity& entity, const attributes::AttributeSet& att
     return "granular\n" + key + '\n' + std::to_string(attributes.number("simulated_diameter", 0)) + '\n' +
            std::to_string(attributes.number("grain_budget", 0));
 }
-
-bool is_liquid(const attributes::AttributeSet& attributes) { return attributes.word("kind", "") == "fluid"; }
 
 // Equal where geometry and fineness of a liquid are.
 std::string liquid_key(const Entity& entity, const attributes::AttributeSet& attributes) {
@@ -32,49 +33,71 @@ std::string liquid_key(const Entity& entity, const attributes::AttributeSet& att
 std::string deformable_key(const Entity& entity, const attributes::AttributeSet& attributes) {
     const std::string key = EntityBodies::shape_key(entity, attributes);
     if (key.empty()) return {};
-    std::string own = attributes.word("kind", "") + '\n' + key + '\n' + std::to_string(entity.scale);
+    std::string own = to_text(kind_of(attributes)) + '\n' + key + '\n' + std::to_string(entity.scale);
     for (const char* count : {"cloth_nodes", "rope_segments"})
         own += '\n' + std::to_string(attributes.number(count, 0));
     return own;
 }
 
-bool is_deformable(const std::string& kind) { return kind == "soft" || kind == "cloth" || kind == "rope"; }
-
 }  // namespace
 
-EntityForm EntityBodies::form(const Entity& entity, const attributes::AttributeSet& attributes, bool is_held_as_body) {
-    if (is_granular(attributes)) return {true, grains_key(entity, attributes), {}};
-    const std::string kind = attributes.word("kind", "");
-    if (!is_deformable(kind) && !scene::is_liquid(attributes)) return {};
-    if (is_held_as_body) return {false, {}, "is simulated as rigid, because a joint or a pin holds on to it"};
-    if (scene::is_liquid(attributes)) return {true, liquid_key(entity, attributes), {}};
-    const auto or_rigid = [&](const auto& made) {
-        if (made.ok()) return EntityForm{true, deformable_key(entity, attributes), {}};
-        return EntityForm{false, {}, "is simulated as rigid, because " + made.error().why};
-    };
-    if (kind != "soft") return or_rigid(thin_form(entity, attributes));
+EntityForm EntityBodies::soft_form(const Entity& entity, const attributes::AttributeSet& attributes) {
     const Result<const catalog::SoftMesh*> mesh = soft_mesh(entity);
-    EntityForm soft = or_rigid(mesh);
-    if (mesh.ok() && mesh.value()->flatness > 1)
+    if (!mesh.ok()) return {false, {}, rigid_because + mesh.error().why};
+    EntityForm soft{true, deformable_key(entity, attributes), {}};
+    if (mesh.value()->flatness > 1)
         soft.note = "is so flat that it is computed coarsely, on cells " +
                     std::to_string(std::lround(mesh.value()->flatness)) + " times as wide as thick";
     return soft;
 }
 
+EntityForm EntityBodies::form(const Entity& entity, const attributes::AttributeSet& attributes, bool is_held_as_body) {
+    const PhysicalKind kind = kind_of(attributes);
+    if (is_held_as_body && (is_deformable(kind) || kind == PhysicalKind::fluid))
+        return {false, {}, rigid_because + "a joint or a pin holds on to it"};
+    switch (kind) {
+        case PhysicalKind::static_body:
+        case PhysicalKind::rigid:
+        case PhysicalKind::articulated:
+        case PhysicalKind::visual:
+            return {};
+        case PhysicalKind::granular:
+            return {true, grains_key(entity, attributes), {}};
+        case PhysicalKind::fluid:
+            return {true, liquid_key(entity, attributes), {}};
+        case PhysicalKind::soft:
+            return soft_form(entity, attributes);
+        case PhysicalKind::cloth:
+        case PhysicalKind::rope: {
+            const Result<const ThinForm*> thin = thin_form(entity, attributes);
+            if (!thin.ok()) return {false, {}, rigid_because + thin.error().why};
+            return {true, deformable_key(entity, attributes), {}};
+        }
+    }
+    return {};
+}
+
 Result<PointsDefinition> EntityBodies::points(const Entity& entity, const attributes::AttributeSet& attributes) {
-    if (is_granular(attributes)) {
-        Result<GrainDefinition> grains = this->grains(entity, attributes);
-        if (!grains.ok()) return grains.error();
-        return PointsDefinition(std::move(grains).value());
+    const auto as_points = [](auto made) -> Result<PointsDefinition> {
+        if (!made.ok()) return made.error();
+        return PointsDefinition(std::move(made).value());
+    };
+    switch (kind_of(attributes)) {
+        case PhysicalKind::granular:
+            return as_points(grains(entity, attributes));
+        case PhysicalKind::fluid:
+            return as_points(liquid(entity, attributes));
+        case PhysicalKind::soft:
+        case PhysicalKind::cloth:
+        case PhysicalKind::rope:
+            return as_points(deformable(entity, attributes));
+        case PhysicalKind::static_body:
+        case PhysicalKind::rigid:
+        case PhysicalKind::articulated:
+        case PhysicalKind::visual:
+            break;
     }
-    if (scene::is_liquid(attributes)) {
-        Result<LiquidDefinition> liquid = this->liquid(entity, attributes);
-        if (!liquid.ok()) return liquid.error();
-        return PointsDefinition(std::move(liquid).value());
-    }
-    Result<physics::DeformableDefinition> deformable = this->deformable(entity, attributes);
-    if (!deformable.ok()) return deformable.error();
-    return PointsDefinition(std::move(deformable).value());
+    return Error{"attributes.kind", "a " + to_text(kind_of(attributes)) + " thing is one body, not points"};
 }
 
 }  // namespace embody::scene

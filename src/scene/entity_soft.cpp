@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "attributes/physical_kind.h"
 #include "attributes/to_physics.h"
 #include "scene/entity_body.h"
 #include "scene/shape_surface.h"
@@ -67,7 +68,7 @@ Result<physics::DeformableDefinition> EntityBodies::soft(const Entity& entity,
 Result<physics::DeformableDefinition> EntityBodies::deformable(const Entity& entity,
                                                                const attributes::AttributeSet& attributes) {
     Result<physics::DeformableDefinition> made =
-        attributes.word("kind", "") == "soft" ? soft(entity, attributes) : thin(entity, attributes);
+        kind_of(attributes) == attributes::PhysicalKind::soft ? soft(entity, attributes) : thin(entity, attributes);
     if (!made.ok()) return made.error();
     physics::DeformableDefinition deformable = std::move(made).value();
     deformable.pose = entity.pose;

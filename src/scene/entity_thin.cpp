@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "attributes/physical_kind.h"
 #include "attributes/to_physics.h"
 #include "scene/entity_body.h"
 
 namespace embody::scene {
+
+using attributes::PhysicalKind;
 
 namespace {
 
@@ -14,7 +17,7 @@ namespace {
 constexpr double sheet_radius_share = 0.03, sheet_least_radius = 1e-3, sheet_greatest_radius = 0.02;
 constexpr double least_rope_radius = 5e-4, greatest_rope_radius = 0.5;
 
-bool is_cloth(const attributes::AttributeSet& attributes) { return attributes.word("kind", "") == "cloth"; }
+bool is_cloth(const attributes::AttributeSet& attributes) { return kind_of(attributes) == PhysicalKind::cloth; }
 
 int count_of(const attributes::AttributeSet& attributes) {
     return static_cast<int>(is_cloth(attributes) ? attributes.number("cloth_nodes", 1000)
@@ -37,7 +40,7 @@ Error in_attributes(const Error& error) { return {"attributes: " + error.where, 
 Result<const ThinForm*> EntityBodies::thin_form(const Entity& entity, const attributes::AttributeSet& attributes) {
     const auto* model = std::get_if<ModelReference>(&entity.geometry);
     const std::string key = model ? model->key : shape_key(entity, {});
-    const std::string own = attributes.word("kind", "") + ' ' + std::to_string(count_of(attributes));
+    const std::string own = to_text(kind_of(attributes)) + ' ' + std::to_string(count_of(attributes));
     auto& forms = thin_forms_[key];
     auto found = forms.find(own);
     if (key.empty() || found == forms.end()) {

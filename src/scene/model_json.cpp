@@ -15,7 +15,7 @@ nlohmann::json model_to_json(const catalog::ModelSummary& model) {
             {"author", model.author},
             {"category", model.category},
             {"subcategory", model.subcategory},
-            {"kind", model.physical_kind},
+            {"kind", to_text(model.physical_kind)},
             {"tags", model.tags},
             {"size", {model.size.x, model.size.y, model.size.z}},
             {"vertices", model.vertices},

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "attributes/form.h"
+#include "attributes/physical_kind.h"
 #include "scene/catalog_edit.h"
 #include "scene/json/parts.h"
 #include "scene/scene_file.h"
@@ -59,7 +60,7 @@ Document new_document(const std::string& title) {
     floor.category = "floor";
     floor.geometry = physics::ShapeDefinition{physics::BoxShape{{15, 0.25, 15}}};
     floor.pose.position = {0, -0.25, 0};
-    floor.attributes["kind"] = std::string("static");
+    floor.attributes["kind"] = to_value(attributes::PhysicalKind::static_body);
     floor.color = {0.5, 0.5, 0.48};
     document.entities.push_back(std::move(floor));
     document.camera = {Vec3{4, 3, 6}, Vec3{0, 0.5, 0}};

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "attributes/physical_kind.h"
 #include "physics/definitions/grain_material.h"
 #include "scene/document_field.h"
 #include "scene/liquid_notes.h"
@@ -40,7 +41,7 @@ Result<LiveEntity> Simulation::State::describe(const Entity& entity) {
     described.attributes = std::move(set).value();
     const AttributeSet& attributes = *described.attributes;
     described.frame = entity.pose;
-    described.form = bodies.form(entity, attributes, is_held_as_body(entity.index, attributes.word("kind", "")));
+    described.form = bodies.form(entity, attributes, is_held_as_body(entity.index, kind_of(attributes)));
     if (described.form.has_points && entity.torque != Vec3{})
         described.form.note = "is not turned by its torque, because it is not one rigid body";
     if (!described.form.has_points) described.shape_key = EntityBodies::shape_key(entity, attributes);
@@ -163,7 +164,7 @@ Result<void> Simulation::State::update_points(LiveEntity& before, LiveEntity& af
 
 // Another kind, or other points: made anew where it is.
 Result<void> Simulation::State::replace(LiveEntity& before, LiveEntity& after, bool keep_motion) {
-    if (after.form.has_points && is_held_as_body(before.definition.index, after.attributes->word("kind", "")))
+    if (after.form.has_points && is_held_as_body(before.definition.index, kind_of(*after.attributes)))
         return Error{"attributes.kind", "grains cannot be held by a joint or a pin", "remove that first"};
     const Entity document = after.definition;
     if (keep_motion) {
@@ -171,7 +172,8 @@ Result<void> Simulation::State::replace(LiveEntity& before, LiveEntity& after, b
         std::tie(after.definition.linear_velocity, after.definition.angular_velocity) = motion_of(before);
     }
     // Liquid fills only what is free and joins liquid that is there, so what it was is not there meanwhile.
-    const bool hides = before.definition.enabled && (!before.points || before.attributes->word("kind", "") == "fluid");
+    const bool hides =
+        before.definition.enabled && (!before.points || kind_of(*before.attributes) == attributes::PhysicalKind::fluid);
     const auto show = [&](bool shown) {
         return before.points ? before.points->set_enabled(shown) : world->set_enabled(before.body, shown);
     };

@@ -2,11 +2,13 @@
 // What holds entities together: joints, and the pins of what changes its form.
 #include <algorithm>
 
+#include "attributes/physical_kind.h"
 #include "scene/document_field.h"
 #include "scene/simulation_state.h"
 
 namespace embody::scene {
 
+using attributes::PhysicalKind;
 using physics::BodyHandle;
 using physics::JointHandle;
 
@@ -35,11 +37,9 @@ void add_targets(const std::vector<Pin>& pins, std::set<EntityIndex>& targets) {
         if (pin.to) targets.insert(*pin.to);
 }
 
-bool is_thin(const std::string& kind) { return kind == "cloth" || kind == "rope"; }
-
 // Whether a pin between things of these kinds is a tie, which makes neither rigid.
-bool may_tie(const std::string& one, const std::string& other) {
-    return (is_thin(one) && (is_thin(other) || other == "soft")) || (one == "soft" && is_thin(other));
+bool may_tie(PhysicalKind one, PhysicalKind other) {
+    return is_deformable(one) && is_deformable(other) && (is_thin(one) || is_thin(other));
 }
 
 bool is_thin(const LiveEntity& entity) {
@@ -51,21 +51,21 @@ bool is_thin(const LiveEntity& entity) {
 
 void Simulation::State::find_bodies(const Document& document) {
     for (const SceneJoint& joint : document.joints) to_be_held.insert({joint.entity_b, joint.entity_a.value_or(0)});
-    const auto kind_of = [&](const Entity& entity) {
+    const auto kind_of_entity = [&](const Entity& entity) {
         const Result<attributes::AttributeSet> set = bodies.attributes(entity);
-        return set.ok() ? set.value().word("kind", "") : std::string();
+        return set.ok() ? kind_of(set.value()) : PhysicalKind::rigid;
     };
     for (const Entity& entity : document.entities) {
         for (const Pin& pin : entity.pins) {
             const Entity* other = pin.to ? document.find(*pin.to) : nullptr;
-            if (other && !may_tie(kind_of(entity), kind_of(*other))) to_be_held.insert(*pin.to);
+            if (other && !may_tie(kind_of_entity(entity), kind_of_entity(*other))) to_be_held.insert(*pin.to);
         }
     }
 }
 
-bool Simulation::State::is_held_as_body(EntityIndex index, const std::string& kind) const {
+bool Simulation::State::is_held_as_body(EntityIndex index, PhysicalKind kind) const {
     if (to_be_held.contains(index)) return true;
-    const auto is_held = [&](EntityIndex other) { return !may_tie(live.at(other).attributes->word("kind", ""), kind); };
+    const auto is_held = [&](EntityIndex other) { return !may_tie(kind_of(*live.at(other).attributes), kind); };
     return !holds.joints_of(index).empty() || std::ranges::any_of(holds.pinned_to(index), is_held);
 }
 
@@ -194,7 +194,7 @@ Result<void> Simulation::State::make_bodies_of(const SceneJoint& joint) {
 Result<void> Simulation::State::soften_ends(const SceneJoint& joint) {
     for (const EntityIndex index : {joint.entity_b, joint.entity_a.value_or(0)}) {
         const LiveEntity* end = find(index);
-        if (!end || end->form.note.empty() || is_held_as_body(index, end->attributes->word("kind", ""))) continue;
+        if (!end || end->form.note.empty() || is_held_as_body(index, kind_of(*end->attributes))) continue;
         if (Result<void> made = update(Entity(end->definition), true); !made.ok()) return made;
     }
     return {};

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "attributes/physical_kind.h"
 #include "scene/action_runner.h"
 #include "scene/entity_body.h"
 #include "scene/hold_index.h"
@@ -86,7 +87,7 @@ struct Simulation::State {
     // What holds them together ---------------------------------------------------------------------------------------
 
     /// Whether a joint holds it, or something is pinned to it that cannot be tied to a thing of its kind.
-    [[nodiscard]] bool is_held_as_body(EntityIndex index, const std::string& kind) const;
+    [[nodiscard]] bool is_held_as_body(EntityIndex index, attributes::PhysicalKind kind) const;
     /// Before they are there: what joints and pins of the document need as one body.
     void find_bodies(const Document& document);
     /// Holds what its pins say to where that is now on other entities.

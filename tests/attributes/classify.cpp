@@ -12,6 +12,7 @@
 
 #include "attributes/check.h"
 #include "attributes/noun_reading.h"
+#include "attributes/physical_kind.h"
 #include "attributes/sample_facts.h"
 
 namespace embody::attributes {
@@ -239,12 +240,12 @@ TEST(Classify, AWordOfASubstanceIsTheSubstanceAndAModelOfItWhatItComesIn) {
     };
     constexpr Vec3 of_a_bottle{0.07, 0.25, 0.07};
     EXPECT_EQ(found(unsized("beer")).category->name, "beer");
-    EXPECT_EQ(resolve(small_taxonomy(), unsized("beer")).word("kind", ""), "fluid");
+    EXPECT_EQ(kind_of(resolve(small_taxonomy(), unsized("beer"))), PhysicalKind::fluid);
 
     const Classification as_model = found(model("beer", of_a_bottle));
     EXPECT_EQ(as_model.category->name, "container");
     EXPECT_EQ(as_model.source, "name says \"beer\"; a model of beer is usually \"container\"");
-    EXPECT_EQ(resolve(small_taxonomy(), model("beer", of_a_bottle)).word("kind", ""), "rigid");
+    EXPECT_EQ(kind_of(resolve(small_taxonomy(), model("beer", of_a_bottle))), PhysicalKind::rigid);
     // Over WordNet too; and the word keeps its own meaning.
     EXPECT_EQ(found(unsized("lager")).category->name, "beer");
     EXPECT_EQ(found(model("lager", of_a_bottle)).category->name, "container");

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "attributes/check.h"
+#include "attributes/physical_kind.h"
 #include "attributes/registry.h"
 #include "attributes/resolver.h"
 #include "attributes/sample_facts.h"
@@ -115,10 +116,10 @@ TEST(WithManual, SurfaceMaterialBringsItsNumbers) {
 
 TEST(WithManual, KindChangesShapeAndAttributes) {
     const Case crate;
-    const AttributeSet fixed = crate.with({manual("kind", std::string("static"))});
+    const AttributeSet fixed = crate.with({manual("kind", to_value(PhysicalKind::static_body))});
     EXPECT_EQ(fixed.word("collision_shape", ""), "trimesh");
     EXPECT_EQ(fixed.find("linear_damping"), nullptr);
-    const AttributeSet cloth = crate.with({manual("kind", std::string("cloth"))});
+    const AttributeSet cloth = crate.with({manual("kind", to_value(PhysicalKind::cloth))});
     EXPECT_NE(cloth.find("stretch_stiffness"), nullptr);
     EXPECT_TRUE(check(fixed, crate.facts).empty());
     EXPECT_TRUE(check(cloth, crate.facts).empty());
@@ -126,7 +127,7 @@ TEST(WithManual, KindChangesShapeAndAttributes) {
     // And back again: a static thing that a person sets free.
     const ModelFacts door = named("Door", {0.9, 2.05, 0.1});
     const AttributeSet freed =
-        with_manual(resolve(shipped_taxonomy(), door), {manual("kind", std::string("rigid"))}, door);
+        with_manual(resolve(shipped_taxonomy(), door), {manual("kind", to_value(PhysicalKind::rigid))}, door);
     EXPECT_EQ(freed.word("collision_shape", ""), "convex_hull");
     EXPECT_NE(freed.find("linear_damping"), nullptr);
     EXPECT_TRUE(check(freed, door).empty());

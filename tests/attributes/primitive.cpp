@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "attributes/assemble.h"
+#include "attributes/physical_kind.h"
 #include "attributes/sample_facts.h"
 
 namespace embody::attributes {
@@ -17,21 +18,24 @@ ModelFacts box(Vec3 size) {
 
 struct Stuff {
     const char* category;
-    const char* kind;
+    PhysicalKind kind;
     const char* number;  ///< of its matter …
     double low, high;    ///< … that must lie here
 };
 
 TEST(PrimitiveOfCategory, IsOfItsKindAndMatter) {
-    const Stuff list[] = {
-        {"water", "fluid", "rest_density", 990, 1000},    {"honey", "fluid", "dynamic_viscosity", 1, 100},
-        {"Olive oil", "fluid", "rest_density", 900, 930}, {"beer", "fluid", "rest_density", 1000, 1020},
-        {"sand", "granular", "friction_angle", 25, 45},   {"curtain", "cloth", "area_density", 0.05, 0.5},
-        {"rope", "rope", "linear_density", 0.02, 0.3},    {"cushion", "soft", "youngs_modulus", 1e3, 1e5}};
+    const Stuff list[] = {{"water", PhysicalKind::fluid, "rest_density", 990, 1000},
+                          {"honey", PhysicalKind::fluid, "dynamic_viscosity", 1, 100},
+                          {"Olive oil", PhysicalKind::fluid, "rest_density", 900, 930},
+                          {"beer", PhysicalKind::fluid, "rest_density", 1000, 1020},
+                          {"sand", PhysicalKind::granular, "friction_angle", 25, 45},
+                          {"curtain", PhysicalKind::cloth, "area_density", 0.05, 0.5},
+                          {"rope", PhysicalKind::rope, "linear_density", 0.02, 0.3},
+                          {"cushion", PhysicalKind::soft, "youngs_modulus", 1e3, 1e5}};
     for (const Stuff& stuff : list) {
         const auto set = resolve_primitive(shipped_taxonomy(), stuff.category, box({0.4, 0.4, 0.4}));
         ASSERT_TRUE(set) << stuff.category;
-        EXPECT_EQ(set->word("kind", ""), stuff.kind) << stuff.category;
+        EXPECT_EQ(kind_of(*set), stuff.kind) << stuff.category;
         EXPECT_GE(set->number(stuff.number, -1), stuff.low) << stuff.category;
         EXPECT_LE(set->number(stuff.number, 1e9), stuff.high) << stuff.category;
         EXPECT_GE(set->find(stuff.number)->level, AttributeLevel::category) << stuff.category;

@@ -7,6 +7,8 @@
 #include <limits>
 #include <set>
 
+#include "attributes/physical_kind.h"
+
 namespace embody::attributes {
 namespace {
 
@@ -148,7 +150,7 @@ TEST(AttributeSet, WrongTypeOrMissingGivesTheFallback) {
     AttributeSet set;
     set.put({"mass", std::string("heavy"), {}, {}, "", {}});
     EXPECT_EQ(set.number("mass", 7), 7);
-    EXPECT_EQ(set.word("kind", "rigid"), "rigid");
+    EXPECT_EQ(kind_of(set), PhysicalKind::rigid);
     EXPECT_TRUE(set.truth("mass", true));
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "attributes/check.h"
+#include "attributes/physical_kind.h"
 #include "attributes/registry.h"
 #include "attributes/sample_facts.h"
 #include "foundation/random.h"
@@ -52,56 +53,56 @@ struct Expected {
     const char* name;
     const char* category;
     const char* subcategory;
-    const char* kind;
+    PhysicalKind kind;
 };
 
 // Names of real catalogues, and why they are hard.
 constexpr Expected real_names[] = {
-    {"Chair", "chair", "", "rigid"},
-    {"Chair with cushion", "chair", "", "rigid"},     // the first part decides
-    {"Oak chair", "chair", "", "rigid"},              // a material in front
-    {"Bedside lamp", "lamp", "table lamp", "rigid"},  // the last noun decides
-    {"Bedside table", "table", "bedside table", "rigid"},
-    {"Coffee table", "table", "coffee table", "rigid"},  // not coffee
-    {"Coffee cup", "cup", "", "rigid"},
-    {"Coffee mug", "cup", "mug", "rigid"},
-    {"Table tennis", "table", "tennis table", "rigid"},  // a phrase, not a table called tennis
-    {"Table tennis bat", "racket", "table tennis bat", "rigid"},
-    {"Football table", "table", "football table", "articulated"},
-    {"Soccer ball", "ball", "football", "rigid"},
-    {"Sofa 2 seats", "sofa", "", "rigid"},  // a number ends the noun
-    {"Corner sofa", "sofa", "corner sofa", "rigid"},
-    {"Piano bench", "bench", "piano bench", "rigid"},
-    {"Grand piano", "musical instrument", "grand piano", "rigid"},
-    {"Christmas tree", "sculpture", "christmas tree", "rigid"},
-    {"Palm tree", "tree", "palm", "static"},
-    {"Pine under snow", "tree", "conifer", "static"},
-    {"Hot dog", "prepared dish", "hot dog", "rigid"},  // not a dog
-    {"Bulldog", "pet", "dog", "articulated"},
-    {"Roasted chicken", "meat", "roast chicken", "rigid"},
-    {"Chicken", "bird", "chicken", "articulated"},
-    {"Plate, glass and cutlery", "plate", "", "rigid"},
-    {"Bowl with fruits", "bowl", "full bowl", "rigid"},
-    {"Fridge & Freezer", "refrigerator", "", "articulated"},
-    {"Glass door cabinet", "cabinet", "display cabinet", "articulated"},
-    {"Double French window small panes", "window", "", "static"},
-    {"Garage door", "door", "garage door", "static"},
-    {"Toilet paper dispenser", "paper dispenser", "", "rigid"},
-    {"Toilets unit", "toilet", "", "static"},
-    {"Teddy bear", "toy", "plush toy", "soft"},
-    {"Air mattress", "bed", "air mattress", "soft"},
-    {"Curtain", "curtain", "", "cloth"},
-    {"Towel", "towel", "", "cloth"},
-    {"Apple iPhone", "phone", "smartphone", "rigid"},  // not fruit
-    {"Glasses", "glasses", "", "articulated"},         // not the plural of glass
-    {"Glass", "glass", "", "rigid"},
-    {"White light source", "lamp", "light source", "visual"},
-    {"Sitting boy", "person", "child", "articulated"},
-    {"Car model", "toy", "toy car", "rigid"},
-    {"Ford Focus", "car", "", "articulated"},
-    {"Shopping basket", "box", "basket", "rigid"},
-    {"bedsideTable", "table", "bedside table", "rigid"},
-    {"WARDROBES", "wardrobe", "", "articulated"},
+    {"Chair", "chair", "", PhysicalKind::rigid},
+    {"Chair with cushion", "chair", "", PhysicalKind::rigid},     // the first part decides
+    {"Oak chair", "chair", "", PhysicalKind::rigid},              // a material in front
+    {"Bedside lamp", "lamp", "table lamp", PhysicalKind::rigid},  // the last noun decides
+    {"Bedside table", "table", "bedside table", PhysicalKind::rigid},
+    {"Coffee table", "table", "coffee table", PhysicalKind::rigid},  // not coffee
+    {"Coffee cup", "cup", "", PhysicalKind::rigid},
+    {"Coffee mug", "cup", "mug", PhysicalKind::rigid},
+    {"Table tennis", "table", "tennis table", PhysicalKind::rigid},  // a phrase, not a table called tennis
+    {"Table tennis bat", "racket", "table tennis bat", PhysicalKind::rigid},
+    {"Football table", "table", "football table", PhysicalKind::articulated},
+    {"Soccer ball", "ball", "football", PhysicalKind::rigid},
+    {"Sofa 2 seats", "sofa", "", PhysicalKind::rigid},  // a number ends the noun
+    {"Corner sofa", "sofa", "corner sofa", PhysicalKind::rigid},
+    {"Piano bench", "bench", "piano bench", PhysicalKind::rigid},
+    {"Grand piano", "musical instrument", "grand piano", PhysicalKind::rigid},
+    {"Christmas tree", "sculpture", "christmas tree", PhysicalKind::rigid},
+    {"Palm tree", "tree", "palm", PhysicalKind::static_body},
+    {"Pine under snow", "tree", "conifer", PhysicalKind::static_body},
+    {"Hot dog", "prepared dish", "hot dog", PhysicalKind::rigid},  // not a dog
+    {"Bulldog", "pet", "dog", PhysicalKind::articulated},
+    {"Roasted chicken", "meat", "roast chicken", PhysicalKind::rigid},
+    {"Chicken", "bird", "chicken", PhysicalKind::articulated},
+    {"Plate, glass and cutlery", "plate", "", PhysicalKind::rigid},
+    {"Bowl with fruits", "bowl", "full bowl", PhysicalKind::rigid},
+    {"Fridge & Freezer", "refrigerator", "", PhysicalKind::articulated},
+    {"Glass door cabinet", "cabinet", "display cabinet", PhysicalKind::articulated},
+    {"Double French window small panes", "window", "", PhysicalKind::static_body},
+    {"Garage door", "door", "garage door", PhysicalKind::static_body},
+    {"Toilet paper dispenser", "paper dispenser", "", PhysicalKind::rigid},
+    {"Toilets unit", "toilet", "", PhysicalKind::static_body},
+    {"Teddy bear", "toy", "plush toy", PhysicalKind::soft},
+    {"Air mattress", "bed", "air mattress", PhysicalKind::soft},
+    {"Curtain", "curtain", "", PhysicalKind::cloth},
+    {"Towel", "towel", "", PhysicalKind::cloth},
+    {"Apple iPhone", "phone", "smartphone", PhysicalKind::rigid},  // not fruit
+    {"Glasses", "glasses", "", PhysicalKind::articulated},         // not the plural of glass
+    {"Glass", "glass", "", PhysicalKind::rigid},
+    {"White light source", "lamp", "light source", PhysicalKind::visual},
+    {"Sitting boy", "person", "child", PhysicalKind::articulated},
+    {"Car model", "toy", "toy car", PhysicalKind::rigid},
+    {"Ford Focus", "car", "", PhysicalKind::articulated},
+    {"Shopping basket", "box", "basket", PhysicalKind::rigid},
+    {"bedsideTable", "table", "bedside table", PhysicalKind::rigid},
+    {"WARDROBES", "wardrobe", "", PhysicalKind::articulated},
 };
 
 TEST(Resolve, RealNamesReachTheRightCategoryAndKind) {
@@ -110,7 +111,7 @@ TEST(Resolve, RealNamesReachTheRightCategoryAndKind) {
         const AttributeSet set = resolved(facts);
         EXPECT_EQ(set.word("category", ""), expected.category) << expected.name;
         EXPECT_EQ(set.word("subcategory", ""), expected.subcategory) << expected.name;
-        EXPECT_EQ(set.word("kind", ""), expected.kind) << expected.name;
+        EXPECT_EQ(kind_of(set), expected.kind) << expected.name;
         expect_consistent(set, facts);
     }
 }
@@ -249,12 +250,12 @@ TEST(Resolve, HollowThingsAreDecomposedAlsoWhereAPrimitiveFitsTheirHull) {
 
 TEST(Resolve, CataloguesMovableFlagWinsOverTheCategory) {
     ModelFacts facts = named("Radiator");
-    EXPECT_EQ(resolved(facts).word("kind", ""), "static");
+    EXPECT_EQ(kind_of(resolved(facts)), PhysicalKind::static_body);
     facts.movable = true;
-    EXPECT_EQ(resolved(facts).word("kind", ""), "rigid");
+    EXPECT_EQ(kind_of(resolved(facts)), PhysicalKind::rigid);
     EXPECT_NE(resolved(facts).find("kind")->source.find("unlike what is usual"), std::string::npos);
     facts.door_or_window = true;
-    EXPECT_EQ(resolved(facts).word("kind", ""), "static");
+    EXPECT_EQ(kind_of(resolved(facts)), PhysicalKind::static_body);
     EXPECT_EQ(resolved(facts).word("collision_shape", ""), "trimesh");
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "attributes/physical_kind.h"
 #include "attributes/resolver.h"
 #include "attributes/sample_facts.h"
 
@@ -77,7 +78,7 @@ TEST(ToPhysics, EveryKindWithABodyPassesThePhysicsOwnCheck) {
         const auto shape = shape_from_attributes(set, facts.geometry, geometry);
         ASSERT_TRUE(shape.ok()) << name << ": " << shape.error().message();
         EXPECT_TRUE(physics::validate(*shape).ok()) << name;
-        EXPECT_EQ(body->kind == physics::BodyKind::static_body, set.word("kind", "") == "static") << name;
+        EXPECT_EQ(body->kind == physics::BodyKind::static_body, kind_of(set) == PhysicalKind::static_body) << name;
         EXPECT_DOUBLE_EQ(*body->mass.mass, set.number("mass", 0));
     }
 }
@@ -233,7 +234,7 @@ TEST(ToPhysics, ClothWeighsWhatItsMassSaysOnAnySheet) {
     sheet.nodes = {{0, 0, 0}, {2, 0, 0}, {2, 0, 3}, {0, 0, 3}};
     sheet.triangles = {{0, 2, 1}, {0, 3, 2}};
     AttributeSet set = resolve(shipped_taxonomy(), closed_box("Curtain", {2, 3, 0.01}));
-    ASSERT_EQ(set.word("kind", ""), "cloth");
+    ASSERT_EQ(kind_of(set), PhysicalKind::cloth);
     set.put({"mass", 1.5, {}, {}, "test", AttributeLevel::manual});
     auto made = cloth_from_attributes(set, sheet);
     ASSERT_TRUE(made.ok()) << made.error().message();
@@ -252,7 +253,7 @@ TEST(ToPhysics, ClothWeighsWhatItsMassSaysOnAnySheet) {
 
 TEST(ToPhysics, RopesWeighWhatTheirMassSaysAndBreakWhereTheyAreTold) {
     AttributeSet set = resolve(shipped_taxonomy(), closed_box("Rope", {0.02, 0.02, 4}));
-    ASSERT_EQ(set.word("kind", ""), "rope");
+    ASSERT_EQ(kind_of(set), PhysicalKind::rope);
     set.put({"mass", 0.8, {}, {}, "test", AttributeLevel::manual});
     set.put({"break_tension", 0.0, {}, {}, "test", AttributeLevel::manual});
     auto made = rope_from_attributes(set, {{0, 0, 0}, {3, 0, 0}, {3, 1, 0}}, 0.02);
@@ -274,7 +275,7 @@ TEST(ToPhysics, AnAreaDensityOfAPersonMakesTheMass) {
     const AttributeSet automatic = resolve(shipped_taxonomy(), facts);
     AttributeSet set = with_manual(automatic, {{"area_density", 0.5, {}, {}, "", AttributeLevel::manual}}, facts);
     EXPECT_DOUBLE_EQ(set.number("mass", 0), 3);
-    set = with_manual(automatic, {{"kind", std::string("rope"), {}, {}, "", AttributeLevel::manual}}, facts);
+    set = with_manual(automatic, {{"kind", to_value(PhysicalKind::rope), {}, {}, "", AttributeLevel::manual}}, facts);
     EXPECT_DOUBLE_EQ(set.number("linear_density", 0), automatic.number("mass", 0) / 3) << "of the kind that it is now";
 }
 

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "attributes/physical_kind.h"
 #include "catalog/import_fixture.h"
 #include "catalog/knowledge_json.h"
 
@@ -269,7 +270,9 @@ TEST_F(CatalogTest, ComesWithThePrimitivesAndTheirFormulas) {
         const auto mesh = (*catalog)->mesh(model->id);
         ASSERT_TRUE(mesh);
         EXPECT_NEAR(geometry::bounds(*mesh).lower.y, 0, 1e-4) << shape;
-        EXPECT_EQ(model->physical_kind, std::string(shape) == "plane" ? "static" : "rigid") << shape;
+        EXPECT_EQ(model->physical_kind, std::string(shape) == "plane" ? attributes::PhysicalKind::static_body
+                                                                      : attributes::PhysicalKind::rigid)
+            << shape;
         const auto facts = (*catalog)->facts(model->id);
         ASSERT_TRUE(facts);
         EXPECT_NEAR(geometry::bounds(*mesh).size().y, facts->geometry.size.y, 1e-3) << shape;

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <set>
 
+#include "attributes/physical_kind.h"
 #include "catalog/catalog.h"
 #include "catalog/import_fixture.h"
 
@@ -105,9 +106,10 @@ TEST_F(ManualChangesTest, AnAttributeThatDoesNotConcernAModelStopsAllOrIsSkipped
 
     // It concerns a chair that becomes soft in the same act.
     const std::vector<std::int64_t> chair = {catalog_->model("chair a")->id};
-    ASSERT_TRUE(catalog_->change_attributes(chair, {{"kind", std::string("soft")}, softness.front()}));
+    ASSERT_TRUE(
+        catalog_->change_attributes(chair, {{"kind", to_value(attributes::PhysicalKind::soft)}, softness.front()}));
     EXPECT_EQ(manual("chair a", "youngs_modulus"), 1e5);
-    EXPECT_EQ(catalog_->model("chair a")->physical_kind, "soft");
+    EXPECT_EQ(catalog_->model("chair a")->physical_kind, attributes::PhysicalKind::soft);
 }
 
 TEST_F(ManualChangesTest, AQueryMeansAllThatItFindsAndADryRunChangesNothing) {

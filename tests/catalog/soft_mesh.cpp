@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "attributes/physical_kind.h"
 #include "catalog/import_fixture.h"
 #include "geometry/sample_meshes.h"
 
@@ -130,14 +131,14 @@ TEST_F(StoredSoftMesh, IsMadeAtTheImportOfSoftModelsAndElseWhenItIsNeeded) {
     ASSERT_TRUE(catalog);
     const auto bear = catalog->model("teddy bear"), chair = catalog->model("office chair");
     ASSERT_TRUE(bear && chair);
-    EXPECT_EQ(bear->physical_kind, "soft");
+    EXPECT_EQ(bear->physical_kind, attributes::PhysicalKind::soft);
     const auto mesh = catalog->soft_mesh(bear->id);
     ASSERT_TRUE(mesh) << mesh.error().message();
     EXPECT_NEAR(geometry::volume(mesh->mesh), 0.4 * 0.4 * 0.4, 0.005);
     EXPECT_EQ(stored(), 1);
 
     // A person makes the chair soft: there is one at once, and it is the one that is asked for later.
-    ASSERT_TRUE(catalog->set_attribute(chair->id, "kind", std::string("soft")));
+    ASSERT_TRUE(catalog->set_attribute(chair->id, "kind", to_value(attributes::PhysicalKind::soft)));
     EXPECT_EQ(stored(), 2);
     const auto first = catalog->soft_mesh(chair->id);
     ASSERT_TRUE(first);

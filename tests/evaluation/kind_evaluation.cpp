@@ -5,6 +5,7 @@
 
 #include <fstream>
 
+#include "attributes/physical_kind.h"
 #include "evaluation/table_reader.h"
 
 namespace embody::evaluation {
@@ -39,7 +40,7 @@ TEST(KindEvaluation, CountsWhatIsRightAndNamesWhatIsNot) {
     EXPECT_EQ(evaluation.accuracy(), 0.75);
     ASSERT_EQ(evaluation.mistakes.size(), 1u);
     EXPECT_EQ(evaluation.mistakes[0].label.word, "anvil");
-    EXPECT_EQ(evaluation.by_label.at("fluid"), (std::pair<std::size_t, std::size_t>{2, 1}));
+    EXPECT_EQ(evaluation.by_label.at(attributes::PhysicalKind::fluid), (std::pair<std::size_t, std::size_t>{2, 1}));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "attributes/physical_kind.h"
 #include "catalog/catalog.h"
 #include "database/temporary_folder.h"
 #include "scene/entity_body.h"
@@ -66,7 +67,7 @@ TEST_F(PrimitiveOfCategory, BehavesAsAModelOfItWould) {
 }
 
 TEST_F(PrimitiveOfCategory, YieldsToWhatAPersonSets) {
-    thing().attributes["kind"] = std::string("rigid");
+    thing().attributes["kind"] = to_value(attributes::PhysicalKind::rigid);
     become("cushion", BoxShape{{0.2, 0.08, 0.2}});
     EXPECT_FALSE(simulation_->points(2));
     EXPECT_LT(simulation_->world().mass(simulation_->body(2)), 3) << "a rigid cushion is still as light as one";
@@ -102,7 +103,7 @@ TEST_F(PrimitiveOfCategory, LiquidsAreFilledLast) {
     Entity block = thing();
     block.index = 3;
     block.geometry = ShapeDefinition{BoxShape{{0.1, 0.1, 0.1}}};
-    block.attributes["kind"] = std::string("static");
+    block.attributes["kind"] = to_value(attributes::PhysicalKind::static_body);
     document_.entities.push_back(block);
     become("water", BoxShape{{0.2, 0.1, 0.2}});
     ASSERT_TRUE(simulation_->points(2));

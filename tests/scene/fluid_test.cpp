@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "attributes/physical_kind.h"
 #include "scene/fluid_filling.h"
 #include "scene/live_scene.h"
 #include "scene/sample_documents.h"
@@ -32,7 +33,7 @@ Entity& add_box(Document& document, const std::string& name, Vec3 half, Vec3 pos
 /// A static tub without lid, inside 40 × 30 × 40 cm above height 0, walls of 5 cm.
 Document tub() {
     Document document;
-    const Words fixed{{"kind", std::string("static")}};
+    const Words fixed{{"kind", to_value(attributes::PhysicalKind::static_body)}};
     add_box(document, "Bottom", {0.25, 0.025, 0.25}, {0, -0.025, 0}, fixed);
     for (const double side : {-1.0, 1.0}) {
         add_box(document, "Wall", {0.025, 0.15, 0.25}, {side * 0.225, 0.15, 0}, fixed);
@@ -41,7 +42,9 @@ Document tub() {
     return document;
 }
 
-Words water(double particles) { return {{"kind", std::string("fluid")}, {"particle_budget", particles}}; }
+Words water(double particles) {
+    return {{"kind", to_value(attributes::PhysicalKind::fluid)}, {"particle_budget", particles}};
+}
 
 /// 20 cm of water in the tub; the box is wider than the tub's inside, so that walls stand in it.
 EntityIndex fill(Document& document, double particles = 4000) {
@@ -311,7 +314,7 @@ TEST(Fluids, ChangeWhileTheyRun) {
 
     // Another kind and back. What was solid does not keep the liquid out of its own place.
     Entity solid = changed;
-    solid.attributes["kind"] = std::string("rigid");
+    solid.attributes["kind"] = to_value(attributes::PhysicalKind::rigid);
     ASSERT_TRUE(simulation->update(solid, true).ok());
     EXPECT_EQ(simulation->points(index), nullptr);
     EXPECT_FALSE(simulation->body(index).is_null());

@@ -4,12 +4,14 @@
 
 #include <cmath>
 
+#include "attributes/physical_kind.h"
 #include "scene/live_scene.h"
 #include "scene/sample_documents.h"
 
 namespace embody::scene {
 namespace {
 
+using attributes::PhysicalKind;
 using physics::BoxShape;
 using physics::ShapeDefinition;
 using samples::make;
@@ -20,7 +22,7 @@ constexpr Vec3 force{12, 3, -4};  // N
 constexpr int steps = 12;         // of 1/60 s
 constexpr double seconds = 0.2;
 
-class ForceOnAKind : public testing::TestWithParam<const char*> {
+class ForceOnAKind : public testing::TestWithParam<PhysicalKind> {
 protected:
     // One thing alone in empty space.
     static Document a_thing() {
@@ -29,15 +31,15 @@ protected:
         document.settings.gravity = {};
         document.settings.air_density = 0;
         Entity& entity = document.entities[0];
-        const std::string kind = GetParam();
-        const bool is_cloth = kind == "cloth", is_rope = kind == "rope";
+        const PhysicalKind kind = GetParam();
+        const bool is_cloth = kind == PhysicalKind::cloth, is_rope = kind == PhysicalKind::rope;
         entity.geometry = ShapeDefinition{BoxShape{is_cloth  ? Vec3{0.3, 0.001, 0.3}
                                                    : is_rope ? Vec3{0.5, 0.01, 0.01}
                                                              : Vec3{0.1, 0.1, 0.1}}};
-        entity.attributes = {{"kind", kind}, {"linear_damping", 0.0}};
-        if (kind == "granular") entity.attributes["grain_budget"] = 100.0;
-        if (kind == "fluid") entity.attributes["particle_budget"] = 1000.0;
-        if (kind == "soft") entity.attributes["youngs_modulus"] = 1e5;
+        entity.attributes = {{"kind", to_value(kind)}, {"linear_damping", 0.0}};
+        if (kind == PhysicalKind::granular) entity.attributes["grain_budget"] = 100.0;
+        if (kind == PhysicalKind::fluid) entity.attributes["particle_budget"] = 1000.0;
+        if (kind == PhysicalKind::soft) entity.attributes["youngs_modulus"] = 1e5;
         return document;
     }
     static void expect_momentum_of(const Simulation& simulation) {
@@ -87,13 +89,15 @@ TEST_P(ForceOnAKind, WithoutBoundsIsRefused) {
     EXPECT_NE(made.error().message().find("force"), std::string::npos) << made.error().message();
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, ForceOnAKind, testing::Values("rigid", "soft", "cloth", "rope", "granular", "fluid"),
-                         [](const auto& kind) { return std::string(kind.param); });
+INSTANTIATE_TEST_SUITE_P(Kinds, ForceOnAKind,
+                         testing::Values(PhysicalKind::rigid, PhysicalKind::soft, PhysicalKind::cloth,
+                                         PhysicalKind::rope, PhysicalKind::granular, PhysicalKind::fluid),
+                         [](const auto& kind) { return to_text(kind.param); });
 
 TEST(Torque, DoesNotTurnWhatIsNoRigidBodyAndSaysSo) {
     Document document = samples::floor_and_box(1);
     document.settings.gravity = {};
-    document.entities[1].attributes = {{"kind", std::string("granular")}, {"grain_budget", 100.0}};
+    document.entities[1].attributes = {{"kind", to_value(PhysicalKind::granular)}, {"grain_budget", 100.0}};
     document.entities[1].torque = {0, 1, 0};
     const auto simulation = make(document);
     ASSERT_TRUE(simulation);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "attributes/physical_kind.h"
 #include "physics/definitions/grain_material.h"
 #include "scene/grain_filling.h"
 #include "scene/live_scene.h"
@@ -27,7 +28,8 @@ constexpr EntityIndex sand = samples::thing;
 Document box_of_sand(double budget = 300) {
     Document document = samples::floor_and_box(0.061);
     document.entities[1].geometry = ShapeDefinition{BoxShape{{0.1, 0.06, 0.1}}};
-    document.entities[1].attributes = {{"kind", std::string("granular")}, {"grain_budget", budget}};
+    document.entities[1].attributes = {{"kind", to_value(attributes::PhysicalKind::granular)},
+                                       {"grain_budget", budget}};
     return document;
 }
 
@@ -63,7 +65,7 @@ TEST(GrainFillingRefuses, ShapesThatTheBudgetDoesNotFill) {
     // Balls have a largest size, so that 2,000 of them fill no mountain.
     Document mountain = samples::floor_and_box(10'000);
     mountain.entities[1].geometry = ShapeDefinition{BoxShape{{10'000, 10'000, 10'000}}};
-    mountain.entities[1].attributes["kind"] = std::string("granular");
+    mountain.entities[1].attributes["kind"] = to_value(attributes::PhysicalKind::granular);
     const auto made = Simulation::create(mountain, nullptr);
     ASSERT_FALSE(made.ok());
     EXPECT_NE(made.error().message().find("grain_budget"), std::string::npos) << made.error().message();
@@ -178,7 +180,7 @@ TEST(Grains, ChangeWhileTheyRun) {
 
     // Another kind and back.
     Entity solid = changed;
-    solid.attributes["kind"] = std::string("rigid");
+    solid.attributes["kind"] = to_value(attributes::PhysicalKind::rigid);
     ASSERT_TRUE(simulation->update(solid, true).ok());
     EXPECT_EQ(simulation->points(sand), nullptr);
     EXPECT_FALSE(simulation->body(sand).is_null());
@@ -209,11 +211,11 @@ TEST(Grains, RefuseJointsAndWhatDoesNotFit) {
     EXPECT_FALSE(Simulation::create(document, nullptr).ok());
 
     // A thing that a joint holds stays what it is.
-    document.entities[1].attributes["kind"] = std::string("rigid");
+    document.entities[1].attributes["kind"] = to_value(attributes::PhysicalKind::rigid);
     const auto simulation = make(document);
     ASSERT_TRUE(simulation);
     Entity poured = document.entities[1];
-    poured.attributes["kind"] = std::string("granular");
+    poured.attributes["kind"] = to_value(attributes::PhysicalKind::granular);
     EXPECT_FALSE(simulation->update(poured, true).ok());
     EXPECT_FALSE(simulation->body(sand).is_null());
     step(*simulation, 5);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "attributes/physical_kind.h"
 #include "scene/live_scene.h"
 #include "scene/sample_documents.h"
 #include "scene/scene_file.h"
@@ -27,14 +28,14 @@ Document disc_on_a_rope(bool clamped) {
     rope.name = "Wire";
     rope.geometry = ShapeDefinition{CapsuleShape{0.005, 0.5}};
     rope.pose.position = {0, 2.5, 0};
-    rope.attributes = {{"kind", std::string("rope")},
+    rope.attributes = {{"kind", to_value(attributes::PhysicalKind::rope)},
                        {"mass", 0.02},
                        {"axial_stiffness", 1e6},
                        {"rope_segments", 20.0},
                        {"bend_rigidity", 0.01}};
     rope.pins = {{{0, 0.5, 0}, 0.0, {}, clamped}, {{0, -0.5, 0}, 0.0, other, clamped}};
     Entity disc = samples::add(document, "Disc", ShapeDefinition{CylinderShape{0.1, 0.02}}, {0, 1.98, 0});
-    disc.attributes = {{"kind", std::string("rigid")}, {"mass", 2.0}};
+    disc.attributes = {{"kind", to_value(attributes::PhysicalKind::rigid)}, {"mass", 2.0}};
     disc.angular_velocity = {0, 1, 0};
     document.entities.back() = disc;
     return document;
@@ -105,7 +106,7 @@ Document slack_rope(double height) {
     Entity& rope = document.entities[1];
     rope.geometry = ShapeDefinition{CapsuleShape{0.01, 1}};
     rope.pose.rotation = from_axis_angle({0, 0, 1}, pi / 2);
-    rope.attributes = {{"kind", std::string("rope")}, {"mass", 2.0}, {"slack", 0.3}};
+    rope.attributes = {{"kind", to_value(attributes::PhysicalKind::rope)}, {"mass", 2.0}, {"slack", 0.3}};
     rope.pins = {{{0, 1, 0}, 0.0, {}}, {{0, -1, 0}, 0.0, {}}};
     return document;
 }
@@ -155,7 +156,7 @@ TEST(SlackRope, GoesAroundWhatStandsInItsWay) {
     // A box under it, and made after it.
     Document document = slack_rope(1);
     Entity& box = samples::add(document, "Box", ShapeDefinition{physics::BoxShape{{0.2, 0.45, 0.05}}}, {0, 0.5, 0});
-    box.attributes = {{"kind", std::string("static")}};
+    box.attributes = {{"kind", to_value(attributes::PhysicalKind::static_body)}};
     const auto simulation = samples::make(document);
     ASSERT_TRUE(simulation);
     for (const Vec3 node : nodes_of(*simulation)) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "attributes/physical_kind.h"
 #include "scene/sample_documents.h"
 #include "scene/scene_file.h"
 #include "scene/simulation.h"
@@ -42,7 +43,7 @@ Entity& rope_of(Document& document, double half_length, double radius, double he
     Entity& rope = document.entities[1];
     rope.geometry = ShapeDefinition{CapsuleShape{radius, half_length}};
     rope.pose.rotation = from_axis_angle({0, 0, 1}, -pi / 2);
-    rope.attributes = {{"kind", std::string("rope")}};
+    rope.attributes = {{"kind", to_value(attributes::PhysicalKind::rope)}};
     return rope;
 }
 
@@ -84,7 +85,8 @@ TEST(RopeReference, GripsADrumAsACapstan) {
     for (const char* name : {"friction_static", "friction_dynamic"}) rope.attributes[name] = mu;
     Entity& drum = samples::add(document, "Drum", ShapeDefinition{CylinderShape{radius, 0.1}}, {0, height, 0});
     drum.pose.rotation = from_axis_angle({1, 0, 0}, pi / 2);
-    drum.attributes = {{"kind", std::string("static")}, {"friction_static", mu}, {"friction_dynamic", mu}};
+    drum.attributes = {
+        {"kind", to_value(attributes::PhysicalKind::static_body)}, {"friction_static", mu}, {"friction_dynamic", mu}};
     for (const double side : {1.0, -1.0}) {
         Entity& hand =
             samples::add(document, "Hand", ShapeDefinition{SphereShape{2e-3}}, {side * half, height + way, 0});

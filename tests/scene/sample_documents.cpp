@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "scene/sample_documents.h"
 
+#include "attributes/physical_kind.h"
+
 namespace embody::scene::samples {
 
 using namespace embody::physics;
@@ -17,7 +19,8 @@ Entity& add(Document& document, const std::string& name, const ShapeDefinition& 
 
 Document floor_and_box(double height) {
     Document document;
-    add(document, "Floor", BoxShape{{10, 0.5, 10}}, {0, -0.5, 0}).attributes["kind"] = std::string("static");
+    add(document, "Floor", BoxShape{{10, 0.5, 10}}, {0, -0.5, 0}).attributes["kind"] =
+        to_value(attributes::PhysicalKind::static_body);
     add(document, "Box", BoxShape{{0.25, 0.25, 0.25}}, {0, height, 0});
     return document;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene/simulation.h"
+#include "attributes/physical_kind.h"
 
 #include <gtest/gtest.h>
 
@@ -94,7 +95,7 @@ TEST(Simulation, AttributesOfAPrimitiveAgreeWithTheWorld) {
     ASSERT_NE(set.value().find("inertia"), nullptr);
     const Mat3 inertia = std::get<Mat3>(set.value().find("inertia")->value);
     EXPECT_NEAR(inertia(0, 0), 125.0 / 6 * 0.25, 1e-9);
-    EXPECT_EQ(simulation->attributes(1).value().word("kind", ""), "static");
+    EXPECT_EQ(kind_of(simulation->attributes(1).value()), attributes::PhysicalKind::static_body);
 }
 
 TEST(Simulation, RepeatsBitForBit) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "attributes/physical_kind.h"
 #include "geometry/mass_properties.h"
 #include "scene/form_cache.h"
 #include "scene/live_scene.h"
@@ -30,8 +31,10 @@ constexpr EntityIndex cushion = samples::thing;
 Document a_cushion(double height = 0.5) {
     Document document = samples::floor_and_box(height);
     document.entities[1].geometry = ShapeDefinition{BoxShape{{0.2, 0.1, 0.2}}};
-    document.entities[1].attributes = {
-        {"kind", std::string("soft")}, {"mass", 1.0}, {"youngs_modulus", 2e4}, {"damping_rayleigh", 0.02}};
+    document.entities[1].attributes = {{"kind", to_value(attributes::PhysicalKind::soft)},
+                                       {"mass", 1.0},
+                                       {"youngs_modulus", 2e4},
+                                       {"damping_rayleigh", 0.02}};
     return document;
 }
 
@@ -94,7 +97,7 @@ TEST(Soft, KindChangesWhileItMovesAndItGoesOn) {
     Document document = a_cushion(50);
     document.entities[1].linear_velocity = {3, 2, 0};
     document.entities[1].angular_velocity = {0, 1.5, 0};
-    document.entities[1].attributes["kind"] = std::string("rigid");
+    document.entities[1].attributes["kind"] = to_value(attributes::PhysicalKind::rigid);
     document.entities[1].attributes["angular_damping"] = 0.0;
     document.entities[1].attributes["drag_coefficient"] = 0.0;
     const auto simulation = make(document);
@@ -106,14 +109,14 @@ TEST(Soft, KindChangesWhileItMovesAndItGoesOn) {
     };
     step(*simulation, 20);
     Entity changed = document.entities[1];
-    changed.attributes["kind"] = std::string("soft");
+    changed.attributes["kind"] = to_value(attributes::PhysicalKind::soft);
     ASSERT_TRUE(simulation->update(changed, true));
     ASSERT_TRUE(simulation->points(cushion));
     EXPECT_LT(distance(simulation->points(cushion)->center_of_mass(), expected(20.0 / 60)), 1e-3);
     step(*simulation, 20);
     EXPECT_LT(distance(simulation->points(cushion)->center_of_mass(), expected(40.0 / 60)), 5e-3);
     EXPECT_NEAR(turned(), 1.0, 0.02);
-    changed.attributes["kind"] = std::string("rigid");
+    changed.attributes["kind"] = to_value(attributes::PhysicalKind::rigid);
     ASSERT_TRUE(simulation->update(changed, true));
     EXPECT_FALSE(simulation->points(cushion));
     step(*simulation, 20);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "attributes/physical_kind.h"
 #include "scene/entity_body.h"
 #include "scene/live_scene.h"
 #include "scene/sample_documents.h"
@@ -16,6 +17,7 @@
 namespace embody::scene {
 namespace {
 
+using attributes::PhysicalKind;
 using nlohmann::json;
 using physics::BoxShape;
 using physics::CapsuleShape;
@@ -31,7 +33,7 @@ Document a_cloth(double height) {
     Entity& cloth = document.entities[1];
     cloth.name = "Cloth";
     cloth.geometry = ShapeDefinition{BoxShape{{0.5, 0.001, 0.5}}};
-    cloth.attributes = {{"kind", std::string("cloth")}, {"cloth_nodes", 300.0}};
+    cloth.attributes = {{"kind", to_value(PhysicalKind::cloth)}, {"cloth_nodes", 300.0}};
     return document;
 }
 
@@ -42,7 +44,8 @@ Document a_rope(double height, double slack) {
     rope.name = "Rope";
     rope.geometry = ShapeDefinition{CapsuleShape{0.01, 1}};
     rope.pose.rotation = from_axis_angle({0, 0, 1}, std::acos(-1.0) / 2);
-    rope.attributes = {{"kind", std::string("rope")}, {"mass", 2.0}, {"slack", slack}, {"axial_stiffness", 1e5}};
+    rope.attributes = {
+        {"kind", to_value(PhysicalKind::rope)}, {"mass", 2.0}, {"slack", slack}, {"axial_stiffness", 1e5}};
     rope.pins = {{{0, 1, 0}, 0.0, {}}, {{0, -1, 0}, 0.0, {}}};
     return document;
 }
@@ -136,7 +139,7 @@ TEST(ClothEntity, WhatIsThickStaysRigidAndSaysWhy) {
     ASSERT_EQ(simulation->notes().size(), 1u);
     EXPECT_NE(simulation->notes()[0].find("because it is no sheet: it is 0.4 m thick"), std::string::npos)
         << simulation->notes()[0];
-    document.entities[1].attributes["kind"] = std::string("rope");
+    document.entities[1].attributes["kind"] = to_value(PhysicalKind::rope);
     simulation = make(document);
     ASSERT_TRUE(simulation);
     ASSERT_EQ(simulation->notes().size(), 1u);
@@ -153,7 +156,7 @@ TEST(ClothEntity, WhatStaysRigidWeighsByItsAreaOrLengthAllTheSame) {
     ASSERT_TRUE(simulation);
     EXPECT_NEAR(simulation->world().mass(simulation->body(thing)), 0.3 * 0.16, 1e-9);
     EXPECT_NEAR(simulation->attributes(thing)->number("mass", 0), 0.3 * 0.16, 1e-9);
-    entity.attributes = {{"kind", std::string("rope")}, {"linear_density", 0.5}};
+    entity.attributes = {{"kind", to_value(PhysicalKind::rope)}, {"linear_density", 0.5}};
     simulation = make(document);
     ASSERT_TRUE(simulation);
     EXPECT_NEAR(simulation->world().mass(simulation->body(thing)), 0.5 * 0.4, 1e-9);
@@ -174,16 +177,17 @@ TEST(ClothEntity, OfEveryShapeTheAttributesAreNumbers) {
     for (const Entity& primitive : samples::everything().entities) {
         const auto* shape = std::get_if<ShapeDefinition>(&primitive.geometry);
         if (!shape) continue;
-        for (const char* kind : {"cloth", "rope", "soft", "granular", "fluid", "rigid"}) {
+        for (const PhysicalKind kind : {PhysicalKind::cloth, PhysicalKind::rope, PhysicalKind::soft,
+                                        PhysicalKind::granular, PhysicalKind::fluid, PhysicalKind::rigid}) {
             Entity entity;
             entity.geometry = *shape;
-            entity.attributes["kind"] = std::string(kind);
+            entity.attributes["kind"] = to_value(kind);
             const auto set = EntityBodies(nullptr).attributes(entity);
-            ASSERT_TRUE(set) << kind;
+            ASSERT_TRUE(set) << to_text(kind);
             for (const attributes::AttributeEntry& entry : set->entries()) {
                 const auto* number = std::get_if<double>(&entry.value);
                 EXPECT_FALSE(number && std::isnan(*number))
-                    << kind << " " << physics::shape_name(*shape) << ": " << entry.name;
+                    << to_text(kind) << " " << physics::shape_name(*shape) << ": " << entry.name;
             }
         }
     }
@@ -191,28 +195,30 @@ TEST(ClothEntity, OfEveryShapeTheAttributesAreNumbers) {
     Entity sheet;
     sheet.geometry =
         ShapeDefinition{physics::MeshShape{{{0, 0, 0}, {2, 0, 0}, {2, 0, 1}, {0, 0, 1}}, {{0, 2, 1}, {0, 3, 2}}}};
-    sheet.attributes["kind"] = std::string("cloth");
+    sheet.attributes["kind"] = to_value(PhysicalKind::cloth);
     EXPECT_NEAR(EntityBodies(nullptr).attributes(sheet)->number("mass", 0), 0.4, 1e-9);
 }
 
 TEST(ClothEntity, KindChangesWhileItMovesInAllDirections) {
     Document document = a_cloth(5);
     document.settings.air_density = 0;
-    document.entities[1].attributes["kind"] = std::string("rigid");
+    document.entities[1].attributes["kind"] = to_value(PhysicalKind::rigid);
     const auto simulation = make(document);
     ASSERT_TRUE(simulation);
     double time = 0;
-    for (const char* kind : {"cloth", "soft", "cloth", "rope", "cloth", "static", "cloth", "rigid"}) {
+    for (const PhysicalKind kind :
+         {PhysicalKind::cloth, PhysicalKind::soft, PhysicalKind::cloth, PhysicalKind::rope, PhysicalKind::cloth,
+          PhysicalKind::static_body, PhysicalKind::cloth, PhysicalKind::rigid}) {
         Entity changed = document.entities[1];
-        changed.attributes["kind"] = std::string(kind);
+        changed.attributes["kind"] = to_value(kind);
         const auto updated = simulation->update(changed, true);
-        ASSERT_TRUE(updated) << kind << ": " << updated.error().message();
+        ASSERT_TRUE(updated) << to_text(kind) << ": " << updated.error().message();
         // It is too thin to be soft and no rope: rigid then, with a note.
         const bool has_points = simulation->points(thing) != nullptr;
-        if (kind == std::string("cloth")) {
+        if (kind == PhysicalKind::cloth) {
             EXPECT_TRUE(has_points);
         }
-        if (kind == std::string("static") || kind == std::string("rigid")) {
+        if (kind == PhysicalKind::static_body || kind == PhysicalKind::rigid) {
             EXPECT_FALSE(has_points);
         }
         step(*simulation, 3);
@@ -220,7 +226,7 @@ TEST(ClothEntity, KindChangesWhileItMovesInAllDirections) {
     }
     // Two thousand grains as small as it is thick do not fill it.
     Entity grains = document.entities[1];
-    grains.attributes["kind"] = std::string("granular");
+    grains.attributes["kind"] = to_value(PhysicalKind::granular);
     const auto refused = simulation->update(grains, true);
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().message().find("grain_budget"), std::string::npos) << refused.error().message();

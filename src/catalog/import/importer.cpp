@@ -7,6 +7,7 @@
 #include <chrono>
 #include <system_error>
 
+#include "attributes/physical_kind.h"
 #include "catalog/describe_model.h"
 #include "catalog/import/file_fingerprint.h"
 #include "catalog/knowledge_json.h"
@@ -416,7 +417,10 @@ Result<Importer::Stored> Importer::store(const ImportItem& item, const PreparedM
     if (!id) return id.error();
     source.model = *id;
     if (auto stored = store_convex_parts(*id, prepared.convex_parts); !stored) return stored.error();
-    if (auto stored = store_soft_mesh(*id, row.physical_kind == "soft", prepared); !stored) return stored.error();
+    if (auto stored = store_soft_mesh(
+            *id, attributes::kind_from_text(row.physical_kind) == attributes::PhysicalKind::soft, prepared);
+        !stored)
+        return stored.error();
     if (auto forgotten = imports_.forget_other_preparations(*id, source.prepare_hash); !forgotten) {
         return forgotten.error();
     }

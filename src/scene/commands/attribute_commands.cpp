@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "attributes/attribute_json.h"
+#include "attributes/physical_kind.h"
 #include "attributes/registry.h"
 #include "attributes/resolver.h"
 #include "scene/commands/commands.h"
@@ -145,7 +146,7 @@ Result<json> tell_collision_shape(SessionState& state, const json& params) {
     const Result<ActingEntity> found = acting_entity(state, index);
     if (!found.ok()) return found.error();
     const auto& [entity, acting] = found.value();
-    if (acting.word("kind", "rigid") == "visual") return json{{"shape", nullptr}};
+    if (kind_of(acting) == attributes::PhysicalKind::visual) return json{{"shape", nullptr}};
     const Result<physics::ShapeDefinition> shape = state.bodies.shape(*entity, acting);
     if (!shape.ok()) return shape.error();
     return json{{"shape", physics::is_static_only(shape.value()) ? json(nullptr) : shape_to_json(shape.value())}};

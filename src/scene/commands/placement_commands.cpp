@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "attributes/physical_kind.h"
 #include "scene/commands/commands.h"
 #include "scene/json/parts.h"
 
@@ -27,9 +28,8 @@ public:
         still.enabled = true;
         // What flows or bends is put down as the solid thing that it would be.
         const Result<attributes::AttributeSet> set = state.bodies.attributes(entity);
-        const std::string kind = set.ok() ? set.value().word("kind", "") : "";
-        const std::set<std::string> with_points{"granular", "soft", "cloth", "rope", "fluid"};
-        if (with_points.contains(kind)) still.attributes["kind"] = std::string("rigid");
+        if (set.ok() && changes_form(kind_of(set.value())))
+            still.attributes["kind"] = to_value(attributes::PhysicalKind::rigid);
         if (Result<void> added = state.simulation->add(still); !added.ok()) return added;
         probe.emplace(state, entity.index);
         return {};
