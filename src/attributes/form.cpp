@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "attributes/registry.h"
+#include "physics/definitions/mass_properties.h"
 
 namespace embody::attributes {
 namespace {
@@ -13,8 +14,8 @@ namespace {
 bool is_positive(double value) { return std::isfinite(value) && value > 0; }
 
 Mat3 box_inertia(Vec3 size, double mass) {
-    const Vec3 s = scale(size, size) * (mass / 12);
-    return Mat3::diagonal({s.y + s.z, s.x + s.z, s.x + s.y});
+    const geometry::MassProperties box = physics::mass_properties(physics::BoxShape{size * 0.5});
+    return box.inertia * (mass / box.volume);
 }
 
 // Volume from the most exact thing known, never more than the box holds.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Volumes and inertias: Beer, Johnston, Vector Mechanics for Engineers, inside back cover; the capsule by adding a
-// cylinder and two half spheres, moved apart by the parallel axis theorem.
+// What they weigh is the physics' own answer (mass_properties); surface areas are from any table.
 #include "catalog/primitives.h"
 
 #include <cmath>
@@ -11,7 +10,8 @@
 #include "catalog/prepare/surface_finish.h"
 #include "catalog/prepare/thumbnail.h"
 #include "interchange/compact/compact_geometry.h"
-#include "physics/definitions/shape_definition.h"
+#include "physics/definitions/mass_properties.h"
+#include "physics/definitions/shape_bounds.h"
 
 namespace embody::catalog {
 namespace {
@@ -93,15 +93,17 @@ RawMesh plane_mesh(double half) {
     return mesh;
 }
 
-/// Puts the formula's numbers in the place of the triangles'.
-void set_solid(GeometryFacts& facts, double volume, double area, double center_height, Vec3 unit_inertia) {
+/// Puts the numbers of the shape, which stands on the ground, in the place of the triangles'.
+template <class Shape>
+void set_solid(GeometryFacts& facts, const Shape& shape, double area) {
+    const geometry::MassProperties solid = physics::mass_properties(shape);
     facts.closed = true;
-    facts.volume = facts.hull_volume = volume;
+    facts.volume = facts.hull_volume = solid.volume;
     facts.volume_method = "formula of the shape";
     facts.volume_relative_error = 0;
     facts.surface_area = area;
-    facts.center_of_volume = {0, center_height, 0};
-    facts.unit_inertia = Mat3::diagonal(unit_inertia);
+    facts.center_of_volume = solid.center - Vec3{0, physics::bounds_of(shape).lower.y, 0};
+    facts.unit_inertia = solid.inertia;
     facts.parts.clear();  // solid, of one material
 }
 
@@ -112,34 +114,32 @@ void set_fit(GeometryFacts& facts, std::string shape, Vec3 dimensions) {
     facts.fitted_error = 0;
 }
 
-void describe_box(GeometryFacts& facts, Vec3 half) {
-    const Vec3 s = 2.0 * half;
-    const double volume = s.x * s.y * s.z;
-    const Vec3 inertia = volume / 12 * Vec3{s.y * s.y + s.z * s.z, s.x * s.x + s.z * s.z, s.x * s.x + s.y * s.y};
-    set_solid(facts, volume, 2 * (s.x * s.y + s.y * s.z + s.z * s.x), half.y, inertia);
-    set_fit(facts, "box", half);
+void describe(GeometryFacts& facts, const physics::BoxShape& box) {
+    const Vec3 s = 2.0 * box.half_extents;
+    set_solid(facts, box, 2 * (s.x * s.y + s.y * s.z + s.z * s.x));
+    set_fit(facts, "box", box.half_extents);
 }
 
-// A sphere is a capsule without a middle.
-void describe_round(GeometryFacts& facts, double r, double half_height) {
-    const double l = 2 * half_height, middle = pi * r * r * l, ends = 4.0 / 3 * pi * r * r * r;
-    const double about_axis = middle * r * r / 2 + ends * 2 / 5 * r * r;
-    const double across = middle * (l * l / 12 + r * r / 4) + ends * (2.0 / 5 * r * r + l * l / 4 + 3.0 / 8 * l * r);
-    set_solid(facts, middle + ends, 2 * pi * r * l + 4 * pi * r * r, r + half_height, {across, about_axis, across});
-    set_fit(facts, l > 0 ? "capsule" : "sphere", {r, half_height, 0});
+void describe(GeometryFacts& facts, const physics::SphereShape& sphere) {
+    set_solid(facts, sphere, 4 * pi * sphere.radius * sphere.radius);
+    set_fit(facts, "sphere", {sphere.radius, 0, 0});
 }
 
-void describe_cylinder(GeometryFacts& facts, double r, double half_height) {
-    const double h = 2 * half_height, volume = pi * r * r * h;
-    const double across = volume * (3 * r * r + h * h) / 12;
-    set_solid(facts, volume, 2 * pi * r * (r + h), half_height, {across, volume * r * r / 2, across});
-    set_fit(facts, "cylinder", {r, half_height, 0});
+void describe(GeometryFacts& facts, const physics::CapsuleShape& capsule) {
+    const double r = capsule.radius;
+    set_solid(facts, capsule, 4 * pi * r * capsule.half_height + 4 * pi * r * r);
+    set_fit(facts, "capsule", {r, capsule.half_height, 0});
 }
 
-void describe_cone(GeometryFacts& facts, double r, double half_height) {
-    const double h = 2 * half_height, volume = pi * r * r * h / 3;
-    const double across = volume * (3.0 / 20 * r * r + 3.0 / 80 * h * h);
-    set_solid(facts, volume, pi * r * (r + std::sqrt(r * r + h * h)), h / 4, {across, volume * 3 / 10 * r * r, across});
+void describe(GeometryFacts& facts, const physics::CylinderShape& cylinder) {
+    const double r = cylinder.radius;
+    set_solid(facts, cylinder, 2 * pi * r * (r + 2 * cylinder.half_height));
+    set_fit(facts, "cylinder", {r, cylinder.half_height, 0});
+}
+
+void describe(GeometryFacts& facts, const physics::ConeShape& cone) {
+    const double r = cone.radius, h = 2 * cone.half_height;
+    set_solid(facts, cone, pi * r * (r + std::sqrt(r * r + h * h)));
     set_fit(facts, "convex_hull", {});
 }
 
@@ -205,11 +205,11 @@ Result<std::vector<Primitive>> make_primitives() {
         if (!one) return one.error();
         primitives.push_back(std::move(*one));
     }
-    describe_box(primitives[0].model.facts.geometry, box.half_extents);
-    describe_round(primitives[1].model.facts.geometry, sphere.radius, 0);
-    describe_round(primitives[2].model.facts.geometry, capsule.radius, capsule.half_height);
-    describe_cylinder(primitives[3].model.facts.geometry, cylinder.radius, cylinder.half_height);
-    describe_cone(primitives[4].model.facts.geometry, cone.radius, cone.half_height);
+    describe(primitives[0].model.facts.geometry, box);
+    describe(primitives[1].model.facts.geometry, sphere);
+    describe(primitives[2].model.facts.geometry, capsule);
+    describe(primitives[3].model.facts.geometry, cylinder);
+    describe(primitives[4].model.facts.geometry, cone);
     primitives[5].item.movable = false;
     return primitives;
 }

@@ -21,6 +21,8 @@ extern "C" {
 #include <libqhull_r/qhull_ra.h>
 }
 
+#include "geometry/mean_point.h"
+
 namespace embody::geometry {
 namespace {
 
@@ -429,7 +431,7 @@ TriangleMesh to_mesh(const ConvexHull& hull) {
 }
 
 MassProperties integrate_hull(const ConvexHull& hull) {
-    PolyhedronIntegral integral(hull.vertices.empty() ? Vec3{} : bounds(hull).center());
+    PolyhedronIntegral integral(mean_point(hull.vertices));
     for (const auto& face : hull.faces) {
         const auto corner = hull.corners(face);
         for (std::size_t i = 1; i + 1 < corner.size(); ++i) {

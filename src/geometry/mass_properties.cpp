@@ -5,7 +5,7 @@
 // How: the paper turns them into surface and line integrals; for triangles the same numbers come from a sum over signed
 // tetrahedra (reference, a, b, c), which is shorter and as exact: F. Tonon, "Explicit exact formulas for the 3-D
 // tetrahedron inertia tensor in terms of its vertex coordinates", J. Mathematics and Statistics 1(1), 2004.
-//   6V = det = a·(b×c),   ∫x dV = det/24 · s,   ∫x xᵀ dV = det/120 · (aaᵀ + bbᵀ + ccᵀ + ssᵀ),   s = a + b + c.
+//   6V = a·(b×c),   ∫x dV = V/4 · s,   ∫x xᵀ dV = V/20 · (aaᵀ + bbᵀ + ccᵀ + ssᵀ),   s = a + b + c.
 #include "geometry/mass_properties.h"
 
 namespace embody::geometry {
@@ -14,11 +14,11 @@ void PolyhedronIntegral::add_triangle(Vec3 a, Vec3 b, Vec3 c) {
     a -= reference_;
     b -= reference_;
     c -= reference_;
-    const double det = dot(a, cross(b, c));
+    const double volume = dot(a, cross(b, c)) / 6;
     const Vec3 s = a + b + c;
-    volume_ += det / 6;
-    first_moment_ += (det / 24) * s;
-    second_moment_ += (det / 120) * (outer(a, a) + outer(b, b) + outer(c, c) + outer(s, s));
+    volume_ += volume;
+    first_moment_ += s * (volume / 4);
+    second_moment_ += (outer(a, a) + outer(b, b) + outer(c, c) + outer(s, s)) * (volume / 20);
 }
 
 MassProperties PolyhedronIntegral::mass_properties() const {

@@ -12,9 +12,8 @@
 #include "attributes/registry.h"
 #include "attributes/resolver.h"
 #include "attributes/to_physics.h"
-#include "geometry/convex_hull.h"
-#include "geometry/volume_estimate.h"
-#include "physics/inter/world.h"
+#include "physics/definitions/mass_properties.h"
+#include "physics/definitions/shape_bounds.h"
 #include "scene/json/parts.h"
 
 namespace embody::scene {
@@ -135,22 +134,24 @@ void complete_fineness(AttributeSet& set, const attributes::GeometryFacts& geome
     attributes::put_fineness(set, geometry, attributes::form_of(geometry, {0.5, 0.5, 0.5}));
 }
 
+physics::ShapeDefinition hull_of(const physics::MeshShape& mesh) {
+    physics::HullShape hull;
+    hull.points.reserve(mesh.positions.size());
+    for (const Vec3f& position : mesh.positions) hull.points.push_back(to_vec3(position));
+    return hull;
+}
+
 // Triangles have the volume that they enclose; none where they enclose nothing.
 void put_enclosed(const physics::MeshShape& mesh, attributes::GeometryFacts& form) {
-    const geometry::TriangleMesh surface{mesh.positions, mesh.triangles};
-    if (!geometry::validate(surface).ok()) return;
-    const geometry::VolumeEstimate enclosed = geometry::estimate_volume(surface);
+    const geometry::VolumeEstimate enclosed = physics::enclosed_by(mesh);
     form.closed = enclosed.method == geometry::VolumeMethod::closed_mesh;
     form.volume_method = geometry::name(enclosed.method);
     if (enclosed.method == geometry::VolumeMethod::no_volume) return;
     form.volume = enclosed.solid.volume;
     form.center_of_volume = enclosed.solid.center;
     form.unit_inertia = enclosed.solid.inertia;
-    std::vector<Vec3> points;
-    points.reserve(mesh.positions.size());
-    for (const Vec3f& position : mesh.positions) points.push_back(to_vec3(position));
-    const Result<geometry::ConvexHull> hull = geometry::build_convex_hull(points);
-    form.hull_volume = hull.ok() ? geometry::integrate_hull(hull.value()).volume : form.volume;
+    const auto hull = physics::mass_properties(hull_of(mesh));
+    form.hull_volume = hull.ok() ? hull->volume : form.volume;
 }
 
 // Large shapes have no short name to be found by.
@@ -228,29 +229,18 @@ ModelFacts primitive_facts(const physics::ShapeDefinition& shape) {
     attributes::GeometryFacts& form = facts.geometry;
     form.volume_method = "closed form";
     form.closed = true;
-    if (const auto* mesh = std::get_if<physics::MeshShape>(&shape)) {
-        Bounds bounds;
-        for (const Vec3f& position : mesh->positions) bounds.add(to_vec3(position));
-        if (!bounds.is_empty()) form.size = bounds.size();
+    const Bounds bounds = physics::bounds_of(shape);
+    const bool has_extent = !bounds.is_empty() && !std::holds_alternative<physics::HeightfieldShape>(shape);
+    if (physics::is_static_only(shape)) {
+        if (has_extent) form.size = bounds.size();
+        return facts;
     }
-    if (physics::is_static_only(shape)) return facts;
-
-    // The physics itself says what a body of unit density would be.
-    Result<std::unique_ptr<physics::World>> world = physics::World::create();
-    if (!world.ok()) return facts;
-    const Result<physics::ShapeHandle> handle = world.value()->create_shape(shape);
-    if (!handle.ok()) return facts;
-    physics::BodyDefinition definition;
-    definition.shape = handle.value();
-    definition.mass.density = 1;
-    definition.mass.mass = 1;
-    const Result<physics::BodyHandle> body = world.value()->create_body(definition);
-    form.volume = world.value()->volume(handle.value()).value_or(0);
-    if (!body.ok()) return facts;
-    form.center_of_volume = world.value()->center_of_mass(body.value());
-    form.unit_inertia = world.value()->inertia(body.value()) * form.volume;
-    form.size = world.value()->bounds(body.value()).size();
-    form.hull_volume = form.volume;
+    const Result<geometry::MassProperties> solid = physics::mass_properties(shape);
+    if (!solid.ok()) return facts;
+    form.volume = form.hull_volume = solid->volume;
+    form.center_of_volume = solid->center;
+    form.unit_inertia = solid->inertia;
+    form.size = bounds.size();
     return facts;
 }
 
@@ -403,8 +393,7 @@ Result<physics::BodyDefinition> EntityBodies::body(const Entity& entity, const A
         body.enabled = entity.enabled;
     }
 
-    // The physics knows a primitive's centre and moments itself, and its mass from the density; but cloth and ropes
-    // that are simulated as rigid weigh by their area and length all the same.
+    // A primitive weighs what its attributes say; the physics knows where it has its centre, and its moments.
     if (std::holds_alternative<physics::ShapeDefinition>(entity.geometry)) {
         // It collides as its hull, but weighs by what its triangles enclose.
         const bool is_mesh =
@@ -414,7 +403,8 @@ Result<physics::BodyDefinition> EntityBodies::body(const Entity& entity, const A
             return held &&
                    (held->level == AttributeLevel::manual || (is_mesh && held->level != AttributeLevel::standard));
         };
-        if (!is_thin(kind_of(attributes)) && !is_known("mass")) body.mass.mass.reset();
+        const AttributeEntry* mass = attributes.find("mass");
+        if (mass && mass->level == AttributeLevel::standard) body.mass.mass.reset();
         if (!is_known("center_of_mass")) body.mass.center_of_mass.reset();
         if (!is_known("inertia")) body.mass.inertia.reset();
         body.mass.density *= attributes.number("fill_fraction", 1);
@@ -439,10 +429,7 @@ Result<physics::ShapeDefinition> EntityBodies::shape(const Entity& entity, const
         // Triangles have no inside that could move; a mesh that is made movable collides as its convex hull.
         const auto* mesh = std::get_if<physics::MeshShape>(shape);
         if (!mesh || kind_of(attributes) == PhysicalKind::static_body) return *shape;
-        physics::HullShape hull;
-        hull.points.reserve(mesh->positions.size());
-        for (const Vec3f& position : mesh->positions) hull.points.push_back(to_vec3(position));
-        return physics::ShapeDefinition{std::move(hull)};
+        return hull_of(*mesh);
     }
     const Result<const Model*> model = find(std::get<ModelReference>(entity.geometry).key);
     if (!model.ok()) return model.error();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <numbers>
 
 #include "attributes/assemble.h"
 #include "physics/definitions/grain_material.h"
+#include "physics/definitions/mass_properties.h"
 #include "scene/entity_body.h"
 #include "scene/grain_filling.h"
 
@@ -23,7 +23,7 @@ Result<GrainDefinition> EntityBodies::grains(const Entity& entity, const attribu
     grains.centers = std::move(centers).value();
 
     // Together they weigh what the thing does.
-    const double volume = std::numbers::pi / 6 * grains.diameter * grains.diameter * grains.diameter;
+    const double volume = physics::mass_properties(physics::SphereShape{grains.diameter / 2}).volume;
     const double mass = attributes.number("mass", 1) / static_cast<double>(grains.centers.size());
     grains.body.mass = {.density = std::clamp(mass / volume, 1e-3, 1e5)};
 

@@ -9,8 +9,8 @@
 
 namespace embody::physics::dynamic {
 
-/// Mass, centre and inertia in `constants`: what `definition` gives, the rest from the shape's homogeneous solid.
-/// Fails where neither has a mass or an inertia. `solid` has zero volume for a body without a shape that has one.
+/// Mass, centre and inertia in `constants`: those of body_mass(), and the inverse that the solver needs. Fails as that
+/// does, and where the inertia is too small to be inverted.
 Result<void> resolve_mass(const MassDefinition& definition, const geometry::MassProperties& solid,
                           BodyConstants& constants);
 

@@ -9,7 +9,7 @@
 #include "physics/collision/pairs/convex_pairs.h"
 #include "physics/collision/shapes/collision_shape_data.h"
 #include "physics/collision/shapes/polytope_query.h"
-#include "physics/collision/shapes/shape_mass.h"
+#include "physics/definitions/mass_properties.h"
 
 namespace embody::physics::collision {
 
@@ -34,24 +34,18 @@ Polytope polytope_from(const geometry::ConvexHull& hull) {
     return polytope;
 }
 
-Result<Convex> make_convex(const SphereShape& s) {
-    return Convex{ConvexKind::sphere, s.radius, 0, {}, symmetric_bounds({s.radius, s.radius, s.radius})};
+Convex make_convex(const SphereShape& s) {
+    return {ConvexKind::sphere, s.radius, 0, {}, symmetric_bounds({s.radius, s.radius, s.radius})};
 }
-Result<Convex> make_convex(const BoxShape& s) {
-    return Convex{ConvexKind::polytope, 0, 0, box_polytope(s.half_extents), symmetric_bounds(s.half_extents), true};
+Convex make_convex(const BoxShape& s) {
+    return {ConvexKind::polytope, 0, 0, box_polytope(s.half_extents), symmetric_bounds(s.half_extents), true};
 }
-Result<Convex> make_convex(const CapsuleShape& s) { return round_convex(ConvexKind::capsule, s.radius, s.half_height); }
-Result<Convex> make_convex(const CylinderShape& s) {
-    return round_convex(ConvexKind::cylinder, s.radius, s.half_height);
-}
-Result<Convex> make_convex(const ConeShape& s) { return round_convex(ConvexKind::cone, s.radius, s.half_height); }
+Convex make_convex(const CapsuleShape& s) { return round_convex(ConvexKind::capsule, s.radius, s.half_height); }
+Convex make_convex(const CylinderShape& s) { return round_convex(ConvexKind::cylinder, s.radius, s.half_height); }
+Convex make_convex(const ConeShape& s) { return round_convex(ConvexKind::cone, s.radius, s.half_height); }
 
-Result<Convex> make_convex(const HullShape& s) {
-    auto hull = geometry::build_convex_hull(s.points, max_hull_vertices);
-    if (!hull) return Error{"points", hull.error().why, hull.error().remedy};
-    Convex convex{ConvexKind::polytope, 0, 0, polytope_from(*hull), {}};
-    for (const Vec3& p : convex.polytope.vertices) convex.bounds.add(p);
-    return convex;
+Convex make_convex(const geometry::ConvexHull& hull) {
+    return {ConvexKind::polytope, 0, 0, polytope_from(hull), geometry::bounds(hull)};
 }
 
 // Bounds of a placed convex; round ones by their own formulas, which a turned box would overestimate.
@@ -142,17 +136,21 @@ struct Builder {
     }
 
 private:
-    template <class ConvexShape>
-    Result<void> add_piece(const ConvexShape& shape, const Transform& local) const {
-        Result<Convex> convex = make_convex(shape);
-        if (!convex) return convex.error();
-        const Vec3 inside = inner_point(*convex);
-        convex->reach = convex_radius_about(*convex, inside);
-        convex->inner = -distance_from_surface(*convex, inside).distance - convex->polytope.unevenness;
-        const geometry::MassProperties mass = geometry::transformed(local, mass_of(*convex));
-        data.mass = data.pieces.empty() ? mass : geometry::combined(data.mass, mass);
-        data.piece_bounds.push_back(convex_bounds(*convex, local));
-        data.pieces.push_back({*std::move(convex), local, local == Transform{}});
+    Result<void> add_piece(const HullShape& shape, const Transform& local) const {
+        const auto hull = geometry::build_convex_hull(shape.points, max_hull_vertices);
+        if (!hull) return Error{"points", hull.error().why, hull.error().remedy};
+        return add_piece(*hull, local);
+    }
+    /// Of a round shape, a box or a hull that is built.
+    template <class Solid>
+    Result<void> add_piece(const Solid& solid, const Transform& local) const {
+        Convex convex = make_convex(solid);
+        const Vec3 inside = inner_point(convex);
+        convex.reach = convex_radius_about(convex, inside);
+        convex.inner = -distance_from_surface(convex, inside).distance - convex.polytope.unevenness;
+        physics::add_piece(data.mass, mass_properties(solid), local);
+        data.piece_bounds.push_back(convex_bounds(convex, local));
+        data.pieces.push_back({std::move(convex), local, local == Transform{}});
         return {};
     }
 };

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "physics/collision/shapes/convex.h"
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "geometry/mean_point.h"
 #include "physics/collision/shapes/polytope_query.h"
+#include "physics/definitions/box_faces.h"
 
 namespace embody::physics::collision {
 
@@ -78,17 +81,13 @@ void RoughLanes::assign(const std::vector<Vec3>& vectors) {
 
 Polytope box_polytope(Vec3 h) {
     Polytope box;
-    for (int i = 0; i < 8; ++i) {
-        box.vertices.push_back({(i & 1) != 0 ? h.x : -h.x, (i & 2) != 0 ? h.y : -h.y, (i & 4) != 0 ? h.z : -h.z});
-    }
-    // Corners by the bits x, y, z; each loop counter-clockwise seen from outside.
-    static constexpr std::uint32_t corners[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                                    {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    const std::array<Vec3, 8> corners = box_corners(h);
+    box.vertices.assign(corners.begin(), corners.end());
     const Vec3 normals[6] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
     const double offsets[6] = {h.x, h.x, h.y, h.y, h.z, h.z};
     for (std::uint32_t f = 0; f < 6; ++f) {
         box.faces.push_back({normals[f], offsets[f], 4 * f, 4});
-        box.loops.insert(box.loops.end(), std::begin(corners[f]), std::end(corners[f]));
+        box.loops.insert(box.loops.end(), box_faces[f].begin(), box_faces[f].end());
     }
     link_edges(box);
     return box;
@@ -142,7 +141,7 @@ void link_edges(Polytope& polytope) {
         for (const Vec3& other : polytope.edge_directions) known = known || std::fabs(dot(d, other)) > 1 - 1e-12;
         if (!known) polytope.edge_directions.push_back(d);
     }
-    for (const Vec3& v : polytope.vertices) polytope.center += v / static_cast<double>(polytope.vertices.size());
+    polytope.center = geometry::mean_point(polytope.vertices);
     fill_lanes(polytope);
     fill_spokes(polytope);
 }
