@@ -1,143 +1,336 @@
 // SPDX-License-Identifier: MIT
 #include "attributes/field_reader.h"
 
+#include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
-#include "attributes/json_text.h"
+#include "attributes/nearest_word.h"
 
 namespace embody::attributes {
-namespace {
 
 using nlohmann::json;
 
-bool is_in(double value, std::pair<double, double> range) {
-    return std::isfinite(value) && value >= range.first && value <= range.second;
+namespace {
+
+std::string number_text(double value) { return json(value).dump(); }
+
+std::string range_text(Range range) {
+    if (range.low == positive.low && std::isinf(range.high)) return "greater than 0";
+    if (std::isinf(range.high)) return number_text(range.low) + " or more";
+    if (std::isinf(range.low)) return number_text(range.high) + " or less";
+    return "from " + number_text(range.low) + " to " + number_text(range.high);
 }
 
-std::string range_text(std::pair<double, double> range) {
-    return json(range.first).dump() + " to " + json(range.second).dump();
+void keep_first(std::optional<Error>& error, std::string where, std::string why, std::string remedy = {}) {
+    if (!error) error = Error{std::move(where), std::move(why), std::move(remedy)};
 }
 
 }  // namespace
 
-Result<json> read_json(const std::filesystem::path& file) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(file, ignored)) return Error{file.string(), "is a folder", "name a file"};
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return Error{file.string(), "cannot be opened"};
-    const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-    if (stream.bad()) return Error{file.string(), "cannot be read"};
-    return parse_json(text, file.string());
-}
-
-FieldReader::FieldReader(const json& object, std::string where) : object_(object), where_(std::move(where)) {
-    if (!object.is_object()) fail("", "must be an object");
-}
-
-void FieldReader::word(const char* field, std::string& value, bool required) {
-    const json* found = find(field, required);
-    if (found == nullptr) return;
-    if (!found->is_string() || found->get_ref<const std::string&>().empty()) {
-        return fail(field, "must be a non-empty string");
-    }
-    value = found->get<std::string>();
-}
-
-void FieldReader::words(const char* field, std::vector<std::string>& value, bool required) {
-    const json* found = find(field, required);
-    if (found == nullptr) return;
-    value.clear();
-    if (!found->is_array()) return fail(field, "must be a list of strings");
-    for (const json& item : *found) {
-        if (!item.is_string()) return fail(field, "must be a list of strings");
-        value.push_back(item.get<std::string>());
+const char* json_kind(const json& value) {
+    switch (value.type()) {
+        case json::value_t::object:
+            return "an object";
+        case json::value_t::array:
+            return "a list";
+        case json::value_t::string:
+            return "text";
+        case json::value_t::boolean:
+            return "true or false";
+        case json::value_t::number_integer:
+        case json::value_t::number_unsigned:
+        case json::value_t::number_float:
+            return "a number";
+        default:
+            return "nothing (null)";
     }
 }
 
-void FieldReader::truth(const char* field, bool& value, bool required) {
-    const json* found = find(field, required);
-    if (found == nullptr) return;
-    if (!found->is_boolean()) return fail(field, "must be true or false");
-    value = found->get<bool>();
-}
+std::string element_path(const std::string& list, std::size_t i) { return list + "[" + std::to_string(i) + "]"; }
 
-void FieldReader::number(const char* field, double& value, std::pair<double, double> range, bool required) {
-    const json* found = find(field, required);
-    if (found == nullptr) return;
-    if (!found->is_number() || !is_in(found->get<double>(), range)) {
-        return fail(field, "must be a number from " + range_text(range));
+bool read_number(const json& value, const std::string& where, double& number, std::optional<Error>& error,
+                 Range range) {
+    if (error) return false;
+    if (!value.is_number()) {
+        keep_first(error, where, std::string("must be a number, got ") + json_kind(value));
+        return false;
     }
-    value = found->get<double>();
-}
-
-void FieldReader::interval(const char* field, Interval& value, std::pair<double, double> range, bool required) {
-    const auto n = numbers(field, 3, range, required);
-    if (!n) return;
-    if ((*n)[0] > (*n)[1] || (*n)[1] > (*n)[2]) return fail(field, "must be [low, typical, high], ascending");
-    value = {(*n)[0], (*n)[1], (*n)[2]};
-}
-
-void FieldReader::size(const char* field, Vec3& value, bool required) {
-    if (const auto n = numbers(field, 3, {1e-5, 1e4}, required)) value = {(*n)[0], (*n)[1], (*n)[2]};
-}
-
-void FieldReader::range(const char* field, double& low, double& high, bool required) {
-    const auto n = numbers(field, 2, {1e-5, 1e4}, required);
-    if (!n) return;
-    low = (*n)[0];
-    high = (*n)[1];
-    if (low > high) fail(field, "must be [low, high], ascending");
-}
-
-const json* FieldReader::list(const char* field, bool required) {
-    const json* found = find(field, required);
-    if (found != nullptr && !found->is_array()) fail(field, "must be a list");
-    return error_ ? nullptr : found;
-}
-
-const json* FieldReader::object(const char* field, bool required) {
-    const json* found = find(field, required);
-    if (found != nullptr && !found->is_object()) fail(field, "must be an object");
-    return error_ ? nullptr : found;
-}
-
-void FieldReader::fail(const std::string& field, const std::string& why) {
-    if (!error_) error_ = Error{field.empty() ? where_ : where_ + "." + field, why};
-}
-
-std::optional<Error> FieldReader::finish() {
-    if (error_) return error_;
-    for (const auto& [field, value] : object_.items()) {
-        if (!known_.contains(field)) return Error{where_ + "." + field, "there is no field of this name"};
+    const double read = value.get<double>();
+    if (!std::isfinite(read)) {
+        keep_first(error, where, "must be a finite number");
+        return false;
     }
-    return std::nullopt;
+    if (read < range.low || read > range.high) {
+        keep_first(error, where, "must be " + range_text(range) + ", got " + number_text(read));
+        return false;
+    }
+    number = read;
+    return true;
 }
 
-const json* FieldReader::find(const char* field, bool required) {
-    known_.insert(field);
-    if (error_ || !object_.is_object()) return nullptr;
-    const auto found = object_.find(field);
-    if (found != object_.end()) return &*found;
-    if (required) fail(field, "is missing");
-    return nullptr;
+bool read_array(const json& value, const std::string& where, std::optional<Error>& error) {
+    if (error) return false;
+    if (value.is_array()) return true;
+    keep_first(error, where, std::string("must be a list, got ") + json_kind(value));
+    return false;
 }
 
-std::optional<std::vector<double>> FieldReader::numbers(const char* field, std::size_t count,
-                                                        std::pair<double, double> range, bool required) {
-    const json* found = find(field, required);
-    if (found == nullptr) return std::nullopt;
-    std::vector<double> values;
-    if (found->is_array() && found->size() == count) {
-        for (const json& item : *found) {
-            if (item.is_number() && is_in(item.get<double>(), range)) values.push_back(item.get<double>());
+bool read_vector(const json& value, const std::string& where, Vec3& vector, std::optional<Error>& error) {
+    if (error) return false;
+    if (!value.is_array() || value.size() != 3) {
+        keep_first(error, where, "must be three numbers [x, y, z]");
+        return false;
+    }
+    Vec3 read;
+    for (int i = 0; i < 3; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        if (!read_number(value[at], element_path(where, at), read[i], error)) return false;
+    }
+    vector = read;
+    return true;
+}
+
+FieldReader::FieldReader(const json& value, std::string where, std::optional<Error>& error)
+    : json_(value), where_(std::move(where)), error_(error), is_object_(value.is_object()) {
+    if (!is_object_) fail(where_, std::string("must be an object {…}, got ") + json_kind(value));
+}
+
+FieldReader::FieldReader(const json& value, std::string where) : FieldReader(value, std::move(where), own_error_) {}
+
+void FieldReader::fail(const std::string& where, std::string why, std::string remedy) {
+    keep_first(error_, where, std::move(why), std::move(remedy));
+}
+
+void FieldReader::refuse(std::string_view field, std::string why, std::string remedy) {
+    fail(path(field), std::move(why), std::move(remedy));
+}
+
+std::string FieldReader::path(std::string_view field) const {
+    return where_.empty() ? std::string(field) : where_ + "." + std::string(field);
+}
+
+const json* FieldReader::take(const char* name) {
+    known_.emplace_back(name);
+    if (!is_object_ || error_) return nullptr;
+    const auto found = json_.find(name);
+    return found == json_.end() ? nullptr : &*found;
+}
+
+const json* FieldReader::need(const char* name, const char* what) {
+    const json* value = take(name);
+    if (!value && is_object_) fail(path(name), std::string("is missing: ") + what);
+    return value;
+}
+
+void FieldReader::require(std::initializer_list<const char*> names) {
+    if (!is_object_) return;
+    for (const char* name : names)
+        if (!json_.contains(name)) refuse(name, "is missing");
+}
+
+bool FieldReader::number(const char* name, double& value, Range range) {
+    const json* field = take(name);
+    return field && read_number(*field, path(name), value, error_, range);
+}
+
+bool FieldReader::number(const char* name, std::optional<double>& value, Range range) {
+    double read = 0;
+    if (!number(name, read, range)) return false;
+    value = read;
+    return true;
+}
+
+bool FieldReader::whole(const char* name, std::uint32_t& value, std::uint32_t low, std::uint32_t high) {
+    const json* field = take(name);
+    if (!field) return false;
+    double read = 0;
+    if (!read_number(*field, path(name), read, error_, {static_cast<double>(low), static_cast<double>(high)}))
+        return false;
+    if (read != std::floor(read)) {
+        fail(path(name), "must be a whole number, got " + number_text(read));
+        return false;
+    }
+    value = static_cast<std::uint32_t>(read);
+    return true;
+}
+
+bool FieldReader::whole(const char* name, int& value, int low, int high) {
+    std::uint32_t read = 0;
+    if (!whole(name, read, static_cast<std::uint32_t>(low), static_cast<std::uint32_t>(high))) return false;
+    value = static_cast<int>(read);
+    return true;
+}
+
+bool FieldReader::truth(const char* name, bool& value) {
+    const json* field = take(name);
+    if (!field) return false;
+    if (!field->is_boolean()) {
+        fail(path(name), std::string("must be true or false, got ") + json_kind(*field));
+        return false;
+    }
+    value = field->get<bool>();
+    return true;
+}
+
+bool FieldReader::text(const char* name, std::string& value) {
+    const json* field = take(name);
+    if (!field) return false;
+    if (!field->is_string()) {
+        fail(path(name), std::string("must be text, got ") + json_kind(*field));
+        return false;
+    }
+    value = field->get_ref<const std::string&>();
+    return true;
+}
+
+bool FieldReader::word(const char* name, std::string& value) {
+    std::string read;
+    if (!text(name, read)) return false;
+    if (read.empty()) refuse(name, "must not be empty");
+    if (error_) return false;
+    value = std::move(read);
+    return true;
+}
+
+bool FieldReader::words(const char* name, std::vector<std::string>& value) {
+    const json* given = list(name);
+    if (!given) return false;
+    std::vector<std::string> read;
+    for (std::size_t i = 0; i < given->size(); ++i) {
+        const json& item = (*given)[i];
+        if (!item.is_string()) {
+            fail(element_path(path(name), i), std::string("must be text, got ") + json_kind(item));
+            return false;
         }
+        read.push_back(item.get<std::string>());
     }
-    if (values.size() == count) return values;
-    fail(field, "must be " + std::to_string(count) + " numbers from " + range_text(range));
-    return std::nullopt;
+    value = std::move(read);
+    return true;
+}
+
+bool FieldReader::numbers(const char* name, std::span<double> values, Range range) {
+    const json* given = list(name);
+    if (!given) return false;
+    if (given->size() != values.size()) {
+        refuse(name, "must be " + std::to_string(values.size()) + " numbers");
+        return false;
+    }
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (!read_number((*given)[i], element_path(path(name), i), values[i], error_, range)) return false;
+    return true;
+}
+
+const json* FieldReader::list(const char* name) {
+    const json* field = take(name);
+    return field && read_array(*field, path(name), error_) ? field : nullptr;
+}
+
+const json* FieldReader::object(const char* name) {
+    const json* field = take(name);
+    if (field && !field->is_object()) refuse(name, std::string("must be an object {…}, got ") + json_kind(*field));
+    return error_ ? nullptr : field;
+}
+
+bool FieldReader::vector(const char* name, Vec3& value) {
+    const json* field = take(name);
+    return field && read_vector(*field, path(name), value, error_);
+}
+
+bool FieldReader::vector(const char* name, std::optional<Vec3>& value) {
+    Vec3 read;
+    if (!vector(name, read)) return false;
+    value = read;
+    return true;
+}
+
+bool FieldReader::rotation(const char* name, Quat& value) {
+    const json* field = take(name);
+    if (!field) return false;
+    const std::string where = path(name);
+
+    // The friendly form: an axis and an angle.
+    if (field->is_object()) {
+        Vec3 axis;
+        double degrees = 0;
+        FieldReader reader(*field, where, error_);
+        if (const json* given = reader.need("axis", "the axis of the rotation, [x, y, z]"))
+            read_vector(*given, reader.path("axis"), axis, error_);
+        if (const json* given = reader.need("degrees", "the angle of the rotation"))
+            read_number(*given, reader.path("degrees"), degrees, error_);
+        if (!reader.finish()) return false;
+        // Only the direction of the axis counts, and of the angle what two whole turns leave: their squares and
+        // products must not overflow.
+        const double largest = std::max({std::fabs(axis.x), std::fabs(axis.y), std::fabs(axis.z)});
+        if (largest == 0) {
+            fail(reader.path("axis"), "must not be zero");
+            return false;
+        }
+        value = from_axis_angle(normalized(axis / largest), std::fmod(degrees, 720) * std::numbers::pi / 180);
+        return true;
+    }
+
+    // The quaternion itself, kept to the last bit.
+    if (!field->is_array() || field->size() != 4) {
+        fail(where, "must be four numbers [x, y, z, w] or {\"axis\": [x, y, z], \"degrees\": angle}");
+        return false;
+    }
+    Quat read;
+    double* components[4] = {&read.x, &read.y, &read.z, &read.w};
+    for (std::size_t i = 0; i < 4; ++i)
+        if (!read_number((*field)[i], element_path(where, i), *components[i], error_, {-1e6, 1e6})) return false;
+    if (dot(read, read) < 1e-12) {
+        fail(where, "must not be zero: no rotation is [0, 0, 0, 1]");
+        return false;
+    }
+    // What is not of unit length was written by hand.
+    value = std::fabs(dot(read, read) - 1) < 1e-9 ? read : normalized(read);
+    return true;
+}
+
+bool FieldReader::transform(const char* name, Transform& value) {
+    const json* field = take(name);
+    if (!field) return false;
+    Transform read;
+    FieldReader reader(*field, path(name), error_);
+    reader.vector("position", read.position);
+    reader.rotation("rotation", read.rotation);
+    if (!reader.finish()) return false;
+    value = read;
+    return true;
+}
+
+bool FieldReader::choice(const char* name, std::size_t& value, std::initializer_list<const char*> words) {
+    std::string word;
+    if (!text(name, word)) return false;
+    std::string list;
+    std::vector<std::string> known;
+    for (const char* candidate : words) {
+        if (word == candidate) {
+            value = known.size();
+            return true;
+        }
+        known.emplace_back(candidate);
+        list += (list.empty() ? "" : ", ") + known.back();
+    }
+    const std::string near = nearest_word(word, known);
+    fail(path(name), "\"" + word + "\" is not one of: " + list, near.empty() ? "" : "did you mean \"" + near + "\"?");
+    return false;
+}
+
+bool FieldReader::finish() {
+    if (error_ || !is_object_) return false;
+    for (const auto& [name, value] : json_.items()) {
+        if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+        const std::string near = nearest_word(name, known_);
+        std::string all;
+        for (const std::string& known : known_) all += (all.empty() ? "" : ", ") + known;
+        fail(path(name), "is not a field here",
+             near.empty() ? "fields here: " + all : "did you mean \"" + near + "\"?");
+        return false;
+    }
+    return true;
 }
 
 }  // namespace embody::attributes

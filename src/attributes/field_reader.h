@@ -1,55 +1,105 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <filesystem>
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
-#include <set>
+#include <span>
 #include <string>
-#include <utility>
+#include <string_view>
 #include <vector>
 
-#include "attributes/taxonomy_data.h"
 #include "foundation/result.h"
+#include "math/transform.h"
 
 namespace embody::attributes {
 
-/// The JSON document of a file, read as parse_json() does; the error names the file, and the place where it is broken.
-Result<nlohmann::json> read_json(const std::filesystem::path& file);
+/// The valid range of a number; open where infinite.
+struct Range {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+};
+inline constexpr Range any_number{};
+inline constexpr Range not_negative{0, std::numeric_limits<double>::infinity()};
+inline constexpr Range positive{std::numeric_limits<double>::min(), std::numeric_limits<double>::infinity()};
 
-/// Reads the fields of one object of the taxonomy's files; remembers the first thing that is wrong and which fields
-/// were asked for. A field that is missing keeps its value, unless it is required.
+/// Reads the fields of one JSON object strictly: the one reader of all JSON that people or programs write. Each
+/// function takes the field out of the object if it is there and leaves the value as it is if not; finish() refuses
+/// what nobody asked for, with the nearest name that was asked for. The first error of all readers that share one
+/// `error` is kept; after it nothing is read any more. Errors name the path of the field and what is wrong with it.
 class FieldReader {
 public:
-    /// `where` names the object in errors, such as "furniture.json: categories[3]".
-    FieldReader(const nlohmann::json& object, std::string where);
+    /// `json` and `error` outlive the reader. `where` is the object's path, e.g. "entities[3].pose" or
+    /// "furniture.json: categories[3]"; empty for the top.
+    FieldReader(const nlohmann::json& json, std::string where, std::optional<Error>& error);
+    /// With an error of its own.
+    FieldReader(const nlohmann::json& json, std::string where);
+    FieldReader(const FieldReader&) = delete;
+    FieldReader& operator=(const FieldReader&) = delete;
 
-    void word(const char* field, std::string& value, bool required);
-    void words(const char* field, std::vector<std::string>& value, bool required);
-    void truth(const char* field, bool& value, bool required);
-    void number(const char* field, double& value, std::pair<double, double> range, bool required);
-    /// [low, typical, high], ascending.
-    void interval(const char* field, Interval& value, std::pair<double, double> range, bool required);
-    void size(const char* field, Vec3& value, bool required);
-    /// [low, high], ascending.
-    void range(const char* field, double& low, double& high, bool required);
-    /// The list or object, null where it is missing or something is wrong.
-    const nlohmann::json* list(const char* field, bool required);
-    const nlohmann::json* object(const char* field, bool required);
+    /// The field's value, or null where it is missing.
+    const nlohmann::json* take(const char* name);
+    /// Like take(), but missing is an error that says what the field holds.
+    const nlohmann::json* need(const char* name, const char* what);
+    /// Each of these must be there.
+    void require(std::initializer_list<const char*> names);
 
-    void fail(const std::string& field, const std::string& why);
-    /// The first error; else the first field that nobody asked for.
-    std::optional<Error> finish();
+    bool number(const char* name, double& value, Range range = any_number);
+    bool number(const char* name, std::optional<double>& value, Range range = any_number);
+    bool whole(const char* name, std::uint32_t& value, std::uint32_t low = 0,
+               std::uint32_t high = std::numeric_limits<std::uint32_t>::max());
+    bool whole(const char* name, int& value, int low, int high);
+    bool truth(const char* name, bool& value);
+    bool text(const char* name, std::string& value);
+    /// Text that is not empty.
+    bool word(const char* name, std::string& value);
+    bool words(const char* name, std::vector<std::string>& value);
+    /// As many numbers as `values` has, all in the range.
+    bool numbers(const char* name, std::span<double> values, Range range = any_number);
+    bool vector(const char* name, Vec3& value);
+    bool vector(const char* name, std::optional<Vec3>& value);
+    /// A quaternion [x, y, z, w], stored as written but not zero, or {"axis": [x, y, z], "degrees": number}.
+    bool rotation(const char* name, Quat& value);
+    /// {"position": …, "rotation": …}; both may be missing.
+    bool transform(const char* name, Transform& value);
+    /// The list or object; null where it is missing or something is wrong.
+    const nlohmann::json* list(const char* name);
+    const nlohmann::json* object(const char* name);
+    /// The index of the word in `words`.
+    bool choice(const char* name, std::size_t& value, std::initializer_list<const char*> words);
+
+    /// Refuses fields that were not asked for. Returns whether all is well so far.
+    bool finish();
+
+    [[nodiscard]] bool ok() const { return !error_.has_value(); }
+    /// Keeps the first error.
+    void fail(const std::string& where, std::string why, std::string remedy = {});
+    /// The same of a field of this object.
+    void refuse(std::string_view field, std::string why, std::string remedy = {});
+    /// The path of a field of this object.
+    [[nodiscard]] std::string path(std::string_view field) const;
+    [[nodiscard]] std::optional<Error>& error() { return error_; }
 
 private:
-    const nlohmann::json* find(const char* field, bool required);
-    std::optional<std::vector<double>> numbers(const char* field, std::size_t count, std::pair<double, double> range,
-                                               bool required);
-
-    const nlohmann::json& object_;
+    const nlohmann::json& json_;
     std::string where_;
-    std::set<std::string, std::less<>> known_;
-    std::optional<Error> error_;
+    std::optional<Error> own_error_;
+    std::optional<Error>& error_;
+    std::vector<std::string> known_;
+    bool is_object_;
 };
+
+/// Elements of arrays and single values, for what is not a field. Each fails with `where` and returns false.
+bool read_number(const nlohmann::json& json, const std::string& where, double& value, std::optional<Error>& error,
+                 Range range = any_number);
+bool read_vector(const nlohmann::json& json, const std::string& where, Vec3& value, std::optional<Error>& error);
+bool read_array(const nlohmann::json& json, const std::string& where, std::optional<Error>& error);
+
+/// "a number", "text", "true or false", "nothing (null)", "a list" or "an object".
+const char* json_kind(const nlohmann::json& json);
+/// `where` of element `i` of a list: "entities[3]".
+std::string element_path(const std::string& list, std::size_t i);
 
 }  // namespace embody::attributes

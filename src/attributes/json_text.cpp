@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <deque>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <tuple>
@@ -228,6 +230,16 @@ Result<json> parse_json(const std::string& text, const std::string& where) {
                      "is written a second time in the same object", "keep one of the two"};
     }
     return parsed;
+}
+
+Result<json> read_json(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored)) return Error{file.string(), "is a folder", "name a file"};
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) return Error{file.string(), "cannot be opened"};
+    const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    if (stream.bad()) return Error{file.string(), "cannot be read"};
+    return parse_json(text, file.string());
 }
 
 }  // namespace embody::attributes

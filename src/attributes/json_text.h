@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -20,5 +21,7 @@ bool nests_too_deep(std::string_view text);
 /// name) with line, column and the field at which it is no JSON, nests too deep, has a number that no computer's number
 /// can hold, or names a field of an object a second time.
 Result<nlohmann::json> parse_json(const std::string& text, const std::string& where);
+/// The JSON document of a file, read as parse_json() does; the error names the file, and the place where it is broken.
+Result<nlohmann::json> read_json(const std::filesystem::path& file);
 
 }  // namespace embody::attributes

@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "attributes/nearest_word.h"
 #include "attributes/registry_table.h"
 
 namespace embody::attributes {
@@ -22,22 +23,6 @@ std::string number_text(double value) {
     char buffer[32];
     const auto end = std::to_chars(buffer, buffer + sizeof buffer, value);
     return {buffer, end.ptr};
-}
-
-// Levenshtein's distance: how many letters must be changed, added or dropped.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i + 1;
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-        }
-    }
-    return row[b.size()];
 }
 
 Error unknown_name(std::string_view name) {

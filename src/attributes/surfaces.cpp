@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "attributes/field_reader.h"
+#include "attributes/interval_field.h"
+#include "attributes/json_text.h"
 
 namespace embody::attributes {
 namespace {
@@ -26,25 +28,27 @@ struct Family {
 Result<Family> read_family(const json& object, const std::string& where) {
     Family family;
     FieldReader reader(object, where);
-    reader.word("name", family.name, true);
-    reader.words("materials", family.materials, true);
-    if (auto error = reader.finish()) return *error;
+    reader.require({"name", "materials"});
+    reader.word("name", family.name);
+    reader.words("materials", family.materials);
+    if (!reader.finish()) return *reader.error();
     return family;
 }
 
 Result<SurfacePairData> read_pair(const json& object, const std::string& where) {
     SurfacePairData pair;
     FieldReader reader(object, where);
-    reader.word("a", pair.a, true);
-    reader.word("b", pair.b, true);
-    reader.interval("friction_static", pair.friction_static, {0, 2}, true);
-    reader.interval("friction_dynamic", pair.friction_dynamic, {0, 2}, true);
-    reader.interval("restitution", pair.restitution, {0, 1}, true);
-    reader.word("source", pair.source, true);
+    reader.require({"a", "b", "friction_static", "friction_dynamic", "restitution", "source"});
+    reader.word("a", pair.a);
+    reader.word("b", pair.b);
+    read_interval(reader, "friction_static", pair.friction_static, {0, 2});
+    read_interval(reader, "friction_dynamic", pair.friction_dynamic, {0, 2});
+    read_interval(reader, "restitution", pair.restitution, {0, 1});
+    reader.word("source", pair.source);
     const Interval &sliding = pair.friction_dynamic, &rest = pair.friction_static;
     if (sliding.low > rest.low || sliding.typical > rest.typical || sliding.high > rest.high)
-        reader.fail("friction_dynamic", "must not exceed friction_static");
-    if (auto error = reader.finish()) return *error;
+        reader.refuse("friction_dynamic", "must not exceed friction_static");
+    if (!reader.finish()) return *reader.error();
     return pair;
 }
 
@@ -56,10 +60,11 @@ Result<Surfaces> Surfaces::load(const std::filesystem::path& file, const std::ve
     const std::string name = file.filename().string();
     FieldReader reader(*document, name);
     std::string description;
-    reader.word("description", description, false);
-    const json* families = reader.list("families", true);
-    const json* pairs = reader.list("pairs", true);
-    if (auto error = reader.finish()) return *error;
+    reader.require({"families", "pairs"});
+    reader.word("description", description);
+    const json* families = reader.list("families");
+    const json* pairs = reader.list("pairs");
+    if (!reader.finish()) return *reader.error();
     if (families->size() > most_families) return Error{name + ": families", "are more than 255"};
 
     Surfaces surfaces;

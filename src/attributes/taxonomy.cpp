@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Reads data/taxonomy. Of this layer only this file, field_reader and attribute_json see the JSON library.
+// Reads data/taxonomy.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,8 @@
 
 #include "attributes/assemble.h"
 #include "attributes/field_reader.h"
+#include "attributes/interval_field.h"
+#include "attributes/json_text.h"
 #include "attributes/phrase_match.h"
 #include "attributes/physical_kind.h"
 #include "attributes/registry.h"
@@ -24,49 +27,52 @@ using nlohmann::json;
 Result<MaterialData> read_material(const json& object, const std::string& where) {
     MaterialData material;
     FieldReader reader(object, where);
-    reader.word("name", material.name, true);
-    reader.words("words", material.words, true);
-    reader.interval("density", material.density, {0.1, 22600}, true);
-    reader.interval("friction_static", material.friction_static, {0, 2}, true);
-    reader.interval("friction_dynamic", material.friction_dynamic, {0, 2}, true);
-    reader.number("friction_rolling", material.friction_rolling, {0, 0.05}, true);
-    reader.interval("restitution", material.restitution, {0, 1}, true);
-    reader.interval("wall", material.wall, {1e-4, 0.5}, false);
-    reader.word("core", material.core, false);
-    reader.word("source", material.source, true);
+    reader.require({"name", "words", "density", "friction_static", "friction_dynamic", "friction_rolling",
+                    "restitution", "source"});
+    reader.word("name", material.name);
+    reader.words("words", material.words);
+    read_interval(reader, "density", material.density, {0.1, 22600});
+    read_interval(reader, "friction_static", material.friction_static, {0, 2});
+    read_interval(reader, "friction_dynamic", material.friction_dynamic, {0, 2});
+    reader.number("friction_rolling", material.friction_rolling, {0, 0.05});
+    read_interval(reader, "restitution", material.restitution, {0, 1});
+    read_interval(reader, "wall", material.wall, {1e-4, 0.5});
+    reader.word("core", material.core);
+    reader.word("source", material.source);
     if (material.friction_dynamic.typical > material.friction_static.typical) {
-        reader.fail("friction_dynamic", "must not exceed friction_static");
+        reader.refuse("friction_dynamic", "must not exceed friction_static");
     }
-    if (auto error = reader.finish()) return *error;
+    if (!reader.finish()) return *reader.error();
     return material;
 }
 
 // A choice of the registry's attribute of the same name.
 void check_choice(FieldReader& reader, const char* attribute, const std::string& value) {
     const auto valid = validate(attribute, value);
-    if (!value.empty() && !valid) reader.fail(attribute, valid.error().why);
+    if (!value.empty() && !valid) reader.refuse(attribute, valid.error().why);
 }
 
 // {"youngs_modulus": {"value": [low, typical, high], "source": "…"}}: numbers of the registry that the entry's kind
 // has.
-void read_attributes(FieldReader& reader, const std::string& where, CategoryData& category) {
-    const json* object = reader.object("attributes", false);
+void read_attributes(FieldReader& reader, CategoryData& category) {
+    const json* object = reader.object("attributes");
     if (object == nullptr) return;
     for (const auto& [name, content] : object->items()) {
         const std::string field = "attributes." + name;
         const AttributeDescription* description = describe(name);
         if (description == nullptr || description->type != ValueType::number) {
-            return reader.fail(field, "the registry has no number of this name");
+            return reader.refuse(field, "the registry has no number of this name");
         }
         if (!applies_to(name, category.kind)) {
-            return reader.fail(field, "is no attribute of the kind " + to_text(category.kind));
+            return reader.refuse(field, "is no attribute of the kind " + to_text(category.kind));
         }
         CategoryAttribute attribute{name, {}, {}};
-        FieldReader inner(content, where + "." + field);
-        inner.interval("value", attribute.value, {description->low.value_or(-1e300), description->high.value_or(1e300)},
-                       true);
-        inner.word("source", attribute.source, true);
-        if (auto error = inner.finish()) return reader.fail(field, error->message());
+        FieldReader inner(content, reader.path(field), reader.error());
+        inner.require({"value", "source"});
+        read_interval(inner, "value", attribute.value,
+                      {description->low.value_or(any_number.low), description->high.value_or(any_number.high)});
+        inner.word("source", attribute.source);
+        if (!inner.finish()) return;
         std::erase_if(category.attributes,
                       [&](const CategoryAttribute& of_parent) { return of_parent.name == attribute.name; });
         category.attributes.push_back(std::move(attribute));
@@ -81,7 +87,19 @@ void take_kind(FieldReader& reader, const std::string& text, PhysicalKind& kind)
     check_choice(reader, "kind", text);
     kind = kind_from_text(text).value_or(kind);
     if (kind == PhysicalKind::static_body)
-        reader.fail("kind", "must say what it is when it moves; static is \"movable\": false");
+        reader.refuse("kind", "must say what it is when it moves; static is \"movable\": false");
+}
+
+// Of the box and of the largest extent, m.
+void read_lengths(FieldReader& reader, CategoryData& category) {
+    constexpr Range length{1e-5, 1e4};
+    std::array<double, 3> size{category.at_size.x, category.at_size.y, category.at_size.z};
+    if (reader.numbers("at_size", size, length)) category.at_size = {size[0], size[1], size[2]};
+    std::array<double, 2> usual{category.usual_low, category.usual_high};
+    if (!reader.numbers("usual_size", usual, length)) return;
+    if (usual[0] > usual[1]) reader.refuse("usual_size", "must be [low, high], ascending");
+    category.usual_low = usual[0];
+    category.usual_high = usual[1];
 }
 
 Result<CategoryData> read_category(const json& object, const std::string& where, const CategoryData* parent) {
@@ -99,37 +117,40 @@ Result<CategoryData> read_category(const json& object, const std::string& where,
     std::string scaling = category.scaling == MassScaling::area ? "area" : "volume";
     const bool has_numbers = object.is_object() && (object.contains("mass") || object.contains("at_size") ||
                                                     object.contains("fill_fraction") || object.contains("usual_size"));
-    reader.word("name", category.name, true);
-    reader.word("synset", category.synset, false);
-    reader.words("words", category.words, true);
-    reader.words("catalogue", category.catalogue, false);
-    reader.word("modelled_as", category.modelled_as, false);
-    reader.word("kind", kind, top);
-    reader.word("placement", category.placement, top);
-    reader.truth("movable", category.movable, top);
-    reader.interval("mass", category.mass, {1e-5, 1e6}, top);
-    reader.size("at_size", category.at_size, top || (object.is_object() && object.contains("mass")));
-    reader.word("mass_grows_with", scaling, false);
-    reader.number("exponent", category.exponent, {0, 1.5}, false);
-    reader.range("usual_size", category.usual_low, category.usual_high, top);
-    reader.truth("solid", category.solid, false);
-    reader.interval("fill_fraction", category.fill_fraction, {1e-4, 1},
-                    category.solid && category.fill_fraction.typical == 0);
-    reader.word("material", category.material, top);
-    reader.word("source", category.source, top || has_numbers);
-    if (top) reader.list("subcategories", false);
+    reader.require({"name", "words"});
+    if (top) reader.require({"kind", "placement", "movable", "mass", "at_size", "usual_size", "material", "source"});
+    if (object.is_object() && object.contains("mass")) reader.require({"at_size"});
+    if (has_numbers) reader.require({"source"});
+    reader.word("name", category.name);
+    reader.word("synset", category.synset);
+    reader.words("words", category.words);
+    reader.words("catalogue", category.catalogue);
+    reader.word("modelled_as", category.modelled_as);
+    reader.word("kind", kind);
+    reader.word("placement", category.placement);
+    reader.truth("movable", category.movable);
+    read_interval(reader, "mass", category.mass, {1e-5, 1e6});
+    read_lengths(reader, category);
+    reader.word("mass_grows_with", scaling);
+    reader.number("exponent", category.exponent, {0, 1.5});
+    reader.truth("solid", category.solid);
+    if (category.solid && category.fill_fraction.typical == 0) reader.require({"fill_fraction"});
+    read_interval(reader, "fill_fraction", category.fill_fraction, {1e-4, 1});
+    reader.word("material", category.material);
+    reader.word("source", category.source);
+    if (top) reader.list("subcategories");
     take_kind(reader, kind, category.kind);
     check_choice(reader, "placement", category.placement);
     if (!category.modelled_as.empty() && !is_stuff(category)) {
-        reader.fail("modelled_as",
-                    "is for the kinds fluid, granular, cloth and rope; this is " + to_text(category.kind));
+        reader.refuse("modelled_as",
+                      "is for the kinds fluid, granular, cloth and rope; this is " + to_text(category.kind));
     }
-    if (scaling != "volume" && scaling != "area") reader.fail("mass_grows_with", "must be volume or area");
+    if (scaling != "volume" && scaling != "area") reader.refuse("mass_grows_with", "must be volume or area");
     category.scaling = scaling == "area" ? MassScaling::area : MassScaling::volume;
     // Those of a parent of another kind say nothing of this one.
     std::erase_if(category.attributes, [&](const CategoryAttribute& a) { return !applies_to(a.name, category.kind); });
-    read_attributes(reader, where, category);
-    if (auto error = reader.finish()) return *error;
+    read_attributes(reader, category);
+    if (!reader.finish()) return *reader.error();
     return category;
 }
 
@@ -199,9 +220,10 @@ Result<void> load_materials(Taxonomy::Data& data, const std::filesystem::path& f
     if (!document) return document.error();
     FieldReader reader(*document, file.filename().string());
     std::string description;
-    reader.word("description", description, false);
-    const json* list = reader.list("materials", true);
-    if (auto error = reader.finish()) return *error;
+    reader.require({"materials"});
+    reader.word("description", description);
+    const json* list = reader.list("materials");
+    if (!reader.finish()) return *reader.error();
     for (std::size_t i = 0; i < list->size(); ++i) {
         const std::string where = file.filename().string() + ": materials[" + std::to_string(i) + "]";
         auto material = read_material((*list)[i], where);

@@ -7,6 +7,7 @@
 
 #include "attributes/assemble.h"
 #include "attributes/field_reader.h"
+#include "attributes/json_text.h"
 #include "attributes/phrase_match.h"
 #include "attributes/physical_kind.h"
 
@@ -163,9 +164,10 @@ Result<std::vector<TaxonomyEntry>> read_entries(const std::filesystem::path& fil
     if (!document) return document.error();
     FieldReader reader(*document, where);
     std::string description;
-    reader.word("description", description, false);
-    const json* list = reader.list("categories", true);
-    if (auto error = reader.finish()) return *error;
+    reader.require({"categories"});
+    reader.word("description", description);
+    const json* list = reader.list("categories");
+    if (!reader.finish()) return *reader.error();
     std::vector<TaxonomyEntry> entries;
     const auto read = [&](const json& object, const std::string& place) {
         return TaxonomyEntry{std::make_shared<json>(object), place, file.stem().string(), {}, {}};

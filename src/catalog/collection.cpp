@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "attributes/field_reader.h"
+#include "attributes/json_text.h"
 
 namespace embody::catalog {
 namespace {
@@ -38,10 +39,11 @@ std::optional<Error> read_folders(const Json& list, const std::string& where, Co
         attributes::FieldReader reader(list[i], where + ".folders[" + std::to_string(i) + "]");
         CollectionFolder folder;
         std::string path;
-        reader.word("path", path, true);
-        reader.word("package", folder.package, true);
-        if (!path.empty() && fs::path(path).is_relative()) reader.fail("path", "must be an absolute path");
-        if (auto error = reader.finish()) return error;
+        reader.require({"path", "package"});
+        reader.word("path", path);
+        reader.word("package", folder.package);
+        if (!path.empty() && fs::path(path).is_relative()) reader.refuse("path", "must be an absolute path");
+        if (!reader.finish()) return reader.error();
         folder.path = path;
         collection.folders.push_back(std::move(folder));
     }
@@ -52,9 +54,10 @@ std::optional<Error> read_things(const Json& list, const std::string& where, Col
     for (std::size_t i = 0; i < list.size(); ++i) {
         attributes::FieldReader reader(list[i], where + ".things[" + std::to_string(i) + "]");
         CollectionThings things;
-        reader.word("files", things.files, true);
-        reader.word("are", things.are, true);
-        if (auto error = reader.finish()) return error;
+        reader.require({"files", "are"});
+        reader.word("files", things.files);
+        reader.word("are", things.are);
+        if (!reader.finish()) return reader.error();
         collection.things.push_back(std::move(things));
     }
     return std::nullopt;
@@ -76,19 +79,20 @@ Result<Collection> read_collection(const fs::path& folder, const std::string& na
     Collection collection;
     std::string up;
     attributes::FieldReader reader(*document, file.string());
-    reader.word("name", collection.name, true);
-    reader.word("title", collection.title, true);
-    reader.word("licence", collection.licence, true);
-    reader.word("author", collection.author, true);
-    reader.words("extensions", collection.extensions, true);
-    reader.number("unit", collection.unit, {1e-6, 1e6}, true);
-    reader.word("up", up, true);
+    reader.require({"name", "title", "licence", "author", "extensions", "unit", "up", "source", "folders"});
+    reader.word("name", collection.name);
+    reader.word("title", collection.title);
+    reader.word("licence", collection.licence);
+    reader.word("author", collection.author);
+    reader.words("extensions", collection.extensions);
+    reader.number("unit", collection.unit, {1e-6, 1e6});
+    reader.word("up", up);
     std::string source;
-    reader.word("source", source, true);
-    reader.words("leave_out", collection.leave_out, false);
-    const Json* folders = reader.list("folders", true);
-    const Json* things = reader.list("things", false);
-    if (auto error = reader.finish()) return *error;
+    reader.word("source", source);
+    reader.words("leave_out", collection.leave_out);
+    const Json* folders = reader.list("folders");
+    const Json* things = reader.list("things");
+    if (!reader.finish()) return *reader.error();
     if (auto error = read_folders(*folders, file.string(), collection)) return *error;
     if (things != nullptr) {
         if (auto error = read_things(*things, file.string(), collection)) return *error;

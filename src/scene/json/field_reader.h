@@ -1,88 +1,22 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
-#include <initializer_list>
-#include <limits>
-#include <nlohmann/json_fwd.hpp>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
-#include "foundation/result.h"
-#include "math/transform.h"
+#include "attributes/field_reader.h"
+#include "attributes/nearest_word.h"
 
 namespace embody::scene {
 
-/// The valid range of a number; open where infinite.
-struct Range {
-    double low = -std::numeric_limits<double>::infinity();
-    double high = std::numeric_limits<double>::infinity();
-};
-inline constexpr Range any_number{};
-inline constexpr Range not_negative{0, std::numeric_limits<double>::infinity()};
-inline constexpr Range positive{std::numeric_limits<double>::min(), std::numeric_limits<double>::infinity()};
-
-/// Reads the fields of one JSON object strictly. Each function takes the field out of the object if it is there and
-/// leaves the value as it is if not; finish() refuses what nobody asked for, with the nearest name that was asked for.
-/// The first error of all readers that share one `error` is kept; after it nothing is read any more.
-class FieldReader {
-public:
-    /// `json` and `error` outlive the reader. `where` is the object's path, e.g. "entities[3].pose"; empty for the top.
-    FieldReader(const nlohmann::json& json, std::string where, std::optional<Error>& error);
-
-    /// The field's value, or null where it is missing.
-    const nlohmann::json* take(const char* name);
-    /// Like take(), but missing is an error that says what the field holds.
-    const nlohmann::json* need(const char* name, const char* what);
-
-    bool number(const char* name, double& value, Range range = any_number);
-    bool number(const char* name, std::optional<double>& value, Range range = any_number);
-    bool whole(const char* name, std::uint32_t& value, std::uint32_t low = 0,
-               std::uint32_t high = std::numeric_limits<std::uint32_t>::max());
-    bool whole(const char* name, int& value, int low, int high);
-    bool truth(const char* name, bool& value);
-    bool text(const char* name, std::string& value);
-    bool vector(const char* name, Vec3& value);
-    bool vector(const char* name, std::optional<Vec3>& value);
-    /// A quaternion [x, y, z, w], stored as written but not zero, or {"axis": [x, y, z], "degrees": number}.
-    bool rotation(const char* name, Quat& value);
-    /// {"position": …, "rotation": …}; both may be missing.
-    bool transform(const char* name, Transform& value);
-    /// The index of the word in `words`.
-    bool choice(const char* name, std::size_t& value, std::initializer_list<const char*> words);
-
-    /// Refuses fields that were not asked for. Returns whether all is well so far.
-    bool finish();
-
-    [[nodiscard]] bool ok() const { return !error_.has_value(); }
-    /// Keeps the first error.
-    void fail(const std::string& where, std::string why, std::string remedy = {});
-    /// The path of a field of this object.
-    [[nodiscard]] std::string path(std::string_view field) const;
-    [[nodiscard]] std::optional<Error>& error() { return error_; }
-
-private:
-    const nlohmann::json& json_;
-    std::string where_;
-    std::optional<Error>& error_;
-    std::vector<std::string> known_;
-    bool is_object_;
-};
-
-/// Elements of arrays and single values, for what is not a field. Each fails with `where` and returns false.
-bool read_number(const nlohmann::json& json, const std::string& where, double& value, std::optional<Error>& error,
-                 Range range = any_number);
-bool read_vector(const nlohmann::json& json, const std::string& where, Vec3& value, std::optional<Error>& error);
-bool read_array(const nlohmann::json& json, const std::string& where, std::optional<Error>& error);
-
-/// "a number", "text", "true or false", "nothing (null)", "a list" or "an object".
-const char* json_kind(const nlohmann::json& json);
-/// The word of `known` that `word` is most likely a slip of; empty if none is near.
-std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
-/// `where` of element `i` of a list: "entities[3]".
-std::string element_path(const std::string& list, std::size_t i);
+// Documents and commands are read as all JSON is.
+using attributes::any_number;
+using attributes::element_path;
+using attributes::FieldReader;
+using attributes::json_kind;
+using attributes::nearest_word;
+using attributes::not_negative;
+using attributes::positive;
+using attributes::Range;
+using attributes::read_array;
+using attributes::read_number;
+using attributes::read_vector;
 
 }  // namespace embody::scene
