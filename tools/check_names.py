@@ -10,13 +10,29 @@ import pathlib
 import re
 import sys
 
-TOKEN = re.compile(r"""//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+'|\#[^\n]*(?:\\\n[^\n]*)*|\w+|::|[{};()<>=:,]""", re.S)
+TOKEN = re.compile(r"""//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+'|\#[^\n]*(?:\\\n[^\n]*)*|\[\[.*?\]\]|\w+|::|[{};()<>=:,]""", re.S)
 KINDS = {"class", "struct", "union", "enum"}
+
+
+def without_template_and_alignment(head: list[str]) -> list[str]:
+    """The declaration without "template <…>" and "alignas(…)", whose own signs would hide that it is of a type."""
+    kept, i = [], 0
+    while i < len(head):
+        opening, closing = ("<", ">") if head[i] == "template" else ("(", ")")
+        if head[i] not in ("template", "alignas") or head[i + 1:i + 2] != [opening]:
+            kept.append(head[i])
+            i += 1
+            continue
+        depth, i = 1, i + 2
+        while depth and i < len(head):
+            depth += {opening: 1, closing: -1}.get(head[i], 0)
+            i += 1
+    return kept
 
 
 def definitions(text: str):
     """Qualified names of the types that the text defines at namespace scope."""
-    tokens = [t.group(0) for t in TOKEN.finditer(text) if t.group(0)[0] not in "#\"'" and t.group(0)[:2] not in ("//", "/*", 'R"')]
+    tokens = [t.group(0) for t in TOKEN.finditer(text) if t.group(0)[0] not in "#\"'" and t.group(0)[:2] not in ("//", "/*", 'R"', "[[")]
     scopes = []          # of each open brace: a namespace's name, "" for an unnamed one, None for anything else
     start = 0            # of the declaration at work
     for i, token in enumerate(tokens):
@@ -27,7 +43,7 @@ def definitions(text: str):
                 scopes.pop()
             start = i + 1
         elif token == "{":
-            head = tokens[start:i]
+            head = without_template_and_alignment(tokens[start:i])
             start = i + 1
             if "namespace" in head and "using" not in head:
                 scopes.append("::".join(t for t in head[head.index("namespace") + 1:] if t not in ("::", "inline")))
@@ -35,7 +51,8 @@ def definitions(text: str):
             if None not in scopes and "" not in scopes and "(" not in head and "=" not in head:
                 places = [k for k, t in enumerate(head) if t in KINDS]
                 # "template <class T> struct X" defines X, "struct X::Y" a member of X; a specialisation is named by its arguments.
-                rest = [t for t in head[places[-1] + 1:] if t not in ("final", "alignas")] if places else []
+                rest = [t for t in head[places[-1] + 1:] if t != "final"] if places else []
+                rest = rest[:rest.index(":")] if ":" in rest else rest      # without what it derives from
                 name = rest[:1]
                 while len(rest) > len(name) + 1 and rest[len(name)] == "::":
                     name = rest[:len(name) + 2]
