@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 import { Box3, Vector3 } from "three";
-import { CommandRefused, Connection, NotConnected } from "./connection/connection";
-import type { CatalogEvent, Commands, DocumentEvent, ModelChoice, Progress, ServerError, ServerEvent, Simulation, Statistics } from "./connection/messages";
+import { Connection } from "./connection/connection";
+import type { CatalogEvent, DocumentEvent, ServerEvent, Simulation, Statistics } from "./connection/messages";
+import { Notices } from "./connection/notices";
+import type { Shape } from "./connection/scene_types";
+import { Server } from "./connection/server";
 import { Motion } from "./document/motion";
-import type { Shape } from "./document/scene_types";
-import { positionOf, SceneDocument } from "./document/scene_document";
 import { PickedModel } from "./document/picked_model";
+import { Playback } from "./document/playback";
+import { positionOf, SceneDocument } from "./document/scene_document";
 import { Selection } from "./document/selection";
+import type { Found, Parts } from "./parts";
 import { Preferences } from "./preferences";
 import { Signal } from "./signal";
 import { EntityView } from "./view/entity_view";
@@ -20,26 +24,14 @@ const MOST_COLLISION_SHAPES = 64;
 const KEEPS_PACE = 0.95;
 const LONGEST_PACE_MS = 100;
 
-export interface Notice {
-  level: "info" | "warning" | "error";
-  text: string;
-  remedy?: string;
-  /** A button of the message. */
-  action?: { label: string; run: () => void };
-}
-
-/** What the model browser shows. */
-export interface Found {
-  models: ModelChoice;
-  /** In words, such as “chair” in beds. */
-  text: string;
-}
-
-/** Everything that is one per page, and how news from the server reaches it. Panels and tools are built on this. */
-export class Studio {
+/** Everything that is one per page, and how news from the server reaches it. */
+export class Studio implements Parts {
   readonly preferences = new Preferences();
   readonly connection = new Connection();
+  readonly notices = new Notices();
+  readonly server = new Server(this.connection, this.notices);
   readonly document = new SceneDocument();
+  readonly playback = new Playback();
   readonly selection = new Selection();
   readonly picked = new PickedModel();
   found: Found = { models: { all: true }, text: "all models" };
@@ -47,26 +39,9 @@ export class Studio {
   readonly models = new ModelStore(this.connection);
   readonly entities = new EntityView(this.document, this.motion, this.models, this.connection, this.preferences.get("quality"));
   readonly view: View;
-
-  simulation: Simulation = { state: "stopped", time: 0, step: 0 };
-  statistics: Statistics | null = null;
-  version = "";
-  /** This page's number on the server. */
-  client = 0;
-  readonly simulationChanged = new Signal<void>();
-  readonly statisticsChanged = new Signal<void>();
-  readonly connectionChanged = new Signal<void>();
-  /** Models were changed by hand, by whomever. */
-  readonly catalogChanged = new Signal<CatalogEvent>();
-  /** How far the command is that is being carried out, this page's or another's; all others wait for it. */
-  readonly progress = new Signal<Progress>();
   /** The user wants to see who changed what. */
   readonly historyWanted = new Signal<void>();
-  /** For the user's eyes. */
-  readonly notice = new Signal<Notice>();
   private collisionAsked = 0;
-  /** The document is here; false until the first answer to hello. */
-  ready = false;
   private readonly onOneProcessor = ["localhost", "127.0.0.1", "[::1]"].includes(location.hostname) && drawsInSoftware();
 
   constructor(canvas: HTMLCanvasElement) {
@@ -74,28 +49,6 @@ export class Studio {
     this.followDocument();
     this.followConnection();
     this.followPreferences();
-  }
-
-  get playing(): boolean {
-    return this.simulation.state === "playing";
-  }
-
-  /** Sends a command; a refusal is shown to the user and gives undefined. */
-  async command<Name extends keyof Commands>(name: Name, params: Commands[Name][0]): Promise<Commands[Name][1] | undefined> {
-    try {
-      return await this.connection.request(name, params);
-    } catch (error) {
-      this.report(error as Error);
-      return undefined;
-    }
-  }
-
-  /** Shows why something failed and what to do. */
-  report(error: Error): void {
-    if (error instanceof CommandRefused) this.notice.emit(noticeOf(error.error));
-    else if (error instanceof NotConnected)
-      this.notice.emit({ level: "error", text: "Not connected to the server", remedy: "Your change was not carried out; try again once connected." });
-    else this.notice.emit({ level: "error", text: error.message });
   }
 
   private followDocument(): void {
@@ -122,12 +75,12 @@ export class Studio {
       if (this.selection.has(index)) this.view.outline.show(this.selection.indices);
     });
     this.entities.surfacesLost.on((reason) => {
-      this.notice.emit({ level: "error", text: `The surfaces of liquids cannot be drawn: ${reason}`, remedy: "You see their drops instead. Reload the page to try again." });
+      this.notices.tell({ level: "error", text: `The surfaces of liquids cannot be drawn: ${reason}`, remedy: "You see their drops instead. Reload the page to try again." });
       this.view.invalidate();
     });
     this.entities.failed.on(({ index, reason }) => {
       const entity = this.document.entity(index);
-      this.notice.emit({ level: "warning", text: `“${entity?.name ?? index}” cannot be drawn: ${reason}` });
+      this.notices.tell({ level: "warning", text: `“${entity?.name ?? index}” cannot be drawn: ${reason}` });
     });
   }
 
@@ -137,7 +90,7 @@ export class Studio {
     const indices = this.preferences.get("collision") ? this.selection.indices.slice(0, MOST_COLLISION_SHAPES) : [];
     const shown: { index: number; shape: Shape }[] = [];
     for (const index of indices) {
-      const told = await this.command("entity.collision_shape", { index });
+      const told = await this.server.command("entity.collision_shape", { index });
       // What is selected, or the document, may have changed while the answer was on its way.
       if (wanted !== this.collisionAsked) return;
       if (told?.shape) shown.push({ index, shape: told.shape });
@@ -154,14 +107,13 @@ export class Studio {
       this.entities.forgetPoints();
       void this.greet();
     });
-    this.connection.closed.on(() => this.connectionChanged.emit());
-    this.connection.fault.on((reason) => this.notice.emit({ level: "error", text: reason, remedy: "Reload the page." }));
+    this.connection.closed.on(() => this.server.changed.emit());
+    this.connection.fault.on((reason) => this.notices.tell({ level: "error", text: reason, remedy: "Reload the page." }));
     this.connection.event.on((event) => this.take(event));
     this.connection.frame.on((frame) => {
-      this.motion.take(frame, performance.now(), this.playing);
-      this.entities.takePoints(frame, performance.now(), this.playing);
-      this.simulation.time = frame.time;
-      this.simulation.step = frame.step;
+      this.motion.take(frame, performance.now(), this.playback.playing);
+      this.entities.takePoints(frame, performance.now(), this.playback.playing);
+      this.playback.goOn(frame);
       this.view.drawSoon();
       // The next frame is wanted when this one has been drawn; where nothing is drawn (a hidden page), at once.
       if (document.hidden) this.connection.wantFrame();
@@ -176,7 +128,7 @@ export class Studio {
     view.environment.showGrid(preferences.get("grid"));
     view.slow.on(() => {
       if (preferences.get("quality") === "high")
-        this.notice.emit({ level: "info", text: "Drawing is slow on this computer", remedy: "View options have “Fast drawing”: no shadows or reflections." });
+        this.notices.tell({ level: "info", text: "Drawing is slow on this computer", remedy: "View options have “Fast drawing”: no shadows or reflections." });
     });
     preferences.changed.on((name) => {
       if (name === "theme") view.setTheme(preferences.get("theme"));
@@ -191,38 +143,36 @@ export class Studio {
 
   /** After (re)connecting: the whole document and simulation as they are now. */
   private async greet(): Promise<void> {
-    const hello = await this.command("hello", {});
+    const hello = await this.server.command("hello", {});
     if (!hello) return;
-    this.version = hello.version;
-    this.client = hello.client;
+    this.server.meet(hello);
     if (this.preferences.get("userName")) void this.tellName();
-    this.ready = true;
-    this.simulation = hello.simulation;
+    this.playback.simulation = hello.simulation;
     this.document.reset(hello);
     this.openCamera();
     this.retint();
-    this.connectionChanged.emit();
-    this.simulationChanged.emit();
+    this.server.changed.emit();
+    this.playback.changed.emit();
   }
 
   private async tellName(): Promise<void> {
-    await this.command("client.set_name", { name: this.preferences.get("userName") });
+    await this.server.command("client.set_name", { name: this.preferences.get("userName") });
   }
 
   /** Models were changed: what is known of them is old, and whoever did it may want it back. */
   private takeCatalog(event: CatalogEvent): void {
     this.models.forgetSummaries(event.keys);
     void this.showCollision();
-    this.catalogChanged.emit(event);
-    if (event.client !== this.client) {
+    this.server.catalogChanged.emit(event);
+    if (event.client !== this.server.client) {
       const who = event.session.replace(/^studio: /, "");
       const action = { label: "History", run: () => this.historyWanted.emit() };
-      this.notice.emit({ level: "info", text: `${pastOf(event.label)}, by ${who}`, action });
+      this.notices.tell({ level: "info", text: `${pastOf(event.label)}, by ${who}`, action });
       return;
     }
     const undone = event.command === "undo";
-    const action = { label: undone ? "Redo" : "Undo", run: () => void this.command("catalog.undo", { batch: event.batch }) };
-    this.notice.emit({ level: "info", text: pastOf(event.label), action });
+    const action = { label: undone ? "Redo" : "Undo", run: () => void this.server.command("catalog.undo", { batch: event.batch }) };
+    this.notices.tell({ level: "info", text: pastOf(event.label), action });
   }
 
   private take(event: ServerEvent): void {
@@ -240,20 +190,18 @@ export class Studio {
         this.document.despawn(event.index);
         break;
       case "statistics":
-        this.statistics = event;
-        // While everything sleeps no frames come, but time goes on.
-        if (this.playing) [this.simulation.time, this.simulation.step] = [event.time, event.step];
+        this.playback.measure(event);
         this.sharePower(event);
-        this.statisticsChanged.emit();
+        this.playback.measured.emit();
         break;
       case "message":
-        this.notice.emit(event);
+        this.notices.tell(event);
         break;
       case "catalog":
         this.takeCatalog(event);
         break;
       case "progress":
-        this.progress.emit(event);
+        this.server.progress.emit(event);
         break;
       case "rope_broke":
         this.entities.redress(event.index);
@@ -266,7 +214,7 @@ export class Studio {
   /** Where one computer simulates and draws, both with its processor, pictures give way until the simulation keeps pace. */
   private sharePower({ real_time_factor: rate }: Statistics): void {
     if (!this.onOneProcessor) return;
-    const change = this.playing && rate < KEEPS_PACE ? 20 : -10;
+    const change = this.playback.playing && rate < KEEPS_PACE ? 20 : -10;
     this.view.pace = Math.min(Math.max(this.view.pace + change, 0), LONGEST_PACE_MS);
   }
 
@@ -282,20 +230,20 @@ export class Studio {
   }
 
   private takeSimulation({ state, time, step }: Simulation): void {
-    const restarted = state === "stopped" && this.simulation.state !== "stopped";
-    this.simulation = { state, time, step };
+    const restarted = state === "stopped" && this.playback.simulation.state !== "stopped";
+    this.playback.simulation = { state, time, step };
     if (restarted) {
       this.document.forgetSpawned();
       this.entities.mend();
     }
     this.retint();
-    this.simulationChanged.emit();
+    this.playback.changed.emit();
   }
 
   /** States are told apart while there is a simulation; a scene being built shows its own colours. */
   private retint(): void {
     const { preferences } = this;
-    const shown = preferences.get("tint") && this.simulation.state !== "stopped";
+    const shown = preferences.get("tint") && this.playback.simulation.state !== "stopped";
     this.entities.tinted = !shown ? "off" : preferences.get("fullTint") ? "full" : "faint";
     this.entities.update(performance.now(), true);
     this.view.invalidate();
@@ -319,9 +267,4 @@ export class Studio {
 /** What was done, of what a step of undo is called. */
 function pastOf(label: string): string {
   return label.replace(/^Take back /, "Took back ").replace(/^Set /, "Changed ");
-}
-
-function noticeOf(error: ServerError): Notice {
-  const text = error.where ? `${error.where}: ${error.why}` : error.why;
-  return { level: "error", text, remedy: error.remedy };
 }

@@ -35,9 +35,9 @@ export interface TestHook {
 
 export function offerTestHook(studio: Studio): void {
   const hook: TestHook = {
-    connected: () => studio.connection.isOpen && studio.ready,
-    simulation: () => studio.simulation,
-    statistics: () => studio.statistics,
+    connected: () => studio.server.isOpen && studio.server.ready,
+    simulation: () => studio.playback.simulation,
+    statistics: () => studio.playback.statistics,
     selection: () => [...studio.selection.indices],
     entities: () =>
       [...studio.document.entities.values(), ...studio.document.spawned.values()].map((entity) => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The commands and events of docs/protocol.md as types. SI units, Y up, rotations x y z w.
-import type { Action, Entity, Joint, Scene, SceneSettings, Shape, Vector, Quaternion } from "../document/scene_types";
+import type { Action, Entity, Joint, Scene, SceneSettings, Shape, Vector, Quaternion } from "./scene_types";
 
 export interface ModelSummary {
   id: number;

@@ -2,7 +2,7 @@
 // Places to hold what bends at: corners, edges, ends, of its nodes at rest.
 import { Quaternion, Vector3 } from "three";
 import type { SimulationMesh } from "../connection/messages";
-import type { Entity, Pin, Vector } from "./scene_types";
+import type { Entity, Pin, Vector } from "../connection/scene_types";
 import { rotationOf } from "./scene_document";
 
 /** Of an edge or a face, so many pins along each side. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import type { DocumentChange, DocumentEvent, Hello } from "../connection/messages";
 import { Signal } from "../signal";
-import type { Action, Entity, Joint, Pose, Quaternion, Scene, SceneSettings, Vector } from "./scene_types";
+import type { Action, Entity, Joint, Pose, Quaternion, Scene, SceneSettings, Vector } from "../connection/scene_types";
 
 export const DEFAULT_SETTINGS: SceneSettings = {
   gravity: [0, -9.81, 0],

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { reasonText } from "../connection/connection";
 import type { AttributeEntry, AttributeValue, ChangeSummary, ModelChoice } from "../connection/messages";
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import { fieldFor } from "./attribute_row";
 import { openDialog } from "./dialogs";
 import { element, setText, show } from "./element";
@@ -18,9 +18,9 @@ interface Scope {
 }
 
 /** Gives a value to models of the catalogue: these, all that are found, or a whole category; says first what would happen. */
-export async function openApply(studio: Studio, entry: AttributeEntry, keys: string[]): Promise<void> {
-  const scopes = await scopesOf(studio, keys);
-  if (scopes.length > 0) new ApplyDialog(studio, entry, scopes);
+export async function openApply(parts: Pick<Parts, "preferences" | "server" | "found" | "models">, entry: AttributeEntry, keys: string[]): Promise<void> {
+  const scopes = await scopesOf(parts, keys);
+  if (scopes.length > 0) new ApplyDialog(parts, entry, scopes);
 }
 
 class ApplyDialog {
@@ -40,7 +40,7 @@ class ApplyDialog {
   private readonly dialog: HTMLDialogElement;
 
   constructor(
-    private readonly studio: Studio,
+    private readonly parts: Pick<Parts, "preferences" | "server">,
     private readonly entry: AttributeEntry,
     scopes: Scope[],
   ) {
@@ -57,7 +57,7 @@ class ApplyDialog {
     const form = element("form", { class: "apply", onsubmit: (event: Event) => (event.preventDefault(), void this.carryOut()) });
     form.append(this.choices, this.preview, this.problem, this.bar, element("div", { class: "dialog-buttons" }, this.cancel, this.confirm));
     this.dialog = openDialog(`Apply ${entry.label || entry.name} to models`, "apply-dialog", form);
-    const ended = studio.progress.on(({ client, done, total }) => client === studio.client && this.showProgress(done, total));
+    const ended = parts.server.progress.on(({ client, done, total }) => client === parts.server.client && this.showProgress(done, total));
     this.dialog.addEventListener("close", ended);
     this.dialog.addEventListener("cancel", (event) => this.working && event.preventDefault());
     void this.ask();
@@ -90,12 +90,12 @@ class ApplyDialog {
   }
 
   private nameChoice(): HTMLElement {
-    return element("label", { class: "apply-name" }, element("span", {}, "In the history as"), userNameField(this.studio));
+    return element("label", { class: "apply-name" }, element("span", {}, "In the history as"), userNameField(this.parts));
   }
 
   private request(dry_run: boolean) {
     const attributes = [{ name: this.entry.name, value: this.resets ? null : this.value }];
-    return this.studio.connection.request("catalog.change", { models: this.scope.models, attributes, skip: this.skip, dry_run });
+    return this.parts.server.request("catalog.change", { models: this.scope.models, attributes, skip: this.skip, dry_run });
   }
 
   /** Asks what would happen; of answers to what is no longer asked nothing is shown. */
@@ -174,28 +174,28 @@ class ApplyDialog {
   }
 
   private leave(): void {
-    if (this.working) void this.studio.command("catalog.stop", {});
+    if (this.working) void this.parts.server.command("catalog.stop", {});
     else this.dialog.close();
   }
 }
 
 /** What a change may be for: the models themselves, what the browser has found, their category. */
-async function scopesOf(studio: Studio, keys: string[]): Promise<Scope[]> {
-  const models = await Promise.allSettled(keys.map((key) => studio.models.summary(key)));
+async function scopesOf(parts: Pick<Parts, "server" | "found" | "models">, keys: string[]): Promise<Scope[]> {
+  const models = await Promise.allSettled(keys.map((key) => parts.models.summary(key)));
   const known = models.flatMap((answer) => (answer.status === "fulfilled" ? [answer.value] : []));
   if (known.length === 0) return [];
   const own = known.length === 1 ? `This model: ${known[0]!.name}` : `The models of the selection`;
   const scopes: Scope[] = [{ id: "model", text: own, models: { keys: known.map(({ key }) => key) }, total: known.length }];
-  const { found } = studio;
-  scopes.push({ id: "found", text: "all" in found.models ? "All models of the catalogue" : `All that the browser shows: ${found.text}`, models: found.models, total: await totalOf(studio, found.models) });
+  const { found } = parts;
+  scopes.push({ id: "found", text: "all" in found.models ? "All models of the catalogue" : `All that the browser shows: ${found.text}`, models: found.models, total: await totalOf(parts, found.models) });
   for (const category of new Set(known.map((model) => model.category)))
-    if (category) scopes.push({ id: "category", text: `All of the category “${category}”`, models: { category }, total: await totalOf(studio, { category }) });
+    if (category) scopes.push({ id: "category", text: `All of the category “${category}”`, models: { category }, total: await totalOf(parts, { category }) });
   return scopes.filter(({ total }) => total > 0);
 }
 
-async function totalOf(studio: Studio, models: ModelChoice): Promise<number> {
+async function totalOf(parts: Pick<Parts, "server">, models: ModelChoice): Promise<number> {
   if ("keys" in models) return models.keys.length;
-  const answer = await studio.command("catalog.search", { ...("all" in models ? {} : models), limit: 1 });
+  const answer = await parts.server.command("catalog.search", { ...("all" in models ? {} : models), limit: 1 });
   return answer?.total ?? 0;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { CommandRefused, reasonText } from "../connection/connection";
 import type { AttributeEntry, AttributeValue } from "../connection/messages";
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import { type AttributeEdits, AttributeRow, type SharedAttribute } from "./attribute_row";
 import { type AttributeSubject, CatalogueModel, SelectedEntities } from "./attribute_subject";
 import { openApply } from "./apply_dialog";
@@ -33,15 +33,15 @@ export class AttributeList implements AttributeEdits {
   /** Kinds that are folded; few people look for the last one. */
   private readonly closed = new Set(["motion"]);
 
-  constructor(private readonly studio: Studio) {
+  constructor(private readonly parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "playback" | "selection" | "picked" | "found" | "models">) {
     this.root.append(this.note, this.groups);
-    studio.selection.changed.on(() => this.refresh());
-    studio.picked.changed.on(() => this.refresh());
-    studio.document.changed.on(({ all, entities }) => {
-      if (all || entities.some((index) => studio.selection.has(index))) this.refreshSoon();
+    parts.selection.changed.on(() => this.refresh());
+    parts.picked.changed.on(() => this.refresh());
+    parts.document.changed.on(({ all, entities }) => {
+      if (all || entities.some((index) => parts.selection.has(index))) this.refreshSoon();
     });
-    studio.simulationChanged.on(() => this.refreshSoon());
-    studio.catalogChanged.on(() => this.refreshSoon());
+    parts.playback.changed.on(() => this.refreshSoon());
+    parts.server.catalogChanged.on(() => this.refreshSoon());
   }
 
   set(name: string, value: AttributeValue): Promise<string | null> {
@@ -54,13 +54,13 @@ export class AttributeList implements AttributeEdits {
 
   apply(entry: AttributeEntry): void {
     const models = this.subject()?.models() ?? [];
-    if (models.length > 0) void openApply(this.studio, entry, models);
+    if (models.length > 0) void openApply(this.parts, entry, models);
   }
 
   private subject(): AttributeSubject | null {
-    const { picked, selection } = this.studio;
-    if (picked.model) return new CatalogueModel(this.studio, picked.model.key);
-    return selection.indices.length > 0 ? new SelectedEntities(this.studio) : null;
+    const { picked, selection } = this.parts;
+    if (picked.model) return new CatalogueModel(this.parts, picked.model.key);
+    return selection.indices.length > 0 ? new SelectedEntities(this.parts) : null;
   }
 
   /** Carries out an edit; the reason where the server refuses it belongs beside the field. */
@@ -72,7 +72,7 @@ export class AttributeList implements AttributeEdits {
       this.refreshSoon();
       return null;
     } catch (error) {
-      if (!(error instanceof CommandRefused)) this.studio.report(error as Error);
+      if (!(error instanceof CommandRefused)) this.parts.notices.report(error as Error);
       return reasonText(error as Error);
     }
   }
@@ -86,7 +86,7 @@ export class AttributeList implements AttributeEdits {
     const generation = ++this.generation;
     const subject = this.subject();
     show(this.root, subject !== null);
-    if (!subject || !this.studio.connection.isOpen) return;
+    if (!subject || !this.parts.server.isOpen) return;
     const { sets, note } = await subject.load();
     if (generation !== this.generation) return;
     setText(this.note, note);

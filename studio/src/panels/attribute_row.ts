@@ -2,7 +2,7 @@
 import type { AttributeEntry, AttributeValue } from "../connection/messages";
 import { element, setText, show } from "./element";
 import { type Field, NOISE, numberField, numberText, truthField, vectorField, wordField } from "./fields";
-import { icon } from "./icons";
+import { icon } from "../tools/icons";
 
 /** One attribute as the selected entities have it. */
 export interface SharedAttribute {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 import type { AttributeEntry, AttributeValue } from "../connection/messages";
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 
 /** More selected entities than this are shown by the first of them: asking for all would take long. */
 const MOST_ASKED = 32;
@@ -22,14 +22,14 @@ export class SelectedEntities implements AttributeSubject {
   readonly id: string;
   private readonly indices: number[];
 
-  constructor(private readonly studio: Studio) {
-    this.indices = [...studio.selection.indices];
+  constructor(private readonly parts: Pick<Parts, "server" | "document" | "selection">) {
+    this.indices = [...parts.selection.indices];
     this.id = this.indices.join();
   }
 
   async load(): Promise<{ sets: AttributeEntry[][]; note: string }> {
     const asked = this.indices.slice(0, MOST_ASKED);
-    const answers = await Promise.allSettled(asked.map((index) => this.studio.connection.request("entity.attributes", { index })));
+    const answers = await Promise.allSettled(asked.map((index) => this.parts.server.request("entity.attributes", { index })));
     const failed = answers.find((answer) => answer.status === "rejected");
     const many = this.indices.length > MOST_ASKED ? `Values of the first ${MOST_ASKED} of ${this.indices.length} entities; an edit changes all of them.` : "";
     return {
@@ -39,15 +39,15 @@ export class SelectedEntities implements AttributeSubject {
   }
 
   set(name: string, value: AttributeValue): Promise<unknown> {
-    return this.studio.connection.request("entity.set_attribute", { indices: this.indices, name, value });
+    return this.parts.server.request("entity.set_attribute", { indices: this.indices, name, value });
   }
 
   reset(name: string): Promise<unknown> {
-    return this.studio.connection.request("entity.reset_attribute", { indices: this.indices, name });
+    return this.parts.server.request("entity.reset_attribute", { indices: this.indices, name });
   }
 
   models(): string[] {
-    const keys = this.indices.map((index) => this.studio.document.entity(index)?.model);
+    const keys = this.indices.map((index) => this.parts.document.entity(index)?.model);
     return keys.includes(undefined) ? [] : [...new Set(keys as string[])];
   }
 }
@@ -57,7 +57,7 @@ export class CatalogueModel implements AttributeSubject {
   readonly id: string;
 
   constructor(
-    private readonly studio: Studio,
+    private readonly parts: Pick<Parts, "server">,
     private readonly key: string,
   ) {
     this.id = `model ${key}`;
@@ -65,18 +65,18 @@ export class CatalogueModel implements AttributeSubject {
 
   async load(): Promise<{ sets: AttributeEntry[][]; note: string }> {
     try {
-      return { sets: [(await this.studio.connection.request("catalog.model", { key: this.key })).attributes], note: "" };
+      return { sets: [(await this.parts.server.request("catalog.model", { key: this.key })).attributes], note: "" };
     } catch (error) {
       return { sets: [], note: (error as Error).message };
     }
   }
 
   set(name: string, value: AttributeValue): Promise<unknown> {
-    return this.studio.connection.request("catalog.set_attribute", { key: this.key, name, value });
+    return this.parts.server.request("catalog.set_attribute", { key: this.key, name, value });
   }
 
   reset(name: string): Promise<unknown> {
-    return this.studio.connection.request("catalog.reset_attribute", { key: this.key, name });
+    return this.parts.server.request("catalog.reset_attribute", { key: this.key, name });
   }
 
   models(): string[] {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 import type { SceneListing } from "../connection/messages";
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import { element, show } from "./element";
-import { icon } from "./icons";
+import { icon } from "../tools/icons";
 
 /** A modal dialog with a title; closes with Escape, its cross, or a click outside. */
 export function openDialog(title: string, testId: string, ...contents: (Node | null)[]): HTMLDialogElement {
@@ -27,8 +27,8 @@ export function openDialog(title: string, testId: string, ...contents: (Node | n
 }
 
 /** Asks before work is lost; true at once where nothing would be. */
-export function mayLeave(studio: Studio): Promise<boolean> {
-  if (!studio.document.unsaved) return Promise.resolve(true);
+export function mayLeave(parts: Pick<Parts, "document">): Promise<boolean> {
+  if (!parts.document.unsaved) return Promise.resolve(true);
   return new Promise((resolve) => {
     let answer = false;
     const dialog = openDialog(
@@ -46,18 +46,18 @@ export function mayLeave(studio: Studio): Promise<boolean> {
   });
 }
 
-export async function newScene(studio: Studio): Promise<void> {
-  if (await mayLeave(studio)) await studio.command("scene.new", {});
+export async function newScene(parts: Pick<Parts, "server" | "document">): Promise<void> {
+  if (await mayLeave(parts)) await parts.server.command("scene.new", {});
 }
 
 /** Opens a scene from a file of the user's computer; what is wrong with it the server says, with file, line and field. */
-export async function openSceneFile(studio: Studio, file: File): Promise<void> {
-  if (!(await mayLeave(studio))) return;
-  await studio.command("scene.load", { text: await file.text(), file: file.name });
+export async function openSceneFile(parts: Pick<Parts, "server" | "document">, file: File): Promise<void> {
+  if (!(await mayLeave(parts))) return;
+  await parts.server.command("scene.load", { text: await file.text(), file: file.name });
 }
 
 /** Lists what the user saved and the scenes that come with Embody. */
-export async function openScenes(studio: Studio): Promise<void> {
+export async function openScenes(parts: Pick<Parts, "server" | "document">): Promise<void> {
   const waiting = element("p", { class: "note" }, "Loading…");
   const body = element("div", { class: "scene-lists" }, waiting);
   const file = element("input", { type: "file", accept: ".json,application/json", hidden: true });
@@ -66,16 +66,16 @@ export async function openScenes(studio: Studio): Promise<void> {
 
   const load = async (name: string): Promise<void> => {
     dialog.close();
-    if (await mayLeave(studio)) await studio.command("scene.load", { name });
+    if (await mayLeave(parts)) await parts.server.command("scene.load", { name });
   };
   file.addEventListener("change", () => {
     const chosen = file.files?.[0];
     if (!chosen) return;
     dialog.close();
-    void openSceneFile(studio, chosen);
+    void openSceneFile(parts, chosen);
   });
 
-  const answer = await studio.command("scene.list", {});
+  const answer = await parts.server.command("scene.list", {});
   if (!answer) return dialog.close();
   const list = (title: string, kind: SceneListing["kind"], none: string) => {
     const scenes = answer.scenes.filter((scene) => scene.kind === kind);
@@ -114,8 +114,8 @@ function dateText(modified: SceneListing["modified"]): string {
   return Number.isNaN(date.getTime()) ? "" : date.toLocaleString([], { dateStyle: "medium", timeStyle: "short" });
 }
 
-export function saveAs(studio: Studio): void {
-  const name = element("input", { type: "text", value: studio.document.name || studio.document.title, "aria-label": "Name", "data-testid": "save-name" });
+export function saveAs(parts: Pick<Parts, "server" | "notices" | "document">): void {
+  const name = element("input", { type: "text", value: parts.document.name || parts.document.title, "aria-label": "Name", "data-testid": "save-name" });
   const error = element("p", { class: "field-error", role: "alert" });
   show(error, false);
   const form = element(
@@ -124,9 +124,9 @@ export function saveAs(studio: Studio): void {
       onsubmit: async (event: Event) => {
         event.preventDefault();
         try {
-          const saved = await studio.connection.request("scene.save", { name: name.value.trim() });
+          const saved = await parts.server.request("scene.save", { name: name.value.trim() });
           dialog.close();
-          studio.notice.emit({ level: "info", text: `Saved “${saved.name}”`, remedy: saved.path });
+          parts.notices.tell({ level: "info", text: `Saved “${saved.name}”`, remedy: saved.path });
         } catch (reason) {
           error.textContent = (reason as Error).message;
           show(error, true);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import type { ModelSummary, NewEntity } from "../connection/messages";
 import { Signal } from "../signal";
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import { addUnder, Ghost } from "../tools/ghost";
 import { element } from "./element";
 
@@ -19,8 +19,8 @@ export class DragIn {
   private readonly ghost: Ghost;
   private readonly picture = element("div", { class: "carried", hidden: true });
 
-  constructor(private readonly studio: Studio) {
-    this.ghost = new Ghost(studio);
+  constructor(private readonly parts: Pick<Parts, "server" | "notices" | "selection" | "models" | "view">) {
+    this.ghost = new Ghost(parts);
     document.body.append(this.picture);
   }
 
@@ -53,7 +53,7 @@ export class DragIn {
     this.picture.replaceChildren(...[...source.querySelectorAll("img, svg:not(.icon)")].map((each) => each.cloneNode(true)));
     this.picture.hidden = false;
     document.body.classList.add("carrying");
-    this.ghost.begin(carried.entity).catch((error: Error) => this.studio.report(error));
+    this.ghost.begin(carried.entity).catch((error: Error) => this.parts.notices.report(error));
     return carried;
   }
 
@@ -71,8 +71,8 @@ export class DragIn {
     this.ghost.end();
     if (!event || !this.isOverScene(event)) return;
     if (carried.model) this.added.emit(carried.model);
-    void addUnder(this.studio, carried.entity, event.clientX, event.clientY);
-    this.studio.view.canvas.focus();
+    void addUnder(this.parts, carried.entity, event.clientX, event.clientY);
+    this.parts.view.canvas.focus();
   }
 
   private isOverScene(event: PointerEvent): boolean {

@@ -2,8 +2,8 @@
 import { Color, Euler, Matrix4, Quaternion, Vector3 } from "three";
 import type { NewEntity, PoseEdit } from "../connection/messages";
 import { nameOf } from "../document/scene_document";
-import type { Entity, Shape, Vector } from "../document/scene_types";
-import type { Studio } from "../studio";
+import type { Entity, Shape, Vector } from "../connection/scene_types";
+import type { Parts } from "../parts";
 import { colorOf } from "../view/entity_view";
 import { element, show } from "./element";
 import { type Field, numberField, textField, truthField, vectorField } from "./fields";
@@ -20,11 +20,11 @@ export class EntityFields {
   private rows: Row[] = [];
   private lastLive = 0;
 
-  constructor(private readonly studio: Studio) {
-    studio.selection.changed.on(() => this.rebuild());
-    studio.document.changed.on(() => this.update());
-    studio.entities.loaded.on(() => this.update());
-    studio.view.beforeFrame.on((now) => {
+  constructor(private readonly parts: Pick<Parts, "server" | "document" | "selection" | "models" | "entities" | "view">) {
+    parts.selection.changed.on(() => this.rebuild());
+    parts.document.changed.on(() => this.update());
+    parts.entities.loaded.on(() => this.update());
+    parts.view.beforeFrame.on((now) => {
       if (now - this.lastLive < LIVE_EVERY_MS) return;
       this.lastLive = now;
       this.update();
@@ -32,7 +32,7 @@ export class EntityFields {
   }
 
   private entities(): Entity[] {
-    return this.studio.selection.indices.flatMap((index) => this.studio.document.entity(index) ?? []);
+    return this.parts.selection.indices.flatMap((index) => this.parts.document.entity(index) ?? []);
   }
 
   private rebuild(): void {
@@ -46,7 +46,7 @@ export class EntityFields {
     if (entities.every((entity) => entity.shape)) shown.push(this.colorRow());
     const start = this.startRows();
     this.rows = [...(single ? [this.nameRow()] : []), ...shown, ...start];
-    const card = single?.model ? modelCard(this.studio, single.model) : null;
+    const card = single?.model ? modelCard(this.parts, single.model) : null;
     const head = single ? this.rows[0]!.root : element("h2", { "data-testid": "selection-count" }, `${entities.length} entities`);
     this.root.replaceChildren(
       head,
@@ -76,7 +76,7 @@ export class EntityFields {
     const [at, turn, size, euler] = [new Vector3(), new Quaternion(), new Vector3(), new Euler()];
     const update = (entities: Entity[]): void => {
       const last = entities.at(-1)!;
-      if (entities.length > 1 || !this.studio.entities.matrixOf(last.index, performance.now(), matrix)) {
+      if (entities.length > 1 || !this.parts.entities.matrixOf(last.index, performance.now(), matrix)) {
         position.set(null);
         rotation.set(null);
         return;
@@ -99,8 +99,8 @@ export class EntityFields {
       const [x, y, z] = degrees.map((angle) => angle * DEGREE) as Vector;
       edit.rotation = new Quaternion().setFromEuler(new Euler(x, y, z, "YXZ")).toArray() as [number, number, number, number];
     }
-    const poses = this.studio.selection.indices.map((index) => ({ index, ...edit }));
-    void this.studio.command("entity.transform", { poses });
+    const poses = this.parts.selection.indices.map((index) => ({ index, ...edit }));
+    void this.parts.server.command("entity.transform", { poses });
   }
 
   /** The lengths of a primitive, as whole widths and heights. */
@@ -172,7 +172,7 @@ export class EntityFields {
   private change(entity: NewEntity): void {
     // However many are changed, undo takes it back at once.
     const merge = `fields-${Date.now()}`;
-    for (const index of this.studio.selection.indices) void this.studio.command("entity.update", { index, entity, merge });
+    for (const index of this.parts.selection.indices) void this.parts.server.command("entity.update", { index, entity, merge });
   }
 }
 

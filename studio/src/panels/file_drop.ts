@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import type { ServerError } from "../connection/messages";
 import { entityOf } from "../document/entity_of_model";
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import { addUnder } from "../tools/ghost";
 import { openSceneFile } from "./dialogs";
 
@@ -18,7 +18,7 @@ interface ImportAnswer {
 /** Files from the desktop: scenes are opened; models are imported, and added where they were dropped on the scene. */
 export class FileDrop {
   constructor(
-    private readonly studio: Studio,
+    private readonly parts: Pick<Parts, "server" | "notices" | "document" | "selection" | "models" | "view">,
     private readonly imported: () => void,
   ) {
     const hasFiles = (event: DragEvent) => event.dataTransfer?.types.includes("Files") ?? false;
@@ -41,37 +41,37 @@ export class FileDrop {
   private async take(files: File[], clientX: number, clientY: number): Promise<void> {
     for (const file of files) {
       if (file.name.toLowerCase().endsWith(".json")) {
-        await openSceneFile(this.studio, file);
+        await openSceneFile(this.parts, file);
         continue;
       }
       const keys = await this.import(file);
       this.imported();
       const overScene = document.elementFromPoint(clientX, clientY)?.closest("#scene");
       if (!overScene) continue;
-      for (const key of keys.slice(0, 1)) await addUnder(this.studio, entityOf(await this.studio.models.summary(key)), clientX, clientY);
+      for (const key of keys.slice(0, 1)) await addUnder(this.parts, entityOf(await this.parts.models.summary(key)), clientX, clientY);
     }
   }
 
   /** Sends the file to the database; the keys of the models that came of it. */
   private async import(file: File): Promise<string[]> {
-    const { notice, connection } = this.studio;
+    const { notices, server } = this.parts;
     if (file.size > LARGEST_BYTES) {
-      notice.emit({ level: "error", text: `${file.name} is larger than 256 MiB`, remedy: "Import it with “embody import FILE”." });
+      notices.tell({ level: "error", text: `${file.name} is larger than 256 MiB`, remedy: "Import it with “embody import FILE”." });
       return [];
     }
-    notice.emit({ level: "info", text: `Importing ${file.name}…` });
+    notices.tell({ level: "info", text: `Importing ${file.name}…` });
     try {
-      const answer = await fetch(connection.address(`import?name=${encodeURIComponent(file.name)}`), { method: "POST", body: file });
+      const answer = await fetch(server.address(`import?name=${encodeURIComponent(file.name)}`), { method: "POST", body: file });
       const report = (await answer.json()) as ImportAnswer & { error?: ServerError };
       if (report.error) {
-        notice.emit({ level: "error", text: `${report.error.where}: ${report.error.why}`, remedy: report.error.remedy });
+        notices.tell({ level: "error", text: `${report.error.where}: ${report.error.why}`, remedy: report.error.remedy });
         return [];
       }
-      for (const failure of report.failures) notice.emit({ level: "error", text: `${failure.path}: ${failure.why}` });
-      if (report.failures.length === 0) notice.emit({ level: "info", text: `${file.name} is in the model database` });
+      for (const failure of report.failures) notices.tell({ level: "error", text: `${failure.path}: ${failure.why}` });
+      if (report.failures.length === 0) notices.tell({ level: "info", text: `${file.name} is in the model database` });
       return report.keys ?? [];
     } catch (error) {
-      notice.emit({ level: "error", text: `${file.name} was not imported: ${(error as Error).message}` });
+      notices.tell({ level: "error", text: `${file.name} was not imported: ${(error as Error).message}` });
       return [];
     }
   }

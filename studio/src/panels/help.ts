@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import type { UserAction } from "../tools/actions";
 import { keyName, keysOf } from "../tools/keys";
 import { openDialog } from "./dialogs";
@@ -32,10 +32,10 @@ const MATTER: readonly (readonly [string, string])[] = [
 ];
 
 /** Mouse, keys and colours; a key can be changed by clicking on it. */
-export function openHelp(studio: Studio, actions: readonly UserAction[]): void {
+export function openHelp(parts: Pick<Parts, "preferences">, actions: readonly UserAction[]): void {
   const groups = new Map<string, UserAction[]>();
   for (const action of actions) {
-    if (keysOf(studio, action).length === 0) continue;
+    if (keysOf(parts, action).length === 0) continue;
     groups.set(action.group, [...(groups.get(action.group) ?? []), action]);
   }
   const line = (keys: Node, what: string) => element("div", { class: "key-line" }, keys, element("span", {}, what));
@@ -52,19 +52,19 @@ export function openHelp(studio: Studio, actions: readonly UserAction[]): void {
         ...STATES.map(([state, name, what]) => line(element("span", {}, element("i", { class: `swatch ${state}` }), name), what)),
         element("p", { class: "note" }, "The view options colour things all over; T turns it off."),
       ]),
-      ...[...groups].map(([title, group]) => section(title, group.map((action) => line(keyButton(studio, action), action.label)))),
+      ...[...groups].map(([title, group]) => section(title, group.map((action) => line(keyButton(parts, action), action.label)))),
     ),
     element(
       "div",
       { class: "dialog-buttons" },
       element("span", { class: "note" }, "Click on a key to change it."),
-      element("button", { onclick: () => (studio.preferences.set("keys", {}), dialog.close()) }, "Restore all keys"),
+      element("button", { onclick: () => (parts.preferences.set("keys", {}), dialog.close()) }, "Restore all keys"),
     ),
   );
 }
 
-function keyButton(studio: Studio, action: UserAction): HTMLElement {
-  const button = element("button", { class: "key", "aria-label": `Key of “${action.label}”` }, keysOf(studio, action).join(" or "));
+function keyButton(parts: Pick<Parts, "preferences">, action: UserAction): HTMLElement {
+  const button = element("button", { class: "key", "aria-label": `Key of “${action.label}”` }, keysOf(parts, action).join(" or "));
   button.addEventListener("click", () => {
     button.textContent = "press a key";
     button.addEventListener(
@@ -73,8 +73,8 @@ function keyButton(studio: Studio, action: UserAction): HTMLElement {
         event.preventDefault();
         event.stopPropagation();
         if (["Shift", "Control", "Alt", "Meta"].includes(event.key)) return;
-        if (event.key !== "Escape") studio.preferences.set("keys", { ...studio.preferences.get("keys"), [action.id]: keyName(event) });
-        button.textContent = keysOf(studio, action).join(" or ");
+        if (event.key !== "Escape") parts.preferences.set("keys", { ...parts.preferences.get("keys"), [action.id]: keyName(event) });
+        button.textContent = keysOf(parts, action).join(" or ");
         button.blur();
       },
       { signal: untilBlur(button) },

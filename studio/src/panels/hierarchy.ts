@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { nameOf } from "../document/scene_document";
-import type { Entity } from "../document/scene_types";
-import type { Studio } from "../studio";
+import type { Entity } from "../connection/scene_types";
+import type { Parts } from "../parts";
 import { element } from "./element";
 
 /** More rows than this are not made; the filter finds the rest. */
@@ -15,18 +15,18 @@ export class Hierarchy {
   private readonly filter = element("input", { type: "search", placeholder: "Find in the scene", "aria-label": "Find in the scene", oninput: () => this.fill() });
   private timer = 0;
 
-  constructor(private readonly studio: Studio) {
+  constructor(private readonly parts: Pick<Parts, "document" | "selection" | "entities" | "view">) {
     this.root = element("div", { class: "hierarchy" }, element("div", { class: "browser-search" }, this.filter), this.list);
-    studio.document.changed.on(() => {
+    parts.document.changed.on(() => {
       clearTimeout(this.timer);
       this.timer = window.setTimeout(() => this.fill(), DELAY_MS);
     });
-    studio.selection.changed.on(() => this.mark());
+    parts.selection.changed.on(() => this.mark());
   }
 
   private fill(): void {
     const words = this.filter.value.trim().toLowerCase();
-    const { entities, spawned } = this.studio.document;
+    const { entities, spawned } = this.parts.document;
     const all = [...entities.values(), ...spawned.values()].filter((entity) => nameOf(entity).toLowerCase().includes(words));
     const rows = all.slice(0, MOST_ROWS).map((entity) => this.row(entity));
     if (all.length > MOST_ROWS) rows.push(element("li", { class: "note" }, `… and ${all.length - MOST_ROWS} more: type a part of a name`));
@@ -36,11 +36,11 @@ export class Hierarchy {
   }
 
   private row(entity: Entity): HTMLElement {
-    const { studio } = this;
+    const { parts } = this;
     const kind = entity.shape?.type ?? "model";
     const choose = (event: MouseEvent | KeyboardEvent): void => {
-      if (event.ctrlKey || event.shiftKey || event.metaKey) studio.selection.toggle(entity.index);
-      else studio.selection.set([entity.index]);
+      if (event.ctrlKey || event.shiftKey || event.metaKey) parts.selection.toggle(entity.index);
+      else parts.selection.set([entity.index]);
     };
     return element(
       "li",
@@ -50,11 +50,11 @@ export class Hierarchy {
         class: entity.enabled === false ? "row disabled" : "row",
         "data-index": entity.index,
         onclick: choose,
-        ondblclick: () => studio.view.rig.focus(studio.entities.boundsOf([entity.index], performance.now()), performance.now()),
+        ondblclick: () => parts.view.rig.focus(parts.entities.boundsOf([entity.index], performance.now()), performance.now()),
         onkeydown: (event: KeyboardEvent) => this.key(event, choose),
       },
       element("span", {}, nameOf(entity)),
-      element("span", { class: "row-kind" }, studio.document.spawned.has(entity.index) ? `${kind}, spawned` : kind),
+      element("span", { class: "row-kind" }, parts.document.spawned.has(entity.index) ? `${kind}, spawned` : kind),
     );
   }
 
@@ -69,6 +69,6 @@ export class Hierarchy {
 
   private mark(): void {
     for (const row of this.list.querySelectorAll<HTMLElement>("[data-index]"))
-      row.setAttribute("aria-selected", String(this.studio.selection.has(Number(row.dataset["index"]))));
+      row.setAttribute("aria-selected", String(this.parts.selection.has(Number(row.dataset["index"]))));
   }
 }

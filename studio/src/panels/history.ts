@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { reasonText } from "../connection/connection";
 import type { ChangeBatch, ModelSummary } from "../connection/messages";
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import { valueText } from "./attribute_row";
 import { openDialog } from "./dialogs";
 import { element, setText, show } from "./element";
@@ -12,7 +12,7 @@ const CHANGES_SHOWN = 12;
 const CHANGES_OPEN = 1;
 
 /** Who changed what in the catalogue, when, newest first; each act can be taken back. Of one model, or of all. */
-export function openHistory(studio: Studio, model: ModelSummary | null = null): void {
+export function openHistory(parts: Pick<Parts, "server">, model: ModelSummary | null = null): void {
   const list = element("ol", { class: "history", "data-testid": "history" });
   const none = element("p", { class: "note" }, model ? "Nobody has changed this model." : "Nobody has changed a model of the catalogue.");
   const more = element("button", { class: "text-button", onclick: () => void load(oldest) }, "Show older changes");
@@ -24,21 +24,21 @@ export function openHistory(studio: Studio, model: ModelSummary | null = null): 
   show(more, false);
 
   const load = async (before: number, limit = PAGE): Promise<void> => {
-    const answer = await studio.command("catalog.history", { limit, changes: CHANGES_SHOWN, ...(before && { before }), ...(model && { key: model.key }) });
+    const answer = await parts.server.command("catalog.history", { limit, changes: CHANGES_SHOWN, ...(before && { before }), ...(model && { key: model.key }) });
     if (!answer) return;
     if (before === 0) list.replaceChildren();
     else shown += PAGE;
-    list.append(...answer.batches.map((batch) => row(studio, batch, model !== null)));
+    list.append(...answer.batches.map((batch) => row(parts, batch, model !== null)));
     oldest = answer.batches.at(-1)?.batch ?? 0;
     show(more, answer.batches.length === limit);
     show(none, list.children.length === 0);
   };
   void load(0);
-  const ended = studio.catalogChanged.on(() => void load(0, shown));
+  const ended = parts.server.catalogChanged.on(() => void load(0, shown));
   dialog.addEventListener("close", ended);
 }
 
-function row(studio: Studio, batch: ChangeBatch, ofOne: boolean): HTMLElement {
+function row(parts: Pick<Parts, "server">, batch: ChangeBatch, ofOne: boolean): HTMLElement {
   const isUndo = batch.command === "undo";
   const undone = batch.undone_by !== null;
   const problem = element("p", { class: "field-error", role: "alert" });
@@ -46,7 +46,7 @@ function row(studio: Studio, batch: ChangeBatch, ofOne: boolean): HTMLElement {
   // The list is asked for again once it is done; a refusal belongs beside the act.
   undo.addEventListener("click", () => {
     undo.disabled = true;
-    studio.connection.request("catalog.undo", { batch: batch.batch }).catch((error: Error) => {
+    parts.server.request("catalog.undo", { batch: batch.batch }).catch((error: Error) => {
       undo.disabled = false;
       setText(problem, reasonText(error));
       problem.scrollIntoView({ block: "nearest" });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 import type { ModelSummary } from "../connection/messages";
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import { addInFront } from "../tools/ghost";
 import { PRIMITIVES, type Primitive } from "../tools/primitives";
 import type { DragIn } from "./drag_in";
@@ -35,10 +35,10 @@ export class ModelBrowser {
   private timer = 0;
 
   constructor(
-    private readonly studio: Studio,
+    private readonly parts: Pick<Parts, "preferences" | "server" | "selection" | "picked" | "found" | "models" | "view">,
     private readonly dragIn: DragIn,
   ) {
-    this.grid = new ModelGrid(studio, dragIn);
+    this.grid = new ModelGrid(parts, dragIn);
     this.grid.counted.on((total) => this.showCount(total));
     this.grid.used.on((model) => this.remember(model));
     dragIn.added.on((model) => this.remember(model));
@@ -52,11 +52,11 @@ export class ModelBrowser {
       this.grid.root,
     );
     show(this.empty, false);
-    studio.connectionChanged.on(() => {
-      if (studio.connection.isOpen) this.refresh();
+    parts.server.changed.on(() => {
+      if (parts.server.isOpen) this.refresh();
     });
     // Models are listed by these, so that they may be elsewhere now.
-    studio.catalogChanged.on(({ attributes }) => {
+    parts.server.catalogChanged.on(({ attributes }) => {
       if (!attributes.some((name) => LISTED_BY.includes(name))) return;
       void this.loadCategories();
       this.grid.renew();
@@ -83,9 +83,9 @@ export class ModelBrowser {
           title: `${primitive.label}: drag into the scene, or double-click`,
           "aria-label": `Add ${primitive.label.toLowerCase()}`,
           "data-testid": `primitive-${primitive.name}`,
-          ondblclick: () => void addInFront(this.studio, primitive.entity()),
+          ondblclick: () => void addInFront(this.parts, primitive.entity()),
           onkeydown: (event: KeyboardEvent) => {
-            if (event.key === "Enter") void addInFront(this.studio, primitive.entity());
+            if (event.key === "Enter") void addInFront(this.parts, primitive.entity());
           },
         },
         primitiveDrawing(primitive),
@@ -97,7 +97,7 @@ export class ModelBrowser {
   }
 
   private async loadCategories(): Promise<void> {
-    const answer = await this.studio.command("catalog.categories", {});
+    const answer = await this.parts.server.command("catalog.categories", {});
     if (!answer) return;
     const chosen = this.category.value;
     const total = answer.categories.reduce((sum, each) => sum + each.models, 0);
@@ -118,20 +118,20 @@ export class ModelBrowser {
 
   private search(): void {
     const category = this.category.value;
-    const { preferences } = this.studio;
+    const { preferences } = this.parts;
     const words = this.words.value.trim();
     if (category === FAVOURITES) this.showKeys(preferences.get("favourites"), "your favourites");
     else if (category === RECENT) this.showKeys(preferences.get("recent"), "recently used");
     else {
       const models = words || category ? { ...(words && { words }), ...(category && { category }) } : { all: true as const };
       const text = [words && `“${words}”`, category && `in ${category}`].filter(Boolean).join(" ");
-      this.studio.found = { models, text: text || "all models" };
+      this.parts.found = { models, text: text || "all models" };
       this.grid.showSearch({ words, category });
     }
   }
 
   private showKeys(keys: string[], text: string): void {
-    this.studio.found = { models: { keys }, text };
+    this.parts.found = { models: { keys }, text };
     void this.grid.showKeys(keys);
   }
 
@@ -162,8 +162,8 @@ export class ModelBrowser {
   }
 
   private remember(model: ModelSummary): void {
-    const recent = this.studio.preferences.get("recent").filter((key) => key !== model.key);
-    this.studio.preferences.set("recent", [model.key, ...recent].slice(0, 60));
+    const recent = this.parts.preferences.get("recent").filter((key) => key !== model.key);
+    this.parts.preferences.set("recent", [model.key, ...recent].slice(0, 60));
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { entityOf } from "../document/entity_of_model";
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import { addInFront } from "../tools/ghost";
 import { element, show } from "./element";
 import { openHistory } from "./history";
@@ -10,25 +10,25 @@ import { modelCard } from "./model_card";
 export class ModelFields {
   readonly root = element("section", { class: "entity", "data-testid": "model-fields", "aria-label": "Model" });
 
-  constructor(private readonly studio: Studio) {
-    studio.picked.changed.on(() => this.update());
-    studio.catalogChanged.on(() => this.update());
+  constructor(private readonly parts: Pick<Parts, "server" | "selection" | "picked" | "models" | "view">) {
+    parts.picked.changed.on(() => this.update());
+    parts.server.catalogChanged.on(() => this.update());
     this.update();
   }
 
   private update(): void {
-    const { picked } = this.studio;
+    const { picked } = this.parts;
     const { model } = picked;
     show(this.root, model !== null);
     if (!model) return;
     this.root.replaceChildren(
       element("h2", { "data-testid": "model-name" }, model.name),
-      modelCard(this.studio, model.key),
+      modelCard(this.parts, model.key),
       element(
         "div",
         { class: "model-buttons" },
-        element("button", { "data-testid": "model-add", onclick: () => void addInFront(this.studio, entityOf(model)) }, "Add to the scene"),
-        element("button", { "data-testid": "model-history", onclick: () => openHistory(this.studio, model) }, "History…"),
+        element("button", { "data-testid": "model-add", onclick: () => void addInFront(this.parts, entityOf(model)) }, "Add to the scene"),
+        element("button", { "data-testid": "model-history", onclick: () => openHistory(this.parts, model) }, "History…"),
       ),
       element("p", { class: "note" }, "A model of the catalogue: what is changed here holds in every scene."),
     );

@@ -2,11 +2,11 @@
 import type { ModelSummary } from "../connection/messages";
 import { entityOf } from "../document/entity_of_model";
 import { Signal } from "../signal";
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import { addInFront } from "../tools/ghost";
 import type { DragIn } from "./drag_in";
 import { element } from "./element";
-import { icon } from "./icons";
+import { icon } from "../tools/icons";
 
 const PAGE = 60;
 const TILE_WIDTH = 92;
@@ -35,7 +35,7 @@ export class ModelGrid {
   private keys: readonly string[] | null = null;
 
   constructor(
-    private readonly studio: Studio,
+    private readonly parts: Pick<Parts, "preferences" | "server" | "selection" | "picked" | "models" | "view">,
     private readonly dragIn: DragIn,
   ) {
     this.root = element(
@@ -53,7 +53,7 @@ export class ModelGrid {
       this.canvas,
     );
     new ResizeObserver(() => this.lay()).observe(this.root);
-    studio.picked.changed.on(() => this.markPicked());
+    parts.picked.changed.on(() => this.markPicked());
   }
 
   showSearch(search: Search): void {
@@ -68,7 +68,7 @@ export class ModelGrid {
     this.keys = keys;
     this.restart();
     const generation = this.generation;
-    const answers = await Promise.allSettled(keys.map((key) => this.studio.models.summary(key)));
+    const answers = await Promise.allSettled(keys.map((key) => this.parts.models.summary(key)));
     if (generation !== this.generation) return;
     const models = answers.flatMap((answer) => (answer.status === "fulfilled" ? [answer.value] : []));
     for (let page = 0; page * PAGE < models.length; ++page) this.pages.set(page, models.slice(page * PAGE, (page + 1) * PAGE));
@@ -102,7 +102,7 @@ export class ModelGrid {
     this.pages.set(page, "asked");
     const generation = this.generation;
     const { words, category } = this.search;
-    const answer = await this.studio.command("catalog.search", {
+    const answer = await this.parts.server.command("catalog.search", {
       limit: PAGE,
       offset: page * PAGE,
       ...(words && { words }),
@@ -113,7 +113,7 @@ export class ModelGrid {
       this.pages.delete(page);
       return;
     }
-    for (const model of answer.models) this.studio.models.learn(model);
+    for (const model of answer.models) this.parts.models.learn(model);
     this.pages.set(page, answer.models);
     this.setTotal(answer.total);
   }
@@ -178,19 +178,19 @@ export class ModelGrid {
         onclick: () => this.activate(at),
         ondblclick: () => this.add(model),
       },
-      element("img", { src: this.studio.models.thumbnail(model), alt: "", loading: "lazy", draggable: "false" }),
+      element("img", { src: this.parts.models.thumbnail(model), alt: "", loading: "lazy", draggable: "false" }),
       element("span", { class: "tile-name" }, model.name),
       this.favouriteButton(model),
     );
     this.dragIn.from(tile, () => ({ entity: entityOf(model), model }));
-    tile.toggleAttribute("data-picked", this.studio.picked.model?.key === model.key);
+    tile.toggleAttribute("data-picked", this.parts.picked.model?.key === model.key);
     this.tiles.set(at, tile);
     this.canvas.append(tile);
     return tile;
   }
 
   private favouriteButton(model: ModelSummary): HTMLElement {
-    const { preferences } = this.studio;
+    const { preferences } = this.parts;
     const isFavourite = () => preferences.get("favourites").includes(model.key);
     const button = element(
       "button",
@@ -217,13 +217,13 @@ export class ModelGrid {
   }
 
   private markPicked(): void {
-    const key = this.studio.picked.model?.key;
+    const key = this.parts.picked.model?.key;
     for (const tile of this.tiles.values()) tile.toggleAttribute("data-picked", tile.dataset["key"] === key);
   }
 
   private add(model: ModelSummary): void {
     this.used.emit(model);
-    void addInFront(this.studio, entityOf(model));
+    void addInFront(this.parts, entityOf(model));
   }
 
   private key(event: KeyboardEvent): void {
@@ -249,7 +249,7 @@ export class ModelGrid {
     this.tiles.get(at)?.setAttribute("aria-selected", "true");
     this.root.setAttribute("aria-activedescendant", `tile-${at}`);
     const model = this.modelAt(at);
-    if (model) this.studio.picked.set(model);
+    if (model) this.parts.picked.set(model);
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import type { UserAction } from "../tools/actions";
 import { openDialog } from "./dialogs";
 import { element } from "./element";
@@ -7,8 +7,8 @@ import { numberField } from "./fields";
 import { userNameField } from "./user_name";
 
 /** How the picture looks and how snapping works; kept in the browser. */
-export function openOptions(studio: Studio, actions: readonly UserAction[]): void {
-  const { preferences } = studio;
+export function openOptions(parts: Pick<Parts, "preferences" | "server">, actions: readonly UserAction[]): void {
+  const { preferences } = parts;
   const row = (label: string, field: HTMLElement) => element("label", { class: "option" }, field, element("span", {}, label));
   const flip = (id: string): HTMLElement | null => {
     const action = actions.find((each) => each.id === id);
@@ -36,7 +36,7 @@ export function openOptions(studio: Studio, actions: readonly UserAction[]): voi
       flip("tool.snap"),
       row("Snapping step when moving", step.root),
       row("Snapping step when rotating", angle.root),
-      row("Your name in the history of changes", userNameField(studio)),
+      row("Your name in the history of changes", userNameField(parts)),
     ),
   );
 }

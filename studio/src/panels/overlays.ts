@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import { element, show } from "./element";
 
 /** What lies over the scene: the legend of states, loading, an empty scene's advice, and the lost connection. */
@@ -27,30 +27,30 @@ export class Overlays {
   );
   private everConnected = false;
 
-  constructor(private readonly studio: Studio) {
+  constructor(private readonly parts: Pick<Parts, "preferences" | "server" | "document" | "playback" | "entities">) {
     this.root = element("div", { class: "overlays" }, this.legend, this.loading, this.advice, this.lost);
     const update = () => this.update();
-    studio.connection.opened.on(() => (this.everConnected = true));
-    studio.connectionChanged.on(update);
-    studio.simulationChanged.on(update);
-    studio.document.changed.on(update);
-    studio.entities.loaded.on(update);
-    studio.preferences.changed.on(update);
+    parts.server.opened.on(() => (this.everConnected = true));
+    parts.server.changed.on(update);
+    parts.playback.changed.on(update);
+    parts.document.changed.on(update);
+    parts.entities.loaded.on(update);
+    parts.preferences.changed.on(update);
     this.update();
   }
 
   private update(): void {
-    const { studio } = this;
-    const open = studio.connection.isOpen;
-    show(this.legend, studio.preferences.get("tint") && studio.simulation.state !== "stopped");
-    show(this.loading, studio.entities.loading > 0 || (!studio.ready && !this.everConnected));
-    this.loading.textContent = studio.ready ? `Loading ${studio.entities.loading} models…` : "Connecting…";
+    const { parts } = this;
+    const open = parts.server.isOpen;
+    show(this.legend, parts.preferences.get("tint") && parts.playback.simulation.state !== "stopped");
+    show(this.loading, parts.entities.loading > 0 || (!parts.server.ready && !this.everConnected));
+    this.loading.textContent = parts.server.ready ? `Loading ${parts.entities.loading} models…` : "Connecting…";
     // A new scene has a floor and nothing else.
-    const { entities } = studio.document;
+    const { entities } = parts.document;
     const bare = entities.size <= 1 && [...entities.values()].every(({ shape, attributes }) => shape?.type === "plane" || attributes?.["kind"] === "static");
-    show(this.advice, studio.ready && open && bare && studio.simulation.state === "stopped");
-    show(this.lost, studio.ready && !open);
-    document.body.classList.toggle("disconnected", studio.ready && !open);
+    show(this.advice, parts.server.ready && open && bare && parts.playback.simulation.state === "stopped");
+    show(this.lost, parts.server.ready && !open);
+    document.body.classList.toggle("disconnected", parts.server.ready && !open);
   }
 }
 

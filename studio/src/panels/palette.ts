@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import type { UserAction } from "../tools/actions";
 import { keysOf } from "../tools/keys";
 import { openDialog } from "./dialogs";
 import { element } from "./element";
 
 /** Every command by name: type a part, Enter runs the marked one. */
-export function openPalette(studio: Studio, actions: readonly UserAction[]): void {
+export function openPalette(parts: Pick<Parts, "preferences">, actions: readonly UserAction[]): void {
   let marked = 0;
   let found: UserAction[] = [];
   const list = element("ul", { role: "listbox", id: "palette-list", class: "palette-list" });
@@ -41,7 +41,7 @@ export function openPalette(studio: Studio, actions: readonly UserAction[]): voi
           { role: "option", class: action.possible?.() ?? true ? "" : "disabled", onclick: () => run(action) },
           element("span", { class: "note" }, action.group),
           element("span", {}, action.label),
-          element("kbd", {}, keysOf(studio, action)[0] ?? ""),
+          element("kbd", {}, keysOf(parts, action)[0] ?? ""),
         ),
       ),
     );

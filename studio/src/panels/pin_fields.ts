@@ -2,8 +2,8 @@
 import type { SimulationMesh } from "../connection/messages";
 import { heldNodes, nearestNode, pinsAt, PLACE_LABELS, placesOf } from "../document/pins";
 import { nameOf } from "../document/scene_document";
-import type { Entity, Pin, Vector } from "../document/scene_types";
-import type { Studio } from "../studio";
+import type { Entity, Pin, Vector } from "../connection/scene_types";
+import type { Parts } from "../parts";
 import { element, setText, show } from "./element";
 
 const WORLD = "";
@@ -23,7 +23,7 @@ export class PinFields {
   /** The next click on the thing pins it there. */
   private picking = false;
 
-  constructor(private readonly studio: Studio) {
+  constructor(private readonly parts: Pick<Parts, "server" | "document" | "playback" | "selection" | "entities" | "view">) {
     const group = element(
       "details",
       { class: "group", open: true },
@@ -35,28 +35,28 @@ export class PinFields {
     );
     this.root = element("section", { class: "entity", "data-testid": "pins", "aria-label": "Pins" }, group);
     show(this.root, false);
-    for (const signal of [studio.selection.changed, studio.document.changed, studio.entities.loaded, studio.simulationChanged]) signal.on(() => void this.follow());
-    studio.entities.pointed.on(() => void this.follow());
-    studio.view.canvas.addEventListener("pointerdown", (event) => this.pinHere(event), { capture: true });
+    for (const signal of [parts.selection.changed, parts.document.changed, parts.entities.loaded, parts.playback.changed]) signal.on(() => void this.follow());
+    parts.entities.pointed.on(() => void this.follow());
+    parts.view.canvas.addEventListener("pointerdown", (event) => this.pinHere(event), { capture: true });
     addEventListener("keydown", (event) => event.key === "Escape" && this.pick(false));
   }
 
   private get entity(): Entity | null {
-    const { selection, document } = this.studio;
+    const { selection, document } = this.parts;
     return selection.indices.length === 1 ? (document.entities.get(selection.indices[0]!) ?? null) : null;
   }
 
   /** Shows what is selected, if it bends. */
   private async follow(): Promise<void> {
-    const { entity, studio } = this;
-    const index = entity && studio.entities.softs.has(entity.index) ? entity.index : 0;
+    const { entity, parts } = this;
+    const index = entity && parts.entities.softs.has(entity.index) ? entity.index : 0;
     const isOther = index !== this.index;
-    const places = studio.entities.softs.placesOf(index);
+    const places = parts.entities.softs.placesOf(index);
     if (isOther || places?.length !== this.mesh?.nodes.length) {
       if (isOther) this.pick(false);
       this.index = index;
       this.mesh = null;
-      const told = index ? await studio.command("entity.simulation_mesh", { index }) : undefined;
+      const told = index ? await parts.server.command("entity.simulation_mesh", { index }) : undefined;
       // What is selected may have changed while the answer was on its way.
       if (this.index !== index) return;
       this.mesh = told?.mesh ?? null;
@@ -76,14 +76,14 @@ export class PinFields {
   }
 
   private update(): void {
-    const { entity, mesh, studio } = this;
+    const { entity, mesh, parts } = this;
     show(this.root, this.index !== 0);
     const pins = (entity && this.index && entity.pins) || [];
-    studio.view.pins.show(this.index, mesh && pins.length > 0 ? heldNodes(pins, mesh.nodes) : []);
-    studio.view.invalidate();
+    parts.view.pins.show(this.index, mesh && pins.length > 0 ? heldNodes(pins, mesh.nodes) : []);
+    parts.view.invalidate();
     if (!this.index) return;
     setText(this.said, this.picking ? "Click on it where it shall be held; Escape ends that." : pins.length === 0 ? "Nothing holds it." : `${pins.length} ${pins.length === 1 ? "place is" : "places are"} held, shown as dots.`);
-    const holders = [...studio.document.entities.values()].filter(({ index }) => index !== this.index && !studio.entities.clouds.of(index));
+    const holders = [...parts.document.entities.values()].filter(({ index }) => index !== this.index && !parts.entities.clouds.of(index));
     this.holder.replaceChildren(
       element("option", { value: WORLD }, "the world"),
       ...holders.slice(0, MOST_HOLDERS).map((each) => element("option", { value: String(each.index) }, nameOf(each))),
@@ -107,7 +107,7 @@ export class PinFields {
 
   private put(pins: Pin[]): void {
     this.pick(false);
-    void this.studio.command("entity.update", { index: this.index, entity: { pins } });
+    void this.parts.server.command("entity.update", { index: this.index, entity: { pins } });
   }
 
   private holdBy(): void {
@@ -126,15 +126,15 @@ export class PinFields {
   private pick(picking: boolean): void {
     if (this.picking === picking) return;
     this.picking = picking;
-    this.studio.view.canvas.style.cursor = picking ? "crosshair" : "";
+    this.parts.view.canvas.style.cursor = picking ? "crosshair" : "";
     this.update();
   }
 
   private pinHere(event: PointerEvent): void {
     if (!this.picking || event.button !== 0 || !this.mesh) return;
     event.stopImmediatePropagation();
-    const places = this.studio.entities.softs.placesOf(this.index);
-    const hit = this.studio.view.pick(event.clientX, event.clientY);
+    const places = this.parts.entities.softs.placesOf(this.index);
+    const hit = this.parts.view.pick(event.clientX, event.clientY);
     if (!places || hit?.index !== this.index) {
       setText(this.said, "That is not it: click on the thing itself, or press Escape.");
       return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-import type { SceneSettings } from "../document/scene_types";
-import type { Studio } from "../studio";
+import type { SceneSettings } from "../connection/scene_types";
+import type { Parts } from "../parts";
 import { element, setText, show } from "./element";
 import { numberField, textField, truthField, vectorField } from "./fields";
 
@@ -18,7 +18,7 @@ export class SceneFields {
   private readonly airDensity = numberField("Air density", "kg/m³", (air_density) => this.set({ air_density }));
   private readonly contents = element("p", { class: "note", "data-testid": "scene-contents" });
 
-  constructor(private readonly studio: Studio) {
+  constructor(private readonly parts: Pick<Parts, "server" | "document" | "selection" | "picked">) {
     const row = (label: string, field: HTMLElement, help: string) =>
       element("div", { class: "attribute" }, element("span", { class: "attribute-label", title: help }, label), field);
     this.root = element(
@@ -47,18 +47,18 @@ export class SceneFields {
       ),
       element("p", { class: "note" }, "Select an entity, or click on a model, to see what it is made of. Drag models in from the left; they land on what is under the pointer."),
     );
-    studio.document.changed.on(() => this.update());
-    studio.selection.changed.on(() => this.update());
-    studio.picked.changed.on(() => this.update());
+    parts.document.changed.on(() => this.update());
+    parts.selection.changed.on(() => this.update());
+    parts.picked.changed.on(() => this.update());
     this.update();
   }
 
   private set(settings: Partial<SceneSettings> & { title?: string }): void {
-    void this.studio.command("scene.settings", settings).then(() => this.update());
+    void this.parts.server.command("scene.settings", settings).then(() => this.update());
   }
 
   private update(): void {
-    const { document: scene, selection, picked } = this.studio;
+    const { document: scene, selection, picked } = this.parts;
     show(this.root, selection.indices.length === 0 && !picked.model);
     this.title.set(scene.title);
     this.gravity.set(scene.settings.gravity);

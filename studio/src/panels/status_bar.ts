@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import { element, setText, show } from "./element";
 
 /** Nothing more heard of long work for so long: it is done. */
@@ -10,13 +10,13 @@ export class StatusBar {
   readonly root: HTMLElement;
   private readonly connection = element("span", { class: "connection", role: "status", "data-testid": "connection" });
   private readonly work = element("span", { class: "cell", role: "status", "data-testid": "stat-work" });
-  private readonly stop = element("button", { class: "text-button", "data-testid": "stop-work", onclick: () => void this.studio.command("catalog.stop", {}) }, "Stop");
+  private readonly stop = element("button", { class: "text-button", "data-testid": "stop-work", onclick: () => void this.parts.server.command("catalog.stop", {}) }, "Stop");
   private workTimer = 0;
   private readonly cells = new Map<string, HTMLElement>();
   private lastFrames = 0;
   private lastLook = performance.now();
 
-  constructor(private readonly studio: Studio) {
+  constructor(private readonly parts: Pick<Parts, "server" | "playback" | "view">) {
     const cell = (name: string, title: string, kind = ""): HTMLElement => {
       const made = element("span", { class: `cell ${kind}`, title, "data-testid": `stat-${name}` });
       this.cells.set(name, made);
@@ -42,11 +42,11 @@ export class StatusBar {
       this.connection,
     );
     this.showWork("", false);
-    studio.progress.on(({ client, done, total }) => this.showWork(`Changing models: ${done.toLocaleString("en")} of ${total.toLocaleString("en")}`, client === studio.client));
-    studio.catalogChanged.on(() => this.showWork("", false));
-    studio.statisticsChanged.on(() => this.update());
-    studio.simulationChanged.on(() => this.update());
-    studio.connectionChanged.on(() => this.update());
+    parts.server.progress.on(({ client, done, total }) => this.showWork(`Changing models: ${done.toLocaleString("en")} of ${total.toLocaleString("en")}`, client === parts.server.client));
+    parts.server.catalogChanged.on(() => this.showWork("", false));
+    parts.playback.measured.on(() => this.update());
+    parts.playback.changed.on(() => this.update());
+    parts.server.changed.on(() => this.update());
     setInterval(() => this.countFrames(), 1000);
     this.update();
   }
@@ -65,10 +65,11 @@ export class StatusBar {
   }
 
   private update(): void {
-    const { statistics, simulation, connection, version } = this.studio;
+    const { server, playback } = this.parts;
+    const { statistics, simulation } = playback;
     this.put("state", { stopped: "Stopped", playing: "Playing", paused: "Paused" }[simulation.state]);
     this.put("time", `${Math.max(simulation.time, 0).toFixed(2)} s`);
-    this.put("hint", this.studio.ready ? "Press Space to play" : "");
+    this.put("hint", this.parts.server.ready ? "Press Space to play" : "");
     // Before the first step there is nothing to measure.
     const begun = simulation.state !== "stopped";
     for (const [name, cell] of this.cells) if (name !== "state" && name !== "fps") show(cell, begun === (name !== "hint"));
@@ -83,16 +84,16 @@ export class StatusBar {
     this.put("contacts", `${statistics?.contacts ?? "–"} contacts`);
     this.put("step", statistics ? `${statistics.step_ms.toFixed(2)} ms a step` : "– ms a step");
     this.put("rate", statistics ? `${statistics.real_time_factor.toFixed(2)}× real time` : "–× real time");
-    this.connection.dataset["state"] = connection.isOpen ? "open" : "closed";
-    setText(this.connection, connection.isOpen ? `Connected${version ? ` · Embody ${version}` : ""}` : "Not connected");
+    this.connection.dataset["state"] = server.isOpen ? "open" : "closed";
+    setText(this.connection, server.isOpen ? `Connected${server.version ? ` · Embody ${server.version}` : ""}` : "Not connected");
   }
 
   private countFrames(): void {
-    const { frames } = this.studio.view;
+    const { frames } = this.parts.view;
     const now = performance.now();
     this.put("fps", frames === this.lastFrames ? "idle" : `${Math.round(((frames - this.lastFrames) * 1000) / (now - this.lastLook))} fps`);
     this.lastFrames = frames;
     this.lastLook = now;
-    if (this.studio.playing) this.put("time", `${this.studio.simulation.time.toFixed(2)} s`);
+    if (this.parts.playback.playing) this.put("time", `${this.parts.playback.simulation.time.toFixed(2)} s`);
   }
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-import type { Notice, Studio } from "../studio";
+import type { Notice } from "../connection/notices";
+import type { Parts } from "../parts";
 import { element } from "./element";
-import { icon } from "./icons";
+import { icon } from "../tools/icons";
 
 const SHOWN_MS = { info: 3500, warning: 8000, error: 12000 };
 /** A message with a button stays until its reader has decided. */
@@ -12,8 +13,8 @@ const MOST = 4;
 export class Toasts {
   readonly root = element("div", { class: "toasts", role: "log", "aria-live": "polite", "aria-label": "Messages" });
 
-  constructor(studio: Studio) {
-    studio.notice.on((notice) => this.show(notice));
+  constructor(parts: Pick<Parts, "notices">) {
+    parts.notices.told.on((notice) => this.show(notice));
   }
 
   private show(notice: Notice): void {

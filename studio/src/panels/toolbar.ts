@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import type { UserAction } from "../tools/actions";
 import type { Gizmo } from "../tools/gizmo";
 import { keysOf } from "../tools/keys";
 import { element, setText, show } from "./element";
-import { icon } from "./icons";
+import { icon } from "../tools/icons";
 
 const GROUPS = [
   ["scene.new", "scene.open", "scene.save"],
@@ -23,7 +23,7 @@ export class Toolbar {
   private readonly buttons = new Map<UserAction, HTMLButtonElement>();
 
   constructor(
-    private readonly studio: Studio,
+    private readonly parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "playback" | "selection" | "view">,
     gizmo: Gizmo,
     private readonly actions: readonly UserAction[],
   ) {
@@ -41,18 +41,18 @@ export class Toolbar {
       element("span", { class: "spacer" }),
       ...GROUPS_RIGHT.map(group),
     );
-    studio.document.changed.on(() => this.refresh());
-    studio.simulationChanged.on(() => this.refresh());
-    studio.selection.changed.on(() => this.refresh());
-    studio.preferences.changed.on(() => this.refresh());
+    parts.document.changed.on(() => this.refresh());
+    parts.playback.changed.on(() => this.refresh());
+    parts.selection.changed.on(() => this.refresh());
+    parts.preferences.changed.on(() => this.refresh());
     gizmo.changed.on(() => this.refresh());
-    studio.document.changed.on((changed) => changed.actions && this.showSceneButtons());
+    parts.document.changed.on((changed) => changed.actions && this.showSceneButtons());
     this.refresh();
     this.showSceneButtons();
   }
 
   private button(action: UserAction): HTMLButtonElement {
-    const key = keysOf(this.studio, action)[0];
+    const key = keysOf(this.parts, action)[0];
     const button = element(
       "button",
       {
@@ -63,7 +63,7 @@ export class Toolbar {
         onclick: (event: MouseEvent) => {
           action.run();
           // After a click keys are the scene's again; whoever came by keyboard stays.
-          if (event.detail > 0 && !document.querySelector("dialog[open]")) this.studio.view.canvas.focus();
+          if (event.detail > 0 && !document.querySelector("dialog[open]")) this.parts.view.canvas.focus();
         },
       },
       icon(action.icon ?? "options"),
@@ -73,7 +73,7 @@ export class Toolbar {
   }
 
   private refresh(): void {
-    const { document: scene, playing } = this.studio;
+    const { document: scene, playback } = this.parts;
     for (const [action, button] of this.buttons) {
       button.disabled = !(action.possible?.() ?? true);
       if (action.on) button.setAttribute("aria-pressed", String(action.on()));
@@ -81,9 +81,9 @@ export class Toolbar {
     const play = this.actions.find(({ id }) => id === "simulation.play");
     const playButton = play && this.buttons.get(play);
     if (playButton) {
-      playButton.replaceChildren(icon(playing ? "pause" : "play"));
-      playButton.setAttribute("aria-label", playing ? "Pause" : "Play");
-      playButton.title = `${playing ? "Pause" : "Play"} (Space)`;
+      playButton.replaceChildren(icon(playback.playing ? "pause" : "play"));
+      playButton.setAttribute("aria-label", playback.playing ? "Pause" : "Play");
+      playButton.title = `${playback.playing ? "Pause" : "Play"} (Space)`;
     }
     const undo = this.buttonOf("edit.undo");
     if (undo) undo.title = scene.undo ? `Undo: ${scene.undo} (Ctrl+Z)` : "Nothing to undo";
@@ -103,7 +103,7 @@ export class Toolbar {
   /** One for each named button that an action of the scene waits for. */
   private showSceneButtons(): void {
     const names = new Set<string>();
-    for (const { trigger } of this.studio.document.actions.values()) if (trigger?.button) names.add(trigger.button);
+    for (const { trigger } of this.parts.document.actions.values()) if (trigger?.button) names.add(trigger.button);
     this.sceneButtons.replaceChildren(
       ...[...names].map((button) =>
         element("button", { class: "scene-button", title: `A button of this scene: starts “${button}”`, "data-testid": `scene-button-${button}`, onclick: () => void this.trigger(button) }, button),
@@ -113,7 +113,7 @@ export class Toolbar {
   }
 
   private async trigger(button: string): Promise<void> {
-    const answer = await this.studio.command("action.trigger", { button });
-    if (answer?.started === 0) this.studio.notice.emit({ level: "info", text: `“${button}” does nothing now`, remedy: "Play the scene first; an action may also act only once a run." });
+    const answer = await this.parts.server.command("action.trigger", { button });
+    if (answer?.started === 0) this.parts.notices.tell({ level: "info", text: `“${button}” does nothing now`, remedy: "Play the scene first; an action may also act only once a run." });
   }
 }

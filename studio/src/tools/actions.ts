@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-import type { IconName } from "../panels/icons";
-import type { Studio } from "../studio";
+import type { IconName } from "./icons";
+import type { Parts } from "../parts";
 import { addInFront } from "./ghost";
 import type { Gizmo } from "./gizmo";
 import { PRIMITIVES } from "./primitives";
@@ -31,71 +31,71 @@ export interface Openers {
   history(): void;
 }
 
-export function makeActions(studio: Studio, gizmo: Gizmo, open: Openers): UserAction[] {
+export function makeActions(parts: Pick<Parts, "preferences" | "server" | "notices" | "document" | "playback" | "selection" | "picked" | "entities" | "view">, gizmo: Gizmo, open: Openers): UserAction[] {
   return [
-    ...sceneActions(studio, open),
-    ...editActions(studio, open),
-    ...toolActions(studio, gizmo),
-    ...simulationActions(studio),
-    ...viewActions(studio, open),
+    ...sceneActions(parts, open),
+    ...editActions(parts, open),
+    ...toolActions(parts, gizmo),
+    ...simulationActions(parts),
+    ...viewActions(parts, open),
     ...PRIMITIVES.map((primitive) => ({
       id: `add.${primitive.name}`,
       label: `Add ${primitive.label.toLowerCase()}`,
       group: "Add",
       keys: [],
-      run: () => void addInFront(studio, primitive.entity()),
+      run: () => void addInFront(parts, primitive.entity()),
     })),
   ];
 }
 
-function sceneActions(studio: Studio, open: Openers): UserAction[] {
+function sceneActions(parts: Pick<Parts, "server" | "notices" | "document">, open: Openers): UserAction[] {
   return [
     { id: "scene.new", label: "New scene", group: "Scene", keys: [], icon: "fresh", run: open.newScene },
     { id: "scene.open", label: "Open scene…", group: "Scene", keys: ["Ctrl+O"], icon: "open", run: open.scenes },
-    { id: "scene.save", label: "Save", group: "Scene", keys: ["Ctrl+S"], icon: "save", run: () => void save(studio, open) },
+    { id: "scene.save", label: "Save", group: "Scene", keys: ["Ctrl+S"], icon: "save", run: () => void save(parts, open) },
     { id: "scene.save_as", label: "Save as…", group: "Scene", keys: ["Ctrl+Shift+S"], run: open.saveAs },
     {
       id: "scene.download",
       label: "Download scene file",
       group: "Scene",
       keys: [],
-      run: () => location.assign(studio.connection.address("scene.json")),
+      run: () => location.assign(parts.server.address("scene.json")),
     },
   ];
 }
 
-async function save(studio: Studio, open: Openers): Promise<void> {
+async function save(parts: Pick<Parts, "server" | "notices" | "document">, open: Openers): Promise<void> {
   // A scene that has no name yet asks for one.
-  if (!studio.document.name) return open.saveAs();
-  const saved = await studio.command("scene.save", {});
-  if (saved) studio.notice.emit({ level: "info", text: `Saved “${saved.name}”` });
+  if (!parts.document.name) return open.saveAs();
+  const saved = await parts.server.command("scene.save", {});
+  if (saved) parts.notices.tell({ level: "info", text: `Saved “${saved.name}”` });
 }
 
-function editActions(studio: Studio, open: Openers): UserAction[] {
-  const { selection, document } = studio;
+function editActions(parts: Pick<Parts, "server" | "document" | "selection" | "picked" | "entities">, open: Openers): UserAction[] {
+  const { selection, document } = parts;
   const some = () => selection.indices.length > 0;
   const chosen = () => ({ indices: [...selection.indices] });
   return [
-    { id: "edit.undo", label: "Undo", group: "Edit", keys: ["Ctrl+Z"], icon: "undo", possible: () => document.undo !== null, run: () => void studio.command("edit.undo", {}) },
-    { id: "edit.redo", label: "Redo", group: "Edit", keys: ["Ctrl+Shift+Z", "Ctrl+Y"], icon: "redo", possible: () => document.redo !== null, run: () => void studio.command("edit.redo", {}) },
-    { id: "edit.delete", label: "Delete", group: "Edit", keys: ["Delete"], icon: "bin", possible: some, run: () => void studio.command("entity.remove", chosen()) },
-    { id: "edit.duplicate", label: "Duplicate", group: "Edit", keys: ["Ctrl+D"], possible: some, run: () => void duplicate(studio) },
+    { id: "edit.undo", label: "Undo", group: "Edit", keys: ["Ctrl+Z"], icon: "undo", possible: () => document.undo !== null, run: () => void parts.server.command("edit.undo", {}) },
+    { id: "edit.redo", label: "Redo", group: "Edit", keys: ["Ctrl+Shift+Z", "Ctrl+Y"], icon: "redo", possible: () => document.redo !== null, run: () => void parts.server.command("edit.redo", {}) },
+    { id: "edit.delete", label: "Delete", group: "Edit", keys: ["Delete"], icon: "bin", possible: some, run: () => void parts.server.command("entity.remove", chosen()) },
+    { id: "edit.duplicate", label: "Duplicate", group: "Edit", keys: ["Ctrl+D"], possible: some, run: () => void duplicate(parts) },
     { id: "edit.select_all", label: "Select all", group: "Edit", keys: ["Ctrl+A"], run: () => selection.set(document.entities.keys()) },
-    { id: "edit.select_none", label: "Select nothing", group: "Edit", keys: ["Escape"], run: () => (selection.clear(), studio.picked.set(null)) },
+    { id: "edit.select_none", label: "Select nothing", group: "Edit", keys: ["Escape"], run: () => (selection.clear(), parts.picked.set(null)) },
     { id: "catalog.history", label: "History of catalogue changes…", group: "Models", keys: [], icon: "history", run: open.history },
-    { id: "edit.drop", label: "Drop to floor", group: "Edit", keys: ["End", "PageDown"], possible: some, run: () => void studio.command("entity.drop_to_floor", chosen()) },
+    { id: "edit.drop", label: "Drop to floor", group: "Edit", keys: ["End", "PageDown"], possible: some, run: () => void parts.server.command("entity.drop_to_floor", chosen()) },
   ];
 }
 
-async function duplicate(studio: Studio): Promise<void> {
-  const bounds = studio.entities.boundsOf(studio.selection.indices, performance.now());
+async function duplicate(parts: Pick<Parts, "server" | "selection" | "entities">): Promise<void> {
+  const bounds = parts.entities.boundsOf(parts.selection.indices, performance.now());
   const aside = bounds.isEmpty() ? 0.5 : bounds.max.x - bounds.min.x + 0.05;
-  const made = await studio.command("entity.duplicate", { indices: [...studio.selection.indices], offset: [aside, 0, 0] });
-  if (made) studio.selection.set(made.indices);
+  const made = await parts.server.command("entity.duplicate", { indices: [...parts.selection.indices], offset: [aside, 0, 0] });
+  if (made) parts.selection.set(made.indices);
 }
 
-function toolActions(studio: Studio, gizmo: Gizmo): UserAction[] {
-  const { preferences } = studio;
+function toolActions(parts: Pick<Parts, "preferences">, gizmo: Gizmo): UserAction[] {
+  const { preferences } = parts;
   const tool = (name: Gizmo["tool"], label: string, key: string): UserAction => ({
     id: `tool.${name}`,
     label,
@@ -131,8 +131,8 @@ function toolActions(studio: Studio, gizmo: Gizmo): UserAction[] {
   ];
 }
 
-function simulationActions(studio: Studio): UserAction[] {
-  const begun = () => studio.simulation.state !== "stopped";
+function simulationActions(parts: Pick<Parts, "server" | "notices" | "document" | "playback" | "entities">): UserAction[] {
+  const begun = () => parts.playback.simulation.state !== "stopped";
   return [
     {
       id: "simulation.play",
@@ -140,31 +140,31 @@ function simulationActions(studio: Studio): UserAction[] {
       group: "Simulation",
       keys: ["Space"],
       icon: "play",
-      on: () => studio.playing,
-      run: () => void studio.command(studio.playing ? "simulation.pause" : "simulation.play", {}),
+      on: () => parts.playback.playing,
+      run: () => void parts.server.command(parts.playback.playing ? "simulation.pause" : "simulation.play", {}),
     },
-    { id: "simulation.step", label: "One step", group: "Simulation", keys: ["."], icon: "step", run: () => void studio.command("simulation.step", { count: 1 }) },
-    { id: "simulation.reset", label: "Back to the start", group: "Simulation", keys: ["Backspace"], icon: "reset", possible: begun, run: () => void studio.command("simulation.reset", {}) },
-    { id: "simulation.keep", label: "Settle: keep these poses as the scene", group: "Simulation", keys: ["K"], icon: "keep", possible: begun, run: () => void keepPoses(studio) },
+    { id: "simulation.step", label: "One step", group: "Simulation", keys: ["."], icon: "step", run: () => void parts.server.command("simulation.step", { count: 1 }) },
+    { id: "simulation.reset", label: "Back to the start", group: "Simulation", keys: ["Backspace"], icon: "reset", possible: begun, run: () => void parts.server.command("simulation.reset", {}) },
+    { id: "simulation.keep", label: "Settle: keep these poses as the scene", group: "Simulation", keys: ["K"], icon: "keep", possible: begun, run: () => void keepPoses(parts) },
   ];
 }
 
-async function keepPoses(studio: Studio): Promise<void> {
-  if (!(await studio.command("simulation.keep", {}))) return;
-  const { document, entities } = studio;
+async function keepPoses(parts: Pick<Parts, "server" | "notices" | "document" | "entities">): Promise<void> {
+  if (!(await parts.server.command("simulation.keep", {}))) return;
+  const { document, entities } = parts;
   const changeForm = [...document.entities.keys()].some((index) => entities.softs.has(index) || entities.clouds.of(index));
-  studio.notice.emit({
+  parts.notices.tell({
     level: "info",
     text: "The present poses are now the scene's; undo takes them back",
     ...(changeForm && { remedy: "Of soft things, cloth and ropes the place is kept, not dents and folds; grains and liquids start as before." }),
   });
 }
 
-function viewActions(studio: Studio, open: Openers): UserAction[] {
-  const { preferences, view } = studio;
+function viewActions(parts: Pick<Parts, "preferences" | "document" | "selection" | "entities" | "view">, open: Openers): UserAction[] {
+  const { preferences, view } = parts;
   const flip = <Name extends "tint" | "fullTint" | "grid" | "collision">(name: Name) => preferences.set(name, !preferences.get(name));
   return [
-    { id: "view.focus", label: "Focus on the selection", group: "View", keys: ["F"], run: () => focus(studio) },
+    { id: "view.focus", label: "Focus on the selection", group: "View", keys: ["F"], run: () => focus(parts) },
     { id: "view.tint", label: "Show what is active and what sleeps", group: "View", keys: ["T"], icon: "tint", on: () => preferences.get("tint"), run: () => flip("tint") },
     { id: "view.fullTint", label: "In full colour: red, green and gray all over", group: "View", keys: [], on: () => preferences.get("fullTint"), run: () => flip("fullTint") },
     { id: "view.grid", label: "Grid", group: "View", keys: ["G"], on: () => preferences.get("grid"), run: () => flip("grid") },
@@ -185,15 +185,15 @@ function viewActions(studio: Studio, open: Openers): UserAction[] {
       on: () => preferences.get("quality") === "low",
       run: () => preferences.set("quality", preferences.get("quality") === "low" ? "high" : "low"),
     },
-    { id: "view.screenshot", label: "Save a picture", group: "View", keys: [], icon: "camera", run: () => view.savePicture(studio.document.title) },
+    { id: "view.screenshot", label: "Save a picture", group: "View", keys: [], icon: "camera", run: () => view.savePicture(parts.document.title) },
     { id: "view.search", label: "Search models", group: "View", keys: ["/", "Ctrl+F"], run: open.search },
     { id: "view.palette", label: "All commands…", group: "View", keys: ["Ctrl+K"], icon: "palette", run: open.palette },
     { id: "view.help", label: "Help and keys", group: "View", keys: ["?", "F1"], icon: "help", run: open.help },
   ];
 }
 
-function focus(studio: Studio): void {
-  const { selection, document, entities, view } = studio;
+function focus(parts: Pick<Parts, "document" | "selection" | "entities" | "view">): void {
+  const { selection, document, entities, view } = parts;
   const meant = selection.indices.length > 0 ? selection.indices : document.entities.keys();
   view.rig.focus(entities.boundsOf(meant, performance.now()), performance.now());
 }

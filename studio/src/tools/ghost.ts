@@ -2,7 +2,7 @@
 import { Box3, Group, Matrix4, Mesh, MeshBasicMaterial, Quaternion, Vector3 } from "three";
 import type { NewEntity } from "../connection/messages";
 import { rotationOf } from "../document/scene_document";
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import type { Drawable } from "../view/drawable";
 import { drawShape } from "../view/shapes";
 
@@ -21,15 +21,15 @@ export class Ghost {
   /** Of what is drawn, turned as the entity will be. */
   private readonly bounds = new Box3();
 
-  constructor(private readonly studio: Studio) {
+  constructor(private readonly parts: Pick<Parts, "models" | "view">) {
     this.group.visible = false;
-    studio.view.scene.add(this.group);
+    parts.view.scene.add(this.group);
   }
 
   /** Begins with this entity; a model's ghost appears when its picture is here. */
   async begin(entity: NewEntity): Promise<void> {
     this.end();
-    const drawable = entity.model ? await this.studio.models.drawable(entity.model) : drawShape(entity.shape!);
+    const drawable = entity.model ? await this.parts.models.drawable(entity.model) : drawShape(entity.shape!);
     this.drawable = drawable;
     const turn = new Matrix4().makeRotationFromQuaternion(new Quaternion(...rotationOf(entity.pose)));
     this.bounds.copy(drawable.bounds).applyMatrix4(turn);
@@ -43,7 +43,7 @@ export class Ghost {
 
   /** Lies on what is under the pointer. */
   moveTo(clientX: number, clientY: number): void {
-    const { view } = this.studio;
+    const { view } = this.parts;
     if (!this.drawable) return;
     const { point, normal } = this.landing(clientX, clientY);
     const { bounds } = this;
@@ -61,7 +61,7 @@ export class Ghost {
 
   hide(): void {
     this.group.visible = false;
-    this.studio.view.invalidate();
+    this.parts.view.invalidate();
   }
 
   end(): void {
@@ -71,7 +71,7 @@ export class Ghost {
   }
 
   private landing(clientX: number, clientY: number): { point: Vector3; normal: Vector3 } {
-    const { view } = this.studio;
+    const { view } = this.parts;
     const hit = view.pick(clientX, clientY);
     if (hit) return hit;
     const ground = view.meet(clientX, clientY);
@@ -82,17 +82,17 @@ export class Ghost {
 }
 
 /** Adds an entity where the ray through a point of the page meets the scene, and selects it. */
-export async function addUnder(studio: Studio, entity: NewEntity, clientX: number, clientY: number): Promise<void> {
-  const { origin, direction } = studio.view.ray(clientX, clientY);
+export async function addUnder(parts: Pick<Parts, "server" | "selection" | "view">, entity: NewEntity, clientX: number, clientY: number): Promise<void> {
+  const { origin, direction } = parts.view.ray(clientX, clientY);
   const drop = { origin: origin.toArray(), direction: direction.toArray() };
   // A plane is endless: it has its own place and lies on nothing.
   const params = entity.shape?.type === "plane" ? { entity } : { entity, drop };
-  const added = await studio.command("entity.add", params);
-  if (added) studio.selection.set([added.index]);
+  const added = await parts.server.command("entity.add", params);
+  if (added) parts.selection.set([added.index]);
 }
 
 /** Adds an entity in front of the camera. */
-export async function addInFront(studio: Studio, entity: NewEntity): Promise<void> {
-  const frame = studio.view.canvas.getBoundingClientRect();
-  await addUnder(studio, entity, frame.left + frame.width / 2, frame.top + 0.55 * frame.height);
+export async function addInFront(parts: Pick<Parts, "server" | "selection" | "view">, entity: NewEntity): Promise<void> {
+  const frame = parts.view.canvas.getBoundingClientRect();
+  await addUnder(parts, entity, frame.left + frame.width / 2, frame.top + 0.55 * frame.height);
 }

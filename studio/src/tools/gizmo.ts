@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 import { Matrix4, Object3D, Vector3 } from "three";
 import { TransformControls } from "three/examples/jsm/controls/TransformControls.js";
-import type { Shape } from "../document/scene_types";
+import type { Shape } from "../connection/scene_types";
 import { Signal } from "../signal";
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import { PoseDrag } from "./poses";
 
 export type Tool = "select" | "move" | "rotate" | "scale";
@@ -25,8 +25,8 @@ export class Gizmo {
   /** Shift turns snapping over for as long as it is held. */
   private turned = false;
 
-  constructor(private readonly studio: Studio) {
-    const { view } = studio;
+  constructor(private readonly parts: Pick<Parts, "preferences" | "server" | "document" | "selection" | "motion" | "entities" | "view">) {
+    const { view } = parts;
     this.controls = new TransformControls(view.rig.camera, view.canvas);
     this.controls.setSize(0.8);
     view.scene.add(this.pivot, this.controls.getHelper());
@@ -34,10 +34,10 @@ export class Gizmo {
     this.controls.addEventListener("dragging-changed", (event) => (event.value ? this.begin() : this.end()));
     this.controls.addEventListener("objectChange", () => this.follow());
     view.beforeFrame.on((now) => this.place(now));
-    studio.selection.changed.on(() => this.attach());
-    studio.entities.loaded.on(() => this.attach());
-    studio.document.changed.on(() => this.attach());
-    studio.preferences.changed.on(() => this.applySnap());
+    parts.selection.changed.on(() => this.attach());
+    parts.entities.loaded.on(() => this.attach());
+    parts.document.changed.on(() => this.attach());
+    parts.preferences.changed.on(() => this.applySnap());
     for (const kind of ["keydown", "keyup"] as const)
       addEventListener(kind, (event) => {
         if (event.key !== "Shift") return;
@@ -62,11 +62,11 @@ export class Gizmo {
     this.space = space;
     this.controls.setSpace(space);
     this.changed.emit();
-    this.studio.view.invalidate();
+    this.parts.view.invalidate();
   }
 
   private attach(): void {
-    const drawn = this.studio.selection.indices.some((index) => this.studio.entities.drawableOf(index));
+    const drawn = this.parts.selection.indices.some((index) => this.parts.entities.drawableOf(index));
     if (this.controls.dragging) return;
     if (this.tool === "select" || !drawn) {
       this.controls.detach();
@@ -78,21 +78,21 @@ export class Gizmo {
       this.controls.showX = this.controls.showY = this.controls.showZ = !uniform;
       this.controls.attach(this.pivot);
     }
-    this.studio.view.invalidate();
+    this.parts.view.invalidate();
   }
 
   /** Keeps the handles at the last chosen entity while it moves. */
   private place(now: number): void {
-    const last = this.studio.selection.indices.at(-1);
+    const last = this.parts.selection.indices.at(-1);
     if (last === undefined || this.controls.dragging) return;
-    if (!this.studio.entities.matrixOf(last, now, this.matrix)) return;
+    if (!this.parts.entities.matrixOf(last, now, this.matrix)) return;
     this.matrix.decompose(this.pivot.position, this.pivot.quaternion, this.size);
     this.pivot.scale.copy(ONE);
     this.pivot.updateMatrixWorld();
   }
 
   private begin(): void {
-    this.drag = new PoseDrag(this.studio, this.studio.selection.indices);
+    this.drag = new PoseDrag(this.parts, this.parts.selection.indices);
     this.before.compose(this.pivot.position, this.pivot.quaternion, ONE).invert();
   }
 
@@ -122,16 +122,16 @@ export class Gizmo {
   private async scaleBy(factor: number, drag: PoseDrag): Promise<void> {
     const merge = `scale-${Date.now()}`;
     for (const index of drag.start.keys()) {
-      const entity = this.studio.document.entity(index);
+      const entity = this.parts.document.entity(index);
       const shape = entity?.shape && scaledShape(entity.shape, factor);
       const changed = entity?.model ? { scale: (entity.scale ?? 1) * factor } : shape && { shape };
-      if (changed) await this.studio.command("entity.update", { index, entity: changed, merge });
+      if (changed) await this.parts.server.command("entity.update", { index, entity: changed, merge });
     }
     await drag.end();
   }
 
   private applySnap(): void {
-    const { preferences } = this.studio;
+    const { preferences } = this.parts;
     const snap = preferences.get("snap") !== this.turned;
     this.controls.setTranslationSnap(snap ? preferences.get("snapLength") : null);
     this.controls.setRotationSnap(snap ? (preferences.get("snapAngle") * Math.PI) / 180 : null);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import type { UserAction } from "./actions";
 import type { Pointer } from "./pointer";
 
@@ -12,15 +12,15 @@ export function keyName(event: KeyboardEvent): string {
 }
 
 /** The keys of an action: the user's own choice, or the ones it comes with. */
-export function keysOf(studio: Studio, action: UserAction): string[] {
-  const chosen = studio.preferences.get("keys")[action.id];
+export function keysOf(parts: Pick<Parts, "preferences">, action: UserAction): string[] {
+  const chosen = parts.preferences.get("keys")[action.id];
   return chosen ? [chosen] : action.keys;
 }
 
 /** Keys on the page become actions. */
 export class Keyboard {
   constructor(
-    private readonly studio: Studio,
+    private readonly parts: Pick<Parts, "preferences" | "server" | "document" | "playback">,
     private readonly actions: readonly UserAction[],
     private readonly pointer: Pointer,
   ) {
@@ -31,7 +31,7 @@ export class Keyboard {
     if (event.defaultPrevented || this.pointer.flying || isTyping(event) || document.querySelector("dialog[open]")) return;
     const name = keyName(event);
     if (this.triggerSceneAction(name, event)) return;
-    const action = this.actions.find((each) => keysOf(this.studio, each).includes(name));
+    const action = this.actions.find((each) => keysOf(this.parts, each).includes(name));
     if (!action || (event.repeat && action.id !== "simulation.step")) return;
     // A focused button keeps its own Space and Enter.
     if ((name === "Space" || name === "Enter") && event.target instanceof HTMLButtonElement) return;
@@ -41,11 +41,11 @@ export class Keyboard {
 
   /** While the scene plays, its own keys come first. */
   private triggerSceneAction(name: string, event: KeyboardEvent): boolean {
-    if (!this.studio.playing || event.repeat) return false;
-    const known = [...this.studio.document.actions.values()].map((action) => action.trigger?.key).find((key) => key?.toUpperCase() === name.toUpperCase());
+    if (!this.parts.playback.playing || event.repeat) return false;
+    const known = [...this.parts.document.actions.values()].map((action) => action.trigger?.key).find((key) => key?.toUpperCase() === name.toUpperCase());
     if (!known) return false;
     event.preventDefault();
-    void this.studio.command("action.trigger", { key: known });
+    void this.parts.server.command("action.trigger", { key: known });
     return true;
   }
 }

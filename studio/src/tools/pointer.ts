@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { Plane, Vector3 } from "three";
 import { BodyState } from "../document/motion";
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 import type { Hit } from "../view/view";
 import type { Gizmo } from "./gizmo";
 import { PoseDrag } from "./poses";
@@ -31,11 +31,11 @@ export class Pointer {
   private readonly spring: SpringLine;
 
   constructor(
-    private readonly studio: Studio,
+    private readonly parts: Pick<Parts, "preferences" | "server" | "document" | "playback" | "selection" | "motion" | "entities" | "view">,
     private readonly gizmo: Gizmo,
   ) {
-    this.spring = new SpringLine(studio);
-    const canvas = studio.view.canvas;
+    this.spring = new SpringLine(parts);
+    const canvas = parts.view.canvas;
     canvas.addEventListener("pointerdown", (event) => this.press(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     canvas.addEventListener("pointerup", (event) => this.release(event));
@@ -48,7 +48,7 @@ export class Pointer {
   }
 
   private press(event: PointerEvent): void {
-    const { view } = this.studio;
+    const { view } = this.parts;
     view.canvas.focus();
     if (this.gesture || (event.button === 0 && this.gizmo.busy)) return;
     view.canvas.setPointerCapture(event.pointerId);
@@ -72,7 +72,7 @@ export class Pointer {
       return;
     }
     [this.lastX, this.lastY] = [event.clientX, event.clientY];
-    const { view } = this.studio;
+    const { view } = this.parts;
     if (gesture.kind === "orbit") view.rig.orbit(dx, dy);
     else if (gesture.kind === "pan") view.rig.pan(dx, dy, view.canvas.clientHeight);
     else if (gesture.kind === "look") view.rig.look(dx, dy);
@@ -83,33 +83,33 @@ export class Pointer {
 
   /** A press has become a drag; what it drags depends on what is under it. */
   private beginDrag(hit: Hit | null, event: PointerEvent): void {
-    const { studio } = this;
+    const { parts } = this;
     const movable = hit !== null && this.isMovable(hit.index);
     if (event.ctrlKey || event.metaKey) this.gesture = { kind: "box", frame: this.makeBox() };
-    else if (movable && studio.playing && !event.shiftKey) this.beginGrab(hit);
-    else if (movable && !studio.playing && this.gizmo.tool === "move" && !event.shiftKey) this.beginSlide(hit);
+    else if (movable && parts.playback.playing && !event.shiftKey) this.beginGrab(hit);
+    else if (movable && !parts.playback.playing && this.gizmo.tool === "move" && !event.shiftKey) this.beginSlide(hit);
     else this.gesture = { kind: event.shiftKey ? "pan" : "orbit" };
   }
 
   private isMovable(index: number): boolean {
-    const shape = this.studio.document.entity(index)?.shape?.type;
+    const shape = this.parts.document.entity(index)?.shape?.type;
     if (shape === "plane" || shape === "heightfield" || shape === "mesh") return false;
-    return !this.studio.playing || this.studio.motion.state(index) !== BodyState.still;
+    return !this.parts.playback.playing || this.parts.motion.state(index) !== BodyState.still;
   }
 
   private beginGrab(hit: Hit): void {
-    const facing = this.studio.view.rig.camera.getWorldDirection(new Vector3()).negate();
+    const facing = this.parts.view.rig.camera.getWorldDirection(new Vector3()).negate();
     const plane = new Plane().setFromNormalAndCoplanarPoint(facing, hit.point);
     const point = hit.point.toArray();
     this.gesture = { kind: "grab", plane, sending: false, newer: null };
     this.spring.begin(hit.index, hit.point);
-    void this.studio.command("simulation.grab", { index: hit.index, point, target: point });
+    void this.parts.server.command("simulation.grab", { index: hit.index, point, target: point });
   }
 
   private pull(event: PointerEvent): void {
     const gesture = this.gesture;
     if (gesture?.kind !== "grab") return;
-    gesture.newer = this.studio.view.meet(event.clientX, event.clientY, gesture.plane);
+    gesture.newer = this.parts.view.meet(event.clientX, event.clientY, gesture.plane);
     if (gesture.newer) this.spring.pullTo(gesture.newer);
     if (!gesture.sending) void this.sendPull(gesture);
   }
@@ -119,21 +119,21 @@ export class Pointer {
     while (gesture.newer && this.gesture === gesture) {
       const target = gesture.newer.toArray();
       gesture.newer = null;
-      await this.studio.command("simulation.move_grab", { target });
+      await this.parts.server.command("simulation.move_grab", { target });
     }
     gesture.sending = false;
   }
 
   /** Drags what is under the pointer along the level of its surface. */
   private beginSlide(hit: Hit): void {
-    const { selection } = this.studio;
+    const { selection } = this.parts;
     if (!selection.has(hit.index)) selection.set([hit.index]);
     const plane = new Plane(new Vector3(0, 1, 0), -hit.point.y);
-    this.gesture = { kind: "slide", plane, from: hit.point.clone(), drag: new PoseDrag(this.studio, selection.indices) };
+    this.gesture = { kind: "slide", plane, from: hit.point.clone(), drag: new PoseDrag(this.parts, selection.indices) };
   }
 
   private slide(gesture: Extract<Gesture, { kind: "slide" }>, event: PointerEvent): void {
-    const { view, preferences } = this.studio;
+    const { view, preferences } = this.parts;
     const at = view.meet(event.clientX, event.clientY, gesture.plane);
     if (!at || at.distanceTo(view.rig.camera.position) > 20 * view.rig.distance) return;
     const shift = at.sub(gesture.from);
@@ -153,7 +153,7 @@ export class Pointer {
     if (gesture.kind === "press") this.click(gesture.hit, event);
     else if (gesture.kind === "grab") {
       this.spring.end();
-      void this.studio.command("simulation.release", {});
+      void this.parts.server.command("simulation.release", {});
     }
     else if (gesture.kind === "slide") void gesture.drag.end();
     else if (gesture.kind === "box") this.chooseInBox(gesture.frame);
@@ -161,7 +161,7 @@ export class Pointer {
   }
 
   private click(hit: Hit | null, event: PointerEvent): void {
-    const { selection } = this.studio;
+    const { selection } = this.parts;
     if (event.shiftKey || event.ctrlKey || event.metaKey) {
       if (hit) selection.toggle(hit.index);
     } else if (hit) selection.set([hit.index]);
@@ -184,7 +184,7 @@ export class Pointer {
 
   /** Adds every entity whose centre lies in the rectangle. */
   private chooseInBox(frame: HTMLElement): void {
-    const { view, entities, document, selection } = this.studio;
+    const { view, entities, document, selection } = this.parts;
     const box = frame.getBoundingClientRect();
     frame.remove();
     const chosen = [...document.entities.keys()].filter((index) => {
@@ -202,7 +202,7 @@ export class Pointer {
     event.preventDefault();
     // Wheels report lines or pixels; a notch is 3 lines or about 100 pixels.
     const notches = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? event.deltaY / 3 : event.deltaY / 100;
-    this.studio.view.rig.zoom(Math.min(Math.max(notches, -3), 3));
+    this.parts.view.rig.zoom(Math.min(Math.max(notches, -3), 3));
   }
 
   private flightKey(event: KeyboardEvent, down: boolean): void {
@@ -210,12 +210,12 @@ export class Pointer {
     if (down) this.held.add(event.code);
     else this.held.delete(event.code);
     const along = (plus: string, minus: string) => Number(this.held.has(plus)) - Number(this.held.has(minus));
-    this.studio.view.rig.fly(along("KeyD", "KeyA"), along("KeyE", "KeyQ"), along("KeyS", "KeyW"));
+    this.parts.view.rig.fly(along("KeyD", "KeyA"), along("KeyE", "KeyQ"), along("KeyS", "KeyW"));
   }
 
   private stopFlight(): void {
     this.flying = false;
     this.held.clear();
-    this.studio.view.rig.fly(0, 0, 0);
+    this.parts.view.rig.fly(0, 0, 0);
   }
 }

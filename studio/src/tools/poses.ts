@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { Matrix4, Quaternion, Vector3 } from "three";
 import type { PoseEdit } from "../connection/messages";
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 
 export interface HeldPose {
   position: Vector3;
@@ -10,12 +10,12 @@ export interface HeldPose {
 }
 
 /** Where entities are drawn now. */
-export function presentPoses(studio: Studio, indices: Iterable<number>): Map<number, HeldPose> {
+export function presentPoses(parts: Pick<Parts, "entities">, indices: Iterable<number>): Map<number, HeldPose> {
   const poses = new Map<number, HeldPose>();
   const matrix = new Matrix4();
   const size = new Vector3();
   for (const index of indices) {
-    if (!studio.entities.matrixOf(index, performance.now(), matrix)) continue;
+    if (!parts.entities.matrixOf(index, performance.now(), matrix)) continue;
     const pose = { position: new Vector3(), rotation: new Quaternion(), scale: 1 };
     matrix.decompose(pose.position, pose.rotation, size);
     pose.scale = size.x;
@@ -36,23 +36,23 @@ export class PoseDrag {
   private newer = false;
 
   constructor(
-    private readonly studio: Studio,
+    private readonly parts: Pick<Parts, "server" | "motion" | "entities" | "view">,
     indices: Iterable<number>,
   ) {
-    this.start = presentPoses(studio, indices);
+    this.start = presentPoses(parts, indices);
     for (const [index, pose] of this.start)
-      studio.entities.held.set(index, { position: pose.position.clone(), rotation: pose.rotation.clone(), scale: pose.scale });
+      parts.entities.held.set(index, { position: pose.position.clone(), rotation: pose.rotation.clone(), scale: pose.scale });
   }
 
 
   /** Draws an entity here. Call send() after all of them. */
   hold(index: number, change: (pose: HeldPose, start: HeldPose) => void): void {
-    const held = this.studio.entities.held.get(index);
+    const held = this.parts.entities.held.get(index);
     const start = this.start.get(index);
     if (!held || !start) return;
     change(held, start);
-    this.studio.motion.moved.add(index);
-    this.studio.view.invalidate();
+    this.parts.motion.moved.add(index);
+    this.parts.view.invalidate();
   }
 
   /** Tells the server where they are now; at most one message is on its way. */
@@ -60,7 +60,7 @@ export class PoseDrag {
     this.newer = true;
     if (this.sending) return;
     this.newer = false;
-    this.sending = this.studio.command("entity.transform", { poses: this.poses(), merge: this.merge }).then(() => {
+    this.sending = this.parts.server.command("entity.transform", { poses: this.poses(), merge: this.merge }).then(() => {
       this.sending = null;
       if (this.newer) this.send();
     });
@@ -70,17 +70,17 @@ export class PoseDrag {
   async end(): Promise<void> {
     while (this.sending) await this.sending;
     for (const [index] of this.start) {
-      const held = this.studio.entities.held.get(index);
-      if (held) this.studio.motion.place(index, held.position.toArray(), held.rotation.toArray());
-      this.studio.entities.held.delete(index);
-      this.studio.motion.moved.add(index);
+      const held = this.parts.entities.held.get(index);
+      if (held) this.parts.motion.place(index, held.position.toArray(), held.rotation.toArray());
+      this.parts.entities.held.delete(index);
+      this.parts.motion.moved.add(index);
     }
-    this.studio.view.invalidate();
+    this.parts.view.invalidate();
   }
 
   private poses(): PoseEdit[] {
     return [...this.start.keys()].flatMap((index) => {
-      const held = this.studio.entities.held.get(index);
+      const held = this.parts.entities.held.get(index);
       return held ? [{ index, position: held.position.toArray(), rotation: held.rotation.toArray() as [number, number, number, number] }] : [];
     });
   }

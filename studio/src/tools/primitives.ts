@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 import type { NewEntity } from "../connection/messages";
-import type { Pose, Shape } from "../document/scene_types";
+import type { Pose, Shape } from "../connection/scene_types";
 
 export interface Primitive {
   name: string;

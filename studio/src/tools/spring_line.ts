@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { BufferGeometry, Line, LineBasicMaterial, Matrix4, Vector3 } from "three";
-import type { Studio } from "../studio";
+import type { Parts } from "../parts";
 
 /** The spring between a body that is pulled and the pointer, drawn as a line over everything. */
 export class SpringLine {
@@ -11,18 +11,18 @@ export class SpringLine {
   private readonly matrix = new Matrix4();
   private index: number | null = null;
 
-  constructor(private readonly studio: Studio) {
+  constructor(private readonly parts: Pick<Parts, "entities" | "view">) {
     this.line.visible = false;
     this.line.frustumCulled = false;
     this.line.renderOrder = 2;
     this.line.raycast = () => {};
-    studio.view.scene.add(this.line);
-    studio.view.beforeFrame.on((now) => this.follow(now));
+    parts.view.scene.add(this.line);
+    parts.view.beforeFrame.on((now) => this.follow(now));
   }
 
   /** Holds body `index` at a point of the world. */
   begin(index: number, point: Vector3): void {
-    if (!this.studio.entities.matrixOf(index, performance.now(), this.matrix)) return;
+    if (!this.parts.entities.matrixOf(index, performance.now(), this.matrix)) return;
     this.index = index;
     this.hook.copy(point).applyMatrix4(this.matrix.invert());
     this.pullTo(point);
@@ -30,18 +30,18 @@ export class SpringLine {
 
   pullTo(target: Vector3): void {
     this.ends[1]!.copy(target);
-    this.studio.view.invalidate();
+    this.parts.view.invalidate();
   }
 
   end(): void {
     this.index = null;
     this.line.visible = false;
-    this.studio.view.invalidate();
+    this.parts.view.invalidate();
   }
 
   private follow(now: number): void {
     if (this.index === null) return;
-    this.line.visible = this.studio.entities.matrixOf(this.index, now, this.matrix);
+    this.line.visible = this.parts.entities.matrixOf(this.index, now, this.matrix);
     this.ends[0]!.copy(this.hook).applyMatrix4(this.matrix);
     this.line.geometry.setFromPoints(this.ends);
   }

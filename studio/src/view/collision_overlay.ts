@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { Color, EdgesGeometry, Group, LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshBasicMaterial, Quaternion, Vector3 } from "three";
-import type { Shape } from "../document/scene_types";
+import type { Shape } from "../connection/scene_types";
 import { disposeDrawable, type Drawable } from "./drawable";
 import type { EntityView } from "./entity_view";
 import { drawShape } from "./shapes";

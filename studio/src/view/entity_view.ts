@@ -2,7 +2,7 @@
 import { Box3, Color, Group, Matrix4, Quaternion, Vector3 } from "three";
 import { type Motion } from "../document/motion";
 import { type Changed, positionOf, rotationOf, type SceneDocument } from "../document/scene_document";
-import type { Entity } from "../document/scene_types";
+import type { Entity } from "../connection/scene_types";
 import { Signal } from "../signal";
 import type { Connection } from "../connection/connection";
 import type { Frame } from "../connection/frame";

@@ -16,7 +16,7 @@ import {
 import { ConvexGeometry } from "three/examples/jsm/geometries/ConvexGeometry.js";
 import { toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.js";
 import { positionOf, rotationOf } from "../document/scene_document";
-import type { Shape } from "../document/scene_types";
+import type { Shape } from "../connection/scene_types";
 import { type Drawable, type DrawablePart, drawable } from "./drawable";
 
 /** Half the side of the square that stands for an endless plane, m. */

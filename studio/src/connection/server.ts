@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+import { Signal } from "../signal";
+import type { Connection } from "./connection";
+import type { CatalogEvent, Commands, Hello, Progress } from "./messages";
+import type { Notices } from "./notices";
+
+/** The server as panels and tools see it: its commands, who it is, and its news that are not the scene's. */
+export class Server {
+  /** Connected, disconnected, or greeted. */
+  readonly changed = new Signal<void>();
+  /** Models were changed by hand, by whomever. */
+  readonly catalogChanged = new Signal<CatalogEvent>();
+  /** How far the command is that is being carried out, this page's or another's; all others wait for it. */
+  readonly progress = new Signal<Progress>();
+  version = "";
+  /** This page's number on the server. */
+  client = 0;
+  /** The document is here; false until the first answer to hello. */
+  ready = false;
+
+  constructor(
+    private readonly connection: Connection,
+    private readonly notices: Notices,
+  ) {}
+
+  get isOpen(): boolean {
+    return this.connection.isOpen;
+  }
+
+  get opened(): Signal<void> {
+    return this.connection.opened;
+  }
+
+  /** The full address of one of the server's paths. */
+  address(path: string): string {
+    return this.connection.address(path);
+  }
+
+  /** Sends a command; rejects with CommandRefused or NotConnected. */
+  request<Name extends keyof Commands>(name: Name, params: Commands[Name][0]): Promise<Commands[Name][1]> {
+    return this.connection.request(name, params);
+  }
+
+  /** Sends a command; a refusal is shown to the user and gives undefined. */
+  async command<Name extends keyof Commands>(name: Name, params: Commands[Name][0]): Promise<Commands[Name][1] | undefined> {
+    try {
+      return await this.request(name, params);
+    } catch (error) {
+      this.notices.report(error as Error);
+      return undefined;
+    }
+  }
+
+  /** The answer to hello: who the server is. */
+  meet({ version, client }: Hello): void {
+    this.version = version;
+    this.client = client;
+    this.ready = true;
+  }
+}

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+import type { Notices } from "./connection/notices";
+import type { ModelChoice } from "./connection/messages";
+import type { Server } from "./connection/server";
+import type { Motion } from "./document/motion";
+import type { PickedModel } from "./document/picked_model";
+import type { Playback } from "./document/playback";
+import type { SceneDocument } from "./document/scene_document";
+import type { Selection } from "./document/selection";
+import type { Preferences } from "./preferences";
+import type { EntityView } from "./view/entity_view";
+import type { ModelStore } from "./view/model_store";
+import type { View } from "./view/view";
+
+/** What the model browser shows. */
+export interface Found {
+  models: ModelChoice;
+  /** In words, such as “chair” in beds. */
+  text: string;
+}
+
+/** What there is one of on a page. A panel or tool takes `Pick<Parts, …>` of it, so that its signature says what it may touch. */
+export interface Parts {
+  readonly preferences: Preferences;
+  readonly server: Server;
+  readonly notices: Notices;
+  readonly document: SceneDocument;
+  readonly playback: Playback;
+  readonly selection: Selection;
+  readonly picked: PickedModel;
+  found: Found;
+  readonly motion: Motion;
+  readonly models: ModelStore;
+  readonly entities: EntityView;
+  readonly view: View;
+}
