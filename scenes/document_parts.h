@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "scene/document.h"
+#include "scene/document/document.h"
 
 namespace embody::scenes {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "scene/simulation.h"
+#include "scene/simulation/simulation.h"
 
 namespace embody::scenes {
 

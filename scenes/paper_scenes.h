@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "scene/document.h"
+#include "scene/document/document.h"
 
 namespace embody::scenes {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/document.h"
-#include "scene/simulation.h"
+#include "scene/document/document.h"
+#include "scene/simulation/simulation.h"
 
 namespace embody::scenes {
 

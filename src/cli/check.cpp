@@ -4,10 +4,10 @@
 #include "cli/commands.h"
 #include "cli/locations.h"
 #include "cli/output.h"
-#include "scene/document_field.h"
-#include "scene/entity_body.h"
-#include "scene/scene_file.h"
-#include "scene/simulation.h"
+#include "scene/document/document_field.h"
+#include "scene/embody/entity_body.h"
+#include "scene/file/scene_file.h"
+#include "scene/simulation/simulation.h"
 
 namespace embody::cli {
 namespace {

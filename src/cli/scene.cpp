@@ -3,7 +3,7 @@
 
 #include "cli/commands.h"
 #include "cli/output.h"
-#include "scene/scene_file.h"
+#include "scene/file/scene_file.h"
 #include "scenes/scene_builders.h"
 
 namespace embody::cli {

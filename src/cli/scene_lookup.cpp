@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "cli/locations.h"
-#include "scene/scene_file.h"
-#include "scene/scene_folders.h"
+#include "scene/file/scene_file.h"
+#include "scene/session/scene_folders.h"
 #include "scenes/scene_builders.h"
 
 namespace embody::cli {

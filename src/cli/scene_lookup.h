@@ -4,7 +4,7 @@
 #include <string>
 
 #include "foundation/result.h"
-#include "scene/document.h"
+#include "scene/document/document.h"
 
 namespace embody::cli {
 

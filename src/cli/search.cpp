@@ -4,7 +4,7 @@
 #include "cli/commands.h"
 #include "cli/locations.h"
 #include "cli/output.h"
-#include "scene/model_json.h"
+#include "scene/session/model_json.h"
 
 namespace embody::cli {
 

@@ -11,7 +11,7 @@
 #include "cli/locations.h"
 #include "cli/output.h"
 #include "geometry/decomposition/decomposition.h"
-#include "scene/model_json.h"
+#include "scene/session/model_json.h"
 
 namespace embody::cli {
 namespace {

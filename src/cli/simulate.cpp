@@ -10,9 +10,9 @@
 #include "cli/locations.h"
 #include "cli/output.h"
 #include "cli/scene_lookup.h"
-#include "scene/document_field.h"
-#include "scene/recording.h"
-#include "scene/simulation.h"
+#include "scene/document/document_field.h"
+#include "scene/simulation/recording.h"
+#include "scene/simulation/simulation.h"
 
 namespace embody::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include "attributes/physical_kind.h"
 #include "attributes/surfaces.h"
 #include "evaluation/found_category.h"
-#include "scene/simulation.h"
+#include "scene/simulation/simulation.h"
 
 namespace embody::evaluation {
 namespace {

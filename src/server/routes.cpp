@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "foundation/version.h"
-#include "scene/scene_file.h"
+#include "scene/file/scene_file.h"
 
 namespace embody::server {
 namespace {

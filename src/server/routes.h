@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "catalog/catalog.h"
-#include "scene/document.h"
+#include "scene/document/document.h"
 #include "server/http.h"
 
 namespace embody::server {

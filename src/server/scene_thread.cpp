@@ -11,8 +11,8 @@
 #include <thread>
 
 #include "catalog/catalog.h"
-#include "scene/json/text.h"
-#include "scene/scene_file.h"
+#include "scene/file/json/text.h"
+#include "scene/file/scene_file.h"
 #include "server/state_frame.h"
 
 namespace embody::server {

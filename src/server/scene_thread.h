@@ -9,7 +9,7 @@
 #include <string>
 
 #include "foundation/result.h"
-#include "scene/session.h"
+#include "scene/session/session.h"
 #include "server/state_frame.h"
 
 namespace embody::server {

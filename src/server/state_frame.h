@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/session.h"
+#include "scene/session/session.h"
 
 namespace embody::server {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene/live_scene.h"
 
-#include "scene/scene_file.h"
+#include "scene/file/scene_file.h"
 
 namespace embody::scene::samples {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/session.h"
-#include "scene/simulation.h"
+#include "scene/session/session.h"
+#include "scene/simulation/simulation.h"
 
 namespace embody::scene::samples {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "scene/document.h"
+#include "scene/document/document.h"
 
 namespace embody::scene::samples {
 

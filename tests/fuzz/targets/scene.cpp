@@ -3,10 +3,10 @@
 #include <nlohmann/json.hpp>
 
 #include "../target.h"
-#include "scene/document_field.h"
-#include "scene/json/print.h"
-#include "scene/json/text.h"
-#include "scene/scene_file.h"
+#include "scene/document/document_field.h"
+#include "scene/file/json/print.h"
+#include "scene/file/json/text.h"
+#include "scene/file/scene_file.h"
 
 using namespace embody;
 

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// Which entities are points instead of one body, and of what they are made.
+#include <cmath>
+
+#include "attributes/physical_kind.h"
+#include "scene/embody/entity_body.h"
+
+namespace embody::scene {
+
+using attributes::PhysicalKind;
+
+namespace {
+
+const std::string rigid_because = "is simulated as rigid, because ";
+
+// Equal where geometry and size of the grains are.
+std::string grains_key(const Entity& entity, const attributes::AttributeSet& attributes) {
+    const std::string key = EntityBodies::shape_key(entity, attributes);
+    if (key.empty()) return {};
+    return "granular\n" + key + '\n' + std::to_string(attributes.number("simulated_diameter", 0)) + '\n' +
+           std::to_string(attributes.number("grain_budget", 0));
+}
+
+// Equal where geometry and fineness of a liquid are.
+std::string liquid_key(const Entity& entity, const attributes::AttributeSet& attributes) {
+    const std::string key = EntityBodies::shape_key(entity, attributes);
+    if (key.empty()) return {};
+    return "fluid\n" + key + '\n' + std::to_string(attributes.number("fluid_cell_size", 0)) + '\n' +
+           std::to_string(attributes.number("particle_budget", 0));
+}
+
+// Equal where the nodes of what changes its form are.
+std::string deformable_key(const Entity& entity, const attributes::AttributeSet& attributes) {
+    const std::string key = EntityBodies::shape_key(entity, attributes);
+    if (key.empty()) return {};
+    std::string own = to_text(kind_of(attributes)) + '\n' + key + '\n' + std::to_string(entity.scale);
+    for (const char* count : {"cloth_nodes", "rope_segments"})
+        own += '\n' + std::to_string(attributes.number(count, 0));
+    return own;
+}
+
+}  // namespace
+
+EntityForm EntityBodies::soft_form(const Entity& entity, const attributes::AttributeSet& attributes) {
+    const Result<const catalog::SoftMesh*> mesh = soft_mesh(entity);
+    if (!mesh.ok()) return {false, {}, rigid_because + mesh.error().why};
+    EntityForm soft{true, deformable_key(entity, attributes), {}};
+    if (mesh.value()->flatness > 1)
+        soft.note = "is so flat that it is computed coarsely, on cells " +
+                    std::to_string(std::lround(mesh.value()->flatness)) + " times as wide as thick";
+    return soft;
+}
+
+EntityForm EntityBodies::form(const Entity& entity, const attributes::AttributeSet& attributes, bool is_held_as_body) {
+    const PhysicalKind kind = kind_of(attributes);
+    if (is_held_as_body && (is_deformable(kind) || kind == PhysicalKind::fluid))
+        return {false, {}, rigid_because + "a joint or a pin holds on to it"};
+    switch (kind) {
+        case PhysicalKind::static_body:
+        case PhysicalKind::rigid:
+        case PhysicalKind::articulated:
+        case PhysicalKind::visual:
+            return {};
+        case PhysicalKind::granular:
+            return {true, grains_key(entity, attributes), {}};
+        case PhysicalKind::fluid:
+            return {true, liquid_key(entity, attributes), {}};
+        case PhysicalKind::soft:
+            return soft_form(entity, attributes);
+        case PhysicalKind::cloth:
+        case PhysicalKind::rope: {
+            const Result<const ThinForm*> thin = thin_form(entity, attributes);
+            if (!thin.ok()) return {false, {}, rigid_because + thin.error().why};
+            return {true, deformable_key(entity, attributes), {}};
+        }
+    }
+    return {};
+}
+
+Result<PointsDefinition> EntityBodies::points(const Entity& entity, const attributes::AttributeSet& attributes) {
+    const auto as_points = [](auto made) -> Result<PointsDefinition> {
+        if (!made.ok()) return made.error();
+        return PointsDefinition(std::move(made).value());
+    };
+    switch (kind_of(attributes)) {
+        case PhysicalKind::granular:
+            return as_points(grains(entity, attributes));
+        case PhysicalKind::fluid:
+            return as_points(liquid(entity, attributes));
+        case PhysicalKind::soft:
+        case PhysicalKind::cloth:
+        case PhysicalKind::rope:
+            return as_points(deformable(entity, attributes));
+        case PhysicalKind::static_body:
+        case PhysicalKind::rigid:
+        case PhysicalKind::articulated:
+        case PhysicalKind::visual:
+            break;
+    }
+    return Error{"attributes.kind", "a " + to_text(kind_of(attributes)) + " thing is one body, not points"};
+}
+
+}  // namespace embody::scene

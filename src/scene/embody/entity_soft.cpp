@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "attributes/physical_kind.h"
+#include "attributes/to_physics.h"
+#include "scene/embody/entity_body.h"
+#include "scene/embody/shape_surface.h"
+
+namespace embody::scene {
+
+namespace {
+
+// Of the cells: thin beside what is drawn, wide beside rounding.
+constexpr double radius_share = 0.02, least_radius = 5e-4, greatest_radius = 5e-3;
+
+}  // namespace
+
+std::vector<std::uint32_t> pinned_nodes(const Pin& pin, const std::vector<Vec3>& nodes) {
+    std::vector<std::uint32_t> near;
+    std::uint32_t nearest = 0;
+    for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+        const double distance = length(nodes[i] - pin.position);
+        if (distance <= pin.radius) near.push_back(i);
+        if (distance < length(nodes[nearest] - pin.position)) nearest = i;
+    }
+    if (near.empty()) near.push_back(nearest);
+    return near;
+}
+
+Result<const catalog::SoftMesh*> EntityBodies::soft_mesh(const Entity& entity) {
+    const auto* model = std::get_if<ModelReference>(&entity.geometry);
+    const std::string key = model ? model->key : shape_key(entity, {});
+    auto found = soft_meshes_.find(key);
+    if (key.empty() || found == soft_meshes_.end()) {
+        found = soft_meshes_.insert_or_assign(key, make_soft_mesh(entity)).first;
+        ++forms_->made;
+    }
+    if (!found->second.ok()) return found->second.error();
+    return &found->second.value();
+}
+
+Result<catalog::SoftMesh> EntityBodies::make_soft_mesh(const Entity& entity) {
+    if (const auto* model = std::get_if<ModelReference>(&entity.geometry)) {
+        const Result<const Model*> known = find(model->key);
+        if (!known.ok()) return known.error();
+        return catalog_->soft_mesh(known.value()->summary.id);
+    }
+    const auto surface = surface_of(std::get<physics::ShapeDefinition>(entity.geometry));
+    if (!surface) return surface.error();
+    return catalog::make_soft_mesh(*surface);
+}
+
+Result<physics::DeformableDefinition> EntityBodies::soft(const Entity& entity,
+                                                         const attributes::AttributeSet& attributes) {
+    const Result<const catalog::SoftMesh*> mesh = soft_mesh(entity);
+    if (!mesh.ok()) return mesh.error();
+    geometry::TetrahedralMesh scaled = mesh.value()->mesh;
+    for (Vec3& node : scaled.nodes) node *= entity.scale;
+    Result<physics::DeformableDefinition> made = attributes::soft_solid_from_attributes(attributes, scaled, taxonomy());
+    if (!made.ok()) return Error{"attributes: " + made.error().where, made.error().why, made.error().remedy};
+    physics::DeformableDefinition soft = std::move(made).value();
+    soft.contact_radius = std::clamp(radius_share * mesh.value()->cell * entity.scale, least_radius, greatest_radius);
+    return soft;
+}
+
+Result<physics::DeformableDefinition> EntityBodies::deformable(const Entity& entity,
+                                                               const attributes::AttributeSet& attributes) {
+    Result<physics::DeformableDefinition> made =
+        kind_of(attributes) == attributes::PhysicalKind::soft ? soft(entity, attributes) : thin(entity, attributes);
+    if (!made.ok()) return made.error();
+    physics::DeformableDefinition deformable = std::move(made).value();
+    deformable.pose = entity.pose;
+    deformable.linear_velocity = entity.linear_velocity;
+    deformable.angular_velocity = entity.angular_velocity;
+    deformable.force = entity.force;
+    deformable.enabled = entity.enabled;
+    deformable.user_data = entity.index;
+    for (const Pin& pin : entity.pins) {
+        if (pin.to) continue;
+        const std::vector<std::uint32_t> held = pinned_nodes(pin, deformable.nodes);
+        deformable.pinned.insert(deformable.pinned.end(), held.begin(), held.end());
+    }
+    std::ranges::sort(deformable.pinned);
+    deformable.pinned.erase(std::unique(deformable.pinned.begin(), deformable.pinned.end()), deformable.pinned.end());
+    return deformable;
+}
+
+}  // namespace embody::scene

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include "scene/embody/form_cache.h"
+
+namespace embody::scene {
+
+namespace {
+
+constexpr std::size_t most_kept = 256;
+
+// The text of a primitive is an object of JSON; a model's key is not.
+template <class Forms>
+void keep_primitives(Forms& forms) {
+    std::erase_if(forms, [](const auto& item) { return item.first.empty() || item.first.front() != '{'; });
+    if (forms.size() > most_kept) forms.clear();
+}
+
+}  // namespace
+
+void FormCache::begin() {
+    keep_primitives(soft_meshes);
+    keep_primitives(thin_forms);
+}
+
+}  // namespace embody::scene

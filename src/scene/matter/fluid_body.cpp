@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+#include "scene/matter/fluid_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "scene/embody/filled_region.h"
+#include "scene/matter/fluid_filling.h"
+
+namespace embody::scene {
+
+using physics::FluidParticles;
+using physics::SleepState;
+
+Result<std::unique_ptr<FluidBody>> FluidBody::create(physics::World& world, Liquids& liquids,
+                                                     const LiquidDefinition& definition) {
+    const Result<FilledRegion> region = FilledRegion::of(definition.shape);
+    if (!region.ok()) return region.error();
+    std::unique_ptr<FluidBody> made(new FluidBody(world, liquids));
+    made->matter_ = definition.matter;
+    made->force_ = definition.force;
+    const Bounds bounds = transformed(definition.pose, region.value().bounds());
+    Result<FluidFilling> filling =
+        fill_with_fluid(definition.shape, made->matter_.cell_size, definition.particle_budget);
+    if (!filling.ok()) return filling.error();
+    // Particles of a fluid that is there already have that one's volume, however many it takes.
+    made->matter_.cell_size = filling.value().cell_size;
+    const double cell = liquids.cell_size(made->matter_, bounds);
+    bool is_own = cell == made->matter_.cell_size;
+    if (!is_own) {
+        const std::size_t most = definition.particle_budget * Liquids::most_particles_ratio;
+        Result<FluidFilling> joined = fill_with_fluid(definition.shape, cell, most);
+        // What is thinner than its particles would have more volume with those of the other: it stays by itself.
+        constexpr double most_off = 1.08;  // of the cells, so a fourth of the volume
+        is_own = !joined.ok() || std::fabs(std::log(joined.value().cell_size / cell)) > std::log(most_off);
+        if (!is_own) filling = std::move(joined);
+    }
+    // Its own fluid's cells are such that the particles have its volume.
+    constexpr double largest_cell = 1;  // m, of the physics
+    if (filling.value().cell_size > largest_cell)
+        return Error{"attributes.particle_budget",
+                     "is too small for so much liquid: its cells would be " +
+                         std::to_string(static_cast<int>(std::ceil(filling.value().cell_size))) +
+                         " m wide, more than 1 m",
+                     "raise it, or fill a smaller shape"};
+    made->matter_.cell_size = is_own ? std::max(filling.value().cell_size, 1e-3) : cell;
+
+    std::vector<Particle> particles;
+    particles.reserve(filling.value().places.size());
+    const Vec3 center = bounds.center();
+    for (const Vec3 place : filling.value().places) {
+        const Vec3 position = transform_point(definition.pose, place);
+        const Vec3 velocity = definition.linear_velocity + cross(definition.angular_velocity, position - center);
+        particles.push_back({position, velocity});
+    }
+    made->kept_ = std::move(particles);
+    if (!definition.enabled) return made;
+    if (Result<void> put = made->set_enabled(true); !put.ok()) return put.error();
+    return made;
+}
+
+FluidBody::~FluidBody() {
+    if (share_) liquids_.remove(share_);
+}
+
+Result<void> FluidBody::put(const std::vector<Particle>& particles) {
+    std::vector<Vec3> places;
+    places.reserve(particles.size());
+    for (const Particle& particle : particles) places.push_back(particle.position);
+    const Result<Liquids::Share*> share = liquids_.add(matter_, places);
+    if (!share.ok())
+        return Error{"shape", "holds no liquid: " + share.error().why,
+                     "place it outside of solid things, or make it larger"};
+    share_ = share.value();
+    share_->force = force_;
+    if (std::ranges::all_of(particles, [](const Particle& particle) { return particle.velocity == Vec3{}; })) return {};
+
+    // Those in solids were left out, so that the ids say nothing of the places, but their order is the same.
+    std::size_t at = 0;
+    return world_.change_fluid(share_->fluid, share_->ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
+        constexpr double same_place = 1e-4;
+        while (at < particles.size() && length(particles[at].position - position) > same_place) ++at;
+        if (at < particles.size()) velocity = particles[at++].velocity;
+        return true;
+    });
+}
+
+Result<void> FluidBody::set_definition(const PointsDefinition& definition) {
+    const auto& liquid = std::get<LiquidDefinition>(definition);
+    const double cell_size = matter_.cell_size;
+    matter_ = liquid.matter;
+    force_ = liquid.force;
+    matter_.cell_size = cell_size;
+    if (share_) {
+        share_->force = force_;
+        if (Result<void> set = liquids_.set_matter(*share_, matter_); !set.ok()) return set;
+    }
+    return set_enabled(liquid.enabled);
+}
+
+std::vector<FluidBody::Particle> FluidBody::particles() const {
+    if (!share_) return kept_;
+    const FluidParticles all = world_.fluid_particles(share_->fluid);
+    std::vector<Particle> own;
+    own.reserve(count());
+    for (const std::uint32_t i : liquids_.particles_of(*share_))
+        own.push_back({all.origin + to_vec3(all.positions[i]), to_vec3(all.velocities[i])});
+    return own;
+}
+
+std::size_t FluidBody::count() const { return share_ ? liquids_.particles_of(*share_).size() : kept_.size(); }
+
+void FluidBody::read(std::vector<Vec3>& positions) const {
+    positions.clear();
+    for (const Particle& particle : particles()) positions.push_back(particle.position);
+}
+
+double FluidBody::particle_mass() const {
+    const double cell = matter_.cell_size;
+    return matter_.density * cell * cell * cell / 8;
+}
+
+double FluidBody::radius() const { return std::cbrt(3 * particle_mass() / (4 * std::numbers::pi * matter_.density)); }
+
+SleepState FluidBody::state() const {
+    if (!share_) return SleepState::asleep;
+    const FluidParticles all = world_.fluid_particles(share_->fluid);
+    return all.is_asleep || all.is_frozen ? SleepState::asleep : SleepState::active;
+}
+
+Vec3 FluidBody::center_of_mass() const {
+    const std::vector<Particle> own = particles();
+    Vec3 sum;
+    for (const Particle& particle : own) sum += particle.position;
+    return own.empty() ? Vec3{} : sum / static_cast<double>(own.size());
+}
+
+Vec3 FluidBody::linear_velocity() const {
+    const std::vector<Particle> own = particles();
+    Vec3 sum;
+    for (const Particle& particle : own) sum += particle.velocity;
+    return own.empty() ? Vec3{} : sum / static_cast<double>(own.size());
+}
+
+double FluidBody::mass() const { return particle_mass() * static_cast<double>(count()); }
+
+Bounds FluidBody::bounds() const {
+    Bounds bounds;
+    for (const Particle& particle : particles()) bounds.add(particle.position);
+    return bounds.is_empty() ? bounds : enlarged(bounds, radius());
+}
+
+// A ray down from the lowest particle of each column of cells.
+std::optional<double> FluidBody::drop_distance(double most) const {
+    std::map<std::pair<int, int>, Vec3> lowest;
+    for (const Particle& particle : particles()) {
+        const Vec3 p = particle.position;
+        const std::pair column{static_cast<int>(std::floor(p.x / matter_.cell_size)),
+                               static_cast<int>(std::floor(p.z / matter_.cell_size))};
+        const auto [found, is_new] = lowest.try_emplace(column, p);
+        if (!is_new && p.y < found->second.y) found->second = p;
+    }
+    const double clearance = radius();
+    std::optional<double> least;
+    for (const auto& [column, place] : lowest) {
+        const auto hit = world_.cast_ray(place, {0, -1, 0}, most + clearance);
+        if (hit && (!least || hit->distance < *least)) least = hit->distance;
+    }
+    if (least) *least = std::max(0.0, *least - clearance);
+    return least;
+}
+
+// The first of balls so large that neighbours at rest overlap.
+std::optional<SurfaceHit> FluidBody::cast_ray(Vec3 origin, Vec3 direction, double most) const {
+    const double reach = 1.5 * radius();
+    const Bounds box = bounds();
+    if (box.is_empty()) return {};
+    std::optional<SurfaceHit> nearest;
+    for (const Particle& particle : particles()) {
+        const Vec3 to = particle.position - origin;
+        const double along = dot(to, direction), off = length_squared(to) - along * along;
+        if (off > reach * reach) continue;
+        const double distance = along - std::sqrt(reach * reach - off);
+        if (distance < 0 || distance > most || (nearest && distance >= nearest->distance)) continue;
+        nearest = SurfaceHit{distance, normalized(distance * direction - to)};
+    }
+    return nearest;
+}
+
+Result<void> FluidBody::move(const Transform& motion) {
+    for (Particle& particle : kept_) particle = {transform_point(motion, particle.position), {}};
+    if (!share_) return {};
+    Result<void> moved =
+        world_.change_fluid(share_->fluid, share_->ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
+            position = transform_point(motion, position);
+            velocity = {};
+            return true;
+        });
+    if (!moved.ok()) return moved;
+    return liquids_.regroup(*share_);
+}
+
+Result<void> FluidBody::set_velocity(Vec3 linear, Vec3 angular) {
+    const Vec3 center = center_of_mass();
+    for (Particle& particle : kept_) particle.velocity = linear + cross(angular, particle.position - center);
+    if (!share_) return {};
+    return world_.change_fluid(share_->fluid, share_->ids, [&](std::uint32_t, Vec3& position, Vec3& velocity) {
+        velocity = linear + cross(angular, position - center);
+        return true;
+    });
+}
+
+Result<void> FluidBody::apply_impulse(Vec3 impulse) {
+    if (!share_) return {};
+    const Vec3 change = impulse / mass();
+    return world_.change_fluid(share_->fluid, share_->ids, [&](std::uint32_t, Vec3&, Vec3& velocity) {
+        velocity += change;
+        return true;
+    });
+}
+
+Result<void> FluidBody::apply_force(Vec3 force) { return apply_impulse(world_.settings().time_step * force); }
+
+Result<void> FluidBody::set_enabled(bool enabled) {
+    if (enabled == (share_ != nullptr)) return {};
+    if (enabled) {
+        if (Result<void> in = put(kept_); !in.ok()) return in;
+        kept_.clear();
+        return {};
+    }
+    kept_ = particles();
+    liquids_.remove(std::exchange(share_, nullptr));
+    return {};
+}
+
+}  // namespace embody::scene

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "scene/matter/liquids.h"
+#include "scene/matter/moving_points.h"
+
+namespace embody::scene {
+
+/// A body of liquid as particles of a fluid of the physics, which it may share with others of the same matter.
+class FluidBody final : public MovingPoints {
+public:
+    /// `world` and `liquids` outlive it. The error's `where` is an attribute or "shape".
+    static Result<std::unique_ptr<FluidBody>> create(physics::World& world, Liquids& liquids,
+                                                     const LiquidDefinition& definition);
+    ~FluidBody() override;
+
+    /// Particles that were lost are left out.
+    void read(std::vector<Vec3>& positions) const override;
+    [[nodiscard]] double radius() const override;  ///< of a ball of a particle's volume
+    [[nodiscard]] bool is_liquid() const override { return true; }
+    [[nodiscard]] physics::FluidHandle fluid() const override {
+        return share_ ? share_->fluid : physics::FluidHandle{};
+    }
+    [[nodiscard]] physics::SleepState state() const override;
+    [[nodiscard]] Vec3 center_of_mass() const override;
+    [[nodiscard]] double mass() const override;
+    [[nodiscard]] Bounds bounds() const override;
+    [[nodiscard]] std::optional<double> drop_distance(double most) const override;
+    [[nodiscard]] std::optional<SurfaceHit> cast_ray(Vec3 origin, Vec3 direction, double most) const override;
+    /// Liquid runs through a hand: none.
+    [[nodiscard]] physics::BodyHandle hold(Vec3) override { return {}; }
+    [[nodiscard]] Vec3 linear_velocity() const override;
+    [[nodiscard]] Vec3 angular_velocity() const override { return {}; }
+    /// Other matter.
+    Result<void> set_definition(const PointsDefinition& definition) override;
+    Result<void> move(const Transform& motion) override;
+    Result<void> set_velocity(Vec3 linear, Vec3 angular) override;
+    Result<void> apply_impulse(Vec3 impulse) override;
+    Result<void> apply_force(Vec3 force) override;
+    /// Taken out of the world and put in again as it was.
+    Result<void> set_enabled(bool enabled) override;
+
+private:
+    struct Particle {
+        Vec3 position, velocity;
+    };
+    FluidBody(physics::World& world, Liquids& liquids) : world_(world), liquids_(liquids) {}
+    [[nodiscard]] std::vector<Particle> particles() const;  ///< in the order of their ids
+    [[nodiscard]] std::size_t count() const;
+    Result<void> put(const std::vector<Particle>& particles);
+    [[nodiscard]] double particle_mass() const;
+
+    physics::World& world_;
+    Liquids& liquids_;
+    physics::FluidDefinition matter_;
+    Vec3 force_;                       ///< constant, N
+    Liquids::Share* share_ = nullptr;  ///< null while it is disabled
+    std::vector<Particle> kept_;       ///< while it is disabled
+};
+
+}  // namespace embody::scene

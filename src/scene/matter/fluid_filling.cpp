@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "scene/matter/fluid_filling.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scene/embody/filled_region.h"
+
+namespace embody::scene {
+
+namespace {
+
+// Places looked at: so many are a second's work.
+constexpr double most_places = 20'000'000;
+
+/// A lattice of `counts` places that fits the bounds.
+struct Lattice {
+    Vec3 first, spacing;
+    std::array<double, 3> counts{};
+
+    Lattice(const Bounds& bounds, double step) {
+        for (int axis = 0; axis < 3; ++axis) {
+            counts[axis] = std::max(1.0, std::round(bounds.size()[axis] / step));
+            spacing[axis] = bounds.size()[axis] / counts[axis];
+        }
+        first = bounds.lower + spacing * 0.5;
+    }
+    [[nodiscard]] double size() const { return counts[0] * counts[1] * counts[2]; }
+};
+
+// Stops where there are more than `most`.
+std::vector<Vec3> places_in(const FilledRegion& region, const Lattice& lattice, std::size_t most) {
+    std::vector<Vec3> places;
+    for (double y = 0; y < lattice.counts[1]; ++y) {
+        for (double z = 0; z < lattice.counts[2]; ++z) {
+            for (double x = 0; x < lattice.counts[0]; ++x) {
+                const Vec3& s = lattice.spacing;
+                const Vec3 place = lattice.first + Vec3{x * s.x, y * s.y, z * s.z};
+                if (!region.holds_ball(place, 0)) continue;
+                places.push_back(place);
+                if (places.size() > most) return places;
+            }
+        }
+    }
+    return places;
+}
+
+}  // namespace
+
+Result<FluidFilling> fill_with_fluid(const physics::ShapeDefinition& shape, double cell_size, std::size_t most) {
+    const Result<FilledRegion> region = FilledRegion::of(shape);
+    if (!region.ok()) return region.error();
+    constexpr double coarser = 1.03, finer = 0.7;
+    bool was_too_many = false;
+    for (double step = cell_size / 2;;) {
+        const Lattice lattice(region.value().bounds(), step);
+        if (lattice.size() > most_places) {
+            if (!was_too_many && step < cell_size / 2) break;
+            step *= 1.25;
+            continue;
+        }
+        FluidFilling filling{places_in(region.value(), lattice, most), 0};
+        if (filling.places.size() > most) {
+            was_too_many = true;
+            step *= coarser;
+        } else if (!filling.places.empty()) {
+            filling.cell_size = 2 * std::cbrt(lattice.spacing.x * lattice.spacing.y * lattice.spacing.z);
+            return filling;
+        } else if (was_too_many) {
+            break;
+        } else {
+            step *= finer;
+        }
+    }
+    return Error{"shape", "is too flat to be filled with liquid",
+                 "make it thicker, or allow more with particle_budget"};
+}
+
+}  // namespace embody::scene

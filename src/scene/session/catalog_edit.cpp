@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+#include "scene/session/catalog_edit.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "attributes/registry.h"
+
+namespace embody::scene {
+
+using catalog::ChangeReport;
+using nlohmann::json;
+
+namespace {
+
+/// An event names at most this many models; of more, any may have changed.
+constexpr std::size_t most_told_models = 1000;
+
+std::string attribute_text(const std::vector<std::string>& names) {
+    if (names.size() != 1) return std::to_string(names.size()) + " attributes";
+    const attributes::AttributeDescription* description = attributes::describe(names.front());
+    return description && !description->label.empty() ? description->label : names.front();
+}
+
+std::string called(const catalog::ChangeRecord& change) {
+    return change.model_name.empty() ? change.model_key : change.model_name;
+}
+
+std::string label_text(const std::string& command, const std::vector<std::string>& names,
+                       const std::string& first_model, std::size_t models) {
+    const char* act = command.starts_with("reset") ? "Reset " : command == "undo" ? "Take back " : "Set ";
+    const std::string of = models == 1 ? first_model : std::to_string(models) + " models";
+    return act + attribute_text(names) + " of " + of;
+}
+
+// What the open scene has of these models is made anew; what a run has of them goes on from where it is.
+void take_up(SessionState& state, const std::set<std::string>& keys) {
+    for (const std::string& key : keys) state.bodies.forget(key);
+    state.simulation_is_pristine = false;
+    const Result<void> renewed = state.simulation->renew_models(keys, state.play_state != PlayState::stopped);
+    if (!renewed.ok())
+        state.tell_message("warning", "The scene could not follow the changed models: " + renewed.error().message());
+}
+
+void tell_models(SessionState& state, json event, const std::set<std::string>& keys, std::size_t models) {
+    event["event"] = "catalog";
+    event["models"] = models;
+    event["keys"] = keys.size() == models && models <= most_told_models ? json(keys) : json(nullptr);
+    state.tell(std::move(event));
+}
+
+// After an act of the client whose command is in hand.
+void follow(SessionState& state, const ChangeReport& report) {
+    std::set<std::string> keys;
+    for (const catalog::ChangedModel& model : report.models) keys.insert(model.key);
+    take_up(state, keys);
+    tell_models(state,
+                {{"batch", report.batch},
+                 {"command", report.command},
+                 {"label", label_of(report)},
+                 {"attributes", report.attributes},
+                 {"session", acting_session(state)},
+                 {"client", state.client}},
+                keys, keys.size());
+}
+
+catalog::ChangeOptions watched(const SessionState& state, catalog::ChangeOptions options) {
+    if (!options.dry_run) options.progress = state.options.progress;
+    return options;
+}
+
+// Takes back a batch and tells all; an act that some values refuse is an error, as undo is all or nothing.
+Result<ChangeReport> take_back(SessionState& state, std::int64_t batch) {
+    if (!state.catalog) return Error{"catalog", "no model database is open", "start with --database FILE"};
+    state.catalog->set_session(acting_session(state));
+    Result<ChangeReport> report = state.catalog->undo_changes(batch, watched(state, {}));
+    if (!report.ok()) return report;
+    if (!report.value().refused.empty()) {
+        const catalog::RefusedChange& first = report.value().refused.front();
+        const std::size_t more = report.value().refused.size() - 1;
+        return Error{"batch " + std::to_string(batch),
+                     "nothing was undone: the " + attribute_text({first.attribute}) + " of " + first.name + " " +
+                         first.why + (more > 0 ? ", and so were " + std::to_string(more) + " more values" : ""),
+                     "undo the later change first, or set the values anew"};
+    }
+    if (report.value().batch != 0) follow(state, report.value());
+    return report;
+}
+
+// Refused because of what happened to the batch; a database that is busy, or a stop, is another matter.
+bool is_for_ever(const Error& error) { return error.where.starts_with("batch "); }
+
+}  // namespace
+
+std::string acting_session(const SessionState& state) {
+    const auto name = state.client_names.find(state.client);
+    if (name != state.client_names.end()) return "studio: " + name->second;
+    return "studio " + std::to_string(state.client);
+}
+
+std::string label_of(const ChangeReport& report) {
+    return label_text(report.command, report.attributes, report.models.empty() ? "" : report.models.front().name,
+                      report.models.size());
+}
+
+Result<ChangeReport> change_models(SessionState& state, const catalog::Catalog::ModelChoice& models,
+                                   const std::vector<catalog::AttributeChange>& changes,
+                                   catalog::ChangeOptions options) {
+    if (!state.catalog) return Error{"catalog", "no model database is open", "start with --database FILE"};
+    state.catalog->set_session(acting_session(state));
+    Result<ChangeReport> report = state.catalog->change_attributes(models, changes, watched(state, options));
+    if (!report.ok() || report.value().batch == 0) return report;
+    follow(state, report.value());
+    Edit edit = state.start_edit(label_of(report.value()));
+    edit.catalog = CatalogStep{report.value().batch, 0};
+    state.record(std::move(edit));
+    state.tell_document(json::array());
+    return report;
+}
+
+Result<ChangeReport> undo_models(SessionState& state, std::int64_t batch) {
+    // What undo or redo would take next goes that way. Another is an edit of its own: those before it stay in their
+    // order, and are reached when it has been taken back itself.
+    const Edit* last = state.history.undoable();
+    const Edit* next = state.history.redoable();
+    const bool is_last = last && last->catalog && last->catalog->back == batch;
+    const bool is_next = next && next->catalog && next->catalog->again == batch;
+    Result<ChangeReport> report = take_back(state, batch);
+    if (!report.ok() || report.value().batch == 0) return report;
+    if (is_last) {
+        state.history.move_back(report.value().batch);
+    } else if (is_next) {
+        state.history.move_forward();
+    } else {
+        Edit edit = state.start_edit(label_of(report.value()));
+        edit.catalog = CatalogStep{report.value().batch, 0};
+        state.record(std::move(edit));
+    }
+    state.tell_document(json::array());
+    return report;
+}
+
+Result<std::string> undo_on_catalog(SessionState& state) {
+    const Edit edit = *state.history.undoable();
+    const Result<ChangeReport> report = take_back(state, edit.catalog->back);
+    if (report.ok())
+        state.history.move_back(report.value().batch);
+    else if (is_for_ever(report.error()))
+        state.history.drop_undoable();
+    state.tell_document(json::array());
+    if (!report.ok()) return report.error();
+    return edit.label;
+}
+
+Result<std::string> redo_on_catalog(SessionState& state) {
+    const Edit edit = *state.history.redoable();
+    const Result<ChangeReport> report = take_back(state, edit.catalog->again);
+    if (report.ok())
+        state.history.move_forward();
+    else if (is_for_ever(report.error()))
+        state.history.drop_redoable();
+    state.tell_document(json::array());
+    if (!report.ok()) return report.error();
+    return edit.label;
+}
+
+bool follow_changes_of_others(SessionState& state) {
+    if (!state.catalog) return false;
+    const auto batches = state.catalog->changes_of_others();
+    if (!batches.ok()) return false;
+    for (const catalog::ChangeBatchRecord& batch : batches.value()) {
+        const catalog::ChangeRecord& first = batch.changes.front();
+        std::set<std::string> keys;
+        std::vector<std::string> names;
+        for (const catalog::ChangeRecord& change : batch.changes) {
+            keys.insert(change.model_key);
+            if (std::find(names.begin(), names.end(), change.attribute) == names.end())
+                names.push_back(change.attribute);
+        }
+        // Of very many only the first are told: then all that the scene has are looked at again.
+        std::set<std::string> meant = keys;
+        if (keys.size() < batch.models) {
+            for (const EntityIndex index : state.simulation->entities()) {
+                const Entity* entity = state.simulation->definition(index);
+                if (const auto* model = std::get_if<ModelReference>(&entity->geometry)) meant.insert(model->key);
+            }
+        }
+        take_up(state, meant);
+        tell_models(state,
+                    {{"batch", first.batch},
+                     {"command", first.command},
+                     {"label", label_text(first.command, names, called(first), batch.models)},
+                     {"attributes", names},
+                     {"session", first.author.session},
+                     {"client", nullptr}},
+                    keys, batch.models);
+    }
+    return !batches.value().empty();
+}
+
+}  // namespace embody::scene

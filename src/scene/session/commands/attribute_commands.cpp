@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "attributes/attribute_json.h"
+#include "attributes/physical_kind.h"
+#include "attributes/registry.h"
+#include "attributes/resolver.h"
+#include "scene/file/json/parts.h"
+#include "scene/session/commands/commands.h"
+
+namespace embody::scene {
+
+using attributes::AttributeDescription;
+using attributes::AttributeEntry;
+using attributes::AttributeSet;
+using nlohmann::json;
+
+json attribute_rows(const AttributeSet& acting, const AttributeSet& automatic, const std::vector<std::string>& own) {
+    constexpr std::array type_names{"number", "word", "truth", "vector", "tensor"};
+    json rows = json::array();
+    for (const AttributeEntry& entry : acting.entries()) {
+        json row = attributes::to_json(entry);
+        for (const char* field : {"low", "high"})
+            if (!row.contains(field)) row[field] = nullptr;
+
+        // What the panel needs to edit it, and to go back.
+        const AttributeDescription* description = attributes::describe(entry.name);
+        if (description) {
+            row["type"] = type_names[static_cast<std::size_t>(description->type)];
+            row["choices"] = description->choices;
+            row["range"] = nullptr;
+            const auto end = [](const std::optional<double>& value) {
+                return value ? attributes::to_json(*value) : json(nullptr);
+            };
+            if (description->low || description->high) row["range"] = {end(description->low), end(description->high)};
+        }
+        const AttributeEntry* before = automatic.find(entry.name);
+        row["automatic"] = before ? attributes::to_json(before->value) : json(nullptr);
+        row["overridden"] = std::find(own.begin(), own.end(), entry.name) != own.end();
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+namespace {
+
+// A new value for the name in each entity, or none.
+Result<json> change_attribute(SessionState& state, const std::vector<EntityIndex>& indices, const std::string& name,
+                              const std::optional<attributes::AttributeValue>& value, const std::string& merge) {
+    const AttributeDescription* description = attributes::describe(name);
+    const std::string label = description && !description->label.empty() ? description->label : name;
+    Edit edit = state.start_edit((value ? "Set " : "Reset ") + label + " of " + state.called(indices));
+    edit.merge = merge;
+    for (const EntityIndex index : indices) {
+        const Entity& before = *state.document.find(index);
+        EntityChange change = change_of(before, before);
+        if (value) {
+            change.after->attributes[name] = *value;
+        } else if (change.after->attributes.erase(name) == 0) {
+            continue;
+        }
+        edit.changes.emplace_back(std::move(change));
+    }
+    return done(state.commit(std::move(edit)));
+}
+
+Result<json> set_attribute(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    std::vector<EntityIndex> indices;
+    std::string name, merge;
+    need_indices(reader, state, indices);
+    need_text(reader, "name", "an attribute's name", name);
+    const json* value = reader.need("value", "the attribute's new value");
+    reader.text("merge", merge);
+    if (!reader.finish()) return *error;
+    Result<attributes::AttributeValue> read = attribute_from_json(name, *value, "value");
+    if (read.ok() && state.catalog) {
+        read = attributes::known_value(state.catalog->taxonomy(), name, std::move(read).value());
+    }
+    if (!read.ok()) return read.error();
+    return change_attribute(state, indices, name, read.value(), merge);
+}
+
+Result<json> reset_attribute(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    std::vector<EntityIndex> indices;
+    std::string name;
+    need_indices(reader, state, indices);
+    need_text(reader, "name", "an attribute's name", name);
+    if (!reader.finish()) return *error;
+    if (!attributes::describe(name)) return attribute_from_json(name, 0, "name").error();
+    return change_attribute(state, indices, name, std::nullopt, {});
+}
+
+struct ActingEntity {
+    const Entity* entity;
+    AttributeSet attributes;
+};
+
+// As it acts in the running world, spawned things too; else as the document says.
+Result<ActingEntity> acting_entity(SessionState& state, EntityIndex index) {
+    const Entity* entity = state.simulation->definition(index);
+    if (!entity) entity = state.document.find(index);
+    if (!entity) return state.entity(index, "index").error();
+    Result<AttributeSet> acting = state.simulation->attributes(index);
+    if (!acting.ok()) acting = state.bodies.attributes(*entity);
+    if (!acting.ok()) return acting.error();
+    return ActingEntity{entity, std::move(acting).value()};
+}
+
+Result<json> list_attributes(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    EntityIndex index = 0;
+    need_index(reader, "index", index);
+    if (!reader.finish()) return *error;
+
+    const Result<ActingEntity> found = acting_entity(state, index);
+    if (!found.ok()) return found.error();
+    const auto& [entity, acting] = found.value();
+    Result<AttributeSet> automatic = state.bodies.automatic_attributes(*entity);
+    if (!automatic.ok()) return automatic.error();
+    std::vector<std::string> own;
+    for (const auto& [name, value] : entity->attributes) own.push_back(name);
+    json rows = attribute_rows(acting, automatic.value(), own);
+    if (std::holds_alternative<ModelReference>(entity->geometry)) {
+        for (json& row : rows) {
+            const std::string name = row["name"];
+            row["of_model"] = attributes::to_json(value_of_model(name, acting.find(name)->value, entity->scale));
+        }
+    }
+    return json{{"attributes", std::move(rows)}};
+}
+
+// The triangles of static things are those that are drawn, and may be many: they are not told.
+Result<json> tell_collision_shape(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    EntityIndex index = 0;
+    need_index(reader, "index", index);
+    if (!reader.finish()) return *error;
+    const Result<ActingEntity> found = acting_entity(state, index);
+    if (!found.ok()) return found.error();
+    const auto& [entity, acting] = found.value();
+    if (kind_of(acting) == attributes::PhysicalKind::visual) return json{{"shape", nullptr}};
+    const Result<physics::ShapeDefinition> shape = state.bodies.shape(*entity, acting);
+    if (!shape.ok()) return shape.error();
+    return json{{"shape", physics::is_static_only(shape.value()) ? json(nullptr) : shape_to_json(shape.value())}};
+}
+
+template <std::size_t count>
+json corners_of(const std::vector<std::array<std::uint32_t, count>>& elements) {
+    json corners = json::array();
+    for (const auto& element : elements)
+        for (const std::uint32_t node : element) corners.push_back(node);
+    return corners;
+}
+
+// What carries the drawn form of an entity that changes it.
+Result<json> tell_simulation_mesh(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    EntityIndex index = 0;
+    need_index(reader, "index", index);
+    if (!reader.finish()) return *error;
+    const MovingPoints* points = state.simulation->points(index);
+    const physics::DeformableDefinition* form = points ? points->deformable() : nullptr;
+    if (!form) return json{{"mesh", nullptr}};
+    json mesh = {{"nodes", json::array()}};
+    for (const Vec3 node : form->nodes)
+        for (const double number : {node.x, node.y, node.z}) mesh["nodes"].push_back(number);
+    if (const auto* solid = std::get_if<physics::SoftSolid>(&form->matter))
+        mesh["tetrahedra"] = corners_of(solid->tetrahedra);
+    else if (const auto* cloth = std::get_if<physics::Cloth>(&form->matter))
+        mesh["triangles"] = corners_of(cloth->triangles);
+    else
+        mesh["broken"] = points->broken_segments();
+    return json{{"mesh", std::move(mesh)}};
+}
+
+}  // namespace
+
+std::span<const Command> attribute_commands() {
+    static constexpr Command commands[] = {{"entity.set_attribute", set_attribute},
+                                           {"entity.reset_attribute", reset_attribute},
+                                           {"entity.attributes", list_attributes},
+                                           {"entity.collision_shape", tell_collision_shape},
+                                           {"entity.simulation_mesh", tell_simulation_mesh}};
+    return commands;
+}
+
+}  // namespace embody::scene

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "foundation/result.h"
+#include "scene/file/json/field_reader.h"
+#include "scene/session/session_state.h"
+
+namespace embody::scene {
+
+/// One command of docs/protocol.md: reads its parameters strictly, does its work, gives its result.
+struct Command {
+    const char* name;
+    Result<nlohmann::json> (*execute)(SessionState& state, const nlohmann::json& params);
+};
+
+// One list a family, one file each.
+std::span<const Command> catalog_commands();
+std::span<const Command> catalog_change_commands();
+std::span<const Command> scene_commands();
+std::span<const Command> entity_commands();
+std::span<const Command> placement_commands();
+std::span<const Command> attribute_commands();
+std::span<const Command> joint_and_action_commands();
+std::span<const Command> simulation_commands();
+
+/// Reads a field that must be there.
+bool need_text(FieldReader& reader, const char* name, const char* what, std::string& value);
+bool need_index(FieldReader& reader, const char* name, EntityIndex& value);
+bool need_vector(FieldReader& reader, const char* name, const char* what, Vec3& value);
+/// Entities of the document, each once, ascending; at least one.
+bool need_indices(FieldReader& reader, const SessionState& state, std::vector<EntityIndex>& indices);
+
+/// Ends a command that has no result.
+Result<nlohmann::json> done(const Result<void>& result);
+
+/// The rows of the properties panel: protocol's AttributeEntry. `own` tells whether a name is overridden.
+nlohmann::json attribute_rows(const attributes::AttributeSet& acting, const attributes::AttributeSet& automatic,
+                              const std::vector<std::string>& own);
+
+/// The model database that is open, or an error that says how to open one.
+Result<catalog::Catalog*> open_catalog(const SessionState& state);
+/// The rows of a model of the catalogue.
+Result<nlohmann::json> model_attribute_rows(const catalog::Catalog& catalog, std::int64_t id);
+
+/// Where `entity` comes to lie when it is dropped where the ray meets the scene. It is not in the simulation.
+Result<Transform> place_on_ray(SessionState& state, const Entity& entity, Vec3 origin, Vec3 direction);
+
+}  // namespace embody::scene

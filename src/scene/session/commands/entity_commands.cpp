@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "scene/file/json/parts.h"
+#include "scene/file/scene_file.h"
+#include "scene/session/commands/commands.h"
+
+namespace embody::scene {
+
+using nlohmann::json;
+
+namespace {
+
+// What a person would call it.
+Result<std::string> usual_name(SessionState& state, const Entity& entity) {
+    if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry)) {
+        std::string name = physics::shape_name(*shape);
+        name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
+        return name;
+    }
+    Result<catalog::ModelSummary> model = state.bodies.model(entity);
+    if (!model.ok()) return model.error();
+    return model.value().name;
+}
+
+Result<void> check_room(const Document& document, std::size_t count) {
+    if (document.next_index > last_document_index - count + 1)
+        return Error{
+            "entity", "no index is left",
+            "give the entity with the highest index a lower one in the scene file, and take next_index out of it"};
+    if (document.entities.size() + count <= most_entities) return {};
+    return Error{"entity", "a scene can have " + std::to_string(most_entities) + " entities", "delete some first"};
+}
+
+Result<json> add(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    const json* given = reader.need("entity", "the entity as in a scene file");
+    std::optional<Vec3> origin, direction;
+    if (const json* drop = reader.take("drop")) {
+        FieldReader ray(*drop, "drop", error);
+        ray.need("origin", "where the ray starts");
+        ray.need("direction", "where it goes");
+        ray.vector("origin", origin);
+        ray.vector("direction", direction);
+        ray.finish();
+    }
+    if (!reader.finish()) return *error;
+    Result<Entity> read = entity_from_json(*given, "entity");
+    if (!read.ok()) return read.error();
+
+    // Its own index and name.
+    Entity entity = std::move(read).value();
+    if (entity.index != 0) return Error{"entity.index", "is given by the session", "leave it out"};
+    if (Result<void> room = check_room(state.document, 1); !room.ok()) return room.error();
+    entity.index = state.document.next_index;
+    if (entity.name.empty()) {
+        Result<std::string> name = usual_name(state, entity);
+        if (!name.ok()) return Error{"entity." + name.error().where, name.error().why, name.error().remedy};
+        entity.name = state.lookup.names.free_name(name.value());
+    }
+
+    // Where the pointer is.
+    if (origin) {
+        Result<Transform> pose = place_on_ray(state, entity, *origin, *direction);
+        if (!pose.ok()) return pose.error();
+        entity.pose = pose.value();
+    }
+    Edit edit = state.start_edit("Add " + entity.name);
+    edit.next_after = entity.index + 1;
+    const EntityIndex index = entity.index;
+    edit.changes.emplace_back(EntityChange{std::nullopt, std::move(entity)});
+    if (Result<void> added = state.commit(std::move(edit)); !added.ok()) return added.error();
+    return json{{"index", index}};
+}
+
+Result<json> remove(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    std::vector<EntityIndex> indices;
+    need_indices(reader, state, indices);
+    if (!reader.finish()) return *error;
+
+    // Joints and pins first: undo runs backwards and needs their ends there.
+    Edit edit = state.start_edit("Delete " + state.called(indices));
+    const auto goes = [&indices](EntityIndex index) {
+        return std::binary_search(indices.begin(), indices.end(), index);
+    };
+    std::set<std::uint32_t> joints;
+    std::set<EntityIndex> pinned;
+    for (const EntityIndex index : indices) {
+        joints.insert(state.lookup.holds.joints_of(index).begin(), state.lookup.holds.joints_of(index).end());
+        pinned.insert(state.lookup.holds.pinned_to(index).begin(), state.lookup.holds.pinned_to(index).end());
+    }
+    for (const std::uint32_t joint : joints)
+        edit.changes.emplace_back(JointChange{*state.document.find_joint(joint), std::nullopt});
+    for (const EntityIndex index : pinned) {
+        if (goes(index)) continue;
+        const Entity& entity = *state.document.find(index);
+        Entity unpinned = entity;
+        std::erase_if(unpinned.pins, [&goes](const Pin& pin) { return pin.to && goes(*pin.to); });
+        edit.changes.emplace_back(change_of(entity, unpinned));
+    }
+    for (const EntityIndex index : indices)
+        edit.changes.emplace_back(EntityChange{*state.document.find(index), std::nullopt});
+    return done(state.commit(std::move(edit)));
+}
+
+Result<json> transform(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    const json* list = reader.need("poses", "a list of {index, position, rotation}");
+    Edit edit = state.start_edit({});
+    reader.text("merge", edit.merge);
+    if (list) read_array(*list, "poses", error);
+    std::set<EntityIndex> moved;
+    for (std::size_t i = 0; list && !error && i < list->size(); ++i) {
+        FieldReader item((*list)[i], element_path("poses", i), error);
+        PoseChange change;
+        if (!need_index(item, "index", change.index)) break;
+        Result<const Entity*> entity = state.entity(change.index, item.path("index"));
+        if (!entity.ok()) return entity.error();
+        change.before = change.after = entity.value()->pose;
+        item.vector("position", change.after.position);
+        item.rotation("rotation", change.after.rotation);
+        if (!item.finish()) break;
+        if (!moved.insert(change.index).second) return Error{item.path("index"), "is there twice"};
+        edit.changes.emplace_back(change);
+    }
+    if (!reader.finish()) return *error;
+    edit.label = "Move " + state.called({moved.begin(), moved.end()});
+    return done(state.commit(std::move(edit)));
+}
+
+Result<json> update(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    EntityIndex index = 0;
+    need_index(reader, "index", index);
+    const json* fields = reader.need("entity", "the fields to change");
+    Edit edit = state.start_edit({});
+    reader.text("merge", edit.merge);
+    if (!reader.finish()) return *error;
+    Result<const Entity*> found = state.entity(index, "index");
+    if (!found.ok()) return found.error();
+
+    Entity changed = *found.value();
+    if (Result<void> read = change_entity_from_json(changed, *fields, "entity", false); !read.ok()) return read.error();
+    const bool same_geometry = !fields->contains("model") && !fields->contains("shape");
+    edit.label = "Change " + state.called({index});
+    if (same_geometry) {
+        edit.changes.emplace_back(change_of(*found.value(), changed));
+    } else {
+        edit.changes.emplace_back(EntityChange{*found.value(), std::move(changed)});
+    }
+    return done(state.commit(std::move(edit)));
+}
+
+Result<json> duplicate(SessionState& state, const json& params) {
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    std::vector<EntityIndex> indices;
+    std::optional<Vec3> offset;
+    need_indices(reader, state, indices);
+    reader.vector("offset", offset);
+    if (!reader.finish()) return *error;
+
+    // Beside the originals, free of them.
+    if (!offset) {
+        Bounds all;
+        for (const EntityIndex index : indices) {
+            const Bounds bounds = state.simulation->bounds(index);
+            if (!bounds.is_empty() && is_finite(bounds.size())) all.add(bounds);
+        }
+        offset = Vec3{all.is_empty() ? 1 : all.size().x + 0.1, 0, 0};
+    }
+    Edit edit = state.start_edit("Duplicate " + state.called(indices));
+    if (Result<void> room = check_room(state.document, indices.size()); !room.ok()) return room.error();
+    NamesInUse& names = state.lookup.names;
+    json copies = json::array();
+    std::map<EntityIndex, EntityIndex> copy_of;
+    for (const EntityIndex index : indices) copy_of.emplace(index, edit.next_after++);
+    for (const EntityIndex index : indices) {
+        Entity copy = *state.document.find(index);
+        copy.index = copy_of.at(index);
+        // What is copied together holds on to each other as the originals do.
+        for (Pin& pin : copy.pins)
+            if (pin.to && copy_of.contains(*pin.to)) pin.to = copy_of.at(*pin.to);
+        if (!copy.name.empty()) copy.name = names.free_name(copy.name);
+        names.add(copy.name);
+        copy.pose.position += *offset;
+        copies.push_back(copy.index);
+        edit.changes.emplace_back(EntityChange{std::nullopt, std::move(copy)});
+    }
+    // The commit gives them their names for good.
+    for (const Change& change : edit.changes) names.remove(std::get<EntityChange>(change).after->name);
+    if (Result<void> added = state.commit(std::move(edit)); !added.ok()) return added.error();
+    return json{{"indices", std::move(copies)}};
+}
+
+}  // namespace
+
+std::span<const Command> entity_commands() {
+    static constexpr Command commands[] = {{"entity.add", add},
+                                           {"entity.remove", remove},
+                                           {"entity.transform", transform},
+                                           {"entity.update", update},
+                                           {"entity.duplicate", duplicate}};
+    return commands;
+}
+
+}  // namespace embody::scene

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "scene/session/session.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "scene/file/scene_file.h"
+#include "scene/file/whole_file.h"
+#include "scene/session/catalog_edit.h"
+#include "scene/session/commands/commands.h"
+#include "scene/session/scene_folders.h"
+#include "scene/session/session_state.h"
+
+namespace embody::scene {
+
+using nlohmann::json;
+
+namespace {
+
+// All commands by name.
+const std::map<std::string, const Command*>& command_table() {
+    static const std::map<std::string, const Command*> table = [] {
+        std::map<std::string, const Command*> built;
+        for (const auto family :
+             {catalog_commands(), catalog_change_commands(), scene_commands(), entity_commands(), placement_commands(),
+              attribute_commands(), joint_and_action_commands(), simulation_commands()})
+            for (const Command& command : family) built[command.name] = &command;
+        return built;
+    }();
+    return table;
+}
+
+Error unknown_command(const std::string& name) {
+    std::vector<std::string> known;
+    for (const auto& [command, entry] : command_table()) known.push_back(command);
+    const std::string near = nearest_word(name, known);
+    return {"command", "\"" + name.substr(0, 80) + "\" is not a command",
+            near.empty() ? "" : "did you mean \"" + near + "\"?"};
+}
+
+}  // namespace
+
+struct Session::State : SessionState {
+    using SessionState::SessionState;
+};
+
+Session::Session() = default;
+Session::~Session() = default;
+
+Result<std::unique_ptr<Session>> Session::create(catalog::Catalog* catalog, const SessionOptions& options) {
+    // What killed programs left half written.
+    for (const std::filesystem::path& folder : {options.saved_scenes, options.saved_scenes / "autosave"})
+        remove_abandoned_drafts(folder);
+    std::unique_ptr<Session> session(new Session);
+    session->state_ = std::make_unique<State>(catalog, options);
+    if (Result<void> opened = session->state_->open(new_document("Untitled"), ""); !opened.ok()) return opened.error();
+    session->state_->events = {};
+    return session;
+}
+
+Result<json> Session::execute(const std::string& command, const json& params, ClientId client) {
+    const auto found = command_table().find(command);
+    if (found == command_table().end()) return unknown_command(command);
+    // A command without parameters may leave them out.
+    static const json nothing = json::object();
+    state_->client = client;
+    return found->second->execute(*state_, params.is_null() ? nothing : params);
+}
+
+void Session::forget_client(ClientId client) { state_->client_names.erase(client); }
+
+bool Session::follow_catalog() { return follow_changes_of_others(*state_); }
+
+Events Session::take_events() { return std::exchange(state_->events, {}); }
+
+const Document& Session::document() const { return state_->document; }
+bool Session::playing() const { return state_->play_state == PlayState::playing; }
+double Session::time_step() const { return state_->document.settings.time_step; }
+void Session::step() { state_->step(); }
+
+void Session::read_states(std::vector<EntityState>& states) const {
+    const Simulation& simulation = *state_->simulation;
+    states.clear();
+    for (const EntityIndex index : simulation.entities()) {
+        EntityState& state = states.emplace_back();
+        state.entity = index;
+        state.pose = simulation.pose(index);
+        if (simulation.is_movable(index)) state.state = static_cast<std::uint8_t>(simulation.sleep_state(index));
+        state.points = simulation.points(index);
+    }
+}
+
+double Session::simulated_time() const { return state_->simulation->world().last_report().time; }
+std::uint64_t Session::simulated_steps() const { return state_->simulation->world().last_report().step; }
+
+json Session::statistics() const {
+    const physics::StepReport& report = state_->simulation->world().last_report();
+
+    const Activity activity = state_->simulation->activity();
+
+    // Simulated over real time, of the last steps.
+    double factor = 0;
+    if (state_->play_state == PlayState::playing && state_->step_times.size() > 1) {
+        const std::chrono::duration<double> passed = state_->step_times.back() - state_->step_times.front();
+        const double simulated = static_cast<double>(state_->step_times.size() - 1) * time_step();
+        if (passed.count() > 0) factor = simulated / passed.count();
+    }
+    return {{"event", "statistics"},
+            {"time", report.time},
+            {"step", report.step},
+            {"bodies", state_->simulation->entities().size()},
+            {"things", activity.things},
+            {"active", activity.active},
+            {"wants_to_sleep", activity.wants_to_sleep},
+            {"asleep", activity.asleep},
+            {"points", activity.points},
+            {"contacts", report.contacts},
+            {"step_ms", report.milliseconds},
+            {"real_time_factor", factor}};
+}
+
+Result<void> Session::autosave() {
+    SessionState& state = *state_;
+    if (state.revision == state.autosaved_revision || state.history.is_saved()) return {};
+    const std::string name = state.name.empty() ? state.document.title : state.name;
+    if (Result<void> written = save_document(state.document, autosave_file(state.options, name)); !written.ok())
+        return written;
+    state.mark_autosaved();
+    return {};
+}
+
+Result<void> Session::rescue() {
+    SessionState& state = *state_;
+    std::unique_lock lock(state.rescue_mutex);
+    if (state.revision == state.autosaved_revision || state.history.is_saved()) return {};
+    Document document = state.document;
+    if (state.changes_in_hand) apply_changes(document, reversed(*state.changes_in_hand));
+    const std::string name = state.name.empty() ? document.title : state.name;
+    lock.unlock();
+    return save_document(document, autosave_file(state.options, name));
+}
+
+}  // namespace embody::scene

@@ -1,0 +1,429 @@
+// SPDX-License-Identifier: MIT
+#include "scene/session/session_state.h"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "attributes/form.h"
+#include "attributes/physical_kind.h"
+#include "scene/file/json/parts.h"
+#include "scene/file/scene_file.h"
+#include "scene/session/catalog_edit.h"
+
+namespace embody::scene {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr std::size_t timed_steps = 120;
+/// Of one command or step: a hundred thousand steps with actions on every contact would fill the memory.
+constexpr std::size_t most_told_actions = 1000;
+
+// What to say of each limit of a step.
+struct LimitText {
+    physics::StepLimit limit;
+    const char* text;
+};
+constexpr std::array<LimitText, 9> limit_texts = {{
+    {physics::StepLimit::linear_speed_clamped,
+     "Something was faster than the scene's greatest speed and was slowed down."},
+    {physics::StepLimit::angular_speed_clamped,
+     "Something turned faster than the scene's greatest angular speed and was slowed down."},
+    {physics::StepLimit::too_many_pairs, "So many things are in each other that some do not see each other."},
+    {physics::StepLimit::not_finite_body_frozen,
+     "Something's motion left the finite numbers; it was frozen where it was."},
+    {physics::StepLimit::not_finite_deformable_frozen,
+     "A soft thing's motion left the finite numbers; it was frozen where it was."},
+    {physics::StepLimit::not_finite_fluid_frozen,
+     "A liquid's motion left the finite numbers; it was frozen where it was."},
+    {physics::StepLimit::fluid_particles_lost,
+     "Liquid ran so far away that it was taken out; a floor or walls keep it."},
+    {physics::StepLimit::impact_rounds_exhausted,
+     "An impact was too complicated for one step; a smaller time step helps."},
+    {physics::StepLimit::deep_penetration, "Things overlap deeply; place them apart or use a smaller time step."},
+}};
+
+const char* state_name(PlayState state) {
+    return state == PlayState::stopped ? "stopped" : state == PlayState::playing ? "playing" : "paused";
+}
+
+}  // namespace
+
+Document new_document(const std::string& title) {
+    Document document;
+    document.title = title;
+    Entity floor;
+    floor.index = document.next_index++;
+    floor.name = "Floor";
+    floor.category = "floor";
+    floor.geometry = physics::ShapeDefinition{physics::BoxShape{{15, 0.25, 15}}};
+    floor.pose.position = {0, -0.25, 0};
+    floor.attributes["kind"] = to_value(attributes::PhysicalKind::static_body);
+    floor.color = {0.5, 0.5, 0.48};
+    document.entities.push_back(std::move(floor));
+    document.camera = {Vec3{4, 3, 6}, Vec3{0, 0.5, 0}};
+    return document;
+}
+
+SessionState::SessionState(catalog::Catalog* used_catalog, SessionOptions used_options)
+    : catalog(used_catalog), options(std::move(used_options)), bodies(used_catalog, forms) {}
+
+// Simulation
+// -----------------------------------------------------------------------------------------------------------
+
+Result<void> SessionState::rebuild_simulation() {
+    Result<std::unique_ptr<Simulation>> made = Simulation::create(document, catalog, forms);
+    if (!made.ok()) return made.error();
+    simulation = std::move(made).value();
+    simulation_is_pristine = true;
+    grab.reset();
+    step_times.clear();
+    told_limits = 0;
+    told_problems.clear();
+    return {};
+}
+
+json SessionState::simulation_json() const {
+    const physics::StepReport& report = simulation->world().last_report();
+    return {{"state", state_name(play_state)}, {"time", report.time}, {"step", report.step}};
+}
+
+json SessionState::simulation_event() const {
+    json message = simulation_json();
+    message["event"] = "simulation";
+    return message;
+}
+
+void SessionState::set_play_state(PlayState state) {
+    if (state == play_state) return;
+    play_state = state;
+    step_times.clear();
+    tell(simulation_event());
+}
+
+void SessionState::step() {
+    if (grab) pull(simulation->world(), *grab);
+    simulation_is_pristine = false;
+    simulation->step();
+    step_times.push_back(std::chrono::steady_clock::now());
+    if (step_times.size() > timed_steps) step_times.pop_front();
+    tell_step();
+    if (simulation->pause_requested()) set_play_state(PlayState::paused);
+}
+
+void SessionState::tell_step() {
+    // What actions did.
+    for (const EntityIndex index : simulation->spawned()) {
+        const Entity* entity = simulation->definition(index);
+        if (entity) tell({{"event", "spawned"}, {"entity", entity_to_json(*entity)}});
+    }
+    for (const EntityIndex index : simulation->despawned()) tell({{"event", "despawned"}, {"index", index}});
+    for (const ActionFired& fired : simulation->fired()) {
+        if (++events.actions > most_told_actions) continue;
+        tell({{"event", "action"},
+              {"name", fired.name},
+              {"id", fired.id},
+              {"sender", fired.sender},
+              {"receiver", fired.receiver}});
+    }
+
+    for (const physics::RopeBreakEvent& broke : simulation->rope_breaks()) {
+        const auto index = static_cast<EntityIndex>(broke.user_data);
+        const Entity* entity = simulation->definition(index);
+        const std::string who = entity && !entity->name.empty() ? entity->name : "Entity " + std::to_string(index);
+        tell({{"event", "rope_broke"},
+              {"index", index},
+              {"segment", broke.segment},
+              {"tension", broke.tension},
+              {"position", vector_to_json(broke.position)}});
+        // Of one that goes on breaking the first place says enough.
+        if (told_problems.insert(who + " broke").second)
+            tell_message("warning", who + " broke at a tension of " + attributes::short_number(broke.tension) + " N.");
+    }
+
+    // The same complaint once a run.
+    for (const Error& problem : simulation->problems())
+        if (told_problems.insert(problem.message()).second) tell_message("warning", problem.message());
+    const std::uint32_t limits = simulation->world().last_report().limits;
+    for (const LimitText& row : limit_texts) {
+        const auto bit = static_cast<std::uint32_t>(row.limit);
+        if ((limits & bit) == 0 || (told_limits & bit) != 0) continue;
+        told_limits |= bit;
+        tell_message("warning", row.text);
+    }
+}
+
+// Messages
+// -------------------------------------------------------------------------------------------------------------
+
+void SessionState::tell_message(const char* level, std::string text) {
+    tell({{"event", "message"}, {"level", level}, {"text", std::move(text)}});
+}
+
+void SessionState::tell_document(json changes) {
+    {
+        const std::lock_guard lock(rescue_mutex);
+        ++revision;
+    }
+    const auto label = [](const Edit* edit) { return edit ? json(edit->label) : json(nullptr); };
+    tell({{"event", "document"},
+          {"revision", revision},
+          {"changes", std::move(changes)},
+          {"undo", label(history.undoable())},
+          {"redo", label(history.redoable())},
+          {"unsaved", !history.is_saved()},
+          {"name", name}});
+    tell_notes();
+}
+
+void SessionState::tell_notes() {
+    for (const std::string& note : simulation->notes())
+        if (told_notes.insert(note).second) tell_message("warning", note);
+}
+
+json SessionState::change_json(const Change& change) const {
+    if (const auto* entity = std::get_if<EntityChange>(&change)) {
+        if (!entity->after) return {{"op", "entity_removed"}, {"index", entity->before->index}};
+        return {{"op", "entity"}, {"entity", entity_to_json(*document.find(entity->after->index))}};
+    }
+    if (const auto* pose = std::get_if<PoseChange>(&change))
+        return {{"op", "entity"}, {"entity", entity_to_json(*document.find(pose->index))}};
+    if (const auto* joint = std::get_if<JointChange>(&change)) {
+        if (!joint->after) return {{"op", "joint_removed"}, {"index", joint->before->index}};
+        return {{"op", "joint"}, {"joint", joint_to_json(*joint->after)}};
+    }
+    if (const auto* action = std::get_if<ActionChange>(&change)) {
+        if (!action->after) return {{"op", "action_removed"}, {"index", action->before->id}};
+        return {{"op", "action"}, {"action", action_to_json(*action->after)}};
+    }
+    json settings = settings_to_json(document.settings);
+    settings["title"] = document.title;
+    settings["description"] = document.description;
+    return {{"op", "settings"}, {"settings", std::move(settings)}};
+}
+
+// Edits
+// ----------------------------------------------------------------------------------------------------------------
+
+// Carries an entity's change, already in the document, over to the simulation.
+Result<void> SessionState::sync_entity(const EntityChange& change) {
+    if (!change.before) return simulation->add(*document.find(change.after->index));
+    const EntityIndex index = change.before->index;
+    // An action may have taken it away.
+    if (!simulation->contains(index)) return {};
+    if (!change.after) return simulation->remove(index);
+    const Entity& entity = *document.find(index);
+    if (play_state == PlayState::stopped) return simulation->update(entity, false);
+
+    // In a run it goes on from where it is, but for what was changed on purpose.
+    if (Result<void> updated = simulation->update(entity, true); !updated.ok()) return updated;
+    if (change.before->pose != change.after->pose)
+        if (Result<void> moved = simulation->set_pose(index, entity.pose); !moved.ok()) return moved;
+    if (change.before->linear_velocity != change.after->linear_velocity ||
+        change.before->angular_velocity != change.after->angular_velocity)
+        return simulation->set_velocity(index, entity.linear_velocity, entity.angular_velocity);
+    return {};
+}
+
+Result<void> SessionState::sync_heading(const HeadingChange& change) {
+    return simulation->set_settings(change.after.settings);
+}
+
+Result<void> SessionState::sync(const Change& change) {
+    simulation_is_pristine = false;
+    if (const auto* entity = std::get_if<EntityChange>(&change)) return sync_entity(*entity);
+    if (const auto* heading = std::get_if<HeadingChange>(&change)) return sync_heading(*heading);
+    if (std::holds_alternative<ActionChange>(change)) {
+        simulation->set_actions(document.actions);
+        return {};
+    }
+    if (const auto* joint = std::get_if<JointChange>(&change)) {
+        if (joint->before && !simulation->joint(joint->before->index).is_null())
+            if (Result<void> removed = simulation->remove_joint(joint->before->index); !removed.ok()) return removed;
+        return joint->after ? simulation->add_joint(*joint->after) : Result<void>{};
+    }
+
+    // A thing that is moved by hand stands still there.
+    const auto& pose = std::get<PoseChange>(change);
+    if (!simulation->contains(pose.index)) return {};
+    if (Result<void> moved = simulation->set_pose(pose.index, pose.after); !moved.ok()) return moved;
+    if (play_state == PlayState::stopped) return {};
+    return simulation->set_velocity(pose.index, {}, {});
+}
+
+void SessionState::put_in_document(const std::vector<Change>& changes, bool is_in_hand) {
+    const std::lock_guard lock(rescue_mutex);
+    apply_changes(document, changes);
+    lookup.apply(changes);
+    changes_in_hand = is_in_hand ? &changes : nullptr;
+}
+
+// Entities that go in a row leave the simulation together; their number.
+std::size_t SessionState::sync_removals(std::span<const Change> changes) {
+    std::vector<EntityIndex> gone;
+    for (const Change& change : changes) {
+        const auto* entity = std::get_if<EntityChange>(&change);
+        if (!entity || entity->after) break;
+        gone.push_back(entity->before->index);
+    }
+    if (gone.empty()) return 0;
+    simulation_is_pristine = false;
+    simulation->remove_all(gone);
+    return gone.size();
+}
+
+// All changes or none.
+Result<void> SessionState::run_changes(const std::vector<Change>& changes) {
+    put_in_document(changes, true);
+    std::size_t synced = 0;
+    Result<void> done;
+    try {
+        while (done.ok() && synced < changes.size()) {
+            const std::size_t gone = sync_removals(std::span(changes).subspan(synced));
+            if (gone == 0) done = sync(changes[synced]);
+            if (done.ok()) synced += std::max<std::size_t>(gone, 1);
+        }
+    } catch (...) {
+        put_in_document(reversed(changes), false);
+        throw;
+    }
+    if (done.ok()) {
+        const std::lock_guard lock(rescue_mutex);
+        changes_in_hand = nullptr;
+        return done;
+    }
+    put_in_document(reversed(changes), false);
+    // The one that failed has changed nothing in the simulation.
+    while (synced-- > 0) (void)sync(reversed(changes[synced])).ok();
+    if (play_state == PlayState::stopped) (void)rebuild_simulation().ok();
+    return done;
+}
+
+// Undo and redo lead to a document that was there before; no state of a run may stand in the way.
+Result<void> SessionState::insist_on_changes(const std::vector<Change>& changes) {
+    Result<void> done = run_changes(changes);
+    if (done.ok() || play_state == PlayState::stopped) return done;
+    put_in_document(changes, true);
+    Result<void> made = rebuild_simulation();
+    if (!made.ok()) {
+        put_in_document(reversed(changes), false);
+        return made;
+    }
+    {
+        const std::lock_guard lock(rescue_mutex);
+        changes_in_hand = nullptr;
+    }
+    tell_message("warning", "The running simulation could not follow and was reset: " + done.error().message());
+    set_play_state(PlayState::stopped);
+    events.all_poses = true;
+    return {};
+}
+
+Edit SessionState::start_edit(std::string label) const {
+    Edit edit;
+    edit.label = std::move(label);
+    edit.next_before = edit.next_after = document.next_index;
+    return edit;
+}
+
+void SessionState::record(Edit edit) {
+    const std::lock_guard lock(rescue_mutex);
+    document.next_index = edit.next_after;
+    history.add(std::move(edit));
+}
+
+Result<void> SessionState::commit(Edit edit) {
+    if (edit.changes.empty()) return {};
+    if (Result<void> done = run_changes(edit.changes); !done.ok()) return done;
+    json changes = json::array();
+    for (const Change& change : edit.changes) changes.push_back(change_json(change));
+    record(std::move(edit));
+    tell_document(std::move(changes));
+    return {};
+}
+
+Result<std::string> SessionState::undo() {
+    const Edit* edit = history.undoable();
+    if (!edit) return std::string();
+    if (edit->catalog) return undo_on_catalog(*this);
+    const std::vector<Change> back = reversed(edit->changes);
+    if (Result<void> done = insist_on_changes(back); !done.ok()) return done.error();
+    std::string label = edit->label;
+    {
+        const std::lock_guard lock(rescue_mutex);
+        document.next_index = edit->next_before;
+        history.move_back();
+    }
+    json changes = json::array();
+    for (const Change& change : back) changes.push_back(change_json(change));
+    tell_document(std::move(changes));
+    return label;
+}
+
+Result<std::string> SessionState::redo() {
+    const Edit* edit = history.redoable();
+    if (!edit) return std::string();
+    if (edit->catalog) return redo_on_catalog(*this);
+    if (Result<void> done = insist_on_changes(edit->changes); !done.ok()) return done.error();
+    std::string label = edit->label;
+    json changes = json::array();
+    for (const Change& change : edit->changes) changes.push_back(change_json(change));
+    {
+        const std::lock_guard lock(rescue_mutex);
+        document.next_index = edit->next_after;
+        history.move_forward();
+    }
+    tell_document(std::move(changes));
+    return label;
+}
+
+Result<void> SessionState::open(Document opened, std::string opened_name) {
+    Result<std::unique_ptr<Simulation>> made = Simulation::create(opened, catalog, forms);
+    if (!made.ok()) return made.error();
+    {
+        const std::lock_guard lock(rescue_mutex);
+        std::swap(document, opened);
+        lookup.assign(document);
+        name = std::move(opened_name);
+        history.clear();
+    }
+    simulation = std::move(made).value();
+    simulation_is_pristine = true;
+    grab.reset();
+    told_limits = 0;
+    told_problems.clear();
+    told_notes.clear();
+    play_state = PlayState::stopped;
+    step_times.clear();
+    tell_document(json::array({{{"op", "reset"}, {"scene", document_to_json(document)}}}));
+    tell(simulation_event());
+    events.all_poses = true;
+    mark_autosaved();
+    return {};
+}
+
+void SessionState::mark_autosaved() {
+    const std::lock_guard lock(rescue_mutex);
+    autosaved_revision = revision;
+}
+
+// Names
+// ----------------------------------------------------------------------------------------------------------------
+
+Result<const Entity*> SessionState::entity(EntityIndex index, const std::string& where) const {
+    if (const Entity* found = document.find(index)) return found;
+    return Error{where, "there is no entity " + std::to_string(index) + " in the scene"};
+}
+
+std::string SessionState::called(const std::vector<EntityIndex>& indices) const {
+    if (indices.size() != 1) return std::to_string(indices.size()) + " entities";
+    const Entity* entity = document.find(indices.front());
+    if (!entity || entity->name.empty()) return "entity " + std::to_string(indices.front());
+    return entity->name;
+}
+
+void SessionState::tell(nlohmann::json message) { events.messages.push_back(std::move(message)); }
+
+}  // namespace embody::scene

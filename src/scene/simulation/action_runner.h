@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "physics/inter/world.h"
+#include "scene/document/action.h"
+#include "scene/simulation/simulation.h"
+
+namespace embody::scene {
+
+/// Decides when actions are due and carries them out on a simulation. Everything happens in the order of the actions'
+/// ids, and for one action in the order of what happened, so that a run repeats bit for bit.
+class ActionRunner {
+public:
+    /// What an effect does to the world; the simulation provides it.
+    struct World {
+        std::function<const std::vector<EntityIndex>&()> entities;
+        std::function<const Entity*(EntityIndex)> definition;
+        std::function<std::string(EntityIndex)> category;
+        std::function<Vec3(EntityIndex)> center_of_mass;
+        std::function<Result<void>(EntityIndex, const Effect&)> change;
+        /// A copy of the document's entity `like` at the spawn's pose; its new index.
+        std::function<Result<EntityIndex>(EntityIndex like, const Spawn&)> spawn;
+        /// Document's entities that the target means, whether or not they are in the world.
+        std::function<std::vector<EntityIndex>(const Target&)> templates;
+    };
+
+    ActionRunner(std::vector<Action> actions, World world);
+
+    /// Actions due by the clock or by signals since the last call.
+    void before_step(double time);
+    /// Actions set off by what the step did. The events are copies of the world's: effects change it.
+    void after_step(const std::vector<physics::ContactEvent>& contacts, const std::vector<physics::SleepEvent>& sleeps);
+    std::size_t signal(const std::string& key, const std::string& button);
+    void set_actions(std::vector<Action> actions);
+
+    std::vector<ActionFired> fired;  ///< since they were last cleared
+    std::vector<Error> problems;
+    bool pause_requested = false;
+
+private:
+    struct Progress {
+        bool has_fired = false;
+        double next_time = 0;                 ///< of a timed action
+        std::set<EntityIndex> known, inside;  ///< of a volume: seen before, and in it
+    };
+
+    [[nodiscard]] bool matches(const Target& target, EntityIndex entity) const;
+    void run(const Action& action, EntityIndex sender, EntityIndex other);
+    void run_on(const Action& action, EntityIndex sender, EntityIndex receiver);
+    void run_timed(const Action& action, const AtTime& at, double time);
+    void run_contacts(const Action& action, const Target& other, physics::ContactEvent::Kind kind, double least_speed,
+                      const std::vector<physics::ContactEvent>& contacts);
+    void run_volume(const Action& action, const OnEnterVolume& enter);
+    [[nodiscard]] bool is_done(const Action& action) { return action.once && progress_[action.id].has_fired; }
+
+    std::vector<Action> actions_;  ///< ascending id
+    World world_;
+    std::map<std::uint32_t, Progress> progress_;
+    std::vector<std::pair<std::string, std::string>> signals_;
+};
+
+}  // namespace embody::scene

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include "scene/simulation/shared_shapes.h"
+
+namespace embody::scene {
+
+using physics::ShapeHandle;
+
+Result<ShapeHandle> SharedShapes::take(const std::string& key,
+                                       const std::function<Result<physics::ShapeDefinition>()>& make) {
+    const auto known = shapes_.find(key);
+    if (!key.empty() && known != shapes_.end()) {
+        ++known->second.users;
+        return known->second.shape;
+    }
+    const Result<physics::ShapeDefinition> definition = make();
+    if (!definition.ok()) return definition.error();
+    const Result<ShapeHandle> shape = world_.create_shape(definition.value());
+    if (!shape.ok()) return Error{"shape: " + shape.error().where, shape.error().why, shape.error().remedy};
+    if (!key.empty()) shapes_[key] = {shape.value(), 1};
+    return shape;
+}
+
+void SharedShapes::give_back(const std::string& key, ShapeHandle shape) {
+    if (shape.is_null()) return;
+    if (const auto known = shapes_.find(key); !key.empty() && known != shapes_.end()) {
+        if (--known->second.users > 0) return;
+        shapes_.erase(known);
+    }
+    // Nobody else has it, so the world does not refuse.
+    (void)world_.destroy_shape(shape).ok();
+}
+
+}  // namespace embody::scene

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: MIT
+#include "scene/simulation/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <unordered_map>
+#include <utility>
+
+#include "attributes/surfaces.h"
+#include "scene/document/document_field.h"
+#include "scene/matter/liquid_notes.h"
+#include "scene/simulation/simulation_state.h"
+
+namespace embody::scene {
+
+using attributes::AttributeSet;
+using physics::BodyHandle;
+using physics::JointHandle;
+
+namespace {
+
+// Grains of one entity that meet are no news.
+std::vector<physics::ContactEvent> contacts_between_entities(const physics::World& world) {
+    std::vector<physics::ContactEvent> contacts;
+    for (const physics::ContactEvent& event : world.contact_events())
+        if (event.user_data_a != event.user_data_b) contacts.push_back(event);
+    return contacts;
+}
+
+std::string name_of(EntityIndex index, const LiveEntity& entity) {
+    const std::string& name = entity.definition.name;
+    return name.empty() ? "Entity " + std::to_string(index) : name;
+}
+
+// Those of different fluids that are in each other.
+void add_notes_of_liquids(const std::vector<std::pair<EntityIndex, const LiveEntity*>>& liquids,
+                          std::vector<std::string>& notes) {
+    for (std::size_t a = 0; a < liquids.size(); ++a) {
+        for (std::size_t b = a + 1; b < liquids.size(); ++b) {
+            const MovingPoints &one = *liquids[a].second->points, &other = *liquids[b].second->points;
+            if (one.fluid() == other.fluid() || !share_space(one, other)) continue;
+            notes.push_back(name_of(liquids[b].first, *liquids[b].second) + " is in " +
+                            name_of(liquids[a].first, *liquids[a].second) +
+                            ": liquids of other matter or other cells do not see each other.");
+        }
+    }
+}
+
+Error not_in_world(EntityIndex entity) {
+    return {"index", "entity " + std::to_string(entity) + " is not in the world"};
+}
+
+}  // namespace
+
+Simulation::Simulation() = default;
+Simulation::~Simulation() = default;
+
+Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document, catalog::Catalog* catalog,
+                                                       std::shared_ptr<FormCache> forms) {
+    Result<std::unique_ptr<physics::World>> world = physics::World::create(document.settings);
+    if (!world.ok())
+        return Error{"settings." + document_field(world.error().where), world.error().why, world.error().remedy};
+    std::unique_ptr<Simulation> simulation(new Simulation);
+    if (!forms) forms = std::make_shared<FormCache>();
+    forms->begin();
+    simulation->state_ =
+        std::make_unique<State>(std::move(world).value(), document.settings, catalog, std::move(forms));
+    State& state = *simulation->state_;
+    if (catalog != nullptr) {
+        Result<void> set = state.world->set_surface_pairs(catalog->taxonomy().surfaces().table());
+        if (!set.ok()) return set.error();
+    }
+
+    // What joints and pins need as one body is made as one at once.
+    state.find_bodies(document);
+
+    // In the document's order, so that the same document is the same world; liquids last, since they fill what the
+    // others leave free.
+    for (const bool liquids : {false, true}) {
+        for (const Entity& entity : document.entities) {
+            state.templates[entity.index] = entity;
+            if (state.bodies.is_liquid(entity) != liquids) continue;
+            if (Result<void> added = state.add(entity); !added.ok()) return added.error();
+        }
+    }
+    if (Result<void> held = state.fasten_all({}); !held.ok()) return held.error();
+    for (const SceneJoint& joint : document.joints)
+        if (Result<void> added = state.add_joint(joint); !added.ok()) return added.error();
+    state.to_be_held.clear();
+    state.start_actions(document.actions);
+    return simulation;
+}
+
+const physics::StepReport& Simulation::step() {
+    State& state = *state_;
+    state.spawned.clear();
+    state.despawned.clear();
+    state.actions->fired.clear();
+    state.actions->problems.clear();
+    state.actions->pause_requested = false;
+
+    // Due actions, physics, what the physics set off.
+    state.actions->before_step(state.world->last_report().time);
+    state.apply_timed_forces();
+    state.liquids.push(state.world->settings().time_step);
+    const physics::StepReport& report = state.world->step();
+    state.liquids.part_far_ones();
+    const auto sleeps = state.world->sleep_events();
+    state.actions->after_step(contacts_between_entities(*state.world), {sleeps.begin(), sleeps.end()});
+    return report;
+}
+
+bool Simulation::pause_requested() const { return state_->actions->pause_requested; }
+const std::vector<ActionFired>& Simulation::fired() const { return state_->actions->fired; }
+const std::vector<Error>& Simulation::problems() const { return state_->actions->problems; }
+std::span<const physics::RopeBreakEvent> Simulation::rope_breaks() const { return state_->world->rope_break_events(); }
+const std::vector<EntityIndex>& Simulation::spawned() const { return state_->spawned; }
+const std::vector<EntityIndex>& Simulation::despawned() const { return state_->despawned; }
+
+std::size_t Simulation::signal(const std::string& key, const std::string& button) {
+    return state_->actions->signal(key, button);
+}
+
+physics::World& Simulation::world() { return *state_->world; }
+const physics::World& Simulation::world() const { return *state_->world; }
+const std::vector<EntityIndex>& Simulation::entities() const { return state_->indices; }
+
+Result<void> Simulation::set_settings(const physics::WorldSettings& settings) {
+    const physics::WorldSettings before = std::exchange(state_->settings, settings);
+    Result<void> set = state_->world->set_settings(settings);
+    if (set.ok()) return state_->apply_settings();
+    state_->settings = before;
+    return Error{document_field(set.error().where), set.error().why, set.error().remedy};
+}
+
+bool Simulation::contains(EntityIndex entity) const { return state_->live.contains(entity); }
+
+BodyHandle Simulation::body(EntityIndex entity) const {
+    const LiveEntity* found = state_->find(entity);
+    return found ? found->body : BodyHandle{};
+}
+
+BodyHandle Simulation::hold(EntityIndex entity, Vec3 position) {
+    let_go();
+    const LiveEntity* found = state_->find(entity);
+    if (!found) return {};
+    return found->points ? found->points->hold(position) : found->body;
+}
+
+void Simulation::let_go() {
+    for (auto& [index, entity] : state_->live)
+        if (entity.points) entity.points->let_go();
+}
+
+std::vector<std::string> Simulation::notes() const {
+    // Things of one name are told of together, where the first of them stands.
+    std::vector<std::pair<std::string, int>> told;
+    std::unordered_map<std::string, std::size_t> places;
+    std::vector<std::pair<EntityIndex, const LiveEntity*>> liquids;
+    for (const EntityIndex index : state_->remarkable) {
+        const LiveEntity& entity = state_->live.at(index);
+        if (entity.points && !entity.points->fluid().is_null()) liquids.emplace_back(index, &entity);
+        if (entity.form.note.empty()) continue;
+        const std::string note = name_of(index, entity) + " " + entity.form.note;
+        const auto [place, is_new] = places.emplace(note, told.size());
+        if (is_new) told.emplace_back(note, 0);
+        ++told[place->second].second;
+    }
+    std::vector<std::string> notes;
+    for (const auto& [note, count] : told)
+        notes.push_back(note + (count > 1 ? " (" + std::to_string(count) + " of this name)." : "."));
+    add_notes_of_liquids(liquids, notes);
+    return notes;
+}
+
+const MovingPoints* Simulation::points(EntityIndex entity) const {
+    const LiveEntity* found = state_->find(entity);
+    return found ? found->points.get() : nullptr;
+}
+
+Transform Simulation::pose(EntityIndex entity) const {
+    const LiveEntity* found = state_->find(entity);
+    return found ? state_->pose_of(*found) : Transform{};
+}
+
+Bounds Simulation::bounds(EntityIndex entity) const {
+    const MovingPoints* its = points(entity);
+    return its ? its->bounds() : state_->world->bounds(body(entity));
+}
+
+std::optional<double> Simulation::drop_distance(EntityIndex entity, double most) const {
+    const MovingPoints* its = points(entity);
+    return its ? its->drop_distance(most) : state_->world->drop_distance(body(entity), most);
+}
+
+std::optional<Simulation::RayHit> Simulation::cast_ray(Vec3 origin, Vec3 direction, double most,
+                                                       EntityIndex ignore) const {
+    std::optional<RayHit> nearest;
+    if (const auto hit = state_->world->cast_ray(origin, direction, most, body(ignore)))
+        nearest = RayHit{entity(hit->body), hit->position, hit->normal, hit->distance};
+    for (const auto& [index, live] : state_->live) {
+        if (!live.points || index == ignore) continue;
+        const auto hit = live.points->cast_ray(origin, direction, nearest ? nearest->distance : most);
+        if (hit) nearest = RayHit{index, origin + hit->distance * direction, hit->normal, hit->distance};
+    }
+    return nearest;
+}
+
+bool Simulation::is_movable(EntityIndex entity) const {
+    return points(entity) != nullptr || std::isfinite(state_->world->mass(body(entity)));
+}
+
+physics::SleepState Simulation::sleep_state(EntityIndex entity) const {
+    const MovingPoints* its = points(entity);
+    return its ? its->state() : state_->world->sleep_state(body(entity));
+}
+
+Activity Simulation::activity() const {
+    Activity activity;
+    std::vector<Vec3> positions;
+    for (const auto& [index, entity] : state_->live) {
+        if (!entity.definition.enabled || !is_movable(index)) continue;
+        ++activity.things;
+        const physics::SleepState state = sleep_state(index);
+        ++(state == physics::SleepState::asleep           ? activity.asleep
+           : state == physics::SleepState::wants_to_sleep ? activity.wants_to_sleep
+                                                          : activity.active);
+        if (!entity.points) continue;
+        entity.points->read(positions);
+        activity.points += positions.size();
+    }
+    return activity;
+}
+
+Result<void> Simulation::set_pose(EntityIndex entity, const Transform& pose) {
+    LiveEntity* found = state_->find(entity);
+    return found ? state_->place(*found, pose) : not_in_world(entity);
+}
+
+Result<void> Simulation::set_velocity(EntityIndex entity, Vec3 linear, Vec3 angular) {
+    LiveEntity* found = state_->find(entity);
+    return found ? state_->set_velocity(*found, linear, angular) : not_in_world(entity);
+}
+
+EntityIndex Simulation::entity(BodyHandle body) const {
+    const std::optional<physics::BodyDefinition> definition = state_->world->body(body);
+    return definition ? static_cast<EntityIndex>(definition->user_data) : 0;
+}
+
+const Entity* Simulation::definition(EntityIndex entity) const { return state_->definition(entity); }
+
+JointHandle Simulation::joint(std::uint32_t joint) const {
+    const auto found = state_->joints.find(joint);
+    return found == state_->joints.end() ? JointHandle{} : found->second.joint;
+}
+
+Result<AttributeSet> Simulation::attributes(EntityIndex entity) const {
+    const LiveEntity* found = state_->find(entity);
+    if (!found) return not_in_world(entity);
+    return *found->attributes;
+}
+
+Result<void> Simulation::add(const Entity& entity) {
+    if (Result<void> added = state_->add(entity); !added.ok()) return added;
+    if (Result<void> held = state_->fasten_all(entity.index); !held.ok()) {
+        state_->remove_all({entity.index});
+        return held;
+    }
+    state_->templates[entity.index] = entity;
+    return {};
+}
+
+Result<void> Simulation::update(const Entity& entity, bool keep_motion) {
+    if (Result<void> updated = state_->update(entity, keep_motion); !updated.ok()) return updated;
+    state_->templates[entity.index] = entity;
+    return {};
+}
+
+Result<void> Simulation::renew_models(const std::set<std::string>& keys, bool keep_motion) {
+    std::vector<Entity> meant;
+    for (const auto& [index, entity] : state_->live) {
+        const auto* model = std::get_if<ModelReference>(&entity.definition.geometry);
+        if (model && keys.contains(model->key)) meant.push_back(entity.definition);
+    }
+    for (const std::string& key : keys) state_->bodies.forget(key);
+    Result<void> all;
+    for (const Entity& entity : meant) {
+        Result<void> updated = state_->update(entity, keep_motion);
+        if (!updated.ok() && all.ok()) all = std::move(updated);
+    }
+    return all;
+}
+
+Result<void> Simulation::remove(EntityIndex entity) {
+    if (!contains(entity)) return not_in_world(entity);
+    remove_all({entity});
+    return {};
+}
+
+void Simulation::remove_all(const std::vector<EntityIndex>& entities) {
+    std::vector<EntityIndex> there;
+    for (const EntityIndex entity : entities) {
+        state_->templates.erase(entity);
+        if (state_->live.contains(entity)) there.push_back(entity);
+    }
+    state_->remove_all(there);
+}
+
+Result<void> Simulation::add_joint(const SceneJoint& joint) { return state_->add_joint(joint); }
+
+Result<void> Simulation::remove_joint(std::uint32_t joint) { return state_->remove_joint(joint); }
+
+void Simulation::set_actions(const std::vector<Action>& actions) { state_->actions->set_actions(actions); }
+
+}  // namespace embody::scene

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "attributes/physical_kind.h"
+#include "scene/document/hold_index.h"
+#include "scene/embody/entity_body.h"
+#include "scene/matter/liquids.h"
+#include "scene/matter/moving_points.h"
+#include "scene/simulation/action_runner.h"
+#include "scene/simulation/shared_shapes.h"
+#include "scene/simulation/simulation.h"
+
+namespace embody::scene {
+
+/// An entity in the world: one body, or points.
+struct LiveEntity {
+    Entity definition;
+    SharedAttributes attributes;
+    EntityForm form;
+    std::unique_ptr<MovingPoints> points;  ///< null: it is a body
+    physics::BodyHandle body;              ///< null: it has points
+    physics::ShapeHandle shape;            ///< the body's
+    std::string shape_key;
+    Transform frame;  ///< of points that have no pose of their own: where they were put, or moved to by hand
+};
+
+struct LiveJoint {
+    SceneJoint definition;
+    physics::JointHandle joint;
+};
+
+/// A push that an action gave, until a moment.
+struct TimedForce {
+    EntityIndex entity = 0;
+    Vec3 force;
+    double until = 0;
+};
+
+/// What a simulation consists of. Entities are made and changed in simulation_entities.cpp, what holds them together in
+/// simulation_holds.cpp, what actions do to them in simulation_effects.cpp.
+struct Simulation::State {
+    State(std::unique_ptr<physics::World> made, const physics::WorldSettings& asked, catalog::Catalog* catalog,
+          std::shared_ptr<FormCache> forms)
+        : world(std::move(made)), settings(asked), bodies(catalog, std::move(forms)), shapes(*world), liquids(*world) {}
+
+    std::unique_ptr<physics::World> world;
+    physics::WorldSettings settings;  ///< the document's
+    double finest_grain = 1e300;      ///< that was ever in this world, m
+    EntityBodies bodies;
+    SharedShapes shapes;
+    Liquids liquids;
+    std::map<EntityIndex, Entity> templates;  ///< the document's entities, for actions that spawn
+    std::map<EntityIndex, LiveEntity> live;
+    std::vector<EntityIndex> indices;
+    std::map<std::uint32_t, LiveJoint> joints;
+    HoldIndex holds;                   ///< of pins and joints of all that live
+    std::set<EntityIndex> remarkable;  ///< entities with a note, and liquids
+    std::set<EntityIndex> to_be_held;  ///< entities that joints or pins need as one body, before these are there
+    std::vector<TimedForce> timed_forces;
+    std::vector<EntityIndex> spawned, despawned;
+    EntityIndex next_spawned = last_document_index + 1;
+    std::unique_ptr<ActionRunner> actions;
+
+    // Entities -------------------------------------------------------------------------------------------------------
+
+    /// Null for an entity that is not in the world.
+    [[nodiscard]] LiveEntity* find(EntityIndex index);
+    [[nodiscard]] const LiveEntity* find(EntityIndex index) const;
+    Result<void> add(const Entity& entity);
+    Result<void> update(const Entity& entity, bool keep_motion);
+    /// All of them are in the world.
+    void remove_all(const std::vector<EntityIndex>& gone);
+    Result<void> place(LiveEntity& entity, const Transform& pose);
+    Result<void> set_velocity(LiveEntity& entity, Vec3 linear, Vec3 angular);
+    [[nodiscard]] Transform pose_of(const LiveEntity& entity) const;
+    /// Heaps of small grains need finer steps than the document asks for.
+    Result<void> apply_settings();
+
+    // What holds them together ---------------------------------------------------------------------------------------
+
+    /// Whether a joint holds it, or something is pinned to it that cannot be tied to a thing of its kind.
+    [[nodiscard]] bool is_held_as_body(EntityIndex index, attributes::PhysicalKind kind) const;
+    /// Before they are there: what joints and pins of the document need as one body.
+    void find_bodies(const Document& document);
+    /// Holds what its pins say to where that is now on other entities.
+    Result<void> fasten(const LiveEntity& entity);
+    /// Of one that has changed, whose pins were `before`: what is tied to it. `is_new`: it was made anew.
+    Result<void> fasten_to(const LiveEntity& entity, const std::vector<Pin>& before, bool is_new);
+    /// An entity that came, and those whose pins waited for it; without one: all.
+    Result<void> fasten_all(std::optional<EntityIndex> came);
+    Result<void> add_joint(const SceneJoint& joint);
+    Result<void> remove_joint(std::uint32_t index);
+
+    // What actions do ------------------------------------------------------------------------------------------------
+
+    void start_actions(const std::vector<Action>& list);
+    /// A push lasts at least one step.
+    void apply_timed_forces();
+    /// Null for an entity that is not in the world.
+    [[nodiscard]] const Entity* definition(EntityIndex index) const;
+
+private:
+    Result<LiveEntity> describe(const Entity& entity);
+    Result<physics::BodyDefinition> prepare_body(LiveEntity& entity);
+    Result<void> put(LiveEntity& entity);
+    Result<void> put_body(LiveEntity& entity);
+    Result<void> put_points(LiveEntity& entity);
+    void take_out(LiveEntity& entity);
+    void list_remarkable(const LiveEntity& entity);
+    [[nodiscard]] std::pair<Vec3, Vec3> motion_of(const LiveEntity& entity) const;
+    Result<void> update_body(LiveEntity& before, LiveEntity& after, bool keep_motion);
+    Result<void> update_points(LiveEntity& before, LiveEntity& after);
+    Result<void> replace(LiveEntity& before, LiveEntity& after, bool keep_motion);
+
+    void tie_pins(const LiveEntity& entity, std::vector<bool>& is_held, std::vector<physics::Tie>& ties) const;
+    Result<physics::BodyHandle> end_of(EntityIndex index, const std::string& where);
+    Result<void> make_bodies_of(const SceneJoint& joint);
+    Result<void> soften_ends(const SceneJoint& joint);
+
+    Result<void> change(EntityIndex index, const Effect& effect);
+    Result<void> set_attribute(LiveEntity& entity, const SetAttribute& set);
+    Result<EntityIndex> spawn(EntityIndex like, const Spawn& spawn);
+    [[nodiscard]] std::string category(EntityIndex index) const;
+    [[nodiscard]] Vec3 center_of_mass(const LiveEntity& entity) const;
+    [[nodiscard]] std::vector<EntityIndex> meant(const Target& target) const;
+};
+
+/// Names the entity before what is wrong with it.
+Error of_entity(const Entity& entity, Error error);
+
+}  // namespace embody::scene

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// The published schema and the strict reader say the same of every field.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+#include "attributes/registry.h"
+#include "scene/file/scene_file.h"
+#include "scene/sample_documents.h"
+
+namespace embody::scene {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+const fs::path data = fs::path(EMBODY_SOURCE_DIR) / "data";
+
+json read_json(const fs::path& file) {
+    std::ifstream in(file);
+    return json::parse(in);
+}
+
+class SceneSchema : public testing::Test {
+protected:
+    SceneSchema() : text_(read_json(data / "schema" / "scene.schema.json")) {
+        valijson::SchemaParser parser;
+        parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(text_), schema_);
+    }
+    bool allows(const json& scene) {
+        valijson::Validator validator;
+        return validator.validate(schema_, valijson::adapters::NlohmannJsonAdapter(scene), nullptr);
+    }
+    json text_;
+    valijson::Schema schema_;
+};
+
+// Every place in a scene where one thing is changed: the paths of all values.
+void list_places(const json& value, const std::string& pointer, std::vector<std::string>& places) {
+    places.push_back(pointer);
+    if (value.is_object())
+        for (const auto& [name, inner] : value.items()) list_places(inner, pointer + "/" + name, places);
+    if (value.is_array())
+        for (std::size_t i = 0; i < value.size(); ++i) list_places(value[i], pointer + "/" + std::to_string(i), places);
+}
+
+TEST_F(SceneSchema, NamesTheAttributesOfTheRegistry) {
+    std::set<std::string> named, known;
+    for (const auto& [name, rule] : text_["definitions"]["attributes"]["properties"].items()) named.insert(name);
+    for (const attributes::AttributeDescription& attribute : attributes::registry()) known.insert(attribute.name);
+    EXPECT_EQ(named, known);
+}
+
+TEST_F(SceneSchema, AllowsWhatTheReaderAllows) {
+    const json everything = document_to_json(samples::everything());
+    ASSERT_TRUE(document_from_json(everything).ok());
+    EXPECT_TRUE(allows(everything));
+    int demos = 0;
+    for (const auto& entry : fs::directory_iterator(data / "scenes")) {
+        if (entry.path().extension() != ".json") continue;
+        const Result<Document> read = load_document(entry.path());
+        EXPECT_TRUE(read.ok()) << (read.ok() ? "" : read.error().message());
+        EXPECT_TRUE(allows(read_json(entry.path()))) << entry.path();
+        ++demos;
+    }
+    EXPECT_GE(demos, 3);
+}
+
+// Breaks each value of a scene that says everything in five ways and lets both judge.
+TEST_F(SceneSchema, RefusesWhatTheReaderRefuses) {
+    json scene = document_to_json(samples::everything());
+    // One action of each trigger and each effect is enough here.
+    json actions = json::array();
+    for (std::size_t i = 0; i < scene["actions"].size(); i += 10) actions.push_back(scene["actions"][i]);
+    scene["actions"] = actions;
+    std::vector<std::string> places;
+    list_places(scene, "", places);
+    const json broken[] = {nullptr, true, "word", json::array(), {{"no_such_field", 1}}};
+    int refused = 0;
+    for (const std::string& place : places) {
+        for (const json& wrong : broken) {
+            json changed = scene;
+            changed[json::json_pointer(place)] = wrong;
+            const bool reads = document_from_json(changed).ok();
+            const bool fits = allows(changed);
+            refused += reads ? 0 : 1;
+            // Values of attributes in actions, and which entities there are, are beyond a schema.
+            const bool is_beyond = place == "/entities" || place.ends_with("/effect/value") ||
+                                   place.find("/entity_") != std::string::npos ||
+                                   place.find("/attributes/") != std::string::npos;
+            if (is_beyond) {
+                EXPECT_TRUE(fits || !reads) << place << " = " << wrong.dump();
+            } else {
+                EXPECT_EQ(fits, reads) << place << " = " << wrong.dump()
+                                       << (reads ? "" : ": " + document_from_json(changed).error().message());
+            }
+        }
+    }
+    EXPECT_GT(refused, 1000);
+}
+
+TEST_F(SceneSchema, RefusesUnknownFieldsEverywhere) {
+    const json scene = document_to_json(samples::everything());
+    std::vector<std::string> places;
+    list_places(scene, "", places);
+    for (const std::string& place : places) {
+        json changed = scene;
+        json& object = changed[json::json_pointer(place)];
+        if (!object.is_object()) continue;
+        object["no_such_field"] = 1;
+        EXPECT_FALSE(document_from_json(changed).ok()) << place;
+        EXPECT_FALSE(allows(changed)) << place;
+    }
+}
+
+}  // namespace
+}  // namespace embody::scene
