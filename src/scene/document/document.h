@@ -15,6 +15,7 @@
 #include "physics/definitions/shape_definition.h"
 #include "physics/definitions/world_settings.h"
 #include "scene/document/action.h"
+#include "scene/document/field_list.h"
 
 namespace embody::scene {
 
@@ -31,6 +32,8 @@ struct ModelReference {
     friend bool operator==(const ModelReference&, const ModelReference&) = default;
 };
 
+using Geometry = std::variant<ModelReference, physics::ShapeDefinition>;
+
 /// Where a thing that changes its form is held: its points within a distance of a place stay where they are, in the
 /// world or in another entity.
 struct Pin {
@@ -45,7 +48,7 @@ struct Pin {
 struct Entity {
     EntityIndex index = 0;
     std::string name;
-    std::variant<ModelReference, physics::ShapeDefinition> geometry;  ///< the paper's GeomAttr (definition 3)
+    Geometry geometry;  ///< the paper's GeomAttr (definition 3)
     /// Manual attributes of this entity by registry name; everything else comes from the model or the defaults
     /// (definition 4, 5).
     std::map<std::string, attributes::AttributeValue> attributes;
@@ -64,6 +67,29 @@ struct Entity {
     std::vector<Pin> pins;                       ///< of one of kind soft
 };
 
+/// What an entity's field is called in files and messages; its geometry there is "model" or "shape".
+template <>
+inline constexpr auto fields_of<Entity> = std::tuple{
+    always_saved("index", &Entity::index, {1, last_document_index}),
+    always_saved("name", &Entity::name),
+    always_saved("geometry", &Entity::geometry),
+    saved_when_set("attributes", &Entity::attributes),
+    always_saved("pose", &Entity::pose),
+    saved_when_set("linear_velocity", &Entity::linear_velocity),
+    saved_when_set("angular_velocity", &Entity::angular_velocity),
+    saved_when_set("force", &Entity::force),
+    saved_when_set("torque", &Entity::torque),
+    saved_when_set("enabled", &Entity::enabled),
+    saved_when_set("start_asleep", &Entity::start_asleep),
+    saved_when_set("allow_sleep", &Entity::allow_sleep),
+    saved_when_set("continuous", &Entity::continuous),
+    saved_when_set("category", &Entity::category),
+    saved_when_set("color", &Entity::color),
+    saved_when_set("scale", &Entity::scale, {1e-4, 1e4}),
+    saved_when_set("pins", &Entity::pins),
+};
+static_assert(lists_all_members<Entity>(), "a member of Entity is in no list, or one is there twice");
+
 /// A joint between two entities, or an entity and the world.
 struct SceneJoint {
     std::uint32_t index = 0;
@@ -73,15 +99,56 @@ struct SceneJoint {
     physics::JointDefinition definition;  ///< its body handles are left null
 };
 
-/// The paper's VS = {VSEle_i} (definition 1) with what acts in it. A plain value: copy, compare, save.
-struct Document {
+/// Where the eye is and what it looks at.
+struct Camera {
+    Vec3 position{4, 3, 6};
+    Vec3 target;
+    friend bool operator==(const Camera&, const Camera&) = default;
+};
+
+/// What belongs to a document as a whole.
+struct Heading {
     std::string title = "Untitled";
     std::string description;
     physics::WorldSettings settings{.workers = 0};
-    std::vector<Entity> entities;                 ///< ascending index
-    std::vector<SceneJoint> joints;               ///< ascending index
-    std::vector<Action> actions;                  ///< ascending id
-    std::optional<std::pair<Vec3, Vec3>> camera;  ///< position and target to open the scene with
+    std::optional<Camera> camera;  ///< to open the scene with
+};
+
+template <>
+inline constexpr auto fields_of<Heading> = std::tuple{
+    always_saved("title", &Heading::title),
+    saved_when_set("description", &Heading::description),
+    always_saved("settings", &Heading::settings),
+    saved_when_set("camera", &Heading::camera),
+};
+static_assert(lists_all_members<Heading>(), "a member of Heading is in no list, or one is there twice");
+
+/// The settings of the physics that a scene has. Their ranges are validate()'s to judge.
+template <>
+inline constexpr auto fields_of<physics::WorldSettings> = std::tuple{
+    always_saved("gravity", &physics::WorldSettings::gravity),
+    always_saved("time_step", &physics::WorldSettings::time_step),
+    always_saved("substeps", &physics::WorldSettings::substeps, {1, 64}),
+    always_saved("wind", &physics::WorldSettings::wind),
+    always_saved("gustiness", &physics::WorldSettings::gustiness),
+    always_saved("gust_time", &physics::WorldSettings::gust_time),
+    always_saved("air_density", &physics::WorldSettings::air_density),
+    never_saved("deformable_substeps", &physics::WorldSettings::deformable_substeps),
+    always_saved("time_to_sleep", &physics::WorldSettings::time_to_sleep),
+    always_saved("sleeping", &physics::WorldSettings::sleeping),
+    always_saved("shock_propagation", &physics::WorldSettings::shock_propagation),
+    always_saved("max_linear_speed", &physics::WorldSettings::max_linear_speed),
+    always_saved("max_angular_speed", &physics::WorldSettings::max_angular_speed),
+    never_saved("workers", &physics::WorldSettings::workers),
+    never_saved("lanes", &physics::WorldSettings::lanes),
+};
+static_assert(lists_all_members<physics::WorldSettings>(), "a setting is in no list, or one is there twice");
+
+/// The paper's VS = {VSEle_i} (definition 1) with what acts in it. A plain value: copy, compare, save.
+struct Document : Heading {
+    std::vector<Entity> entities;    ///< ascending index
+    std::vector<SceneJoint> joints;  ///< ascending index
+    std::vector<Action> actions;     ///< ascending id
 
     [[nodiscard]] const Entity* find(EntityIndex index) const;
     [[nodiscard]] Entity* find(EntityIndex index);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <span>
+#include <type_traits>
 
 namespace embody::scene {
 
@@ -47,12 +48,7 @@ struct Applier {
     void operator()(const ActionChange& change) const {
         put_item(document.actions, &Action::id, change.before, change.after);
     }
-    void operator()(const HeadingChange& change) const {
-        document.title = change.after.title;
-        document.description = change.after.description;
-        document.settings = change.after.settings;
-        document.camera = change.after.camera;
-    }
+    void operator()(const HeadingChange& change) const { static_cast<Heading&>(document) = change.after; }
 };
 
 // Of changes that can become one: the kind, and whose it is.
@@ -96,22 +92,10 @@ void put_entities(std::vector<Entity>& entities, std::span<const Change> changes
 
 Entity without_geometry(const Entity& entity) {
     Entity out;
-    out.index = entity.index;
-    out.name = entity.name;
-    out.attributes = entity.attributes;
-    out.pose = entity.pose;
-    out.linear_velocity = entity.linear_velocity;
-    out.angular_velocity = entity.angular_velocity;
-    out.force = entity.force;
-    out.torque = entity.torque;
-    out.enabled = entity.enabled;
-    out.start_asleep = entity.start_asleep;
-    out.allow_sleep = entity.allow_sleep;
-    out.continuous = entity.continuous;
-    out.category = entity.category;
-    out.color = entity.color;
-    out.scale = entity.scale;
-    out.pins = entity.pins;
+    for_each_field<Entity>([&](const auto& field) {
+        if constexpr (!std::is_same_v<typename std::remove_cvref_t<decltype(field)>::Member, Geometry>)
+            out.*field.member = entity.*field.member;
+    });
     return out;
 }
 
@@ -119,10 +103,6 @@ Entity without_geometry(const Entity& entity) {
 
 EntityChange change_of(const Entity& before, const Entity& after) {
     return {without_geometry(before), without_geometry(after), true};
-}
-
-Heading heading_of(const Document& document) {
-    return {document.title, document.description, document.settings, document.camera};
 }
 
 void apply_changes(Document& document, const std::vector<Change>& changes) {

@@ -31,12 +31,6 @@ struct JointChange {
 struct ActionChange {
     std::optional<Action> before, after;
 };
-/// What belongs to the document as a whole.
-struct Heading {
-    std::string title, description;
-    physics::WorldSettings settings;
-    std::optional<std::pair<Vec3, Vec3>> camera;
-};
 struct HeadingChange {
     Heading before, after;
 };
@@ -59,7 +53,6 @@ struct Edit {
 
 /// An edit that changes an entity's other fields but not its geometry.
 EntityChange change_of(const Entity& before, const Entity& after);
-Heading heading_of(const Document& document);
 
 /// Does the changes to the document, in order.
 void apply_changes(Document& document, const std::vector<Change>& changes);

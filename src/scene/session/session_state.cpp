@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "attributes/form.h"
+
 #include "attributes/physical_kind.h"
+#include "scene/file/json/fields_json.h"
 #include "scene/file/json/parts.h"
 #include "scene/file/scene_file.h"
 #include "scene/session/catalog_edit.h"
@@ -198,9 +200,12 @@ json SessionState::change_json(const Change& change) const {
         if (!action->after) return {{"op", "action_removed"}, {"index", action->before->id}};
         return {{"op", "action"}, {"action", action_to_json(*action->after)}};
     }
-    json settings = settings_to_json(document.settings);
-    settings["title"] = document.title;
-    settings["description"] = document.description;
+    // The heading's fields and those of its settings side by side, as scene.settings takes them.
+    json heading = json::object();
+    write_all_fields<Heading>(heading, document);
+    json settings = std::move(heading["settings"]);
+    heading.erase("settings");
+    settings.update(heading);
     return {{"op", "settings"}, {"settings", std::move(settings)}};
 }
 

@@ -214,7 +214,7 @@ export type DocumentChange =
   | { op: "reset"; scene: Scene }
   | { op: "entity"; entity: Entity }
   | { op: "entity_removed"; index: number }
-  | { op: "settings"; settings: Partial<SceneSettings> & { title?: string; description?: string } }
+  | { op: "settings"; settings: Partial<SceneSettings> & { title?: string; description?: string; camera?: Scene["camera"] | null } }
   | { op: "joint"; joint: Joint }
   | { op: "joint_removed"; index: number }
   | { op: "action"; action: Action }

@@ -147,10 +147,11 @@ export class SceneDocument {
     }
   }
 
-  private applySettings({ title, description, ...settings }: Partial<SceneSettings> & { title?: string; description?: string }): void {
+  private applySettings({ title, description, camera, ...settings }: Extract<DocumentChange, { op: "settings" }>["settings"]): void {
     this.settings = { ...this.settings, ...settings };
     this.title = title ?? this.title;
     this.description = description ?? this.description;
+    if (camera !== undefined) this.camera = camera;
   }
 }
 

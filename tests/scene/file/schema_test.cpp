@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <type_traits>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
 #include <valijson/schema_parser.hpp>
@@ -56,6 +57,40 @@ TEST_F(SceneSchema, NamesTheAttributesOfTheRegistry) {
     for (const auto& [name, rule] : text_["definitions"]["attributes"]["properties"].items()) named.insert(name);
     for (const attributes::AttributeDescription& attribute : attributes::registry()) known.insert(attribute.name);
     EXPECT_EQ(named, known);
+}
+
+template <class Owner>
+std::set<std::string> names_of_saved_fields() {
+    std::set<std::string> names;
+    for_each_field<Owner>([&names](const auto& field) {
+        if (std::remove_cvref_t<decltype(field)>::saved != Saved::never) names.insert(field.name);
+    });
+    return names;
+}
+
+std::set<std::string> names_of_properties(const json& object) {
+    std::set<std::string> names;
+    for (const auto& [name, rule] : object["properties"].items()) names.insert(name);
+    return names;
+}
+
+TEST_F(SceneSchema, NamesTheFieldsOfTheLists) {
+    std::set<std::string> of_entity = names_of_saved_fields<Entity>();
+    of_entity.erase("geometry");
+    of_entity.insert({"model", "shape"});
+    EXPECT_EQ(names_of_properties(text_["definitions"]["entity"]), of_entity);
+    const std::set<std::string> of_settings = names_of_saved_fields<physics::WorldSettings>();
+    EXPECT_EQ(names_of_properties(text_["definitions"]["settings"]), of_settings);
+    std::set<std::string> of_scene = names_of_saved_fields<Heading>();
+    of_scene.insert({"embody_scene", "next_index", "entities", "joints", "actions"});
+    EXPECT_EQ(names_of_properties(text_), of_scene);
+
+    // And the description of the format has them all.
+    std::ifstream in(fs::path(EMBODY_SOURCE_DIR) / "docs" / "scene-format.md");
+    const std::string format(std::istreambuf_iterator<char>(in), {});
+    for (const std::set<std::string>& names : {of_entity, of_settings, of_scene})
+        for (const std::string& name : names)
+            EXPECT_NE(format.find('`' + name + '`'), std::string::npos) << name << " is not in docs/scene-format.md";
 }
 
 TEST_F(SceneSchema, AllowsWhatTheReaderAllows) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "scene/simulation/simulation.h"
-#include "attributes/physical_kind.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "attributes/physical_kind.h"
 #include "scene/sample_documents.h"
 
 namespace embody::scene {

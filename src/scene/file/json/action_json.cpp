@@ -245,6 +245,7 @@ Result<Action> action_from_json(const json& value, const std::string& where) {
 }
 
 json action_to_json(const Action& action) {
+    static_assert(count_members<Action>() == 7, "each member is written here and read above");
     return {{"id", action.id},
             {"name", action.name},
             {"sender", target_to_json(action.sender)},

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "scene/file/json/field_reader.h"
+#include "scene/file/json/fields_json.h"
 #include "scene/file/json/parts.h"
 #include "scene/file/scene_file.h"
 
@@ -65,16 +66,6 @@ void read_list(FieldReader& reader, const char* name, std::vector<Item>& items, 
     }
 }
 
-void read_camera(FieldReader& reader, Document& document) {
-    const json* field = reader.take("camera");
-    if (!field) return;
-    Vec3 position{4, 3, 6}, target;
-    FieldReader camera(*field, reader.path("camera"), reader.error());
-    camera.vector("position", position);
-    camera.vector("target", target);
-    if (camera.finish()) document.camera = {position, target};
-}
-
 }  // namespace
 
 Result<Document> document_from_json(const json& value) {
@@ -82,16 +73,7 @@ Result<Document> document_from_json(const json& value) {
     std::optional<Error> error;
     FieldReader reader(value, "", error);
     if (!is_format(reader)) return *error;
-    reader.text("title", document.title);
-    reader.text("description", document.description);
-    if (const json* field = reader.take("settings")) {
-        Result<physics::WorldSettings> settings =
-            settings_from_json(*field, reader.path("settings"), document.settings);
-        if (!settings.ok()) return settings.error();
-        document.settings = settings.value();
-    }
-    read_camera(reader, document);
-
+    read_fields<Heading>(reader, document);
     if (const auto list = value.find("entities"); list != value.end() && list->size() > most_entities)
         return Error{"entities",
                      "are " + std::to_string(list->size()) + ", more than the " + std::to_string(most_entities) +
@@ -115,15 +97,9 @@ Result<Document> document_from_json(const json& value) {
 }
 
 json document_to_json(const Document& document) {
-    json out = {{"embody_scene", format_version},
-                {"title", document.title},
-                {"settings", settings_to_json(document.settings)},
-                {"next_index", document.next_index},
-                {"entities", json::array()}};
-    if (!document.description.empty()) out["description"] = document.description;
-    if (document.camera)
-        out["camera"] = {{"position", vector_to_json(document.camera->first)},
-                         {"target", vector_to_json(document.camera->second)}};
+    static_assert(count_members<Document>() == 5, "the heading and the lists below are all that there is to write");
+    json out = {{"embody_scene", format_version}, {"next_index", document.next_index}, {"entities", json::array()}};
+    write_fields<Heading>(out, document);
     for (const Entity& entity : document.entities) out["entities"].push_back(entity_to_json(entity));
     for (const SceneJoint& joint : document.joints) out["joints"].push_back(joint_to_json(joint));
     for (const Action& action : document.actions) out["actions"].push_back(action_to_json(action));

@@ -139,6 +139,7 @@ Result<SceneJoint> joint_from_json(const json& value, const std::string& where, 
 }
 
 json joint_to_json(const SceneJoint& joint) {
+    static_assert(count_members<SceneJoint>() == 5, "each member is written here and read above");
     json out = {{"index", joint.index},
                 {"name", joint.name},
                 {"entity_b", joint.entity_b},

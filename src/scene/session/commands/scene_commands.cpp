@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 
 #include "foundation/version.h"
 #include "scene/document/document_field.h"
+#include "scene/file/json/fields_json.h"
 #include "scene/file/json/parts.h"
 #include "scene/file/json/text.h"
 #include "scene/file/scene_file.h"
@@ -137,32 +139,29 @@ Result<json> list(SessionState& state, const json& params) {
     return json{{"scenes", std::move(scenes)}};
 }
 
-// Title, description and camera are the document's own; the rest is the world's.
+// The fields of the document's heading and, beside them, those of its settings.
 Result<json> settings(SessionState& state, const json& params) {
-    std::optional<Error> error;
-    HeadingChange change{heading_of(state.document), heading_of(state.document)};
-    json world = params;
-    if (world.is_object())
-        for (const char* own : {"title", "description", "camera", "merge"}) world.erase(own);
+    json own = json::object(), world = params;
+    const auto take = [&](const char* name) {
+        if (!world.is_object() || !world.contains(name)) return;
+        own[name] = world[name];
+        world.erase(name);
+    };
+    take("merge");
+    for_each_field<Heading>([&](const auto& field) {
+        if constexpr (!std::is_same_v<typename std::remove_cvref_t<decltype(field)>::Member, physics::WorldSettings>)
+            take(field.name);
+    });
+
+    HeadingChange change{state.document, state.document};
     Result<physics::WorldSettings> read = settings_from_json(world, "", state.document.settings);
     if (!read.ok()) return read.error();
     change.after.settings = read.value();
-
-    json rest = json::object();
-    for (const char* own : {"title", "description", "camera", "merge"})
-        if (params.contains(own)) rest[own] = params[own];
-    FieldReader reader(rest, "", error);
+    std::optional<Error> error;
+    FieldReader reader(own, "", error);
     Edit edit = state.start_edit("Change settings");
-    reader.text("title", change.after.title);
-    reader.text("description", change.after.description);
+    read_fields(reader, change.after);
     reader.text("merge", edit.merge);
-    if (const json* field = reader.take("camera")) {
-        Vec3 position, target;
-        FieldReader camera(*field, "camera", error);
-        need_vector(camera, "position", "where it is", position);
-        need_vector(camera, "target", "what it looks at", target);
-        if (camera.finish()) change.after.camera = {position, target};
-    }
     if (!reader.finish()) return *error;
     edit.changes.emplace_back(std::move(change));
     return done(state.commit(std::move(edit)));

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// Whatever field an entity or a document has: a change of it is told, undone, done again and saved. The fields are
+// those of the lists (scene/document/field_list.h), so that a new one is tried as soon as it is there.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <type_traits>
+
+#include "foundation/random.h"
+#include "scene/file/json/fields_json.h"
+#include "scene/file/json/parts.h"
+#include "scene/file/scene_file.h"
+#include "scene/live_scene.h"
+#include "scene/sample_documents.h"
+
+namespace embody::scene {
+namespace {
+
+using nlohmann::json;
+
+template <class OneField>
+using MemberOf = typename std::remove_cvref_t<OneField>::Member;
+template <class OneField>
+constexpr bool is_saved = std::remove_cvref_t<OneField>::saved != Saved::never;
+
+/// Makes another value of a field, which a scene may have.
+class OtherValue {
+public:
+    explicit OtherValue(std::uint64_t seed) : random_(seed) {}
+
+    void change(bool& value) { value = !value; }
+    void change(int& value) { value = value % 60 + 1; }
+    void change(std::uint32_t& value) { value += 1 + static_cast<std::uint32_t>(random_.below(1000)); }
+    void change(double& value) { value = value == 0 ? random_.between(0.1, 1) : value * random_.between(0.5, 0.9); }
+    void change(std::string& value) { value += " " + std::to_string(random_.next()); }
+    void change(Vec3& value) { value += Vec3{random_.between(0.1, 1), random_.between(-1, 1), random_.between(-1, 1)}; }
+    void change(Transform& value) {
+        change(value.position);
+        value.rotation = normalized(Quat{random_.unit(), random_.unit(), random_.unit(), 1});
+    }
+    void change(std::optional<std::array<double, 3>>& value) {
+        value = {random_.unit(), random_.unit(), random_.unit()};
+    }
+    void change(std::optional<Camera>& value) {
+        value.emplace();
+        change(value->position);
+        change(value->target);
+    }
+    void change(std::vector<Pin>& value) {
+        Pin pin{.to = 1, .clamped = true};
+        change(pin.position);
+        change(pin.radius);
+        value.push_back(pin);
+    }
+    void change(std::map<std::string, attributes::AttributeValue>& value) { value["restitution"] = random_.unit(); }
+    void change(Geometry& value) {
+        physics::BoxShape box;
+        change(box.half_extents.x);
+        value = physics::ShapeDefinition{box};
+    }
+    template <class Listed>
+    requires(std::tuple_size_v<std::remove_const_t<decltype(fields_of<Listed>)>> > 0) void change(Listed& value) {
+        for_each_field<Listed>([&](const auto& field) {
+            if constexpr (is_saved<decltype(field)>) change(value.*field.member);
+        });
+    }
+
+private:
+    Random random_;
+};
+
+template <class Value>
+bool are_same(const Value& a, const Value& b) {
+    return a == b;
+}
+bool are_same(const Geometry& a, const Geometry& b) {
+    json one, other;
+    write_value(one, "", a);
+    write_value(other, "", b);
+    return one == other;
+}
+template <class Listed>
+bool are_same_fields(const Listed& a, const Listed& b);
+bool are_same(const physics::WorldSettings& a, const physics::WorldSettings& b) { return are_same_fields(a, b); }
+
+template <class Listed>
+bool are_same_fields(const Listed& a, const Listed& b) {
+    bool same = true;
+    for_each_field<Listed>([&](const auto& field) { same = same && are_same(a.*field.member, b.*field.member); });
+    return same;
+}
+
+class EveryField : public samples::LiveSession {
+protected:
+    void SetUp() override { open(samples::floor_and_box()); }
+
+    /// What the last event of the document says of its first change.
+    json told() {
+        json change;
+        for (const json& message : session_->take_events().messages)
+            if (message["event"] == "document") change = message["changes"].at(0);
+        return change;
+    }
+    Document loaded() {
+        const auto file =
+            std::filesystem::temp_directory_path() / ("every_field_" + std::to_string(getpid()) + ".json");
+        EXPECT_TRUE(save_document(session_->document(), file).ok());
+        Result<Document> read = load_document(file);
+        std::filesystem::remove(file);
+        EXPECT_TRUE(read.ok()) << (read.ok() ? "" : read.error().message());
+        return read.ok() ? std::move(read).value() : Document{};
+    }
+
+    OtherValue other_{20261123};
+};
+
+TEST_F(EveryField, OfAnEntityIsToldUndoneAndSaved) {
+    int count = 0;
+    for_each_field<Entity>([&](const auto& field) {
+        if constexpr (std::is_same_v<MemberOf<decltype(field)>, EntityIndex>) return;
+        const Entity before = *session_->document().find(samples::thing);
+        Entity changed = before;
+        other_.change(changed.*field.member);
+        ASSERT_FALSE(are_same_fields(before, changed)) << field.name;
+
+        json fields = json::object();
+        write_value(fields, field.name, changed.*field.member);
+        run("entity.update", {{"index", samples::thing}, {"entity", fields}});
+        EXPECT_TRUE(are_same_fields(*session_->document().find(samples::thing), changed)) << field.name;
+        const json change = told();
+        for (const auto& [name, value] : fields.items()) EXPECT_EQ(change["entity"][name], value) << name;
+
+        run("edit.undo");
+        EXPECT_TRUE(are_same_fields(*session_->document().find(samples::thing), before)) << field.name;
+        run("edit.redo");
+        EXPECT_TRUE(are_same_fields(*session_->document().find(samples::thing), changed)) << field.name;
+        EXPECT_TRUE(are_same_fields(*loaded().find(samples::thing), changed)) << field.name;
+        ++count;
+    });
+    EXPECT_EQ(count + 1, static_cast<int>(count_members<Entity>()));
+}
+
+TEST_F(EveryField, OfTheDocumentIsToldUndoneAndSaved) {
+    int count = 0;
+    const auto try_field = [&](const auto& field, auto& owner_of) {
+        using Value = MemberOf<decltype(field)>;
+        if constexpr (is_saved<decltype(field)> && !std::is_same_v<Value, physics::WorldSettings>) {
+            const Heading before = session_->document();
+            Heading changed = before;
+            Value& value = owner_of(changed).*field.member;
+            other_.change(value);
+            json fields = json::object();
+            write_value(fields, field.name, value);
+            run("scene.settings", fields);
+            EXPECT_TRUE(are_same_fields<Heading>(session_->document(), changed)) << field.name;
+            EXPECT_EQ(told()["settings"][field.name], fields[field.name]);
+
+            run("edit.undo");
+            EXPECT_TRUE(are_same_fields<Heading>(session_->document(), before)) << field.name;
+            EXPECT_TRUE(told()["settings"].contains(field.name)) << "also what is no more is told: " << field.name;
+            run("edit.redo");
+            EXPECT_TRUE(are_same_fields<Heading>(session_->document(), changed)) << field.name;
+            EXPECT_TRUE(are_same_fields<Heading>(loaded(), changed)) << field.name;
+            ++count;
+        }
+    };
+    const auto whole = [](Heading& heading) -> Heading& { return heading; };
+    const auto settings = [](Heading& heading) -> physics::WorldSettings& { return heading.settings; };
+    for_each_field<Heading>([&](const auto& field) { try_field(field, whole); });
+    for_each_field<physics::WorldSettings>([&](const auto& field) { try_field(field, settings); });
+    EXPECT_EQ(count, 3 + 12);
+}
+
+TEST_F(EveryField, AllAtOnceAreSaved) {
+    Document document = samples::floor_and_box();
+    other_.change(static_cast<Heading&>(document));
+    Entity& box = *document.find(samples::thing);
+    other_.change(box);
+    document.next_index = box.index + 1;
+    const Result<Document> read = document_from_json(document_to_json(document));
+    ASSERT_TRUE(read.ok()) << read.error().message();
+    EXPECT_TRUE(are_same_fields<Heading>(read.value(), document));
+    EXPECT_TRUE(are_same_fields(read.value().entities.back(), box));
+}
+
+}  // namespace
+}  // namespace embody::scene
