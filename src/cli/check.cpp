@@ -5,7 +5,7 @@
 #include "cli/locations.h"
 #include "cli/output.h"
 #include "scene/document/document_field.h"
-#include "scene/embody/entity_body.h"
+#include "scene/embody/entity_definitions.h"
 #include "scene/file/scene_file.h"
 #include "scene/simulation/simulation.h"
 
@@ -25,9 +25,9 @@ Result<Checked> check_scene(const std::filesystem::path& file, catalog::Catalog*
     auto simulation = scene::Simulation::create(*document, catalog);
     if (!simulation) return scene::in_place(file.string(), simulation.error());
     Checked checked{document->entities.size(), (*simulation)->notes(), {}};
-    scene::EntityBodies bodies(catalog);
+    scene::EntityDefinitions definitions(catalog);
     for (std::size_t i = 0; i < document->entities.size(); ++i) {
-        const auto found = bodies.contradictions(document->entities[i]);
+        const auto found = definitions.attributes.contradictions(document->entities[i]);
         if (!found) return scene::in_place(file.string(), found.error());
         const std::string where = file.string() + ": entities[" + std::to_string(i) + "].attributes.";
         for (const attributes::Issue& issue : *found) {

@@ -2,11 +2,12 @@
 #include "attributes/to_physics.h"
 #include "physics/definitions/field_check.h"
 #include "scene/embody/entity_body.h"
+#include "scene/embody/entity_points.h"
 
 namespace embody::scene {
 
-Result<LiquidDefinition> EntityBodies::liquid(const Entity& entity, const attributes::AttributeSet& attributes) {
-    Result<physics::ShapeDefinition> filled = shape(entity, attributes);
+Result<LiquidDefinition> EntityPoints::liquid(const Entity& entity, const attributes::AttributeSet& attributes) {
+    Result<physics::ShapeDefinition> filled = shape_of(entity, attributes, models_);
     if (!filled.ok()) return filled.error();
     if (Result<void> fits = physics::check_vector("force", entity.force, physics::largest_force, "N"); !fits.ok())
         return fits.error();

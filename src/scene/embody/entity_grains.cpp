@@ -5,14 +5,15 @@
 #include "physics/definitions/grain_material.h"
 #include "physics/definitions/mass_properties.h"
 #include "scene/embody/entity_body.h"
+#include "scene/embody/entity_points.h"
 #include "scene/embody/grain_filling.h"
 
 namespace embody::scene {
 
-Result<GrainDefinition> EntityBodies::grains(const Entity& entity, const attributes::AttributeSet& attributes) {
-    Result<physics::ShapeDefinition> filled = shape(entity, attributes);
+Result<GrainDefinition> EntityPoints::grains(const Entity& entity, const attributes::AttributeSet& attributes) {
+    Result<physics::ShapeDefinition> filled = shape_of(entity, attributes, models_);
     if (!filled.ok()) return filled.error();
-    Result<physics::BodyDefinition> body = this->body(entity, attributes);
+    Result<physics::BodyDefinition> body = body_of(entity, attributes, models_.taxonomy());
     if (!body.ok()) return body.error();
     GrainDefinition grains;
     grains.body = std::move(body).value();

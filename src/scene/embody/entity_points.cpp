@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which entities are points instead of one body, and of what they are made.
+#include "scene/embody/entity_points.h"
+
 #include <cmath>
 
 #include "attributes/physical_kind.h"
@@ -15,7 +16,7 @@ const std::string rigid_because = "is simulated as rigid, because ";
 
 // Equal where geometry and size of the grains are.
 std::string grains_key(const Entity& entity, const attributes::AttributeSet& attributes) {
-    const std::string key = EntityBodies::shape_key(entity, attributes);
+    const std::string key = shape_key(entity, attributes);
     if (key.empty()) return {};
     return "granular\n" + key + '\n' + std::to_string(attributes.number("simulated_diameter", 0)) + '\n' +
            std::to_string(attributes.number("grain_budget", 0));
@@ -23,7 +24,7 @@ std::string grains_key(const Entity& entity, const attributes::AttributeSet& att
 
 // Equal where geometry and fineness of a liquid are.
 std::string liquid_key(const Entity& entity, const attributes::AttributeSet& attributes) {
-    const std::string key = EntityBodies::shape_key(entity, attributes);
+    const std::string key = shape_key(entity, attributes);
     if (key.empty()) return {};
     return "fluid\n" + key + '\n' + std::to_string(attributes.number("fluid_cell_size", 0)) + '\n' +
            std::to_string(attributes.number("particle_budget", 0));
@@ -31,7 +32,7 @@ std::string liquid_key(const Entity& entity, const attributes::AttributeSet& att
 
 // Equal where the nodes of what changes its form are.
 std::string deformable_key(const Entity& entity, const attributes::AttributeSet& attributes) {
-    const std::string key = EntityBodies::shape_key(entity, attributes);
+    const std::string key = shape_key(entity, attributes);
     if (key.empty()) return {};
     std::string own = to_text(kind_of(attributes)) + '\n' + key + '\n' + std::to_string(entity.scale);
     for (const char* count : {"cloth_nodes", "rope_segments"})
@@ -41,8 +42,8 @@ std::string deformable_key(const Entity& entity, const attributes::AttributeSet&
 
 }  // namespace
 
-EntityForm EntityBodies::soft_form(const Entity& entity, const attributes::AttributeSet& attributes) {
-    const Result<const catalog::SoftMesh*> mesh = soft_mesh(entity);
+EntityForm EntityPoints::soft_form(const Entity& entity, const attributes::AttributeSet& attributes) {
+    const Result<const catalog::SoftMesh*> mesh = meshes_.soft_mesh(entity);
     if (!mesh.ok()) return {false, {}, rigid_because + mesh.error().why};
     EntityForm soft{true, deformable_key(entity, attributes), {}};
     if (mesh.value()->flatness > 1)
@@ -51,7 +52,7 @@ EntityForm EntityBodies::soft_form(const Entity& entity, const attributes::Attri
     return soft;
 }
 
-EntityForm EntityBodies::form(const Entity& entity, const attributes::AttributeSet& attributes, bool is_held_as_body) {
+EntityForm EntityPoints::form(const Entity& entity, const attributes::AttributeSet& attributes, bool is_held_as_body) {
     const PhysicalKind kind = kind_of(attributes);
     if (is_held_as_body && (is_deformable(kind) || kind == PhysicalKind::fluid))
         return {false, {}, rigid_because + "a joint or a pin holds on to it"};
@@ -69,7 +70,7 @@ EntityForm EntityBodies::form(const Entity& entity, const attributes::AttributeS
             return soft_form(entity, attributes);
         case PhysicalKind::cloth:
         case PhysicalKind::rope: {
-            const Result<const ThinForm*> thin = thin_form(entity, attributes);
+            const Result<const ThinForm*> thin = meshes_.thin_form(entity, attributes);
             if (!thin.ok()) return {false, {}, rigid_because + thin.error().why};
             return {true, deformable_key(entity, attributes), {}};
         }
@@ -77,7 +78,7 @@ EntityForm EntityBodies::form(const Entity& entity, const attributes::AttributeS
     return {};
 }
 
-Result<PointsDefinition> EntityBodies::points(const Entity& entity, const attributes::AttributeSet& attributes) {
+Result<PointsDefinition> EntityPoints::definition(const Entity& entity, const attributes::AttributeSet& attributes) {
     const auto as_points = [](auto made) -> Result<PointsDefinition> {
         if (!made.ok()) return made.error();
         return PointsDefinition(std::move(made).value());

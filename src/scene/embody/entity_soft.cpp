@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "attributes/physical_kind.h"
 #include "attributes/to_physics.h"
-#include "scene/embody/entity_body.h"
-#include "scene/embody/shape_surface.h"
+#include "scene/embody/entity_points.h"
 
 namespace embody::scene {
 
@@ -29,43 +27,21 @@ std::vector<std::uint32_t> pinned_nodes(const Pin& pin, const std::vector<Vec3>&
     return near;
 }
 
-Result<const catalog::SoftMesh*> EntityBodies::soft_mesh(const Entity& entity) {
-    const auto* model = std::get_if<ModelReference>(&entity.geometry);
-    const std::string key = model ? model->key : shape_key(entity, {});
-    auto found = soft_meshes_.find(key);
-    if (key.empty() || found == soft_meshes_.end()) {
-        found = soft_meshes_.insert_or_assign(key, make_soft_mesh(entity)).first;
-        ++forms_->made;
-    }
-    if (!found->second.ok()) return found->second.error();
-    return &found->second.value();
-}
-
-Result<catalog::SoftMesh> EntityBodies::make_soft_mesh(const Entity& entity) {
-    if (const auto* model = std::get_if<ModelReference>(&entity.geometry)) {
-        const Result<const Model*> known = find(model->key);
-        if (!known.ok()) return known.error();
-        return catalog_->soft_mesh(known.value()->summary.id);
-    }
-    const auto surface = surface_of(std::get<physics::ShapeDefinition>(entity.geometry));
-    if (!surface) return surface.error();
-    return catalog::make_soft_mesh(*surface);
-}
-
-Result<physics::DeformableDefinition> EntityBodies::soft(const Entity& entity,
+Result<physics::DeformableDefinition> EntityPoints::soft(const Entity& entity,
                                                          const attributes::AttributeSet& attributes) {
-    const Result<const catalog::SoftMesh*> mesh = soft_mesh(entity);
+    const Result<const catalog::SoftMesh*> mesh = meshes_.soft_mesh(entity);
     if (!mesh.ok()) return mesh.error();
     geometry::TetrahedralMesh scaled = mesh.value()->mesh;
     for (Vec3& node : scaled.nodes) node *= entity.scale;
-    Result<physics::DeformableDefinition> made = attributes::soft_solid_from_attributes(attributes, scaled, taxonomy());
+    Result<physics::DeformableDefinition> made =
+        attributes::soft_solid_from_attributes(attributes, scaled, models_.taxonomy());
     if (!made.ok()) return Error{"attributes: " + made.error().where, made.error().why, made.error().remedy};
     physics::DeformableDefinition soft = std::move(made).value();
     soft.contact_radius = std::clamp(radius_share * mesh.value()->cell * entity.scale, least_radius, greatest_radius);
     return soft;
 }
 
-Result<physics::DeformableDefinition> EntityBodies::deformable(const Entity& entity,
+Result<physics::DeformableDefinition> EntityPoints::deformable(const Entity& entity,
                                                                const attributes::AttributeSet& attributes) {
     Result<physics::DeformableDefinition> made =
         kind_of(attributes) == attributes::PhysicalKind::soft ? soft(entity, attributes) : thin(entity, attributes);

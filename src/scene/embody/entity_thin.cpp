@@ -5,7 +5,7 @@
 
 #include "attributes/physical_kind.h"
 #include "attributes/to_physics.h"
-#include "scene/embody/entity_body.h"
+#include "scene/embody/entity_points.h"
 
 namespace embody::scene {
 
@@ -16,13 +16,6 @@ namespace {
 // Of cloth: half of its thickness, but not so little beside its edges that every corner between two nodes shows.
 constexpr double sheet_radius_share = 0.03, sheet_least_radius = 1e-3, sheet_greatest_radius = 0.02;
 constexpr double least_rope_radius = 5e-4, greatest_rope_radius = 0.5;
-
-bool is_cloth(const attributes::AttributeSet& attributes) { return kind_of(attributes) == PhysicalKind::cloth; }
-
-int count_of(const attributes::AttributeSet& attributes) {
-    return static_cast<int>(is_cloth(attributes) ? attributes.number("cloth_nodes", 1000)
-                                                 : attributes.number("rope_segments", 50));
-}
 
 double mean_edge(const attributes::SheetMesh& sheet) {
     double sum = 0;
@@ -37,56 +30,24 @@ Error in_attributes(const Error& error) { return {"attributes: " + error.where, 
 
 }  // namespace
 
-Result<const ThinForm*> EntityBodies::thin_form(const Entity& entity, const attributes::AttributeSet& attributes) {
-    const auto* model = std::get_if<ModelReference>(&entity.geometry);
-    const std::string key = model ? model->key : shape_key(entity, {});
-    const std::string own = to_text(kind_of(attributes)) + ' ' + std::to_string(count_of(attributes));
-    auto& forms = thin_forms_[key];
-    auto found = forms.find(own);
-    if (key.empty() || found == forms.end()) {
-        found = forms.insert_or_assign(own, make_thin_form(entity, is_cloth(attributes), count_of(attributes))).first;
-    }
-    if (!found->second.ok()) return found->second.error();
-    return &found->second.value();
-}
-
-Result<ThinForm> EntityBodies::make_thin_form(const Entity& entity, bool is_cloth, int count) {
-    const auto of = [&](const auto& geometry) -> Result<ThinForm> {
-        if (!is_cloth) {
-            Result<LineForm> line = line_of(geometry, count);
-            if (!line.ok()) return line.error();
-            return ThinForm(std::move(line).value());
-        }
-        Result<attributes::SheetMesh> sheet = sheet_of(geometry, count);
-        if (!sheet.ok()) return sheet.error();
-        return ThinForm(std::move(sheet).value());
-    };
-    const auto* model = std::get_if<ModelReference>(&entity.geometry);
-    if (!model) return of(std::get<physics::ShapeDefinition>(entity.geometry));
-    const Result<const Model*> known = find(model->key);
-    if (!known.ok()) return known.error();
-    const Result<geometry::TriangleMesh> surface = catalog_->mesh(known.value()->summary.id);
-    if (!surface.ok()) return surface.error();
-    return of(surface.value());
-}
-
-Result<physics::DeformableDefinition> EntityBodies::thin(const Entity& entity,
+Result<physics::DeformableDefinition> EntityPoints::thin(const Entity& entity,
                                                          const attributes::AttributeSet& attributes) {
-    const Result<const ThinForm*> form = thin_form(entity, attributes);
+    const Result<const ThinForm*> form = meshes_.thin_form(entity, attributes);
     if (!form.ok()) return form.error();
     if (const auto* line = std::get_if<LineForm>(form.value())) {
         std::vector<Vec3> nodes = line->nodes;
         for (Vec3& node : nodes) node *= entity.scale;
         const double diameter = line->diameter * entity.scale;
         Result<physics::DeformableDefinition> rope =
-            attributes::rope_from_attributes(attributes, nodes, diameter, taxonomy());
+            attributes::rope_from_attributes(attributes, nodes, diameter, models_.taxonomy());
         if (!rope.ok()) return in_attributes(rope.error());
         rope.value().contact_radius = std::clamp(diameter / 2, least_rope_radius, greatest_rope_radius);
         return rope;
     }
     attributes::SheetMesh sheet = std::get<attributes::SheetMesh>(*form.value());
     for (Vec3& node : sheet.nodes) node *= entity.scale;
-    Result<physics::DeformableDefinition> cloth = attributes::cloth_from_attributes(attributes, sheet, taxonomy());
+    Result<physics::DeformableDefinition> cloth =
+        attributes::cloth_from_attributes(attributes, sheet, models_.taxonomy());
     if (!cloth.ok()) return in_attributes(cloth.error());
     const double half = std::get<physics::Cloth>(cloth.value().matter).thickness / 2;
     cloth.value().contact_radius =

@@ -36,7 +36,7 @@ std::string label_text(const std::string& command, const std::vector<std::string
 
 // What the open scene has of these models is made anew; what a run has of them goes on from where it is.
 void take_up(SessionState& state, const std::set<std::string>& keys) {
-    for (const std::string& key : keys) state.bodies.forget(key);
+    for (const std::string& key : keys) state.definitions.forget(key);
     state.simulation_is_pristine = false;
     const Result<void> renewed = state.simulation->renew_models(keys, state.play_state != PlayState::stopped);
     if (!renewed.ok())

@@ -70,7 +70,7 @@ Document new_document(const std::string& title) {
 }
 
 SessionState::SessionState(catalog::Catalog* used_catalog, SessionOptions used_options)
-    : catalog(used_catalog), options(std::move(used_options)), bodies(used_catalog, forms) {}
+    : catalog(used_catalog), options(std::move(used_options)), definitions(used_catalog, forms) {}
 
 // Simulation
 // -----------------------------------------------------------------------------------------------------------

@@ -15,7 +15,7 @@
 
 #include "scene/document/document_index.h"
 #include "scene/document/history.h"
-#include "scene/embody/entity_body.h"
+#include "scene/embody/entity_definitions.h"
 #include "scene/session/session.h"
 #include "scene/simulation/grab.h"
 #include "scene/simulation/simulation.h"
@@ -32,7 +32,7 @@ struct SessionState {
     catalog::Catalog* catalog = nullptr;
     SessionOptions options;
     std::shared_ptr<FormCache> forms = std::make_shared<FormCache>();  ///< of all simulations of this session
-    EntityBodies bodies;
+    EntityDefinitions definitions;
 
     /// Held while the document, its name, revisions and history change: another thread may look at them to rescue what
     /// is not saved. Never for long.

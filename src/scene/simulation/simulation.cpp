@@ -80,7 +80,7 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const Document& document,
     for (const bool liquids : {false, true}) {
         for (const Entity& entity : document.entities) {
             state.templates[entity.index] = entity;
-            if (state.bodies.is_liquid(entity) != liquids) continue;
+            if (state.definitions.attributes.is_liquid(entity) != liquids) continue;
             if (Result<void> added = state.add(entity); !added.ok()) return added.error();
         }
     }
@@ -283,7 +283,7 @@ Result<void> Simulation::renew_models(const std::set<std::string>& keys, bool ke
         const auto* model = std::get_if<ModelReference>(&entity.definition.geometry);
         if (model && keys.contains(model->key)) meant.push_back(entity.definition);
     }
-    for (const std::string& key : keys) state_->bodies.forget(key);
+    for (const std::string& key : keys) state_->definitions.forget(key);
     Result<void> all;
     for (const Entity& entity : meant) {
         Result<void> updated = state_->update(entity, keep_motion);

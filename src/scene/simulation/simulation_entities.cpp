@@ -5,6 +5,7 @@
 #include "attributes/physical_kind.h"
 #include "physics/definitions/grain_material.h"
 #include "scene/document/document_field.h"
+#include "scene/embody/entity_body.h"
 #include "scene/matter/liquid_notes.h"
 #include "scene/simulation/simulation_state.h"
 
@@ -36,24 +37,26 @@ LiveEntity* Simulation::State::find(EntityIndex index) {
 Result<LiveEntity> Simulation::State::describe(const Entity& entity) {
     LiveEntity described;
     described.definition = entity;
-    Result<SharedAttributes> set = bodies.shared_attributes(entity);
+    Result<SharedAttributes> set = definitions.attributes.shared(entity);
     if (!set.ok()) return set.error();
     described.attributes = std::move(set).value();
     const AttributeSet& attributes = *described.attributes;
     described.frame = entity.pose;
-    described.form = bodies.form(entity, attributes, is_held_as_body(entity.index, kind_of(attributes)));
+    described.form =
+        definitions.points.form(entity, attributes, is_held_as_body(entity.index, kind_of(attributes)));
     if (described.form.has_points && entity.torque != Vec3{})
         described.form.note = "is not turned by its torque, because it is not one rigid body";
-    if (!described.form.has_points) described.shape_key = EntityBodies::shape_key(entity, attributes);
+    if (!described.form.has_points) described.shape_key = scene::shape_key(entity, attributes);
     return described;
 }
 
 // With its shape; the body's definition lacks nothing then.
 Result<physics::BodyDefinition> Simulation::State::prepare_body(LiveEntity& entity) {
-    Result<physics::BodyDefinition> made = bodies.body(entity.definition, *entity.attributes);
+    Result<physics::BodyDefinition> made =
+        body_of(entity.definition, *entity.attributes, definitions.models.taxonomy());
     if (!made.ok()) return made.error();
-    const auto shape =
-        shapes.take(entity.shape_key, [&] { return bodies.shape(entity.definition, *entity.attributes); });
+    const auto shape = shapes.take(entity.shape_key,
+                                   [&] { return shape_of(entity.definition, *entity.attributes, definitions.models); });
     if (!shape.ok()) return shape.error();
     made.value().shape = entity.shape = shape.value();
     return made;
@@ -72,7 +75,7 @@ Result<void> Simulation::State::put_body(LiveEntity& entity) {
 }
 
 Result<void> Simulation::State::put_points(LiveEntity& entity) {
-    const Result<PointsDefinition> definition = bodies.points(entity.definition, *entity.attributes);
+    const Result<PointsDefinition> definition = definitions.points.definition(entity.definition, *entity.attributes);
     if (!definition.ok()) return definition.error();
     Result<std::unique_ptr<MovingPoints>> points = make_points(*world, liquids, definition.value());
     if (!points.ok()) return points.error();
@@ -146,7 +149,7 @@ Result<void> Simulation::State::update_body(LiveEntity& before, LiveEntity& afte
 
 // The same points go on with other matter; what its pins hold to others stays held where it is.
 Result<void> Simulation::State::update_points(LiveEntity& before, LiveEntity& after) {
-    Result<PointsDefinition> definition = bodies.points(after.definition, *after.attributes);
+    Result<PointsDefinition> definition = definitions.points.definition(after.definition, *after.attributes);
     if (!definition.ok()) return definition.error();
     const bool same_pins = before.definition.pins == after.definition.pins;
     auto* deformable = std::get_if<physics::DeformableDefinition>(&definition.value());

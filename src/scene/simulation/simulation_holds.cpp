@@ -52,7 +52,7 @@ bool is_thin(const LiveEntity& entity) {
 void Simulation::State::find_bodies(const Document& document) {
     for (const SceneJoint& joint : document.joints) to_be_held.insert({joint.entity_b, joint.entity_a.value_or(0)});
     const auto kind_of_entity = [&](const Entity& entity) {
-        const Result<attributes::AttributeSet> set = bodies.attributes(entity);
+        const Result<attributes::AttributeSet> set = definitions.attributes.acting(entity);
         return set.ok() ? kind_of(set.value()) : PhysicalKind::rigid;
     };
     for (const Entity& entity : document.entities) {

@@ -11,7 +11,7 @@
 
 #include "attributes/physical_kind.h"
 #include "scene/document/hold_index.h"
-#include "scene/embody/entity_body.h"
+#include "scene/embody/entity_definitions.h"
 #include "scene/matter/liquids.h"
 #include "scene/matter/moving_points.h"
 #include "scene/simulation/action_runner.h"
@@ -49,12 +49,16 @@ struct TimedForce {
 struct Simulation::State {
     State(std::unique_ptr<physics::World> made, const physics::WorldSettings& asked, catalog::Catalog* catalog,
           std::shared_ptr<FormCache> forms)
-        : world(std::move(made)), settings(asked), bodies(catalog, std::move(forms)), shapes(*world), liquids(*world) {}
+        : world(std::move(made)),
+          settings(asked),
+          definitions(catalog, std::move(forms)),
+          shapes(*world),
+          liquids(*world) {}
 
     std::unique_ptr<physics::World> world;
     physics::WorldSettings settings;  ///< the document's
     double finest_grain = 1e300;      ///< that was ever in this world, m
-    EntityBodies bodies;
+    EntityDefinitions definitions;
     SharedShapes shapes;
     Liquids liquids;
     std::map<EntityIndex, Entity> templates;  ///< the document's entities, for actions that spawn

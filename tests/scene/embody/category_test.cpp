@@ -7,7 +7,6 @@
 #include "attributes/physical_kind.h"
 #include "catalog/catalog.h"
 #include "database/temporary_folder.h"
-#include "scene/embody/entity_body.h"
 #include "scene/sample_documents.h"
 #include "scene/simulation/simulation.h"
 

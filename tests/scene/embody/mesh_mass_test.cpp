@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "attributes/physical_kind.h"
-#include "scene/embody/entity_body.h"
+#include "scene/embody/entity_definitions.h"
 #include "scene/live_scene.h"
 #include "scene/sample_documents.h"
 
@@ -57,12 +57,12 @@ TEST(MeshPrimitive, WeighsWhatTheSameBoxDoesWhateverItIsMadeOf) {
         MeshShape turned = mesh;
         for (auto& triangle : turned.triangles) std::swap(triangle[0], triangle[1]);
         const Document box = a_thing(BoxShape{half}, kind);
-        const auto expected = EntityBodies(nullptr).attributes(box.entities[1]);
+        const auto expected = EntityDefinitions(nullptr).attributes.acting(box.entities[1]);
         const auto of_box = make(box);
         ASSERT_TRUE(expected.ok() && of_box) << to_text(kind);
         for (const MeshShape& shape : {mesh, turned}) {
             const Document document = a_thing(shape, kind);
-            const auto set = EntityBodies(nullptr).attributes(document.entities[1]);
+            const auto set = EntityDefinitions(nullptr).attributes.acting(document.entities[1]);
             ASSERT_TRUE(set.ok()) << to_text(kind);
             const double mass = expected->number("mass", 0);
             EXPECT_NEAR(set->number("mass", 0), mass, 1e-5 * mass) << to_text(kind);
@@ -89,7 +89,7 @@ TEST(MeshPrimitive, ThatIsNotConvexWeighsLessThanItsHull) {
     // Static ones stay what they are.
     Entity fixed;
     fixed.geometry = ShapeDefinition{two};
-    const auto set = EntityBodies(nullptr).attributes(fixed);
+    const auto set = EntityDefinitions(nullptr).attributes.acting(fixed);
     ASSERT_TRUE(set.ok());
     EXPECT_EQ(kind_of(*set), PhysicalKind::static_body);
 }

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "attributes/physical_kind.h"
-#include "scene/embody/entity_body.h"
+#include "scene/embody/entity_definitions.h"
 #include "scene/file/scene_file.h"
 #include "scene/live_scene.h"
 #include "scene/sample_documents.h"
@@ -182,7 +182,7 @@ TEST(ClothEntity, OfEveryShapeTheAttributesAreNumbers) {
             Entity entity;
             entity.geometry = *shape;
             entity.attributes["kind"] = to_value(kind);
-            const auto set = EntityBodies(nullptr).attributes(entity);
+            const auto set = EntityDefinitions(nullptr).attributes.acting(entity);
             ASSERT_TRUE(set) << to_text(kind);
             for (const attributes::AttributeEntry& entry : set->entries()) {
                 const auto* number = std::get_if<double>(&entry.value);
@@ -196,7 +196,7 @@ TEST(ClothEntity, OfEveryShapeTheAttributesAreNumbers) {
     sheet.geometry =
         ShapeDefinition{physics::MeshShape{{{0, 0, 0}, {2, 0, 0}, {2, 0, 1}, {0, 0, 1}}, {{0, 2, 1}, {0, 3, 2}}}};
     sheet.attributes["kind"] = to_value(PhysicalKind::cloth);
-    EXPECT_NEAR(EntityBodies(nullptr).attributes(sheet)->number("mass", 0), 0.4, 1e-9);
+    EXPECT_NEAR(EntityDefinitions(nullptr).attributes.acting(sheet)->number("mass", 0), 0.4, 1e-9);
 }
 
 TEST(ClothEntity, KindChangesWhileItMovesInAllDirections) {

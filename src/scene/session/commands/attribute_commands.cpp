@@ -7,6 +7,7 @@
 #include "attributes/physical_kind.h"
 #include "attributes/registry.h"
 #include "attributes/resolver.h"
+#include "scene/embody/entity_body.h"
 #include "scene/file/json/parts.h"
 #include "scene/session/commands/commands.h"
 
@@ -107,7 +108,7 @@ Result<ActingEntity> acting_entity(SessionState& state, EntityIndex index) {
     if (!entity) entity = state.document.find(index);
     if (!entity) return state.entity(index, "index").error();
     Result<AttributeSet> acting = state.simulation->attributes(index);
-    if (!acting.ok()) acting = state.bodies.attributes(*entity);
+    if (!acting.ok()) acting = state.definitions.attributes.acting(*entity);
     if (!acting.ok()) return acting.error();
     return ActingEntity{entity, std::move(acting).value()};
 }
@@ -122,7 +123,7 @@ Result<json> list_attributes(SessionState& state, const json& params) {
     const Result<ActingEntity> found = acting_entity(state, index);
     if (!found.ok()) return found.error();
     const auto& [entity, acting] = found.value();
-    Result<AttributeSet> automatic = state.bodies.automatic_attributes(*entity);
+    Result<AttributeSet> automatic = state.definitions.attributes.automatic(*entity);
     if (!automatic.ok()) return automatic.error();
     std::vector<std::string> own;
     for (const auto& [name, value] : entity->attributes) own.push_back(name);
@@ -147,7 +148,7 @@ Result<json> tell_collision_shape(SessionState& state, const json& params) {
     if (!found.ok()) return found.error();
     const auto& [entity, acting] = found.value();
     if (kind_of(acting) == attributes::PhysicalKind::visual) return json{{"shape", nullptr}};
-    const Result<physics::ShapeDefinition> shape = state.bodies.shape(*entity, acting);
+    const Result<physics::ShapeDefinition> shape = shape_of(*entity, acting, state.definitions.models);
     if (!shape.ok()) return shape.error();
     return json{{"shape", physics::is_static_only(shape.value()) ? json(nullptr) : shape_to_json(shape.value())}};
 }

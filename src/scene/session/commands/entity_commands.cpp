@@ -21,7 +21,7 @@ Result<std::string> usual_name(SessionState& state, const Entity& entity) {
         name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
         return name;
     }
-    Result<catalog::ModelSummary> model = state.bodies.model(entity);
+    Result<catalog::ModelSummary> model = state.definitions.models.summary_of(entity);
     if (!model.ok()) return model.error();
     return model.value().name;
 }

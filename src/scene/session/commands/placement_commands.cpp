@@ -27,7 +27,7 @@ public:
         Entity still = entity;
         still.enabled = true;
         // What flows or bends is put down as the solid thing that it would be.
-        const Result<attributes::AttributeSet> set = state.bodies.attributes(entity);
+        const Result<attributes::AttributeSet> set = state.definitions.attributes.acting(entity);
         if (set.ok() && changes_form(kind_of(set.value())))
             still.attributes["kind"] = to_value(attributes::PhysicalKind::rigid);
         if (Result<void> added = state.simulation->add(still); !added.ok()) return added;

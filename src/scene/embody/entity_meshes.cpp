@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "scene/embody/entity_meshes.h"
+
+#include "attributes/physical_kind.h"
+#include "scene/embody/entity_body.h"
+#include "scene/embody/shape_surface.h"
+
+namespace embody::scene {
+
+namespace {
+
+bool is_cloth(const attributes::AttributeSet& attributes) {
+    return kind_of(attributes) == attributes::PhysicalKind::cloth;
+}
+
+int count_of(const attributes::AttributeSet& attributes) {
+    return static_cast<int>(is_cloth(attributes) ? attributes.number("cloth_nodes", 1000)
+                                                 : attributes.number("rope_segments", 50));
+}
+
+}  // namespace
+
+Result<const catalog::SoftMesh*> EntityMeshes::soft_mesh(const Entity& entity) {
+    const auto* model = std::get_if<ModelReference>(&entity.geometry);
+    const std::string key = model ? model->key : shape_key(entity, {});
+    auto found = forms_->soft_meshes.find(key);
+    if (key.empty() || found == forms_->soft_meshes.end()) {
+        found = forms_->soft_meshes.insert_or_assign(key, make_soft_mesh(entity)).first;
+        ++forms_->made;
+    }
+    if (!found->second.ok()) return found->second.error();
+    return &found->second.value();
+}
+
+Result<catalog::SoftMesh> EntityMeshes::make_soft_mesh(const Entity& entity) {
+    if (const auto* model = std::get_if<ModelReference>(&entity.geometry)) {
+        const Result<const KnownModel*> known = models_.find(model->key);
+        if (!known.ok()) return known.error();
+        return models_.catalog()->soft_mesh(known.value()->summary.id);
+    }
+    const auto surface = surface_of(std::get<physics::ShapeDefinition>(entity.geometry));
+    if (!surface) return surface.error();
+    return catalog::make_soft_mesh(*surface);
+}
+
+Result<const ThinForm*> EntityMeshes::thin_form(const Entity& entity, const attributes::AttributeSet& attributes) {
+    const auto* model = std::get_if<ModelReference>(&entity.geometry);
+    const std::string key = model ? model->key : shape_key(entity, {});
+    const std::string own = to_text(kind_of(attributes)) + ' ' + std::to_string(count_of(attributes));
+    auto& forms = forms_->thin_forms[key];
+    auto found = forms.find(own);
+    if (key.empty() || found == forms.end()) {
+        found = forms.insert_or_assign(own, make_thin_form(entity, is_cloth(attributes), count_of(attributes))).first;
+    }
+    if (!found->second.ok()) return found->second.error();
+    return &found->second.value();
+}
+
+Result<ThinForm> EntityMeshes::make_thin_form(const Entity& entity, bool is_cloth, int count) {
+    const auto of = [&](const auto& geometry) -> Result<ThinForm> {
+        if (!is_cloth) {
+            Result<LineForm> line = line_of(geometry, count);
+            if (!line.ok()) return line.error();
+            return ThinForm(std::move(line).value());
+        }
+        Result<attributes::SheetMesh> sheet = sheet_of(geometry, count);
+        if (!sheet.ok()) return sheet.error();
+        return ThinForm(std::move(sheet).value());
+    };
+    const auto* model = std::get_if<ModelReference>(&entity.geometry);
+    if (!model) return of(std::get<physics::ShapeDefinition>(entity.geometry));
+    const Result<const KnownModel*> known = models_.find(model->key);
+    if (!known.ok()) return known.error();
+    const Result<geometry::TriangleMesh> surface = models_.catalog()->mesh(known.value()->summary.id);
+    if (!surface.ok()) return surface.error();
+    return of(surface.value());
+}
+
+}  // namespace embody::scene

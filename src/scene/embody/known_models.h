@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "attributes/attribute.h"
+#include "attributes/model_facts.h"
+#include "catalog/catalog.h"
+#include "foundation/result.h"
+#include "scene/document/document.h"
+
+namespace embody::scene {
+
+/// A model of the catalogue as entities need it.
+struct KnownModel {
+    catalog::ModelSummary summary;
+    attributes::ModelFacts facts;
+    attributes::AttributeSet attributes;
+};
+
+/// The models of the catalogue that entities name, looked up once each.
+class KnownModels {
+public:
+    /// `catalog` may be null, then no model is known; it outlives this.
+    explicit KnownModels(catalog::Catalog* catalog) : catalog_(catalog) {}
+
+    /// Valid until it is forgotten.
+    Result<const KnownModel*> find(const std::string& key);
+    /// Of an entity; fails for what is not a model.
+    Result<catalog::ModelSummary> summary_of(const Entity& entity);
+    void forget(const std::string& key) { models_.erase(key); }
+
+    /// Null without one.
+    [[nodiscard]] catalog::Catalog* catalog() const { return catalog_; }
+    /// The catalogue's; null without one.
+    [[nodiscard]] const attributes::Taxonomy* taxonomy() const { return catalog_ ? &catalog_->taxonomy() : nullptr; }
+
+private:
+    catalog::Catalog* catalog_;
+    std::map<std::string, KnownModel> models_;
+};
+
+}  // namespace embody::scene
