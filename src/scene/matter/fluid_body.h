@@ -21,9 +21,8 @@ public:
     void read(std::vector<Vec3>& positions) const override;
     [[nodiscard]] double radius() const override;  ///< of a ball of a particle's volume
     [[nodiscard]] bool is_liquid() const override { return true; }
-    [[nodiscard]] physics::FluidHandle fluid() const override {
-        return share_ ? share_->fluid : physics::FluidHandle{};
-    }
+    /// The fluid of the world that its particles are of; null while it is disabled.
+    [[nodiscard]] physics::FluidHandle fluid() const { return share_ ? share_->fluid : physics::FluidHandle{}; }
     [[nodiscard]] physics::SleepState state() const override;
     [[nodiscard]] Vec3 center_of_mass() const override;
     [[nodiscard]] double mass() const override;
@@ -33,7 +32,6 @@ public:
     /// Liquid runs through a hand: none.
     [[nodiscard]] physics::BodyHandle hold(Vec3) override { return {}; }
     [[nodiscard]] Vec3 linear_velocity() const override;
-    [[nodiscard]] Vec3 angular_velocity() const override { return {}; }
     /// Other matter.
     Result<void> set_definition(const PointsDefinition& definition) override;
     Result<void> move(const Transform& motion) override;
@@ -60,5 +58,8 @@ private:
     Liquids::Share* share_ = nullptr;  ///< null while it is disabled
     std::vector<Particle> kept_;       ///< while it is disabled
 };
+
+/// Null for what is no liquid, and for nothing.
+inline const FluidBody* as_liquid(const MovingPoints* points) { return dynamic_cast<const FluidBody*>(points); }
 
 }  // namespace embody::scene

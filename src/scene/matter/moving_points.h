@@ -10,7 +10,6 @@
 #include "math/transform.h"
 #include "physics/inter/world.h"
 #include "scene/embody/points_definition.h"
-#include "scene/matter/slack_line.h"
 
 namespace embody::scene {
 
@@ -22,15 +21,8 @@ struct SurfaceHit {
 
 class Liquids;
 
-/// What holds the nodes of what is deformable, besides pins.
-struct Holds {
-    std::vector<physics::Attachment> attachments;
-    std::vector<physics::Clamp> clamps;
-    std::vector<physics::Tie> ties;  ///< of cloth and ropes
-};
-
 /// What stands for an entity that is not one body: many points, whatever physics moves them. The world that they are in
-/// outlives them; the destructor takes them out of it.
+/// outlives them; the destructor takes them out of it. What only one kind can is its own: SoftNodes, FluidBody.
 class MovingPoints {
 public:
     MovingPoints() = default;
@@ -44,16 +36,6 @@ public:
     [[nodiscard]] virtual double radius() const = 0;
     /// They are drawn as one liquid, each a ball of its volume.
     [[nodiscard]] virtual bool is_liquid() const { return false; }
-    /// The fluid of the world that they are particles of; null: none.
-    [[nodiscard]] virtual physics::FluidHandle fluid() const { return {}; }
-    /// What carries a drawn form, at rest; null where nothing does.
-    [[nodiscard]] virtual const physics::DeformableDefinition* deformable() const { return nullptr; }
-    /// Of what is deformable(), for ties to it.
-    [[nodiscard]] virtual physics::DeformableHandle handle() const { return {}; }
-    /// Of a rope: segment k is between the points k and k + 1.
-    [[nodiscard]] virtual std::vector<std::uint32_t> broken_segments() const { return {}; }
-    /// Of the entity's frame, where they are a thing that still has one.
-    [[nodiscard]] virtual std::optional<Transform> pose() const { return std::nullopt; }
     [[nodiscard]] virtual Vec3 linear_velocity() const = 0;  ///< of the centre of mass, m/s
     /// Of the rigid thing with as much angular momentum, rad/s.
     [[nodiscard]] virtual Vec3 angular_velocity() const { return {}; }
@@ -76,14 +58,6 @@ public:
     /// Other matter, masses, damping and the like of the same points; they stay where they are and go on as they move.
     /// The definition is of their own kind and has as many.
     virtual Result<void> set_definition(const PointsDefinition& definition) = 0;
-    /// Where a slack rope begins, between the nodes that pins hold at these places: as arcs that no body stands in.
-    /// Only once, when everything around it is there.
-    virtual Result<void> hang(std::vector<HeldNode>) { return {}; }
-    /// Holds some to bodies and to others that are deformable(), and a rope's directions at bodies or where it is
-    /// pinned, besides those that a hand holds; only of what is deformable().
-    virtual Result<void> attach(Holds) { return {}; }
-    /// To what is still there; not those of a hand.
-    [[nodiscard]] virtual Holds holds() const { return {}; }
     /// Carries all of them along as one rigid thing; they are at rest then.
     virtual Result<void> move(const Transform& motion) = 0;
     /// As of one rigid thing that turns about its centre of mass.

@@ -2,11 +2,22 @@
 #pragma once
 
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "physics/inter/world.h"
+#include "scene/matter/deformable_surface.h"
 #include "scene/matter/moving_points.h"
+#include "scene/matter/slack_line.h"
 
 namespace embody::scene {
+
+/// What holds the nodes of what is deformable, besides pins.
+struct Holds {
+    std::vector<physics::Attachment> attachments;
+    std::vector<physics::Clamp> clamps;
+    std::vector<physics::Tie> ties;  ///< of cloth and ropes
+};
 
 /// The nodes of a deformable of the physics: they carry what is drawn.
 class SoftNodes final : public MovingPoints {
@@ -18,12 +29,14 @@ public:
 
     void read(std::vector<Vec3>& positions) const override;
     [[nodiscard]] double radius() const override { return 0; }
-    [[nodiscard]] const physics::DeformableDefinition* deformable() const override;
-    [[nodiscard]] physics::DeformableHandle handle() const override { return handle_; }
-    [[nodiscard]] std::vector<std::uint32_t> broken_segments() const override {
-        return world_.broken_segments(handle_);
-    }
-    [[nodiscard]] std::optional<Transform> pose() const override { return world_.pose(handle_); }
+    /// What carries the drawn form, at rest.
+    [[nodiscard]] const physics::DeformableDefinition& definition() const { return *world_.deformable(handle_); }
+    /// For ties to it.
+    [[nodiscard]] physics::DeformableHandle handle() const { return handle_; }
+    /// Of a rope: segment k is between the points k and k + 1.
+    [[nodiscard]] std::vector<std::uint32_t> broken_segments() const { return world_.broken_segments(handle_); }
+    /// Of the entity's frame.
+    [[nodiscard]] Transform pose() const { return world_.pose(handle_); }
     [[nodiscard]] Vec3 linear_velocity() const override;
     [[nodiscard]] Vec3 angular_velocity() const override;
     [[nodiscard]] physics::SleepState state() const override;
@@ -36,9 +49,14 @@ public:
     [[nodiscard]] physics::BodyHandle hold(Vec3 position) override;
     void let_go() override;
     Result<void> set_definition(const PointsDefinition& definition) override;
-    Result<void> hang(std::vector<HeldNode> held) override;
-    Result<void> attach(Holds holds) override;
-    [[nodiscard]] Holds holds() const override;
+    /// Where a slack rope begins, between the nodes that pins hold at these places: as arcs that no body stands in.
+    /// Only once, when everything around it is there.
+    Result<void> hang(std::vector<HeldNode> held);
+    /// Holds some to bodies and to other deformables, and a rope's directions at bodies or where it is pinned, besides
+    /// those that a hand holds.
+    Result<void> attach(Holds holds);
+    /// To what is still there; not those of a hand.
+    [[nodiscard]] Holds holds() const;
     Result<void> move(const Transform& motion) override;
     Result<void> set_velocity(Vec3 linear, Vec3 angular) override;
     Result<void> apply_impulse(Vec3 impulse) override;
@@ -46,22 +64,23 @@ public:
     Result<void> set_enabled(bool enabled) override;
 
 private:
-    SoftNodes(physics::World& world, physics::DeformableHandle handle) : world_(world), handle_(handle) {}
+    SoftNodes(physics::World& world, physics::DeformableHandle handle, DeformableSurface surface)
+        : world_(world), handle_(handle), surface_(std::move(surface)) {}
     Result<void> apply_holds();
     [[nodiscard]] bool is_blocked(Vec3 place) const;
-    [[nodiscard]] std::optional<SurfaceHit> meet_line(Vec3 origin, Vec3 direction, double most) const;
-    [[nodiscard]] std::optional<SurfaceHit> meet_faces(Vec3 origin, Vec3 direction, double most) const;
 
     physics::World& world_;
     physics::DeformableHandle handle_;
-    std::vector<std::array<std::uint32_t, 3>> faces_;  ///< a solid's outer ones, counter-clockwise from outside, or
-                                                       ///< those of cloth; none of a rope
-    std::vector<std::uint32_t> surface_;               ///< their nodes, ascending
+    DeformableSurface surface_;
     Holds holds_;
     std::vector<physics::Attachment> held_;  ///< by a hand
     bool has_hung_ = false;
     physics::BodyHandle hand_;
     physics::ShapeHandle hand_shape_;
 };
+
+/// Null for grains, liquids, and nothing.
+inline SoftNodes* as_soft(MovingPoints* points) { return dynamic_cast<SoftNodes*>(points); }
+inline const SoftNodes* as_soft(const MovingPoints* points) { return dynamic_cast<const SoftNodes*>(points); }
 
 }  // namespace embody::scene

@@ -9,6 +9,7 @@
 
 #include "attributes/surfaces.h"
 #include "scene/document/document_field.h"
+#include "scene/matter/fluid_body.h"
 #include "scene/matter/liquid_notes.h"
 #include "scene/simulation/simulation_state.h"
 
@@ -34,14 +35,13 @@ std::string name_of(EntityIndex index, const LiveEntity& entity) {
 }
 
 // Those of different fluids that are in each other.
-void add_notes_of_liquids(const std::vector<std::pair<EntityIndex, const LiveEntity*>>& liquids,
+void add_notes_of_liquids(const std::vector<std::pair<std::string, const FluidBody*>>& liquids,
                           std::vector<std::string>& notes) {
     for (std::size_t a = 0; a < liquids.size(); ++a) {
         for (std::size_t b = a + 1; b < liquids.size(); ++b) {
-            const MovingPoints &one = *liquids[a].second->points, &other = *liquids[b].second->points;
+            const FluidBody &one = *liquids[a].second, &other = *liquids[b].second;
             if (one.fluid() == other.fluid() || !share_space(one, other)) continue;
-            notes.push_back(name_of(liquids[b].first, *liquids[b].second) + " is in " +
-                            name_of(liquids[a].first, *liquids[a].second) +
+            notes.push_back(liquids[b].first + " is in " + liquids[a].first +
                             ": liquids of other matter or other cells do not see each other.");
         }
     }
@@ -157,10 +157,11 @@ std::vector<std::string> Simulation::notes() const {
     // Things of one name are told of together, where the first of them stands.
     std::vector<std::pair<std::string, int>> told;
     std::unordered_map<std::string, std::size_t> places;
-    std::vector<std::pair<EntityIndex, const LiveEntity*>> liquids;
+    std::vector<std::pair<std::string, const FluidBody*>> liquids;
     for (const EntityIndex index : state_->remarkable) {
         const LiveEntity& entity = state_->live.at(index);
-        if (entity.points && !entity.points->fluid().is_null()) liquids.emplace_back(index, &entity);
+        const FluidBody* liquid = as_liquid(entity.points.get());
+        if (liquid && !liquid->fluid().is_null()) liquids.emplace_back(name_of(index, entity), liquid);
         if (entity.form.note.empty()) continue;
         const std::string note = name_of(index, entity) + " " + entity.form.note;
         const auto [place, is_new] = places.emplace(note, told.size());

@@ -6,7 +6,9 @@
 #include "physics/definitions/grain_material.h"
 #include "scene/document/document_field.h"
 #include "scene/embody/entity_body.h"
+#include "scene/matter/fluid_body.h"
 #include "scene/matter/liquid_notes.h"
+#include "scene/matter/soft_nodes.h"
 #include "scene/simulation/simulation_state.h"
 
 namespace embody::scene {
@@ -118,7 +120,8 @@ Result<void> Simulation::State::add(const Entity& entity) {
 }
 
 Transform Simulation::State::pose_of(const LiveEntity& entity) const {
-    return entity.points ? entity.points->pose().value_or(entity.frame) : world->pose(entity.body);
+    if (const SoftNodes* soft = as_soft(entity.points.get())) return soft->pose();
+    return entity.points ? entity.frame : world->pose(entity.body);
 }
 
 // Of its centre of mass, and its spin.
@@ -154,7 +157,7 @@ Result<void> Simulation::State::update_points(LiveEntity& before, LiveEntity& af
     const bool same_pins = before.definition.pins == after.definition.pins;
     auto* deformable = std::get_if<physics::DeformableDefinition>(&definition.value());
     if (deformable && same_pins) {
-        Holds held = before.points->holds();
+        Holds held = as_soft(before.points.get())->holds();
         deformable->attachments = std::move(held.attachments);
         deformable->clamps = std::move(held.clamps);
         deformable->ties = std::move(held.ties);
@@ -247,8 +250,8 @@ void Simulation::State::remove_all(const std::vector<EntityIndex>& gone) {
 }
 
 void Simulation::State::list_remarkable(const LiveEntity& entity) {
-    const bool is_liquid = entity.points && !entity.points->fluid().is_null();
-    if (is_liquid || !entity.form.note.empty())
+    const FluidBody* liquid = as_liquid(entity.points.get());
+    if ((liquid && !liquid->fluid().is_null()) || !entity.form.note.empty())
         remarkable.insert(entity.definition.index);
     else
         remarkable.erase(entity.definition.index);

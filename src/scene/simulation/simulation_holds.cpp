@@ -4,6 +4,7 @@
 
 #include "attributes/physical_kind.h"
 #include "scene/document/document_field.h"
+#include "scene/matter/soft_nodes.h"
 #include "scene/simulation/simulation_state.h"
 
 namespace embody::scene {
@@ -43,8 +44,8 @@ bool may_tie(PhysicalKind one, PhysicalKind other) {
 }
 
 bool is_thin(const LiveEntity& entity) {
-    const physics::DeformableDefinition* deformable = entity.points ? entity.points->deformable() : nullptr;
-    return deformable && !std::holds_alternative<physics::SoftSolid>(deformable->matter);
+    const SoftNodes* soft = as_soft(entity.points.get());
+    return soft && !std::holds_alternative<physics::SoftSolid>(soft->definition().matter);
 }
 
 }  // namespace
@@ -76,12 +77,13 @@ void Simulation::State::tie_pins(const LiveEntity& entity, std::vector<bool>& is
     entity.points->read(positions);
     for (const EntityIndex index : holds.pinned_to(entity.definition.index)) {
         const LiveEntity& other = live.at(index);
-        if (!other.points || !other.points->deformable() || is_thin(other)) continue;
+        const SoftNodes* soft = as_soft(other.points.get());
+        if (!soft || is_thin(other)) continue;
         for (Pin pin : other.definition.pins) {
             if (pin.to != entity.definition.index) continue;
             pin.position = transform_point(pose_of(other), pin.position);
             for (const std::uint32_t node : pinned_nodes(pin, positions)) {
-                const auto tie = world->nearest_tie(node, other.points->handle(), positions[node]);
+                const auto tie = world->nearest_tie(node, soft->handle(), positions[node]);
                 if (is_held[node] || !tie) continue;
                 is_held[node] = true;
                 ties.push_back(*tie);
@@ -91,16 +93,17 @@ void Simulation::State::tie_pins(const LiveEntity& entity, std::vector<bool>& is
 }
 
 Result<void> Simulation::State::fasten(const LiveEntity& entity) {
-    const physics::DeformableDefinition* deformable = entity.points ? entity.points->deformable() : nullptr;
-    if (!deformable) return {};
+    SoftNodes* soft = as_soft(entity.points.get());
+    if (!soft) return {};
+    const physics::DeformableDefinition* deformable = &soft->definition();
     Holds held_now;
     const bool is_rope = std::holds_alternative<physics::Rope>(deformable->matter);
     std::vector<bool> is_held(deformable->nodes.size(), false), is_clamped = is_held;
     for (const std::uint32_t node : deformable->pinned) is_held[node] = true;
     const std::vector<HeldNode> at = held_nodes(entity.definition, *deformable);
-    if (Result<void> hung = entity.points->hang(at); !hung.ok()) return of_entity(entity.definition, hung.error());
+    if (Result<void> hung = soft->hang(at); !hung.ok()) return of_entity(entity.definition, hung.error());
     std::vector<Vec3> positions;
-    entity.points->read(positions);
+    soft->read(positions);
     for (std::size_t i = 0; i < entity.definition.pins.size(); ++i) {
         const Pin& pin = entity.definition.pins[i];
         const std::vector<std::uint32_t> nodes = pinned_nodes(pin, deformable->nodes);
@@ -118,9 +121,10 @@ Result<void> Simulation::State::fasten(const LiveEntity& entity) {
         const LiveEntity* other = find(*pin.to);
         const std::string where = "pins[" + std::to_string(i) + "].to";
         if (!other) return of_entity(entity.definition, {where, "entity " + std::to_string(*pin.to) + " is not there"});
-        if (other->points && is_thin(entity) && other->points->deformable()) {
+        const SoftNodes* holder = as_soft(other->points.get());
+        if (holder && is_thin(entity)) {
             for (const std::uint32_t node : nodes) {
-                const auto tie = world->nearest_tie(node, other->points->handle(), positions[node]);
+                const auto tie = world->nearest_tie(node, holder->handle(), positions[node]);
                 if (is_held[node] || !tie) continue;
                 is_held[node] = true;
                 held_now.ties.push_back(*tie);
@@ -139,7 +143,7 @@ Result<void> Simulation::State::fasten(const LiveEntity& entity) {
         }
     }
     if (is_thin(entity)) tie_pins(entity, is_held, held_now.ties);
-    return entity.points->attach(std::move(held_now));
+    return soft->attach(std::move(held_now));
 }
 
 Result<void> Simulation::State::fasten_to(const LiveEntity& entity, const std::vector<Pin>& before, bool is_new) {

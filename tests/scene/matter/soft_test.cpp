@@ -11,6 +11,7 @@
 #include "scene/embody/shape_surface.h"
 #include "scene/file/scene_file.h"
 #include "scene/live_scene.h"
+#include "scene/matter/soft_nodes.h"
 #include "scene/sample_documents.h"
 #include "scene/session/session.h"
 #include "scene/simulation/simulation.h"
@@ -66,7 +67,7 @@ TEST(Soft, WeighsWhatItsMassSaysAndFallsAsAnythingDoes) {
     EXPECT_TRUE(simulation->body(cushion).is_null());
     EXPECT_NEAR(points->mass(), 1, 1e-9);
     EXPECT_EQ(points->radius(), 0) << "nodes are not drawn themselves";
-    EXPECT_GE(points->deformable()->nodes.size(), 100u);
+    EXPECT_GE(as_soft(points)->definition().nodes.size(), 100u);
     step(*simulation, 30);
     EXPECT_NEAR(points->center_of_mass().y, 5 - 9.81 / 8, 1e-3);
     EXPECT_NEAR(simulation->pose(cushion).position.y, 5 - 9.81 / 8, 1e-3) << "its frame goes with it";
@@ -191,7 +192,7 @@ TEST(Soft, WhatIsFlatIsComputedCoarselyAndSaysSo) {
     const auto simulation = make(document);
     ASSERT_TRUE(simulation);
     ASSERT_TRUE(simulation->points(cushion));
-    EXPECT_LT(simulation->points(cushion)->deformable()->nodes.size(), 1000u);
+    EXPECT_LT(as_soft(simulation->points(cushion))->definition().nodes.size(), 1000u);
     ASSERT_EQ(simulation->notes().size(), 1u);
     EXPECT_NE(simulation->notes()[0].find("4 times as wide as thick"), std::string::npos) << simulation->notes()[0];
     step(*simulation, 60);
@@ -203,7 +204,7 @@ TEST(SoftPins, HoldItInTheWorldAndToOtherThings) {
     document.entities[1].pins = {{{0.2, 0.1, 0.2}, 0.05, {}}, {{-0.2, 0.1, 0.2}, 0.0, {}}};
     const auto simulation = make(document);
     ASSERT_TRUE(simulation);
-    const auto& held = simulation->points(cushion)->deformable()->pinned;
+    const auto& held = as_soft(simulation->points(cushion))->definition().pinned;
     ASSERT_GE(held.size(), 2u);
     const std::vector<Vec3> before = points_of(*simulation);
     step(*simulation, 60);

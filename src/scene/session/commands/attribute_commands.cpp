@@ -9,6 +9,7 @@
 #include "attributes/resolver.h"
 #include "scene/embody/entity_body.h"
 #include "scene/file/json/parts.h"
+#include "scene/matter/soft_nodes.h"
 #include "scene/session/commands/commands.h"
 
 namespace embody::scene {
@@ -168,18 +169,18 @@ Result<json> tell_simulation_mesh(SessionState& state, const json& params) {
     EntityIndex index = 0;
     need_index(reader, "index", index);
     if (!reader.finish()) return *error;
-    const MovingPoints* points = state.simulation->points(index);
-    const physics::DeformableDefinition* form = points ? points->deformable() : nullptr;
-    if (!form) return json{{"mesh", nullptr}};
+    const SoftNodes* soft = as_soft(state.simulation->points(index));
+    if (!soft) return json{{"mesh", nullptr}};
+    const physics::DeformableDefinition& form = soft->definition();
     json mesh = {{"nodes", json::array()}};
-    for (const Vec3 node : form->nodes)
+    for (const Vec3 node : form.nodes)
         for (const double number : {node.x, node.y, node.z}) mesh["nodes"].push_back(number);
-    if (const auto* solid = std::get_if<physics::SoftSolid>(&form->matter))
+    if (const auto* solid = std::get_if<physics::SoftSolid>(&form.matter))
         mesh["tetrahedra"] = corners_of(solid->tetrahedra);
-    else if (const auto* cloth = std::get_if<physics::Cloth>(&form->matter))
+    else if (const auto* cloth = std::get_if<physics::Cloth>(&form.matter))
         mesh["triangles"] = corners_of(cloth->triangles);
     else
-        mesh["broken"] = points->broken_segments();
+        mesh["broken"] = soft->broken_segments();
     return json{{"mesh", std::move(mesh)}};
 }
 
