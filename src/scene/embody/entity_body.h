@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "attributes/attribute.h"
+#include "foundation/result.h"
+#include "physics/definitions/body_definition.h"
+#include "physics/definitions/shape_definition.h"
+#include "scene/document/document.h"
+#include "scene/embody/known_models.h"
+
+namespace embody::scene {
+
+// Bodies of entities, from their attributes as they act.
+
+/// Everything but the shape's handle. What is only drawn becomes a disabled static body. `taxonomy` may be null.
+Result<physics::BodyDefinition> body_of(const Entity& entity, const attributes::AttributeSet& attributes,
+                                        const attributes::Taxonomy* taxonomy);
+Result<physics::ShapeDefinition> shape_of(const Entity& entity, const attributes::AttributeSet& attributes,
+                                          KnownModels& models);
+/// Entities with the same key have the same shape; empty: nobody else has it.
+std::string shape_key(const Entity& entity, const attributes::AttributeSet& attributes);
+
+}  // namespace embody::scene

@@ -2,14 +2,9 @@
 #include "scene/session/session_state.h"
 
 #include <algorithm>
-#include <array>
 #include <nlohmann/json.hpp>
 
-#include "attributes/form.h"
-
 #include "attributes/physical_kind.h"
-#include "scene/file/json/fields_json.h"
-#include "scene/file/json/parts.h"
 #include "scene/file/scene_file.h"
 #include "scene/session/catalog_edit.h"
 
@@ -20,37 +15,6 @@ using nlohmann::json;
 namespace {
 
 constexpr std::size_t timed_steps = 120;
-/// Of one command or step: a hundred thousand steps with actions on every contact would fill the memory.
-constexpr std::size_t most_told_actions = 1000;
-
-// What to say of each limit of a step.
-struct LimitText {
-    physics::StepLimit limit;
-    const char* text;
-};
-constexpr std::array<LimitText, 9> limit_texts = {{
-    {physics::StepLimit::linear_speed_clamped,
-     "Something was faster than the scene's greatest speed and was slowed down."},
-    {physics::StepLimit::angular_speed_clamped,
-     "Something turned faster than the scene's greatest angular speed and was slowed down."},
-    {physics::StepLimit::too_many_pairs, "So many things are in each other that some do not see each other."},
-    {physics::StepLimit::not_finite_body_frozen,
-     "Something's motion left the finite numbers; it was frozen where it was."},
-    {physics::StepLimit::not_finite_deformable_frozen,
-     "A soft thing's motion left the finite numbers; it was frozen where it was."},
-    {physics::StepLimit::not_finite_fluid_frozen,
-     "A liquid's motion left the finite numbers; it was frozen where it was."},
-    {physics::StepLimit::fluid_particles_lost,
-     "Liquid ran so far away that it was taken out; a floor or walls keep it."},
-    {physics::StepLimit::impact_rounds_exhausted,
-     "An impact was too complicated for one step; a smaller time step helps."},
-    {physics::StepLimit::deep_penetration, "Things overlap deeply; place them apart or use a smaller time step."},
-}};
-
-const char* state_name(PlayState state) {
-    return state == PlayState::stopped ? "stopped" : state == PlayState::playing ? "playing" : "paused";
-}
-
 }  // namespace
 
 Document new_document(const std::string& title) {
@@ -87,17 +51,6 @@ Result<void> SessionState::rebuild_simulation() {
     return {};
 }
 
-json SessionState::simulation_json() const {
-    const physics::StepReport& report = simulation->world().last_report();
-    return {{"state", state_name(play_state)}, {"time", report.time}, {"step", report.step}};
-}
-
-json SessionState::simulation_event() const {
-    json message = simulation_json();
-    message["event"] = "simulation";
-    return message;
-}
-
 void SessionState::set_play_state(PlayState state) {
     if (state == play_state) return;
     play_state = state;
@@ -113,100 +66,6 @@ void SessionState::step() {
     if (step_times.size() > timed_steps) step_times.pop_front();
     tell_step();
     if (simulation->pause_requested()) set_play_state(PlayState::paused);
-}
-
-void SessionState::tell_step() {
-    // What actions did.
-    for (const EntityIndex index : simulation->spawned()) {
-        const Entity* entity = simulation->definition(index);
-        if (entity) tell({{"event", "spawned"}, {"entity", entity_to_json(*entity)}});
-    }
-    for (const EntityIndex index : simulation->despawned()) tell({{"event", "despawned"}, {"index", index}});
-    for (const ActionFired& fired : simulation->fired()) {
-        if (++events.actions > most_told_actions) continue;
-        tell({{"event", "action"},
-              {"name", fired.name},
-              {"id", fired.id},
-              {"sender", fired.sender},
-              {"receiver", fired.receiver}});
-    }
-
-    for (const physics::RopeBreakEvent& broke : simulation->rope_breaks()) {
-        const auto index = static_cast<EntityIndex>(broke.user_data);
-        const Entity* entity = simulation->definition(index);
-        const std::string who = entity && !entity->name.empty() ? entity->name : "Entity " + std::to_string(index);
-        tell({{"event", "rope_broke"},
-              {"index", index},
-              {"segment", broke.segment},
-              {"tension", broke.tension},
-              {"position", vector_to_json(broke.position)}});
-        // Of one that goes on breaking the first place says enough.
-        if (told_problems.insert(who + " broke").second)
-            tell_message("warning", who + " broke at a tension of " + attributes::short_number(broke.tension) + " N.");
-    }
-
-    // The same complaint once a run.
-    for (const Error& problem : simulation->problems())
-        if (told_problems.insert(problem.message()).second) tell_message("warning", problem.message());
-    const std::uint32_t limits = simulation->world().last_report().limits;
-    for (const LimitText& row : limit_texts) {
-        const auto bit = static_cast<std::uint32_t>(row.limit);
-        if ((limits & bit) == 0 || (told_limits & bit) != 0) continue;
-        told_limits |= bit;
-        tell_message("warning", row.text);
-    }
-}
-
-// Messages
-// -------------------------------------------------------------------------------------------------------------
-
-void SessionState::tell_message(const char* level, std::string text) {
-    tell({{"event", "message"}, {"level", level}, {"text", std::move(text)}});
-}
-
-void SessionState::tell_document(json changes) {
-    {
-        const std::lock_guard lock(rescue_mutex);
-        ++revision;
-    }
-    const auto label = [](const Edit* edit) { return edit ? json(edit->label) : json(nullptr); };
-    tell({{"event", "document"},
-          {"revision", revision},
-          {"changes", std::move(changes)},
-          {"undo", label(history.undoable())},
-          {"redo", label(history.redoable())},
-          {"unsaved", !history.is_saved()},
-          {"name", name}});
-    tell_notes();
-}
-
-void SessionState::tell_notes() {
-    for (const std::string& note : simulation->notes())
-        if (told_notes.insert(note).second) tell_message("warning", note);
-}
-
-json SessionState::change_json(const Change& change) const {
-    if (const auto* entity = std::get_if<EntityChange>(&change)) {
-        if (!entity->after) return {{"op", "entity_removed"}, {"index", entity->before->index}};
-        return {{"op", "entity"}, {"entity", entity_to_json(*document.find(entity->after->index))}};
-    }
-    if (const auto* pose = std::get_if<PoseChange>(&change))
-        return {{"op", "entity"}, {"entity", entity_to_json(*document.find(pose->index))}};
-    if (const auto* joint = std::get_if<JointChange>(&change)) {
-        if (!joint->after) return {{"op", "joint_removed"}, {"index", joint->before->index}};
-        return {{"op", "joint"}, {"joint", joint_to_json(*joint->after)}};
-    }
-    if (const auto* action = std::get_if<ActionChange>(&change)) {
-        if (!action->after) return {{"op", "action_removed"}, {"index", action->before->id}};
-        return {{"op", "action"}, {"action", action_to_json(*action->after)}};
-    }
-    // The heading's fields and those of its settings side by side, as scene.settings takes them.
-    json heading = json::object();
-    write_all_fields<Heading>(heading, document);
-    json settings = std::move(heading["settings"]);
-    heading.erase("settings");
-    settings.update(heading);
-    return {{"op", "settings"}, {"settings", std::move(settings)}};
 }
 
 // Edits
@@ -428,7 +287,5 @@ std::string SessionState::called(const std::vector<EntityIndex>& indices) const 
     if (!entity || entity->name.empty()) return "entity " + std::to_string(indices.front());
     return entity->name;
 }
-
-void SessionState::tell(nlohmann::json message) { events.messages.push_back(std::move(message)); }
 
 }  // namespace embody::scene
