@@ -80,7 +80,7 @@ void PressureSystem::build(FluidGrid& grid, TaskPool& workers) {
     });
     factor();
     make_strips(grid, blocks_ > 1 ? workers.workers() : 1);
-    bodies_.clear();
+    set_bodies({}, 0);
 }
 
 // Two strips of tiles along one axis, layers along another: those in which there are most tiles.

@@ -26,7 +26,7 @@ public:
     /// θ of the face between two cells, one of which is liquid, the other air.
     [[nodiscard]] static float gap_share(float inside, float outside);
 
-    /// The bodies that take part: adds `scale` J M⁻¹ Jᵀ. None: the liquid alone.
+    /// The bodies that take part: adds `scale` J M⁻¹ Jᵀ. None, as after build(): the liquid alone.
     void set_bodies(std::span<const MovingObstacle> bodies, double scale);
     /// Starts from x. Stops at residuals (largest component) below `tolerance`. Returns the iterations; most + 1 where
     /// they did not suffice.
