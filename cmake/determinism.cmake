@@ -2,3 +2,4 @@
 # in other builds, so contraction is off everywhere; no -ffast-math, ever.
 add_compile_options(-ffp-contract=off -fno-math-errno)
 add_compile_definitions($<$<CONFIG:Debug,RelWithDebInfo>:EMBODY_ASSERTIONS>)
+add_compile_definitions($<$<OR:$<CONFIG:Debug>,$<BOOL:${EMBODY_FUZZ_COVERAGE}>>:EMBODY_VALIDATION>)

@@ -4,8 +4,10 @@
 #include <chrono>
 #include <optional>
 
+#include "foundation/validate.h"
 #include "physics/stages/rigid/roll_balls.h"
 #include "physics/stages/stages.h"
+#include "physics/state/validate.h"
 #include "physics/state/world_state.h"
 #include "physics/step/report.h"
 
@@ -71,6 +73,7 @@ void step(WorldState& world) {
     write_report(ReportAccess(world));             // events, counts
     if (world.ledger) world.report.account = world.ledger->finish();
     world.report.milliseconds = milliseconds_since(start);
+    EMBODY_VALIDATE(validate(world));
 }
 
 }  // namespace embody::physics::step

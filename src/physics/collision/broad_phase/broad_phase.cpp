@@ -328,6 +328,11 @@ bool BroadPhase::holds(std::uint32_t body, const Bounds& bounds, Vec3 expected_m
     return fat.contains(bounds) && contains(largest, fat.bounds());
 }
 
+bool BroadPhase::covers(std::uint32_t body, const Bounds& bounds) const {
+    if (body >= state_->proxies.size() || !state_->proxies[body].used) return false;
+    return state_->proxies[body].fat.contains(bounds);
+}
+
 void BroadPhase::move(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion) {
     State& s = *state_;
     EMBODY_ASSERT(body < s.proxies.size() && s.proxies[body].used);

@@ -28,6 +28,9 @@ public:
     /// Whether move() would change nothing. May be asked by several threads.
     [[nodiscard]] bool holds(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion) const;
 
+    /// Whether the body is one of the proxies and its enlarged bounds contain these.
+    [[nodiscard]] bool covers(std::uint32_t body, const Bounds& bounds) const;
+
     struct Pair {
         std::uint32_t a = 0, b = 0;  ///< a < b
         friend auto operator<=>(const Pair&, const Pair&) = default;
