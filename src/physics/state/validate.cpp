@@ -102,8 +102,12 @@ Result<void> validate_awake(const WorldState& world) {
 Result<void> validate_contact(const WorldState& world, const Contact& contact, const std::string& where) {
     const RigidState& rigid = world.rigid;
     if (contact.a >= contact.b) return Error{where, "is not between a body and one of a higher slot"};
+    if (!rigid.is_used(contact.a) || !rigid.is_used(contact.b)) return Error{where, "is of a body that is not there"};
     if (!is_enabled(rigid, contact.a) || !is_enabled(rigid, contact.b)) {
-        return Error{where, "is of a body that is not there"};
+        // One that was frozen in this step leaves its contacts with the next.
+        constexpr auto frozen = static_cast<std::uint32_t>(StepLimit::not_finite_body_frozen);
+        if ((world.report.limits & frozen) != 0) return {};
+        return Error{where, "is of a disabled body"};
     }
     if (contact.count == 0 || contact.count > contact.points.size()) return Error{where, "has no points, or too many"};
     if (!embody::is_finite(Vec3(contact.normal)) || std::fabs(length_squared(Vec3(contact.normal)) - 1) > 1e-4) {
