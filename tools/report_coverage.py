@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Prints which lines and branches of src/ ran, by folder, from the counters of a build with EMBODY_COVERAGE.
+
+Usage: report_coverage.py BUILD [FOLDER…]     FOLDER: of src/, for example physics or physics/fluid; default: all of it
+Counters of all runs since they were last removed (find BUILD -name '*.gcda' -delete) add up. A line or branch that several translation units
+have, as of a header, counts once, and ran if it did in any of them. Branches are counted without those that exceptions take. Sources that
+were compiled, but of which nothing ran, count with nothing run.
+"""
+import argparse
+import collections
+import concurrent.futures
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+
+def read_notes(notes: pathlib.Path) -> list:
+    """What gcov says of one translation unit: its files with lines and branches."""
+    with tempfile.TemporaryDirectory() as scratch:
+        # Without counters gcov reads the notes alone: nothing ran.
+        result = subprocess.run(["gcov", "--json-format", "--stdout", "--branch-probabilities", str(notes)], cwd=scratch,
+                                capture_output=True, check=False)
+    files = []
+    for line in result.stdout.splitlines():
+        if line.startswith(b"{"):
+            files += json.loads(line)["files"]
+    return files
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("folders", nargs="*", default=[""])
+    options = parser.parse_args()
+    source = pathlib.Path(__file__).resolve().parent.parent / "src"
+    notes = sorted(options.build.rglob("*.gcno"))
+    if not notes:
+        print(f"{options.build} has no counters: build it with the preset `coverage`")
+        return 1
+
+    # By file: whether each line ran; by line and number of the branch: whether it did.
+    lines, branches = collections.defaultdict(dict), collections.defaultdict(dict)
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for files in pool.map(read_notes, notes):
+            for file in files:
+                path = pathlib.Path(os.path.normpath(options.build.resolve() / file["file"]))
+                if not path.is_relative_to(source):
+                    continue
+                name = path.relative_to(source).as_posix()
+                for line in file["lines"]:
+                    number = line["line_number"]
+                    lines[name][number] = lines[name].get(number, False) or line["count"] > 0
+                    taken = [branch for branch in line["branches"] if not branch["throw"]]
+                    for i, branch in enumerate(taken):
+                        key = (number, i)
+                        branches[name][key] = branches[name].get(key, False) or branch["count"] > 0
+
+    def row(title: str, names: list) -> None:
+        ran = sum(sum(lines[name].values()) for name in names)
+        count = sum(len(lines[name]) for name in names)
+        taken = sum(sum(branches[name].values()) for name in names)
+        ways = sum(len(branches[name]) for name in names)
+        print(f"{title:36} {ran:7} of {count:7} lines {100 * ran / max(count, 1):5.1f} %   "
+              f"{taken:7} of {ways:7} branches {100 * taken / max(ways, 1):5.1f} %")
+
+    for wanted in options.folders:
+        names = [name for name in lines if name.startswith(wanted)]
+        by_folder = collections.defaultdict(list)
+        for name in names:
+            by_folder[name.rsplit("/", 1)[0]].append(name)
+        for folder in sorted(by_folder):
+            row(folder, by_folder[folder])
+        row(f"src/{wanted}", names)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
