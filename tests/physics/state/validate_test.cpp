@@ -14,6 +14,12 @@
 #include "physics/stages/fluid/fluids.h"
 #include "physics/stages/rigid/body_setup.h"
 #include "physics/stages/rigid/wake.h"
+#include "physics/state/activity_state.h"
+#include "physics/state/contact_state.h"
+#include "physics/state/event_state.h"
+#include "physics/state/fluid_record.h"
+#include "physics/state/fluid_state.h"
+#include "physics/state/joint_state.h"
 #include "physics/state/world_state.h"
 #include "physics/step/step.h"
 
