@@ -37,6 +37,7 @@ def main() -> int:
     parser.add_argument("folders", nargs="*", default=[""])
     options = parser.parse_args()
     source = pathlib.Path(__file__).resolve().parent.parent / "src"
+    options.build = options.build.resolve()
     notes = sorted(options.build.rglob("*.gcno"))
     if not notes:
         print(f"{options.build} has no counters: build it with the preset `coverage`")
@@ -47,7 +48,7 @@ def main() -> int:
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for files in pool.map(read_notes, notes):
             for file in files:
-                path = pathlib.Path(os.path.normpath(options.build.resolve() / file["file"]))
+                path = pathlib.Path(os.path.normpath(options.build / file["file"]))
                 if not path.is_relative_to(source):
                     continue
                 name = path.relative_to(source).as_posix()

@@ -150,7 +150,8 @@ Result<void> validate_summaries(const WorldState& world) {
 }
 
 Result<void> validate_sleepers(const WorldState& world) {
-    std::vector<std::uint8_t> is_listed(world.rigid.bodies.slot_count(), 0);
+    thread_local std::vector<std::uint8_t> is_listed;  // kept, as steady steps allocate nothing
+    is_listed.assign(world.rigid.bodies.slot_count(), 0);
     for (const auto& [group, sleepers] : world.activity.sleepers) {
         const std::string name = element("sleepers", group);
         if (sleepers.bodies.empty()) return Error{name, "is empty"};
@@ -175,7 +176,8 @@ Result<void> validate_sleepers(const WorldState& world) {
 
 Result<void> validate_islands(const WorldState& world) {
     const Islands& islands = world.islands;
-    std::vector<std::uint32_t> bodies = islands.bodies;
+    thread_local std::vector<std::uint32_t> bodies;
+    bodies.assign(islands.bodies.begin(), islands.bodies.end());
     std::ranges::sort(bodies);
     if (std::ranges::adjacent_find(bodies) != bodies.end()) return Error{"islands", "share a body"};
     std::uint32_t first = 0;
