@@ -212,6 +212,9 @@ private:
         c.app->add_flag("--contacts", c.into->contacts, "Record contacts with impulses");
         c.app->add_flag("--energy", c.into->energy,
                         "Say at the end what changed the bodies' energy, and record energy and momenta");
+        c.app->add_option("--trace", c.into->trace,
+                          "File for when each stage of each step began and ended on which thread, for chrome://tracing "
+                          "or ui.perfetto.dev");
         add_json(c);
     }
     void add_check() {

@@ -82,6 +82,7 @@ struct SimulateArguments {
     std::filesystem::path record;
     double rate = 60;  ///< samples a simulated second
     bool contacts = false, energy = false;
+    std::filesystem::path trace;
     bool json = false;
 };
 struct CheckArguments {

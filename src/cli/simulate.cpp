@@ -10,6 +10,7 @@
 #include "cli/locations.h"
 #include "cli/output.h"
 #include "cli/scene_lookup.h"
+#include "cli/zone_trace.h"
 #include "scene/document/document_field.h"
 #include "scene/simulation/recording.h"
 #include "scene/simulation/simulation.h"
@@ -49,7 +50,45 @@ struct Summary {
     bool paused = false;
     std::size_t actions = 0;
     EnergySummary energy;
-    std::vector<std::string> notes;  ///< what was not simulated as its kind says, at the start
+    std::vector<std::string> notes;   ///< what was not simulated as its kind says, at the start
+    std::uint64_t zones_missing = 0;  ///< in the trace
+};
+
+/// The files that a run writes, as far as they were asked for.
+struct Outputs {
+    std::unique_ptr<scene::Recorder> recorder;
+    std::unique_ptr<ZoneTrace> trace;
+    std::uint64_t zones_missing = 0;
+
+    Result<void> open(const SimulateArguments& arguments, const scene::Document& document,
+                      const scene::Simulation& simulation) {
+        if (!arguments.record.empty()) {
+            auto created = scene::Recorder::create(arguments.record, document,
+                                                   {arguments.rate, arguments.contacts, arguments.energy});
+            if (!created) return created.error();
+            recorder = std::move(*created);
+            if (auto sampled = recorder->sample(simulation); !sampled) return sampled;
+        }
+        if (arguments.trace.empty()) return {};
+        auto created = ZoneTrace::create(arguments.trace);
+        if (!created) return created.error();
+        trace = std::move(*created);
+        return {};
+    }
+    Result<void> write_step(const scene::Simulation& simulation) {
+        if (trace) {
+            if (auto taken = trace->take(); !taken) return taken;
+        }
+        return recorder ? recorder->sample(simulation) : Result<void>{};
+    }
+    Result<void> finish() {
+        if (trace) {
+            const auto finished = trace->finish();
+            if (!finished) return finished.error();
+            zones_missing = *finished;
+        }
+        return recorder ? recorder->finish() : Result<void>{};
+    }
 };
 
 nlohmann::json to_json(const EnergySummary& energy) {
@@ -89,6 +128,7 @@ nlohmann::json to_json(const Summary& summary, const scene::Simulation& simulati
         {"energy", sums.kinetic_energy + sums.potential_energy},
         {"limits", summary.limits},
         {"notes", summary.notes},
+        {"trace_zones_missing", summary.zones_missing},
         {"state_hash", std::to_string(simulation.world().state_hash())}};
     if (summary.energy.start) json["energy_account"] = to_json(summary.energy);
     return json;
@@ -132,6 +172,9 @@ void print(const Summary& summary, const scene::Simulation& simulation) {
         return (summary.limits & static_cast<std::uint32_t>(limit)) != 0;
     };
     for (const std::string& note : summary.notes) print_line("note: " + note);
+    if (summary.zones_missing > 0)
+        print_text("note: {} zones are missing in the trace: steps had more of them than there is room for\n",
+                   summary.zones_missing);
     using physics::StepLimit;
     if (reached(StepLimit::linear_speed_clamped)) print_line("note: a body was slowed to settings.max_linear_speed");
     if (reached(StepLimit::angular_speed_clamped)) print_line("note: a body was slowed to settings.max_angular_speed");
@@ -164,14 +207,8 @@ int run_simulate(const SimulateArguments& arguments) {
 
     // Ctrl+C ends the run; what was recorded until then is written in whole lines.
     watch_interrupts();
-    std::unique_ptr<scene::Recorder> recorder;
-    if (!arguments.record.empty()) {
-        auto created = scene::Recorder::create(arguments.record, *document,
-                                               {arguments.rate, arguments.contacts, arguments.energy});
-        if (!created) return report(created.error());
-        recorder = std::move(*created);
-        if (auto sampled = recorder->sample(**simulation); !sampled) return report(sampled.error());
-    }
+    Outputs outputs;
+    if (auto opened = outputs.open(arguments, *document, **simulation); !opened) return report(opened.error());
 
     Summary summary;
     summary.notes = (*simulation)->notes();
@@ -189,16 +226,13 @@ int run_simulate(const SimulateArguments& arguments) {
         summary.energy.add(step);
         summary.actions += (*simulation)->fired().size();
         summary.paused = (*simulation)->pause_requested();
-        if (recorder) {
-            if (auto sampled = recorder->sample(**simulation); !sampled) return report(sampled.error());
-        }
+        if (auto written = outputs.write_step(**simulation); !written) return report(written.error());
         if (summary.steps % 30 == 0) bar.show(summary.steps, steps, short_number(summary.simulated) + " s");
     }
     summary.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     bar.finish();
-    if (recorder) {
-        if (auto finished = recorder->finish(); !finished) return report(finished.error());
-    }
+    if (auto finished = outputs.finish(); !finished) return report(finished.error());
+    summary.zones_missing = outputs.zones_missing;
     if (arguments.json)
         print_json(to_json(summary, **simulation));
     else

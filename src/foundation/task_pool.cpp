@@ -2,6 +2,7 @@
 #include "foundation/task_pool.h"
 
 #include <algorithm>
+#include <string>
 #include <thread>
 #include <vector>
 #if defined(__x86_64__)
@@ -9,6 +10,7 @@
 #endif
 
 #include "foundation/assert.h"
+#include "foundation/zone.h"
 
 namespace embody {
 
@@ -47,6 +49,7 @@ void Progress::wait_for(std::uint64_t count) const {
 
 struct TaskPool::State {
     const std::function<void(int)>* task = nullptr;  // of the present round
+    const char* zone = nullptr;                      // that the task is run in
     std::atomic<unsigned> round{0};
     std::atomic<unsigned> calls{0};  // another one with each round and with each StayAwake: what sleeping threads watch
     std::atomic<int> looks{looks_between_tasks};
@@ -57,7 +60,10 @@ struct TaskPool::State {
 
     void start() {
         for (int worker = static_cast<int>(threads.size()) + 1; worker < workers; ++worker) {
-            threads.emplace_back([this, worker] { work(worker); });
+            threads.emplace_back([this, worker] {
+                name_zone_thread("worker " + std::to_string(worker));
+                work(worker);
+            });
         }
     }
 
@@ -86,7 +92,10 @@ struct TaskPool::State {
             await_round(seen);
             seen = round.load(std::memory_order_acquire);
             if (stops.load(std::memory_order_relaxed)) return;
-            (*task)(worker);
+            {
+                const Zone of_task(zone);
+                (*task)(worker);
+            }
             running.fetch_sub(1, std::memory_order_acq_rel);
         }
     }
@@ -124,6 +133,7 @@ void TaskPool::run(const std::function<void(int)>& task) {
     if (s.workers == 1) return task(0);
     s.start();
     s.task = &task;
+    s.zone = innermost_zone();
     s.running.store(static_cast<int>(s.threads.size()), std::memory_order_relaxed);
     s.round.fetch_add(1, std::memory_order_release);
     s.call();

@@ -490,6 +490,52 @@ class Scenes(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn("/nowhere/out.jsonl", result.stderr)
 
+    STAGES = ("wake bodies", "advance fluids", "find pairs", "find contacts", "roll balls", "list joints", "solve impacts", "find islands",
+              "run substeps", "stop tunnelling", "advance deformables", "put to sleep", "settle fluids", "write report")
+
+    def test_a_trace_shows_each_stage_once_a_step_and_zones_within_each_other(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "trace.json"
+            result = run("simulate", "tall_stack", "--seconds", "0.3", "--trace", str(file), "--json")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            summary = json.loads(result.stdout)
+            self.assertEqual(summary["trace_zones_missing"], 0)
+            trace = json.loads(file.read_text())
+        self.assertEqual(trace["otherData"]["dropped_zones"], 0)
+        zones = [event for event in trace["traceEvents"] if event["ph"] == "X"]
+        names = {event["tid"]: event["args"]["name"] for event in trace["traceEvents"] if event["name"] == "thread_name"}
+        self.assertEqual(set(names), {zone["tid"] for zone in zones})
+        main = next(thread for thread, name in names.items() if name == "main")
+        steps = [zone for zone in zones if zone["name"] == "step"]
+        self.assertEqual(len(steps), summary["steps"])
+        end = lambda zone: zone["ts"] + zone["dur"]
+        rounding = 1e-3  # us
+        for step in steps:
+            inside = [zone for zone in zones if zone["tid"] == main and zone["ts"] >= step["ts"] and end(zone) <= end(step) + rounding]
+            for stage in self.STAGES:
+                self.assertEqual(sum(zone["name"] == stage for zone in inside), 1, stage)
+        for thread in names:
+            enclosing = []
+            for zone in sorted((zone for zone in zones if zone["tid"] == thread), key=lambda zone: (zone["ts"], -zone["dur"])):
+                self.assertGreaterEqual(zone["ts"], 0)
+                self.assertGreaterEqual(zone["dur"], 0)
+                while enclosing and end(enclosing[-1]) <= zone["ts"] + rounding:
+                    enclosing.pop()
+                if enclosing:
+                    self.assertLessEqual(end(zone), end(enclosing[-1]) + rounding, (zone, enclosing[-1]))
+                enclosing.append(zone)
+
+    def test_a_trace_is_written_where_it_is_asked_for_only(self):
+        with tempfile.TemporaryDirectory() as folder:
+            result = subprocess.run([os.path.abspath(EMBODY), "simulate", "tall_stack", "--seconds", "0.1"], cwd=folder, capture_output=True, text=True,
+                                    timeout=240)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(list(pathlib.Path(folder).iterdir()), [])
+        for file in ("/nowhere/trace.json", "/dev/full"):
+            result = run("simulate", "tall_stack", "--seconds", "0.5", "--trace", file)
+            self.assertEqual(result.returncode, 1, file)
+            self.assertIn(file, result.stderr)
+
     def test_numbers_that_are_none_are_refused(self):
         for option, value in (("--seconds", "nan"), ("--seconds", "-1"), ("--seconds", "inf"), ("--rate", "nan")):
             result = run("simulate", "table1_e", option, value)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/zone.h"
 #include "physics/fluid/grid/faces.h"
 #include "physics/fluid/obstacles/small_body.h"
 #include "physics/fluid/obstacles/wall_friction.h"
@@ -175,6 +176,7 @@ void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, T
 }
 
 void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers) {
+    EMBODY_ZONE("advance grid");
     const double h = grid_.cell_size();
     find_places(dt, workers);
     particles_to_grid(grid_, particles_, places_, particle_share(), workers);
@@ -223,6 +225,7 @@ void FluidSolver::accelerate(Vec3 change, TaskPool& workers) {
 }
 
 void FluidSolver::shear(const Viscosity& liquid, double dt, FluidOutcome& outcome) {
+    EMBODY_ZONE("solve viscosity");
     constexpr int most_iterations = 300;
     const int iterations = viscosity_.solve(liquid, dt, most_iterations, grid_, obstacles_);
     outcome.viscosity_iterations += iterations;
@@ -231,6 +234,7 @@ void FluidSolver::shear(const Viscosity& liquid, double dt, FluidOutcome& outcom
 
 // The impulse density P = p dt that makes the velocity free of divergence (docs/physics/fluids.md, "Pressure").
 void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
+    EMBODY_ZONE("solve pressure");
     constexpr double allowed_change = 1e-4;  // of a cell's volume in a part of a step
     constexpr int most_iterations = 300;
     const double h = grid_.cell_size(), rho = properties_.density;
@@ -284,6 +288,7 @@ void FluidSolver::push_obstacles(std::span<const double> impulse) {
 // Displacements that bring the density back to one: A q = (density − room), shift = −h ∂q (docs/physics/fluids.md,
 // "Volume"; after T. Kugelstadt and others, "Implicit density projection for volume conserving liquids", 2019).
 void FluidSolver::spread_out(TaskPool& workers) {
+    EMBODY_ZONE("solve volume");
     constexpr double share = 0.5, most = 0.5, allowed_error = 0.02;
     constexpr int most_iterations = 40;
     potential_.assign(system_.size(), 0);
@@ -310,6 +315,7 @@ void FluidSolver::spread_out(TaskPool& workers) {
 }
 
 void FluidSolver::move_particles(double dt, TaskPool& workers) {
+    EMBODY_ZONE("move particles");
     const auto time = static_cast<float>(dt);
     const std::size_t count = grid_.on_grid();
     share_among(workers, count, count > few_particles, [&](int, Share share) {

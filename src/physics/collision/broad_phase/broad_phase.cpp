@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "foundation/assert.h"
+#include "foundation/zone.h"
 #include "physics/collision/broad_phase/box_tree.h"
 
 namespace embody::physics::collision {
@@ -353,6 +354,7 @@ std::uint64_t BroadPhase::pairs_version() const { return state_->version; }
 bool BroadPhase::has_too_many_pairs() const { return state_->too_many; }
 
 const std::vector<BroadPhase::Pair>& BroadPhase::update_pairs(TaskPool& workers) {
+    EMBODY_ZONE("update pairs");
     State& s = *state_;
     if (s.changed.empty()) return s.pairs;
     s.refresh();

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "foundation/task_pool.h"
+#include "foundation/zone.h"
 #include "physics/definitions/step_report.h"
 #include "physics/definitions/world_settings.h"
 #include "physics/dynamic/equations_of_motion.h"
@@ -164,6 +165,7 @@ void gather_bodies(const DeformableAccess& world, MovingDeformables& moving) {
 
 // What a sheet or rope may touch.
 void find_contacts_of(const DeformableAccess& world, const MovingDeformables& moving, ThinDeformable& thin) {
+    EMBODY_ZONE("find contacts of sheet or rope");
     std::vector<bool> colliding;
     for (const TouchedBody& body : moving.bodies) {
         colliding.push_back(body.shape &&
@@ -204,6 +206,11 @@ void share_solids(const DeformableAccess& world, const MovingDeformables& moving
     });
 }
 
+void solve_solids(const DeformableAccess& world, const MovingDeformables& moving) {
+    EMBODY_ZONE("solve solids");
+    share_solids(world, moving, [&](std::size_t i, TaskPool& workers) { moving.solids[i]->solve(workers); });
+}
+
 // A further round for solids whose moves make energy; returns whether there is any.
 bool correct_solids(const DeformableAccess& world, const MovingDeformables& moving) {
     std::atomic<bool> is_any = false;
@@ -225,7 +232,7 @@ void run_substeps(const DeformableAccess& world, MovingDeformables& moving) {
         push_solids(world, moving);
         for (TouchedBody& body : moving.bodies) body.enter_substep(h);
         SolidContacts::begin(moving.contacts, moving.solids, moving.bodies, h, k * h);
-        share_solids(world, moving, [&](std::size_t i, TaskPool& workers) { moving.solids[i]->solve(workers); });
+        solve_solids(world, moving);
         int corrections = 0;
         do {
             world.deformables.solid_contacts.solve(moving.contacts, moving.solids, moving.bodies, h, k * h,
@@ -239,6 +246,7 @@ void run_substeps(const DeformableAccess& world, MovingDeformables& moving) {
 // The bodies where the pushes have brought them; what the rigid bodies will feel in their next step. Sleepers wake if
 // they are pushed otherwise than when they fell asleep.
 void put_back_bodies(const DeformableAccess& world, const MovingDeformables& moving) {
+    EMBODY_ZONE("push bodies");
     const double dt = world.settings.time_step;
     std::erase_if(world.deformables.pushed_bodies,
                   [&](std::uint32_t slot) { return !world.rigid.is_used(slot) || !world.activity.is_asleep(slot); });

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "foundation/task_pool.h"
+#include "foundation/zone.h"
 #include "physics/definitions/world_settings.h"
 #include "physics/deformable/contact/body_features.h"
 #include "physics/deformable/contact/node_contacts.h"
@@ -213,6 +214,7 @@ double reach_of(const DeformableAccess& world, const DeformableRecord& record) {
 
 std::vector<SolidContact> find_solid_contacts(const DeformableAccess& world, std::span<DeformableRecord* const> records,
                                               std::span<const TouchedBody> bodies) {
+    EMBODY_ZONE("find contacts of solids");
     std::vector<SolidContact> all;
     for (std::uint32_t number = 0; number < records.size(); ++number) {
         const DeformableRecord& record = *records[number];

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "foundation/task_pool.h"
+#include "foundation/zone.h"
 #include "physics/definitions/world_settings.h"
 #include "physics/stages/access.h"
 #include "physics/stages/deformable/solid_contact_search.h"
@@ -208,6 +209,7 @@ bool wake_touched_thin(const DeformableAccess& world) {
 }
 
 std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span<const ThinDeformable> thin) {
+    EMBODY_ZONE("find sheets and ropes that touch");
     std::vector<std::uint32_t> group(thin.size());
     std::iota(group.begin(), group.end(), 0u);
     std::vector<Bounds> bounds;
@@ -259,6 +261,7 @@ std::vector<ThinGroup> find_thin_groups(const DeformableAccess& world, std::span
 
 void advance_thin_groups(const DeformableAccess& world, std::span<const ThinGroup> groups,
                          std::span<ThinDeformable> thin, std::vector<TouchedBody>& bodies, int k) {
+    EMBODY_ZONE("advance sheets and ropes");
     const int substeps = world.settings.deformable_substeps;
     const double step = world.settings.time_step, h = step / substeps;
     ThinOnSolids::Surfaces surfaces;

@@ -19,6 +19,7 @@
 #include <functional>
 
 #include "foundation/task_pool.h"
+#include "foundation/zone.h"
 #include "physics/definitions/step_report.h"
 #include "physics/definitions/world_settings.h"
 #include "physics/dynamic/equations_of_motion.h"
@@ -112,6 +113,7 @@ void ImpactStage::note(std::uint32_t contact, ImpactPaths::Prediction next) {
 
 // Contacts are looked at on their own, so all workers can; the events are listed in the order of the contacts.
 void ImpactStage::predict_all() {
+    EMBODY_ZONE("predict impacts");
     constexpr std::size_t fewest_shared = 1000;
     const std::size_t count = world_.contacts.list.size();
     std::vector<ImpactPaths::Prediction>& first = memory_.first;
@@ -259,6 +261,7 @@ void ImpactStage::go_to(double time) {
 
 // Solves the collision of the sites.
 void ImpactStage::solve(double time, SlidePath path) {
+    EMBODY_ZONE("solve impact");
     // To the place of the impact, the collision, and back to the start of the step on the new path.
     gather(time);
     count_assembly();

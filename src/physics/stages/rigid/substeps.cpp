@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "foundation/task_pool.h"
+#include "foundation/zone.h"
 #include "physics/constraint/sweeps/substep_solver.h"
 #include "physics/definitions/step_report.h"
 #include "physics/definitions/world_settings.h"
@@ -85,6 +86,7 @@ bool spins(const SubstepAccess& world, const Island& island) {
 
 // Solves all given islands, of contacts only, through the step.
 void solve_wide(const SubstepAccess& world, const IslandsBySolver::Wide& way) {
+    EMBODY_ZONE("solve wide");
     if (way.islands.empty()) return;
     std::vector<std::uint32_t>&order = world.substeps.wide_contacts, &bodies = world.substeps.wide_bodies;
     std::vector<WideContactSolver::Group>& groups = world.substeps.wide_groups;
@@ -183,6 +185,7 @@ void set_up_joint_systems(const SubstepAccess& world) {
 
 // Joints only: each island through the whole step. Kinematic bodies go along; others take them from where they were.
 void solve_jointed(const SubstepAccess& world, const std::vector<Island>& islands, double h) {
+    EMBODY_ZONE("solve jointed");
     const JointSystem::View view{world.rigid.motion, world.rigid.constants, world.joints.active};
     for (const Island& island : islands) {
         JointSystem& system = *joint_system(world, island);
@@ -198,6 +201,7 @@ void solve_jointed(const SubstepAccess& world, const std::vector<Island>& island
 
 // Solves what is solved directly, and tells how the others have to be.
 const IslandsBySolver& sort_islands(const SubstepAccess& world) {
+    EMBODY_ZONE("choose solvers");
     IslandsBySolver& ways = world.substeps.islands;
     ways.clear();
     set_up_joint_systems(world);
@@ -412,6 +416,7 @@ private:
 
 // Through the whole step: half of the forces before the drift and half after it.
 void solve_free(const SubstepAccess& world, const std::vector<std::uint32_t>& bodies, double h) {
+    EMBODY_ZONE("move free bodies");
     constexpr std::size_t fewest_shared = 200;
     share_among(world.workers, bodies.size(), bodies.size() >= fewest_shared, [&](int, Share share) {
         for (std::size_t i = share.first; i < share.last; ++i) {
@@ -424,6 +429,7 @@ void solve_free(const SubstepAccess& world, const std::vector<std::uint32_t>& bo
 
 // What joints and contacts hold: one constraint after the other, in double. Moves the kinematic bodies too.
 void solve_one_by_one(const SubstepAccess& world, const std::vector<Island>& islands, double h) {
+    EMBODY_ZONE("solve one by one");
     world.substeps.prepared_contacts.clear();
     for_each_contact(world, islands, [&](Contact& contact) {
         world.substeps.prepared_contacts.push_back(prepare_contact(contact, world.rigid.motion));
@@ -483,6 +489,7 @@ void note_held_accelerations(const SubstepAccess& world) {
 }
 
 void propagate_shocks(const SubstepAccess& world, const IslandsBySolver& ways) {
+    EMBODY_ZONE("propagate shocks");
     const auto propagate = [&](const Island& island, const ContactPlan& plan) {
         propagate_shock(island, world.islands, world.contacts.list, plan.softness(world.settings.time_step),
                         world.rigid.motion);

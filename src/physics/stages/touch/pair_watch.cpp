@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "foundation/zone.h"
 #include "physics/definitions/world_settings.h"
 #include "physics/stages/access.h"
 #include "physics/state/activity_state.h"
@@ -78,6 +79,7 @@ void count_contacts(const TouchAccess& world) {
 }  // namespace
 
 void update_watches(const TouchAccess& world) {
+    EMBODY_ZONE("watch pairs");
     follow_broad_phase(world);
     list_live_pairs(world);
     count_contacts(world);

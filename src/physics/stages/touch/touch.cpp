@@ -3,6 +3,7 @@
 #include <atomic>
 
 #include "foundation/task_pool.h"
+#include "foundation/zone.h"
 #include "physics/definitions/world_settings.h"
 #include "physics/stages/access.h"
 #include "physics/stages/rigid/wake.h"
@@ -401,6 +402,7 @@ void move_kept(const TouchAccess& world, const PairTouch& touch) {
 // within one list: those that move down in ascending order, then those that move up in descending order, never come to
 // lie on one that has yet to move.
 void lay_out(const TouchAccess& world) {
+    EMBODY_ZONE("lay out contacts");
     std::vector<PairTouch>& pairs = world.contacts.touch.pairs;
     std::uint32_t total = 0;
     bool is_same = true;
@@ -439,6 +441,7 @@ void lay_out(const TouchAccess& world) {
 // part, whose contacts it had in the last step, then of the others'.
 template <class Work>
 void share_pairs(const TouchAccess& world, Work work) {
+    EMBODY_ZONE("compare near pairs");
     constexpr std::size_t fewest_shared = 200, pairs_in_share = 32;
     const std::size_t count = world.contacts.touch.pairs.size();
     const int workers = world.workers.workers();
