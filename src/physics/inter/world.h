@@ -22,6 +22,10 @@
 
 namespace embody::physics {
 
+class DebugDraw;
+struct DebugDrawCount;
+struct DebugDrawOptions;
+
 namespace state {
 struct WorldState;
 }
@@ -38,7 +42,6 @@ public:
 
     [[nodiscard]] const WorldSettings& settings() const;
     Result<void> set_settings(const WorldSettings& settings);
-
     /// Friction and restitution by pair of surfaces, for bodies whose combine rule is pair_table. Refused once there
     /// are bodies.
     Result<void> set_surface_pairs(SurfacePairs pairs);
@@ -58,14 +61,12 @@ public:
     Result<void> destroy_bodies(std::span<const BodyHandle> bodies);
     [[nodiscard]] bool contains(BodyHandle body) const;
     [[nodiscard]] std::vector<BodyHandle> bodies() const;
-
     /// The definition as it stands now: pose, velocities and everything that was set since; std::nullopt if stale.
     [[nodiscard]] std::optional<BodyDefinition> body(BodyHandle body) const;
     /// Replaces everything but the handle (kind, shape, mass, material, pose, …) and wakes what it touches.
     Result<void> set_body(BodyHandle body, const BodyDefinition& definition);
     /// The same for many, each named once: `change` is given each one's definition as it stands now. All or none.
     Result<void> change_bodies(std::span<const BodyHandle> bodies, const std::function<void(BodyDefinition&)>& change);
-
     /// Cheap reads for streaming; identity, zero and asleep for a stale handle.
     [[nodiscard]] Transform pose(BodyHandle body) const;
     [[nodiscard]] Vec3 linear_velocity(BodyHandle body) const;
@@ -77,7 +78,6 @@ public:
     [[nodiscard]] Vec3 center_of_mass(BodyHandle body) const;
     /// About the centre of mass in the body's axes, kg m².
     [[nodiscard]] Mat3 inertia(BodyHandle body) const;
-
     Result<void> set_pose(BodyHandle body, const Transform& pose);  ///< teleports and wakes
     Result<void> set_velocity(BodyHandle body, Vec3 linear, Vec3 angular);
     Result<void> set_force(BodyHandle body, Vec3 force, Vec3 torque);  ///< constant until set again
@@ -101,7 +101,6 @@ public:
     [[nodiscard]] JointReaction joint_reaction(JointHandle joint) const;
     /// Hinge angle (rad) or slider displacement (m); 0 for others.
     [[nodiscard]] double joint_coordinate(JointHandle joint) const;
-
     // Deformables: soft solids, cloth and ropes.
     Result<DeformableHandle> create_deformable(const DeformableDefinition& definition);
     Result<void> destroy_deformable(DeformableHandle deformable);
@@ -169,13 +168,14 @@ public:
     /// Whether each report says what changed the energy and momenta of the rigid bodies (docs/physics/energy.md).
     /// Changes no state; off, it costs nothing.
     void keep_account(bool is_wanted);
-
     // What happened in the last step; valid until the next call that changes the world.
     [[nodiscard]] std::span<const ContactEvent> contact_events() const;
     [[nodiscard]] std::span<const SleepEvent> sleep_events() const;
     [[nodiscard]] std::span<const RopeBreakEvent> rope_break_events() const;
     [[nodiscard]] std::vector<ContactView> contacts() const;
     [[nodiscard]] Conserved conserved() const;
+    /// Draws what the options ask for (debug_draw.h), as it is now; changes nothing.
+    DebugDrawCount debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const;
 
     // Queries.
     /// The nearest body the ray meets within `max_distance`; `direction` need not be unit. `ignore` may be null.
@@ -189,7 +189,6 @@ public:
     /// `max_distance`. The body may overlap nothing at its start. It passes through what `ignores` (if given) names.
     [[nodiscard]] std::optional<double> drop_distance(BodyHandle body, double max_distance,
                                                       const std::function<bool(BodyHandle)>& ignores = {}) const;
-
     /// Equal iff the states of all bodies are bit for bit equal.
     [[nodiscard]] std::uint64_t state_hash() const;
 

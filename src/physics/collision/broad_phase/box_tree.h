@@ -132,6 +132,23 @@ public:
         }
     }
 
+    /// Calls visit(box, depth) for every box as it was when the tree was last refreshed: those around others from depth
+    /// 0 downwards, then the inserted ones.
+    template <class Visit>
+    void visit_boxes(Visit&& visit) const {
+        int depth = 0;
+        const auto visit_nodes = [&](const std::vector<BoxNode>& nodes) {
+            for (const BoxNode& node : nodes) {
+                for (std::uint32_t lane = 0; lane < BoxNode::lanes; ++lane) {
+                    if (!node.is_clear(lane)) visit(node.box(lane), depth);
+                }
+            }
+            ++depth;
+        };
+        for (auto level = levels_.rbegin(); level != levels_.rend(); ++level) visit_nodes(*level);
+        visit_nodes(leaves_);
+    }
+
 private:
     static constexpr int most_levels = 12;  // 8^11 boxes
     struct Entry {

@@ -431,4 +431,9 @@ void BroadPhase::query_ray(Vec3 origin, Vec3 direction, double max_distance,
     }
 }
 
+void BroadPhase::visit_boxes(const std::function<void(const Bounds&, int depth)>& visit) const {
+    for (const BoxTree* tree : {&state_->movable, &state_->immovable})
+        tree->visit_boxes([&](const FloatBox& box, int depth) { visit(box.bounds(), depth); });
+}
+
 }  // namespace embody::physics::collision

@@ -53,6 +53,10 @@ public:
     void query_ray(Vec3 origin, Vec3 direction, double max_distance,
                    const std::function<double(std::uint32_t, double)>& visit) const;
 
+    /// Calls `visit` for the boxes of both trees, those around others first, from depth 0 downwards; for a look from
+    /// outside. Bodies too wide for a tree are in neither.
+    void visit_boxes(const std::function<void(const Bounds&, int depth)>& visit) const;
+
 private:
     struct State;
     std::unique_ptr<State> state_;

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "math/bounds.h"
+#include "physics/inter/debug_draw.h"
+
+namespace embody::physics {
+
+/// What the parts of debug_draw.cpp draw on: counts lines and points, and leaves out what is too much.
+class DebugCanvas {
+public:
+    DebugCanvas(DebugDraw& draw, const DebugDrawOptions& wanted) : options(wanted), draw_(draw) {}
+
+    void line(Vec3 from, Vec3 to, DebugColor color) {
+        if (count_.lines >= options.most_lines) {
+            ++count_.lines_left_out;
+            return;
+        }
+        ++count_.lines;
+        draw_.line(from, to, color);
+    }
+    void point(Vec3 at, DebugColor color) {
+        if (count_.points >= options.most_points) {
+            ++count_.points_left_out;
+            return;
+        }
+        ++count_.points;
+        draw_.point(at, color);
+    }
+    /// Its twelve edges; nothing of an empty box.
+    void box(const Bounds& box, DebugColor color);
+    /// A line with a head of two.
+    void arrow(Vec3 from, Vec3 to, DebugColor color);
+
+    [[nodiscard]] const DebugDrawCount& count() const { return count_; }
+    [[nodiscard]] bool is_wanted(DebugDrawFlag flag) const {
+        return (options.flags & static_cast<std::uint32_t>(flag)) != 0;
+    }
+
+    const DebugDrawOptions& options;
+
+private:
+    DebugDraw& draw_;
+    DebugDrawCount count_;
+};
+
+}  // namespace embody::physics

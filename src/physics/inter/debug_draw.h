@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "math/vec3.h"
+
+namespace embody::physics {
+
+/// What a line or point stands for. Whoever draws it chooses the colour. The numbers are part of docs/protocol.md.
+enum class DebugMeaning : std::uint8_t {
+    static_shape,
+    kinematic_shape,
+    active_shape,
+    wants_to_sleep_shape,
+    asleep_shape,
+    bounds,          ///< of a body's shape
+    contact,         ///< point of a contact region
+    contact_normal,  ///< from the first body to the second
+    impulse,         ///< of a contact point on the second body, over the last step
+    island,          ///< number: of the island
+    joint,           ///< from a centre of mass to the joint's frame
+    joint_axis,      ///< number: 0, 1, 2 for X, Y, Z of a joint frame; that of the second body is dim
+    joint_limit,     ///< where the joint's coordinate may be
+    center_of_mass,
+    inertia_axis,  ///< number: 0, 1, 2, the least moment first
+    particle,      ///< of a fluid
+    node,          ///< of a deformable; number: 1 where it is pinned
+    edge,          ///< between two nodes
+    attachment,    ///< from a node to what holds it
+    tree,          ///< box of the broad phase; number: depth, 0 the topmost
+    count
+};
+
+struct DebugColor {
+    DebugMeaning meaning = DebugMeaning::bounds;
+    std::uint16_t number = 0;  ///< where the meaning tells of one; of more than there are numbers for, the rest
+    bool is_dim = false;       ///< asleep, disabled, or less important
+};
+
+/// Draws what World::debug_draw() tells it. Places are in the world, m.
+class DebugDraw {
+public:
+    virtual ~DebugDraw() = default;
+    virtual void line(Vec3 from, Vec3 to, DebugColor color) = 0;
+    virtual void point(Vec3 at, DebugColor color) = 0;
+};
+
+/// What can be drawn, as bits.
+enum class DebugDrawFlag : std::uint32_t {
+    shapes = 1u << 0,       ///< of bodies, as wires; coloured by island where these are asked for too
+    bounds = 1u << 1,       ///< boxes around the shapes
+    contacts = 1u << 2,     ///< points and normals
+    impulses = 1u << 3,     ///< arrows, as long as told by DebugDrawOptions::longest_arrow
+    islands = 1u << 4,      ///< a box around each
+    joints = 1u << 5,       ///< frames, axes, limits
+    masses = 1u << 6,       ///< centres, and axes of the box of equal mass and inertia
+    particles = 1u << 7,    ///< of fluids
+    deformables = 1u << 8,  ///< nodes, edges and what holds them
+    trees = 1u << 9,        ///< boxes of the broad phase
+};
+/// Their names: of bit i the one at i.
+inline constexpr std::array debug_draw_names{"shapes", "bounds", "contacts",  "impulses",    "islands",
+                                             "joints", "masses", "particles", "deformables", "trees"};
+
+struct DebugDrawOptions {
+    std::uint32_t flags = 0;           ///< DebugDrawFlag
+    double mark_length = 0.1;          ///< of normals and joint axes, m
+    double longest_arrow = 0.5;        ///< of the largest impulse; others in proportion, m
+    double plane_half_size = 10;       ///< of the square that shows an endless plane, m
+    std::size_t most_lines = 100'000;  ///< what comes after is left out: shapes come last, static ones at the end
+    std::size_t most_points = 200'000;
+};
+
+struct DebugDrawCount {
+    std::size_t lines = 0, points = 0;                    ///< that were drawn
+    std::size_t lines_left_out = 0, points_left_out = 0;  ///< beyond what the options allow
+};
+
+}  // namespace embody::physics
