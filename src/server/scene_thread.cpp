@@ -13,6 +13,7 @@
 #include "catalog/catalog.h"
 #include "scene/file/json/text.h"
 #include "scene/file/scene_file.h"
+#include "server/debug_board.h"
 #include "server/state_frame.h"
 
 namespace embody::server {
@@ -61,12 +62,13 @@ struct SceneThread::State {
     std::deque<Message> messages;
     bool stop = false, ended = false;
     StateBoard board;
+    DebugBoard debug;
     std::string title;
 
     std::thread thread;
     std::vector<scene::EntityState> scratch;
     Clock::time_point statistics_due{}, autosave_due{}, catalog_due{}, statistics_since{};
-    Clock::time_point next_publish{};
+    Clock::time_point next_publish{}, next_debug{};
     bool publish_is_due = false;       ///< something may have changed since
     ClientId served = 0;               ///< whose command is in hand
     Clock::time_point progress_due{};  ///< when it tells next how far it is
@@ -86,6 +88,7 @@ struct SceneThread::State {
     void tell_events();
     void publish(bool all_changed);
     void publish_if_due();
+    void publish_debug();
     void tell_statistics(Clock::time_point now);
     void broadcast_message(const char* level, const std::string& text);
     void autosave();
@@ -139,6 +142,8 @@ void SceneThread::forget(ClientId client) {
 }
 
 StateBoard::Frame SceneThread::frame_since(std::uint64_t seen) const { return state_->board.frame_since(seen); }
+
+std::shared_ptr<const std::string> SceneThread::take_debug_frame(ClientId client) { return state_->debug.take(client); }
 
 std::string SceneThread::scene_title() const {
     const std::lock_guard lock(state_->mutex);
@@ -320,7 +325,10 @@ void SceneThread::State::tell_statistics(Clock::time_point now) {
 
 void SceneThread::State::handle(const Message& message) {
     if (message.take_document) return message.take_document(session->document());
-    if (message.left) return session->forget_client(message.client);
+    if (message.left) {
+        debug.forget(message.client);
+        return session->forget_client(message.client);
+    }
     const bool was_playing = session->playing();
     const std::uint64_t step_before = session->simulated_steps();
     served = message.client;
@@ -356,6 +364,12 @@ json SceneThread::State::execute(const json& request) {
     if (!command.is_string()) return failed(id, {"command", "must be a string", ""});
     const json params = request.value("params", json::object());
     if (!params.is_object()) return failed(id, {"params", "must be an object", ""});
+    if (command == "debug.draw") {
+        if (auto chosen = debug.choose(served, params); !chosen) return failed(id, chosen.error());
+        publish_is_due = true;
+        next_debug = {};
+        return {{"id", id}, {"ok", true}, {"result", json::object()}};
+    }
     auto result = session->execute(command.get<std::string>(), params, served);
     if (!result) return failed(id, result.error());
     return {{"id", id}, {"ok", true}, {"result", std::move(*result)}};
@@ -373,6 +387,14 @@ void SceneThread::State::tell_events() {
     publish_if_due();
 }
 
+// While it plays this too takes a share of the time; else publish() comes as seldom as it may.
+void SceneThread::State::publish_debug() {
+    const Clock::time_point began = Clock::now();
+    if (!debug.is_wanted() || (session->playing() && began < next_debug)) return;
+    debug.publish(*session);
+    next_debug = Clock::now() + publish_share * (Clock::now() - began);
+}
+
 // The walk over all entities takes a share of the time, however many commands come one after the other.
 void SceneThread::State::publish_if_due() {
     if (publish_is_due && Clock::now() >= next_publish) publish(false);
@@ -382,6 +404,7 @@ void SceneThread::State::publish(bool all_changed) {
     const Clock::time_point began = Clock::now();
     session->read_states(scratch);
     board.publish(scratch, session->simulated_time(), session->simulated_steps(), all_changed);
+    publish_debug();
     {
         const std::lock_guard lock(mutex);
         title = session->document().title;

@@ -46,6 +46,9 @@ public:
 
     [[nodiscard]] StateBoard::Frame frame_since(std::uint64_t seen) const;
 
+    /// What the client sees of the solver's inside, once a frame; null: nothing new.
+    std::shared_ptr<const std::string> take_debug_frame(ClientId client);
+
     /// The open document's title.
     [[nodiscard]] std::string scene_title() const;
 

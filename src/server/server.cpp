@@ -249,6 +249,16 @@ private:
         shared_.command_bytes -= bytes;
     }
 
+    // The newest states, or the newest drawing of the solver's inside; null: nothing new.
+    SharedText next_frame() {
+        if (std::exchange(frame_wanted_, false)) {
+            StateBoard::Frame frame = shared_.scene->frame_since(seen_);
+            seen_ = frame.version;
+            if (!frame.bytes.empty()) return std::make_shared<const std::string>(std::move(frame.bytes));
+        }
+        return shared_.scene->take_debug_frame(id_);
+    }
+
     // One write at a time: texts in order, frames only when no text waits and always the newest states.
     void write() {
         if (outgoing_) return;
@@ -257,15 +267,10 @@ private:
             texts_.pop_front();
             unsent_ -= outgoing_->size();
             stream_.text(true);
-        } else if (frame_wanted_) {
-            frame_wanted_ = false;
-            StateBoard::Frame frame = shared_.scene->frame_since(seen_);
-            seen_ = frame.version;
-            if (frame.bytes.empty()) return;
-            outgoing_ = std::make_shared<const std::string>(std::move(frame.bytes));
-            stream_.binary(true);
         } else {
-            return;
+            outgoing_ = next_frame();
+            if (!outgoing_) return;
+            stream_.binary(true);
         }
         stream_.async_write(asio::buffer(*outgoing_), [self = shared_from_this()](error_code error, std::size_t) {
             self->outgoing_ = nullptr;

@@ -2,14 +2,12 @@
 #include "server/state_frame.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
+
+#include "server/frame_bytes.h"
 
 namespace embody::server {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "frames are little-endian and written as they lie in memory");
 
 constexpr std::uint32_t frame_magic = 0x46424D45;  // "EMBF"
 constexpr std::uint16_t frame_version = 2;
@@ -17,13 +15,6 @@ constexpr std::size_t header_bytes = 32;
 constexpr std::size_t record_bytes = 36;
 constexpr std::size_t points_head_bytes = 40;
 constexpr std::uint8_t asleep = 2;
-
-template <class T>
-void append(std::string& frame, T value) {
-    char bytes[sizeof(T)];
-    std::memcpy(bytes, &value, sizeof(T));
-    frame.append(bytes, sizeof(T));
-}
 
 void append_record(std::string& frame, const scene::EntityState& state, bool has_points) {
     append(frame, state.entity);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+import type { DebugName } from "./connection/debug_frame";
 import { Signal } from "./signal";
 import type { Theme } from "./view/environment";
 import { drawsInSoftware } from "./view/software";
@@ -15,6 +16,8 @@ export interface PreferenceValues {
   grid: boolean;
   /** What collides is drawn over what is selected. */
   collision: boolean;
+  /** What the solver sees is drawn over everything. */
+  debug: readonly DebugName[];
   snap: boolean;
   /** Metres and degrees. */
   snapLength: number;
@@ -35,6 +38,7 @@ const DEFAULTS: PreferenceValues = {
   fullTint: false,
   grid: true,
   collision: false,
+  debug: [],
   snap: false,
   snapLength: 0.1,
   snapAngle: 15,

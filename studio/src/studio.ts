@@ -99,6 +99,13 @@ export class Studio implements Parts {
     this.view.invalidate();
   }
 
+  /** Tells the server what of the solver's inside is to be drawn; its frames follow. */
+  private async askDebug(): Promise<void> {
+    const show = this.preferences.get("debug");
+    if (show.length === 0) this.view.debug.show(null);
+    await this.server.command("debug.draw", { show });
+  }
+
   private followConnection(): void {
     this.connection.opened.on(() => {
       // It may be another server now. Frames may come before the answer to hello, so that only here all poses are old.
@@ -110,6 +117,12 @@ export class Studio implements Parts {
     this.connection.closed.on(() => this.server.changed.emit());
     this.connection.fault.on((reason) => this.notices.tell({ level: "error", text: reason, remedy: "Reload the page." }));
     this.connection.event.on((event) => this.take(event));
+    this.connection.debug.on((frame) => {
+      // One may still come after it was turned off.
+      this.view.debug.show(this.preferences.get("debug").length > 0 ? frame : null);
+      this.view.drawSoon();
+      this.connection.wantFrame();
+    });
     this.connection.frame.on((frame) => {
       this.motion.take(frame, performance.now(), this.playback.playing);
       this.entities.takePoints(frame, performance.now(), this.playback.playing);
@@ -136,6 +149,7 @@ export class Studio implements Parts {
       if (name === "grid") view.environment.showGrid(preferences.get("grid"));
       if (name === "tint" || name === "fullTint") this.retint();
       if (name === "collision") void this.showCollision();
+      if (name === "debug") void this.askDebug();
       if (name === "userName") void this.tellName();
       view.invalidate();
     });
@@ -147,6 +161,7 @@ export class Studio implements Parts {
     if (!hello) return;
     this.server.meet(hello);
     if (this.preferences.get("userName")) void this.tellName();
+    if (this.preferences.get("debug").length > 0) void this.askDebug();
     this.playback.simulation = hello.simulation;
     this.document.reset(hello);
     this.openCamera();

@@ -27,6 +27,8 @@ export interface TestHook {
   pinned(): number;
   /** Parts of collision shapes that are drawn over the selection. */
   collisionParts(): number;
+  /** Lines and points of each meaning (docs/protocol.md, "Debug frames") that are drawn. */
+  debugCounts(): Record<number, { lines: number; points: number }>;
   pick(x: number, y: number): number | null;
   /** Stops drawing, for screenshots; resume() goes on. */
   halt(): void;
@@ -68,6 +70,7 @@ export function offerTestHook(studio: Studio): void {
     bent: (index) => studio.entities.softs.skinOf(index)?.measure() ?? null,
     pinned: () => studio.view.pins.count,
     collisionParts: () => studio.view.collision.parts,
+    debugCounts: () => studio.view.debug.counts,
     pick: (x, y) => studio.view.pick(x, y)?.index ?? null,
     halt: () => studio.view.halt(),
     resume: () => studio.view.resume(),

@@ -90,6 +90,10 @@ void Session::read_states(std::vector<EntityState>& states) const {
     }
 }
 
+physics::DebugDrawCount Session::debug_draw(physics::DebugDraw& draw, const physics::DebugDrawOptions& options) const {
+    return state_->simulation->world().debug_draw(draw, options);
+}
+
 double Session::simulated_time() const { return state_->simulation->world().last_report().time; }
 std::uint64_t Session::simulated_steps() const { return state_->simulation->world().last_report().step; }
 

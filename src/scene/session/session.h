@@ -12,6 +12,7 @@
 
 #include "catalog/catalog.h"
 #include "foundation/result.h"
+#include "physics/inter/debug_draw.h"
 #include "scene/document/document.h"
 #include "scene/matter/moving_points.h"
 
@@ -67,6 +68,8 @@ public:
     void step();
     /// Every entity's pose and state now (spawned ones too).
     void read_states(std::vector<EntityState>& states) const;
+    /// World::debug_draw() of the simulation.
+    physics::DebugDrawCount debug_draw(physics::DebugDraw& draw, const physics::DebugDrawOptions& options) const;
     [[nodiscard]] double simulated_time() const;
     [[nodiscard]] std::uint64_t simulated_steps() const;
     /// The `statistics` event.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { Signal } from "../signal";
+import type { DebugFrame } from "./debug_frame";
 import type { Frame } from "./frame";
 import type { Commands, ServerError, ServerEvent } from "./messages";
 import type { FromWorker, ToWorker } from "./socket_worker";
@@ -33,6 +34,8 @@ export class Connection {
   readonly closed = new Signal<string>();
   readonly event = new Signal<ServerEvent>();
   readonly frame = new Signal<Frame>();
+  /** What the solver sees, as asked for by debug.draw. */
+  readonly debug = new Signal<DebugFrame>();
   /** Something arrived that this Studio cannot read. */
   readonly fault = new Signal<string>();
   isOpen = false;
@@ -93,6 +96,9 @@ export class Connection {
         break;
       case "frame":
         this.frame.emit(message.frame);
+        break;
+      case "debug":
+        this.debug.emit(message.frame);
         break;
       case "fault":
         this.fault.emit(message.reason);

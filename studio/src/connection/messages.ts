@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The commands and events of docs/protocol.md as types. SI units, Y up, rotations x y z w.
+import type { DebugName } from "./debug_frame";
 import type { Action, Entity, Joint, Scene, SceneSettings, Shape, Vector, Quaternion } from "./scene_types";
 
 export interface ModelSummary {
@@ -207,6 +208,7 @@ export interface Commands {
   "simulation.grab": [{ index: number; point: Vector; target: Vector }, unknown];
   "simulation.move_grab": [{ target: Vector }, unknown];
   "simulation.release": [Record<string, never>, unknown];
+  "debug.draw": [{ show: readonly DebugName[] }, unknown];
   "action.trigger": [{ key?: string; button?: string }, { started: number }];
 }
 

@@ -2,6 +2,7 @@
 // Owns the WebSocket, so that frames are received while the page draws. Text goes on at once and in order; of state frames at
 // most one is on its way to the page, the others are merged here until the page asks again. Without this the picture lagged
 // 0.3 s behind when drawing was slow.
+import { type DebugFrame, decodeDebugFrame, isDebugFrame } from "./debug_frame";
 import { decodeFrame, NewestFrame, type Frame } from "./frame";
 
 /** Page → worker. */
@@ -12,6 +13,7 @@ export type FromWorker =
   | { kind: "closed"; reason: string }
   | { kind: "text"; text: string }
   | { kind: "frame"; frame: Frame }
+  | { kind: "debug"; frame: DebugFrame }
   | { kind: "fault"; reason: string };
 
 const RETRY_MS = [250, 500, 1000, 2000, 4000];
@@ -20,10 +22,21 @@ let socket: WebSocket | null = null;
 let url = "";
 let attempts = 0;
 const newest = new NewestFrame();
+/** Not looked at yet; a newer one takes its place. */
+let newestDebug: DebugFrame | null = null;
 let pageIsReady = true;
 
 function tell(message: FromWorker, transfer: Transferable[] = []): void {
   postMessage(message, { transfer });
+}
+
+/** Hands the newest drawing of the solver's inside to the page, if there is one. */
+function flushDebug(): void {
+  const frame = newestDebug;
+  if (!frame) return;
+  newestDebug = null;
+  pageIsReady = false;
+  tell({ kind: "debug", frame }, frame.batches.slice(0, 1).map((batch) => batch.lines.buffer));
 }
 
 /** Hands the gathered frame to the page, now. */
@@ -48,12 +61,15 @@ function receive(data: unknown): void {
     return;
   }
   try {
-    newest.add(decodeFrame(data as ArrayBuffer));
+    if (isDebugFrame(data as ArrayBuffer)) newestDebug = decodeDebugFrame(data as ArrayBuffer);
+    else newest.add(decodeFrame(data as ArrayBuffer));
   } catch (error) {
     tell({ kind: "fault", reason: (error as Error).message });
     return;
   }
-  if (pageIsReady) flushFrame();
+  if (!pageIsReady) return;
+  flushFrame();
+  flushDebug();
 }
 
 function open(): void {
@@ -64,6 +80,7 @@ function open(): void {
     attempts = 0;
     pageIsReady = true;
     newest.take();
+    newestDebug = null;
     tell({ kind: "opened" });
   };
   opening.onmessage = (event) => receive(event.data);
@@ -84,5 +101,6 @@ onmessage = (event: MessageEvent<ToWorker>) => {
   } else {
     pageIsReady = true;
     flushFrame();
+    flushDebug();
   }
 };

@@ -1,10 +1,35 @@
 // SPDX-License-Identifier: MIT
+import { DEBUG_NAMES, type DebugName } from "../connection/debug_frame";
 import type { Parts } from "../parts";
 import type { UserAction } from "../tools/actions";
 import { openDialog } from "./dialogs";
 import { element } from "./element";
 import { numberField } from "./fields";
 import { userNameField } from "./user_name";
+
+const DEBUG_LABELS: Record<DebugName, string> = {
+  shapes: "Collision shapes",
+  bounds: "Bounds",
+  contacts: "Contacts",
+  impulses: "Impulses",
+  islands: "Islands",
+  joints: "Joints",
+  masses: "Centres of mass, inertia",
+  particles: "Particles",
+  deformables: "Nodes and edges",
+  trees: "Broad phase",
+};
+
+/** What the solver sees: a box to tick for each. */
+function debugList({ preferences }: Pick<Parts, "preferences">): HTMLElement {
+  const line = (name: DebugName) => {
+    const flip = () => preferences.set("debug", DEBUG_NAMES.filter((each) => preferences.get("debug").includes(each) !== (each === name)));
+    const box = element("input", { type: "checkbox", "data-testid": `debug-${name}`, onchange: flip });
+    box.checked = preferences.get("debug").includes(name);
+    return element("label", { class: "option" }, box, element("span", {}, DEBUG_LABELS[name]));
+  };
+  return element("fieldset", { class: "debug-options" }, element("legend", {}, "See inside the simulation"), ...DEBUG_NAMES.map(line));
+}
 
 /** How the picture looks and how snapping works; kept in the browser. */
 export function openOptions(parts: Pick<Parts, "preferences" | "server">, actions: readonly UserAction[]): void {
@@ -34,6 +59,7 @@ export function openOptions(parts: Pick<Parts, "preferences" | "server">, action
       flip("view.theme"),
       flip("view.quality"),
       flip("tool.snap"),
+      debugList(parts),
       row("Snapping step when moving", step.root),
       row("Snapping step when rotating", angle.root),
       row("Your name in the history of changes", userNameField(parts)),

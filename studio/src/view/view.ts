@@ -5,6 +5,7 @@ import { Signal } from "../signal";
 import type { Batch } from "./batch";
 import { CameraRig } from "./camera_rig";
 import { CollisionOverlay } from "./collision_overlay";
+import { DebugOverlay } from "./debug_overlay";
 import type { EntityView } from "./entity_view";
 import { Environment, type Theme } from "./environment";
 import { PinMarks } from "./pin_marks";
@@ -36,6 +37,7 @@ export class View {
   readonly environment: Environment;
   readonly outline: Outline;
   readonly collision: CollisionOverlay;
+  readonly debug = new DebugOverlay();
   readonly pins: PinMarks;
   /** Just before a picture is drawn, with the page's clock in milliseconds. */
   readonly beforeFrame = new Signal<number>();
@@ -78,7 +80,7 @@ export class View {
     this.outline = new Outline(entities);
     this.collision = new CollisionOverlay(entities);
     this.pins = new PinMarks(entities.softs);
-    this.scene.add(entities.group, this.outline.group, this.collision.group, this.pins.points);
+    this.scene.add(entities.group, this.outline.group, this.collision.group, this.debug.group, this.pins.points);
     this.rig.changed.on(() => this.invalidate());
     entities.loaded.on(() => this.invalidate());
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);

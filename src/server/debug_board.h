@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "foundation/result.h"
+#include "scene/session/session.h"
+
+namespace embody::server {
+
+/// What each client wants to see of the solver's inside, and the newest frame of it (docs/protocol.md, "Debug frames").
+/// The scene thread chooses and publishes; the network thread takes.
+class DebugBoard {
+public:
+    /// The command debug.draw: from now on the client sees what its `show` names.
+    Result<void> choose(scene::ClientId client, const nlohmann::json& params);
+    /// A client has left.
+    void forget(scene::ClientId client);
+    [[nodiscard]] bool is_wanted() const;
+    /// Draws anew for all that want it. Those that have not taken the last frame get this one instead.
+    void publish(const scene::Session& session);
+    /// The client's newest frame, once; null: none.
+    std::shared_ptr<const std::string> take(scene::ClientId client);
+
+private:
+    struct Wish {
+        std::uint32_t flags = 0;  ///< physics::DebugDrawFlag
+        std::shared_ptr<const std::string> frame;
+    };
+    mutable std::mutex mutex_;
+    std::map<scene::ClientId, Wish> wishes_;
+};
+
+}  // namespace embody::server
