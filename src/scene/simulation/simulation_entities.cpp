@@ -44,8 +44,7 @@ Result<LiveEntity> Simulation::State::describe(const Entity& entity) {
     described.attributes = std::move(set).value();
     const AttributeSet& attributes = *described.attributes;
     described.frame = entity.pose;
-    described.form =
-        definitions.points.form(entity, attributes, is_held_as_body(entity.index, kind_of(attributes)));
+    described.form = definitions.points.form(entity, attributes, is_held_as_body(entity.index, kind_of(attributes)));
     if (described.form.has_points && entity.torque != Vec3{})
         described.form.note = "is not turned by its torque, because it is not one rigid body";
     if (!described.form.has_points) described.shape_key = scene::shape_key(entity, attributes);

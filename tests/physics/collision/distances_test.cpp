@@ -16,7 +16,6 @@
 #include "physics/collision/shapes/convex.h"
 #include "physics/collision/shapes/polytope_query.h"
 #include "physics/collision/shapes/rim.h"
-#include "physics/collision/shapes/shape_mass.h"
 
 namespace embody::physics::collision {
 namespace {
@@ -315,28 +314,6 @@ TEST(Rims, BeginAtTheirFarthestPoint) {
         }
     }
     EXPECT_EQ(rim_start({0, 1, 0}).along, (Vec3{1, 0, 0}));
-}
-
-TEST(ShapeMass, IsTheClosedFormOfEachShape) {
-    Random random(11);
-    const auto shapes = convexes(random);
-    const auto ball = mass_of(convex_of(*shapes[0])), box = mass_of(convex_of(*shapes[1])),
-               cylinder = mass_of(convex_of(*shapes[3])), cone = mass_of(convex_of(*shapes[4]));
-    EXPECT_NEAR(ball.volume, 4 / 3.0 * pi * 0.064, 1e-9);
-    EXPECT_NEAR(box.volume, 0.6 * 1.0 * 0.4, 1e-9);
-    EXPECT_NEAR(cylinder.volume, pi * 0.09 * 0.8, 1e-9);
-    EXPECT_NEAR(cone.volume, pi * 0.16 * 1.0 / 3, 1e-9);
-    EXPECT_NEAR(ball.inertia.x.x, 0.4 * ball.volume * 0.16, 1e-9);
-    EXPECT_NEAR(box.inertia.y.y, box.volume / 12 * (0.36 + 0.16), 1e-9);
-    EXPECT_NEAR(cylinder.inertia.y.y, cylinder.volume * 0.09 / 2, 1e-9);
-    EXPECT_NEAR(cone.center.y, -0.25, 1e-9);
-    // A box by its faces alone is the same.
-    HullShape corners{corner_points({0.3, 0.5, 0.2})};
-    const auto hull = mass_of(convex_of(*make_shape(corners)));
-    EXPECT_NEAR(hull.volume, box.volume, 1e-9);
-    for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(hull.inertia(r, c), box.inertia(r, c), 1e-9);
-    }
 }
 
 TEST(ConvexPair, IsSeenFromTheFirst) {

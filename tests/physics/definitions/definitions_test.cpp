@@ -240,7 +240,8 @@ TEST(DeformableDefinitions, RefuseNumbersAndIndicesOutOfRange) {
     for (const DeformableDefinition* good : {&sheet, &rope, &solid}) {
         check_ranges<DeformableDefinition>(
             *good, {{"gravity_factor", -10, 10, [](auto& d, double x) { d.gravity_factor = x; }},
-                    {"friction", 0, 2, [](auto& d, double x) { d.friction = x; }},
+                    {"friction_dynamic", 0, 2,
+                     [](auto& d, double x) { d.material = {.friction_static = 2, .friction_dynamic = x}; }},
                     {"contact_radius", 1e-5, 1, [](auto& d, double x) { d.contact_radius = x; }}});
         DeformableDefinition bad = *good;
         bad.pinned = {static_cast<std::uint32_t>(bad.nodes.size())};

@@ -333,13 +333,13 @@ TEST(SurfacePairs, TwoBricksMeetWhereTheyFaceEachOther) {
     definition.pose.position = {0.02, 0.205, 0.01};
     const SolidDeformable above(definition);
     std::vector<SolidContact> contacts;
-    find_surface_contacts(above, 3, below, 7, 0.01, 1e-3, 0.4, false, contacts);
+    find_surface_contacts(above, 3, below, 7, 0.01, 1e-3, {0.5, 0.4}, false, contacts);
     EXPECT_GE(contacts.size(), 6u);
     for (const SolidContact& contact : contacts) {
         EXPECT_FALSE(contact.has_body());
         EXPECT_EQ(contact.point.solid, 3u);
         EXPECT_EQ(contact.other.solid, 7u);
-        EXPECT_EQ(contact.friction, 0.4);
+        EXPECT_EQ(contact.friction.sliding, 0.4);
         // Nodes of its lower side.
         EXPECT_NEAR(above.nodes().position[contact.point.node[0]].y, 0.205, 1e-9);
         EXPECT_GT(contact.normal.y, 0.4);  // nodes' normals at edges lean
@@ -347,7 +347,7 @@ TEST(SurfacePairs, TwoBricksMeetWhereTheyFaceEachOther) {
     // Far apart there is none.
     definition.pose.position.y = 0.5;
     contacts.clear();
-    find_surface_contacts(SolidDeformable(definition), 3, below, 7, 0.01, 1e-3, 0.4, false, contacts);
+    find_surface_contacts(SolidDeformable(definition), 3, below, 7, 0.01, 1e-3, {0.5, 0.4}, false, contacts);
     EXPECT_TRUE(contacts.empty());
 }
 
@@ -368,7 +368,7 @@ TEST(SolidContacts, CarryTheWeight) {
         contact.anchor =
             Vec3{solid.nodes().position[node].x, 0, solid.nodes().position[node].z} - bodies[0].start_center;
         contact.normal = {0, 1, 0};
-        contact.friction = 0.5;
+        contact.friction = {0.5, 0.5};
         contacts.push_back(contact);
     }
     SolidDeformable* solids[] = {&solid};

@@ -219,7 +219,7 @@ TEST(ThinPairs, CandidatesHoldAllThatIsNear) {
         Nodes below = nodes_at(definition.nodes), above = nodes_at(definition.nodes);
         const Vec3 way{random.between(-0.1, 0.1), 0.015, random.between(-0.1, 0.1)};
         for (Vec3& p : above.position) p += way + Vec3{0, random.between(-0.01, 0.03), 0};
-        const ThinSurface a{&below, triangles, edges, radius, 0.1, 0.3}, b{&above, triangles, edges, radius, 0.1, 0.3};
+        const ThinSurface a{&below, triangles, edges, radius, 0.1}, b{&above, triangles, edges, radius, 0.1};
         std::vector<ThinCandidate> candidates;
         find_thin_candidates(a, b, 1.0 / 60, 9.81, workers, candidates);
         std::set<std::pair<std::uint32_t, std::uint32_t>> listed;
