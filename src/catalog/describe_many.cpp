@@ -37,8 +37,8 @@ void describe_one(Description& model, const attributes::Taxonomy& taxonomy) {
 }  // namespace
 
 void describe_all(std::span<Description> models, const attributes::Taxonomy& taxonomy, TaskPool& workers) {
-    share_among(workers, models.size(), models.size() > 1, [&](int, Share share) {
-        for (Description& model : models.subspan(share.first, share.last - share.first)) describe_one(model, taxonomy);
+    parallel_for(workers, models.size(), models.size() > 1, [&](int, IndexRange range) {
+        for (Description& model : models.subspan(range.first, range.last - range.first)) describe_one(model, taxonomy);
     });
 }
 

@@ -188,7 +188,7 @@ void print(const Summary& summary, const scene::Simulation& simulation) {
         print_line("note: a liquid's motion left the finite numbers; it was frozen where it was");
     if (reached(StepLimit::fluid_particles_lost))
         print_line("note: liquid ran so far away that it was taken out; a floor or walls keep it");
-    if (reached(StepLimit::impact_rounds_exhausted))
+    if (reached(StepLimit::impact_iterations_exhausted))
         print_line("note: an impact needed more rounds than allowed; a smaller settings.time_step helps");
     if (reached(StepLimit::deep_penetration))
         print_line("note: bodies overlapped deeply; place them apart or use a smaller settings.time_step");

@@ -71,20 +71,20 @@ private:
 };
 
 /// Worker `worker`'s share of `count` things: the same for each call with the same numbers.
-struct Share {
+struct IndexRange {
     std::size_t first = 0, last = 0;
 };
-inline Share share_of(std::size_t count, int worker, int workers) {
+inline IndexRange range_of(std::size_t count, int worker, int workers) {
     const auto w = static_cast<std::size_t>(worker), n = static_cast<std::size_t>(workers);
     return {count * w / n, count * (w + 1) / n};
 }
 
-/// Calls work(worker, share) for shares of `count` things, on all workers if that is worth it; else work(0, all).
+/// Calls work(worker, range) for ranges of `count` indices, on all workers if is_parallel; else work(0, all).
 template <class Work>
-void share_among(TaskPool& workers, std::size_t count, bool is_worth_it, Work work) {
+void parallel_for(TaskPool& workers, std::size_t count, bool is_parallel, Work work) {
     const int number = workers.workers();
-    if (!is_worth_it || number == 1) return work(0, Share{0, count});
-    workers.run([&](int worker) { work(worker, share_of(count, worker, number)); });
+    if (!is_parallel || number == 1) return work(0, IndexRange{0, count});
+    workers.run([&](int worker) { work(worker, range_of(count, worker, number)); });
 }
 
 }  // namespace embody

@@ -15,7 +15,7 @@ constexpr std::uint32_t frame_magic = 0x44424D45;  // "EMBD"
 constexpr std::uint16_t frame_version = 1;
 /// A frame is at most about 3 MB.
 constexpr physics::DebugDrawOptions options_of(std::uint32_t flags) {
-    return {.flags = flags, .most_lines = 60'000, .most_points = 120'000};
+    return {.flags = flags, .max_lines = 60'000, .max_points = 120'000};
 }
 
 /// Lines and points by what they stand for.

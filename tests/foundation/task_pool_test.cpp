@@ -18,7 +18,8 @@ TEST_P(EachPool, RunsATaskOnceOnEachWorkerAgainAndAgain) {
     TaskPool pool(GetParam());
     ASSERT_EQ(pool.workers(), GetParam());
     std::vector<int> calls(static_cast<std::size_t>(GetParam()), 0);
-    for (int round = 0; round < 2000; ++round) pool.run([&](int worker) { ++calls[static_cast<std::size_t>(worker)]; });
+    for (int iteration = 0; iteration < 2000; ++iteration)
+        pool.run([&](int worker) { ++calls[static_cast<std::size_t>(worker)]; });
     for (const int count : calls) EXPECT_EQ(count, 2000);
 }
 
@@ -33,7 +34,7 @@ TEST_P(EachPool, RunsTasksFarApartAwakeOrNot) {
     TaskPool pool(GetParam());
     std::vector<int> calls(static_cast<std::size_t>(GetParam()), 0);
     const auto count = [&](int worker) { ++calls[static_cast<std::size_t>(worker)]; };
-    for (int round = 0; round < 20; ++round) {
+    for (int iteration = 0; iteration < 20; ++iteration) {
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
         pool.run(count);
         const TaskPool::StayAwake stay_awake(pool);
@@ -52,9 +53,9 @@ TEST_P(EachPool, WorkersMeetAtTheBarrier) {
     Barrier barrier(workers);
     std::vector<long> numbers(static_cast<std::size_t>(workers), 1);
     pool.run([&](int worker) {
-        for (int round = 0; round < 500; ++round) {
-            const auto target = static_cast<std::size_t>((worker + round) % workers);
-            numbers[target] += round;
+        for (int iteration = 0; iteration < 500; ++iteration) {
+            const auto target = static_cast<std::size_t>((worker + iteration) % workers);
+            numbers[target] += iteration;
             barrier.wait();
         }
     });
@@ -66,9 +67,9 @@ TEST_P(EachPool, SharesCoverAllOnce) {
     for (const std::size_t count : {0u, 1u, 7u, 64u, 1001u}) {
         std::size_t next = 0;
         for (int worker = 0; worker < GetParam(); ++worker) {
-            const Share share = share_of(count, worker, GetParam());
-            EXPECT_EQ(share.first, next);
-            next = share.last;
+            const IndexRange range = range_of(count, worker, GetParam());
+            EXPECT_EQ(range.first, next);
+            next = range.last;
         }
         EXPECT_EQ(next, count);
     }

@@ -497,7 +497,8 @@ TEST(JointedImpact, ManyBlowsOnOneAssemblyReachALimitAndGainNothing) {
         }
         const double start = energy(*world);
         const StepReport& report = world->step();
-        const bool is_exhausted = (report.limits & static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted)) != 0;
+        const bool is_exhausted =
+            (report.limits & static_cast<std::uint32_t>(StepLimit::impact_iterations_exhausted)) != 0;
         EXPECT_EQ(is_exhausted, rows > 1) << report.impacts << " impacts";
         EXPECT_LT(energy(*world), start);
         for (int i = 0; i < 30; ++i) world->step();

@@ -101,7 +101,7 @@ TEST(NothingPassesThroughTheGround, WhenABallOfTenTonsHitsAPyramid) {
         limits |= world->step().limits;
         for (const BodyHandle body : cubes) ASSERT_GT(world->center_of_mass(body).y, 0.45) << "at step " << i;
     }
-    EXPECT_EQ(limits & static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted), 0u);
+    EXPECT_EQ(limits & static_cast<std::uint32_t>(StepLimit::impact_iterations_exhausted), 0u);
 }
 
 }  // namespace

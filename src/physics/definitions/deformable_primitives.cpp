@@ -108,17 +108,17 @@ DeformableDefinition tetrahedral_brick(Vec3 size, std::array<int, 3> cells, Soft
         }
     }
     // Kuhn's split along the diagonal from (0,0,0) to (1,1,1), mirrored in cells of odd place.
-    constexpr int ways[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    constexpr int permutations[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
     for (int z = 0; z < nz; ++z) {
         for (int y = 0; y < ny; ++y) {
             for (int x = 0; x < nx; ++x) {
                 const std::array<int, 3> odd{x % 2, y % 2, z % 2};
-                for (const auto& way : ways) {
+                for (const auto& permutation : permutations) {
                     std::array<int, 3> corner{0, 0, 0};
                     std::array<std::uint32_t, 4> element{};
                     for (std::size_t k = 0; k < 4; ++k) {
                         element[k] = at(x + (corner[0] ^ odd[0]), y + (corner[1] ^ odd[1]), z + (corner[2] ^ odd[2]));
-                        if (k < 3) corner[static_cast<std::size_t>(way[k])] = 1;
+                        if (k < 3) corner[static_cast<std::size_t>(permutation[k])] = 1;
                     }
                     solid.tetrahedra.push_back(element);
                 }

@@ -29,7 +29,7 @@ struct FluidDefinition {
     std::uint64_t user_data = 0;  ///< the library never reads it
 };
 /// A fluid has at most as many particles.
-inline constexpr std::size_t most_fluid_particles = 4'000'000;
+inline constexpr std::size_t max_fluid_particles = 4'000'000;
 
 /// The error's `where` is the field, e.g. "boxes[2].lower.x".
 Result<void> validate(const FluidDefinition& definition);

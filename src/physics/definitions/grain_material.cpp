@@ -38,8 +38,8 @@ Heap heap_of(double angle) {
     const auto above = std::ranges::find_if(heaps, [angle](const Heap& heap) { return heap.angle >= angle; });
     if (above == heaps.begin()) return heaps.front();
     const Heap &a = *std::prev(above), &b = *above;
-    const double share = (angle - a.angle) / (b.angle - a.angle);
-    return {angle, a.sliding + share * (b.sliding - a.sliding), a.rolling + share * (b.rolling - a.rolling)};
+    const double fraction = (angle - a.angle) / (b.angle - a.angle);
+    return {angle, a.sliding + fraction * (b.sliding - a.sliding), a.rolling + fraction * (b.rolling - a.rolling)};
 }
 
 }  // namespace

@@ -72,11 +72,11 @@ Material combine(const Material& a, const Material& b, const SurfacePairs& pairs
     // Friction: of the table where both leave it to it, else by rule.
     const bool by_table = pair.friction_combine == CombineRule::pair_table;
     const CombineRule friction = by_table ? CombineRule::geometric_mean : pair.friction_combine;
-    const auto rubbing = [&](double of_a, double of_b) {
+    const auto friction_impulse = [&](double of_a, double of_b) {
         return combine(friction, Side{a.friction_combine, of_a}, Side{b.friction_combine, of_b});
     };
-    pair.friction_static = rubbing(a.friction_static, b.friction_static);
-    pair.friction_dynamic = rubbing(a.friction_dynamic, b.friction_dynamic);
+    pair.friction_static = friction_impulse(a.friction_static, b.friction_static);
+    pair.friction_dynamic = friction_impulse(a.friction_dynamic, b.friction_dynamic);
     if (by_table && known != nullptr) {
         pair.friction_static = known->friction_static;
         pair.friction_dynamic = known->friction_dynamic;

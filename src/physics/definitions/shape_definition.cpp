@@ -74,11 +74,11 @@ Result<void> check(const PlaneShape& s) {
 }
 
 Result<void> check(const HeightfieldShape& s) {
-    constexpr int most_samples = 1 << 15;
-    if (s.columns < 2 || s.columns > most_samples) {
+    constexpr int max_samples = 1 << 15;
+    if (s.columns < 2 || s.columns > max_samples) {
         return Error{"columns", "must be 2 to 32768, got " + std::to_string(s.columns)};
     }
-    if (s.rows < 2 || s.rows > most_samples) return Error{"rows", "must be 2 to 32768, got " + std::to_string(s.rows)};
+    if (s.rows < 2 || s.rows > max_samples) return Error{"rows", "must be 2 to 32768, got " + std::to_string(s.rows)};
     if (auto r = check_size("cell_x", s.cell_x); !r) return r;
     if (auto r = check_size("cell_z", s.cell_z); !r) return r;
 

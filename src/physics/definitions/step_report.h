@@ -29,7 +29,7 @@ enum class StepLimit : std::uint32_t {
     none = 0,
     linear_speed_clamped = 1u << 0,    ///< raise WorldSettings::max_linear_speed
     not_finite_body_frozen = 1u << 1,  ///< a body's state left the finite numbers; it was disabled where it last was
-    impact_rounds_exhausted =
+    impact_iterations_exhausted =
         1u << 2,                 ///< impacts needed more rounds, or were more, than allowed; a smaller time_step helps
     deep_penetration = 1u << 3,  ///< bodies overlap deeply; place them apart or use a smaller time_step
     too_many_pairs = 1u << 4,    ///< so many bodies are in each other that some pairs are left out

@@ -21,8 +21,8 @@ namespace embody::physics::dynamic {
 Quat cayley(Vec3 angle) { return normalized(Quat{angle.x / 2, angle.y / 2, angle.z / 2, 1}); }
 
 bool has_gyroscopic_torque(const BodyState& state, const BodyConstants& constants, double time) {
-    constexpr double least_turn = 1e-3;  // rad
-    return !constants.is_isotropic && length_squared(state.angular_velocity) * time * time > least_turn * least_turn;
+    constexpr double min_turn = 1e-3;  // rad
+    return !constants.is_isotropic && length_squared(state.angular_velocity) * time * time > min_turn * min_turn;
 }
 
 void refresh_inertia(BodyState& state, const BodyConstants& constants) {
@@ -98,9 +98,9 @@ void split_gyroscopic_of_turns(BodyState& state, const BodyConstants& constants,
     const Vec3 momentum = constants.inertia * omega;
 
     // The time of the one turn depends on the mean velocity that it is solved for, but weakly.
-    constexpr int rounds = 3;
+    constexpr int iterations = 3;
     Vec3 mean = omega;
-    for (int i = 0; i < rounds; ++i) {
+    for (int i = 0; i < iterations; ++i) {
         const double whole = time_of_one_turn(length(mean), time, parts);
         if (whole == 0) return;
         mean = solve_midpoint(constants.inertia, momentum, mean, whole);
@@ -189,8 +189,8 @@ bool move_freely(BodyState& state, const BodyConstants& constants, double time) 
     // In the body's axes; forwards and backwards alike, as the midpoint rule is symmetric in time. Its error goes with
     // the square of the turn.
     constexpr double widest_turn =
-        0.1;                        // rad in a part (validation.SpinningImpact: 1.2 % off at 50 rad/s without parts)
-    constexpr int most_parts = 16;  // of a substep: enough to 400 rad/s; beyond, energy is kept, phase is not
+        0.1;                       // rad in a part (validation.SpinningImpact: 1.2 % off at 50 rad/s without parts)
+    constexpr int max_parts = 16;  // of a substep: enough to 400 rad/s; beyond, energy is kept, phase is not
     Quat rotation = state.rotation;
     Vec3 omega = rotate_inverse(rotation, state.angular_velocity);
     const auto push = [&] {
@@ -199,7 +199,7 @@ bool move_freely(BodyState& state, const BodyConstants& constants, double time) 
         omega = kicked(omega, angular, constants.angular_damping, half);
     };
     const double turn = constants.is_isotropic ? 0 : length(omega) * std::fabs(time);
-    const int parts = static_cast<int>(std::min(1 + turn / widest_turn, double{most_parts}));
+    const int parts = static_cast<int>(std::min(1 + turn / widest_turn, double{max_parts}));
     push();
     for (int i = 0; i < parts; ++i) turn_freely(rotation, omega, constants, time / parts);
     push();

@@ -26,7 +26,7 @@ double level(std::uint64_t component, std::int64_t i, std::int64_t j, std::int64
 
 struct Place {
     std::int64_t index = 0;
-    double share = 0;  // of the next corner, 3u² - 2u³
+    double fraction = 0;  // of the next corner, 3u² - 2u³
 };
 
 Place place(double x) {
@@ -43,9 +43,9 @@ double noise(std::uint64_t component, Vec3 at) {
         const Place x = place(at.x), y = place(at.y), z = place(at.z);
         for (int corner = 0; corner < 8; ++corner) {
             const int a = corner & 1, b = corner >> 1 & 1, c = corner >> 2;
-            const double share =
-                (a ? x.share : 1 - x.share) * (b ? y.share : 1 - y.share) * (c ? z.share : 1 - z.share);
-            sum += height * share *
+            const double fraction = (a ? x.fraction : 1 - x.fraction) * (b ? y.fraction : 1 - y.fraction) *
+                                    (c ? z.fraction : 1 - z.fraction);
+            sum += height * fraction *
                    level(4 * component + static_cast<std::uint64_t>(octave), x.index + a, y.index + b, z.index + c);
         }
         variance += height * height * of_octave;

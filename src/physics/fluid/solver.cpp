@@ -17,8 +17,8 @@ namespace embody::physics::fluid {
 namespace {
 
 // A part of a step is so short that nothing moves farther than this, in cells, and they are so many at most.
-constexpr double longest_way = 1.5;
-constexpr int most_parts = 16;
+constexpr double max_displacement = 1.5;
+constexpr int max_parts = 16;
 // One in so many particles may be faster than that.
 constexpr std::size_t drops_by_particle = 200;
 
@@ -97,7 +97,7 @@ void FluidSolver::prepare(std::span<FluidObstacle> obstacles, TaskPool& workers)
     grid_.cover(particles, workers);
     if (particles.empty()) return;
     obstacles_.begin(obstacles, grid_);
-    grid_.sort(particles, particle_share(), obstacles_.in_reach(0, grid_.cell_size()), workers);
+    grid_.sort(particles, particle_fraction(), obstacles_.in_reach(0, grid_.cell_size()), workers);
     obstacles_.measure(0, grid_, workers);
 }
 
@@ -106,12 +106,12 @@ FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidObstac
     for (FluidObstacle& obstacle : obstacles) obstacle.impulse = obstacle.angular_impulse = {};
     if (particles_.empty()) return outcome;
     speed_ = usual_speed(workers);
-    const double h = grid_.cell_size(), cells = (speed_ + length(gravity) * dt) * dt / (longest_way * h);
+    const double h = grid_.cell_size(), cells = (speed_ + length(gravity) * dt) * dt / (max_displacement * h);
     const double tension = properties_.surface_tension, density = properties_.density;
     is_tense_ = is_tense(tension, density, length(gravity), h);
     const double parts = std::max(cells, is_tense_ ? std::sqrt(tension / steady_tension(density, h, dt)) : 0.0);
-    outcome.parts = static_cast<int>(std::clamp(std::ceil(parts), 1.0, static_cast<double>(most_parts)));
-    outcome.is_slowed = cells > most_parts;
+    outcome.parts = static_cast<int>(std::clamp(std::ceil(parts), 1.0, static_cast<double>(max_parts)));
+    outcome.is_slowed = cells > max_parts;
     obstacles_.begin(obstacles, grid_);
     const double part = dt / outcome.parts;
     for (int i = 0; i < outcome.parts && !particles_.empty(); ++i) advance_part(part, gravity, outcome, workers);
@@ -156,7 +156,7 @@ Conserved FluidSolver::conserved(Vec3 gravity) const {
     return sum;
 }
 
-float FluidSolver::particle_share() const {
+float FluidSolver::particle_fraction() const {
     const double h = grid_.cell_size();
     return static_cast<float>(properties_.particle_volume / (h * h * h));
 }
@@ -164,14 +164,15 @@ float FluidSolver::particle_share() const {
 void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers) {
     outcome.lost += grid_.cover(particles_, workers);
     if (particles_.empty()) return;
-    grid_.sort(particles_, particle_share(), obstacles_.in_reach(dt, grid_.cell_size()), workers);
+    grid_.sort(particles_, particle_fraction(), obstacles_.in_reach(dt, grid_.cell_size()), workers);
     obstacles_.measure(dt, grid_, workers);
     obstacles_.accelerate(dt);
     const bool has_liquid = grid_.on_grid() > 0;
     if (has_liquid) advance_grid(dt, gravity, outcome, workers);
     move_particles(dt, workers);
     fly(dt, gravity * dt, workers);
-    if (has_liquid) lumps_.end(gravity * dt, obstacles_, properties_.density * properties_.particle_volume, particles_);
+    if (has_liquid)
+        components_.end(gravity * dt, obstacles_, properties_.density * properties_.particle_volume, particles_);
     obstacles_.advance(dt);
 }
 
@@ -179,17 +180,17 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     EMBODY_ZONE("advance grid");
     const double h = grid_.cell_size();
     find_places(dt, workers);
-    particles_to_grid(grid_, particles_, places_, particle_share(), workers);
+    particles_to_grid(grid_, particles_, places_, particle_fraction(), workers);
     accelerate(gravity * dt, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
 
     system_.build(grid_, workers);
-    lumps_.begin(grid_, system_, obstacles_, particles_, is_tense_);
+    components_.begin(grid_, system_, obstacles_, particles_, is_tense_);
     obstacles_.list_areas(grid_);
     const Viscosity liquid{properties_.density, properties_.viscosity, properties_.yield_stress};
     if (is_viscous(liquid, h, dt)) shear(liquid, dt, outcome);
-    rub_along_walls(grid_, obstacles_, properties_.density, properties_.viscosity,
-                    properties_.density * properties_.particle_volume, dt, workers);
+    apply_wall_friction(grid_, obstacles_, properties_.density, properties_.viscosity,
+                        properties_.density * properties_.particle_volume, dt, workers);
     for (MovingObstacle& moving : obstacles_.moving()) {
         bind_liquid(grid_, properties_.density, gravity, moving);
         drag_small_body(grid_, properties_.density, properties_.viscosity,
@@ -207,9 +208,9 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
 void FluidSolver::find_places(double dt, TaskPool& workers) {
     const std::size_t count = grid_.on_grid();
     places_.resize(count);
-    share_among(workers, count, count > few_particles, [&](int, Share share) {
+    parallel_for(workers, count, count > few_particles, [&](int, IndexRange range) {
         ParticleCollider collider(grid_, obstacles_, dt);
-        for (std::size_t i = share.first; i < share.last; ++i) places_[i] = collider.place_of(particles_[i]);
+        for (std::size_t i = range.first; i < range.last; ++i) places_[i] = collider.place_of(particles_[i]);
     });
 }
 
@@ -226,17 +227,17 @@ void FluidSolver::accelerate(Vec3 change, TaskPool& workers) {
 
 void FluidSolver::shear(const Viscosity& liquid, double dt, FluidOutcome& outcome) {
     EMBODY_ZONE("solve viscosity");
-    constexpr int most_iterations = 300;
-    const int iterations = viscosity_.solve(liquid, dt, most_iterations, grid_, obstacles_);
+    constexpr int max_iterations = 300;
+    const int iterations = viscosity_.solve(liquid, dt, max_iterations, grid_, obstacles_);
     outcome.viscosity_iterations += iterations;
-    outcome.is_solved = outcome.is_solved && iterations <= most_iterations;
+    outcome.is_solved = outcome.is_solved && iterations <= max_iterations;
 }
 
 // The impulse density P = p dt that makes the velocity free of divergence (docs/physics/fluids.md, "Pressure").
 void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
     EMBODY_ZONE("solve pressure");
     constexpr double allowed_change = 1e-4;  // of a cell's volume in a part of a step
-    constexpr int most_iterations = 300;
+    constexpr int max_iterations = 300;
     const double h = grid_.cell_size(), rho = properties_.density;
     outflow(grid_, obstacles_, system_, flow_, workers);
     impulse_.resize(system_.size());
@@ -245,12 +246,12 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
         impulse_[row] = grid_.pressure[system_.cell(row)] * dt;
     }
     surface_.clear();
-    if (is_tense_) tighten(dt, workers);
+    if (is_tense_) apply_surface_tension(dt, workers);
     system_.set_bodies(obstacles_.moving(), rho / h);
     const double tolerance = allowed_change * rho * h * h / dt;
-    const int iterations = system_.solve(flow_, impulse_, tolerance, most_iterations, workers);
+    const int iterations = system_.solve(flow_, impulse_, tolerance, max_iterations, workers);
     outcome.pressure_iterations += iterations;
-    outcome.is_solved = outcome.is_solved && iterations <= most_iterations;
+    outcome.is_solved = outcome.is_solved && iterations <= max_iterations;
 
     subtract_gradient(grid_, impulse_, surface_, 1 / (rho * h), grid_.velocity, workers);
     push_obstacles(impulse_);
@@ -263,7 +264,7 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
 }
 
 // The pressure at the surface by its curvature. Where the parts of a step are too few, as much tension as they bear.
-void FluidSolver::tighten(double dt, TaskPool& workers) {
+void FluidSolver::apply_surface_tension(double dt, TaskPool& workers) {
     const double most = steady_tension(properties_.density, grid_.cell_size(), dt);
     surface_.measure(std::min(properties_.surface_tension, most) * dt, grid_, workers);
     add_surface_pressure(grid_, system_, surface_, flow_, workers);
@@ -289,8 +290,8 @@ void FluidSolver::push_obstacles(std::span<const double> impulse) {
 // "Volume"; after T. Kugelstadt and others, "Implicit density projection for volume conserving liquids", 2019).
 void FluidSolver::spread_out(TaskPool& workers) {
     EMBODY_ZONE("solve volume");
-    constexpr double share = 0.5, most = 0.5, allowed_error = 0.02;
-    constexpr int most_iterations = 40;
+    constexpr double fraction = 0.5, most = 0.5, allowed_error = 0.02;
+    constexpr int max_iterations = 40;
     potential_.assign(system_.size(), 0);
     flow_.resize(system_.size());
     for (std::size_t row = 0; row < system_.size(); ++row) {
@@ -302,10 +303,10 @@ void FluidSolver::spread_out(TaskPool& workers) {
             if (grid_.open[axis][cell] > 0 && grid_.row[cell - stride] < 0) error = 0;
             if (grid_.open[axis][cell + stride] > 0 && grid_.row[cell + stride] < 0) error = 0;
         }
-        flow_[row] = share * error;
+        flow_[row] = fraction * error;
     }
     system_.set_bodies({}, 0);
-    system_.solve(flow_, potential_, share * allowed_error, most_iterations, workers);
+    system_.solve(flow_, potential_, fraction * allowed_error, max_iterations, workers);
     grid_.for_tiles(workers, [&](const Cell& corner) {
         grid_.for_rows(corner, [&](int first, const Cell&) {
             for (auto& field : grid_.shift) std::fill_n(field.begin() + first, FluidGrid::tile[0], 0.0f);
@@ -318,9 +319,9 @@ void FluidSolver::move_particles(double dt, TaskPool& workers) {
     EMBODY_ZONE("move particles");
     const auto time = static_cast<float>(dt);
     const std::size_t count = grid_.on_grid();
-    share_among(workers, count, count > few_particles, [&](int, Share share) {
+    parallel_for(workers, count, count > few_particles, [&](int, IndexRange range) {
         ParticleCollider collider(grid_, obstacles_, dt);
-        for (std::size_t i = share.first; i < share.last; ++i) {
+        for (std::size_t i = range.first; i < range.last; ++i) {
             FluidParticle& particle = particles_[i];
             FieldSample sample = sample_field(grid_, grid_.velocity, places_[i].data());
             float shift[3], end[3];
@@ -348,9 +349,9 @@ void FluidSolver::move_particles(double dt, TaskPool& workers) {
 // Drops away from all liquid, by themselves: only walls that do not move are near.
 void FluidSolver::fly(double dt, Vec3 change, TaskPool& workers) {
     const std::size_t first = grid_.on_grid(), count = particles_.size() - first;
-    share_among(workers, count, count > few_particles, [&](int, Share share) {
+    parallel_for(workers, count, count > few_particles, [&](int, IndexRange range) {
         ParticleCollider collider(grid_, obstacles_, dt);
-        for (std::size_t i = first + share.first; i < first + share.last; ++i) {
+        for (std::size_t i = first + range.first; i < first + range.last; ++i) {
             FluidParticle& particle = particles_[i];
             float* velocity = particle.velocity;
             float end[3];

@@ -9,7 +9,7 @@
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/obstacles.h"
-#include "physics/fluid/particles/free_lumps.h"
+#include "physics/fluid/particles/free_components.h"
 #include "physics/fluid/pressure/pressure_system.h"
 #include "physics/fluid/pressure/surface_tension.h"
 #include "physics/fluid/pressure/viscosity.h"
@@ -86,16 +86,16 @@ public:
 
 private:
     void keep_out(TaskPool& workers);
-    void displace(double share, Followed& followed, TaskPool& workers);
+    void displace(double fraction, Followed& followed, TaskPool& workers);
     void advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers);
     void advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers);
     void fly(double dt, Vec3 change, TaskPool& workers);
-    [[nodiscard]] float particle_share() const;  // of a cell's volume
+    [[nodiscard]] float particle_fraction() const;  // of a cell's volume
     void find_places(double dt, TaskPool& workers);
     void accelerate(Vec3 change, TaskPool& workers);
     void project(double dt, FluidOutcome& outcome, TaskPool& workers);
     void shear(const Viscosity& liquid, double dt, FluidOutcome& outcome);
-    void tighten(double dt, TaskPool& workers);
+    void apply_surface_tension(double dt, TaskPool& workers);
     void spread_out(TaskPool& workers);
     void move_particles(double dt, TaskPool& workers);
     void push_obstacles(std::span<const double> impulse);
@@ -107,7 +107,7 @@ private:
     PressureSystem system_;
     ViscositySystem viscosity_;
     SurfacePressure surface_;
-    FreeLumps lumps_;
+    FreeComponents components_;
     std::vector<FluidParticle> particles_;
     std::uint32_t next_id_ = 0;
     std::vector<std::array<float, 3>> places_;  // where they meet the grid

@@ -12,7 +12,7 @@ public:
     DebugCanvas(DebugDraw& draw, const DebugDrawOptions& wanted) : options(wanted), draw_(draw) {}
 
     void line(Vec3 from, Vec3 to, DebugColor color) {
-        if (count_.lines >= options.most_lines) {
+        if (count_.lines >= options.max_lines) {
             ++count_.lines_left_out;
             return;
         }
@@ -20,7 +20,7 @@ public:
         draw_.line(from, to, color);
     }
     void point(Vec3 at, DebugColor color) {
-        if (count_.points >= options.most_points) {
+        if (count_.points >= options.max_points) {
             ++count_.points_left_out;
             return;
         }

@@ -66,12 +66,12 @@ inline constexpr std::array debug_draw_names{"shapes", "bounds", "contacts",  "i
                                              "joints", "masses", "particles", "deformables", "trees"};
 
 struct DebugDrawOptions {
-    std::uint32_t flags = 0;           ///< DebugDrawFlag
-    double mark_length = 0.1;          ///< of normals and joint axes, m
-    double longest_arrow = 0.5;        ///< of the largest impulse; others in proportion, m
-    double plane_half_size = 10;       ///< of the square that shows an endless plane, m
-    std::size_t most_lines = 100'000;  ///< what comes after is left out: shapes come last, static ones at the end
-    std::size_t most_points = 200'000;
+    std::uint32_t flags = 0;          ///< DebugDrawFlag
+    double mark_length = 0.1;         ///< of normals and joint axes, m
+    double longest_arrow = 0.5;       ///< of the largest impulse; others in proportion, m
+    double plane_half_size = 10;      ///< of the square that shows an endless plane, m
+    std::size_t max_lines = 100'000;  ///< what comes after is left out: shapes come last, static ones at the end
+    std::size_t max_points = 200'000;
 };
 
 struct DebugDrawCount {

@@ -48,13 +48,13 @@ namespace {
 // Conservative advancement straight down: the gap to the other body bounds how far the body can go.
 std::optional<double> drop_onto(const WorldState& world, std::uint32_t body, std::uint32_t other, double limit) {
     constexpr double touch = 1e-6;
-    constexpr int most_rounds = 256;
+    constexpr int max_iterations = 256;
     const CollisionShape& shape = *world.rigid.record(body).shape;
     const CollisionShape& ground = *world.rigid.record(other).shape;
     Transform pose = world.rigid.pose(body);
     const double start = pose.position.y;
     double fallen = 0;
-    for (int round = 0; round < most_rounds && fallen <= limit; ++round) {
+    for (int iteration = 0; iteration < max_iterations && fallen <= limit; ++iteration) {
         const double gap = separation(shape, pose, ground, world.rigid.pose(other), limit);
         if (gap <= touch) return fallen;
         fallen += gap;

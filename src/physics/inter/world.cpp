@@ -156,10 +156,10 @@ std::vector<ContactView> World::contacts() const {
             const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
             const double separation = current_separation(contact, point, state_->rigid.motion);
             if (point.total <= 0 && separation > 0) continue;
-            const double share = load > 0 ? point.total / load : 0;
+            const double fraction = load > 0 ? point.total / load : 0;
             views.push_back({state_->rigid.bodies.handle_at(contact.a), state_->rigid.bodies.handle_at(contact.b),
                              position_of(contact, point, state_->rigid.motion), contact.normal, separation,
-                             point.total * contact.normal + share * friction});
+                             point.total * contact.normal + fraction * friction});
         }
     };
     for (const Contact& contact : state_->contacts.list) add(contact);

@@ -22,11 +22,11 @@ void invert(Block6& matrix) {
         const Column6 factors = Column6::of(m[p]);
         for (int c = 0; c < 6; ++c) {
             if (c == p) continue;
-            const double share = m[c][p] * inverse;
+            const double fraction = m[c][p] * inverse;
             Column6 column = Column6::of(m[c]);
-            column.subtract(factors, share);
+            column.subtract(factors, fraction);
             column.put(m[c]);
-            m[c][p] = share;
+            m[c][p] = fraction;
         }
         Column6 column{};
         column.subtract(factors, inverse);

@@ -9,7 +9,7 @@
 namespace embody::physics::linear {
 
 void BlockPattern::analyse(std::size_t nodes, std::span<const Edge> edges, std::size_t multipliers) {
-    EMBODY_ASSERT(nodes <= most_nodes);
+    EMBODY_ASSERT(nodes <= max_nodes);
     find_order(nodes, edges, nodes - multipliers);
     place_blocks(edges);
 }

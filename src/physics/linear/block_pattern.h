@@ -17,7 +17,7 @@ namespace embody::physics::linear {
 /// systems", 1981 (least degree).
 class BlockPattern {
 public:
-    static constexpr std::size_t most_nodes = 512;
+    static constexpr std::size_t max_nodes = 512;
     using Edge = std::array<std::uint16_t, 2>;
 
     /// Edges may repeat; both ends differ. The last `multipliers` of the nodes have (nearly) no diagonal of their own:
@@ -64,7 +64,7 @@ private:
     std::vector<std::uint32_t> edge_block_;  // by edge
     std::vector<std::uint8_t> row_end_;      // by edge
     std::vector<std::uint32_t> block_at_;    // scratch: by pair of positions
-    using Neighbours = std::array<std::uint64_t, most_nodes / 64>;
+    using Neighbours = std::array<std::uint64_t, max_nodes / 64>;
     std::vector<Neighbours> columns_;  // scratch
 };
 

@@ -91,7 +91,7 @@ void subtract_scaled(double* a, const double* column, double factor, std::size_t
 }
 
 // What the forces on node j do to the nodes of a tile, and what forces on these do to j, as far as `back` collects it.
-template <bool is_both_ways>
+template <bool is_bidirectional>
 EMBODY_WIDE_INLINE void add_tile_moves(float* moves, const float* compliance, const float* forces, std::size_t stride,
                                        const Wide by[3], Sum back[3]) {
     for (std::size_t k = 0; k < registers; ++k) {
@@ -99,13 +99,13 @@ EMBODY_WIDE_INLINE void add_tile_moves(float* moves, const float* compliance, co
         Wide move[3], force[3];
         for (std::size_t r = 0; r < 3; ++r) {
             move[r] = load(moves + r * stride + at);
-            if constexpr (is_both_ways) force[r] = load(forces + r * stride + at);
+            if constexpr (is_bidirectional) force[r] = load(forces + r * stride + at);
         }
         for (std::size_t c = 0; c < 3; ++c) {
             for (std::size_t r = 0; r < 3; ++r) {
                 const Wide element = load(compliance + (3 * c + r) * stride + at);
                 move[r] += element * by[c];
-                if constexpr (is_both_ways) back[c].part[k] += element * force[r];
+                if constexpr (is_bidirectional) back[c].part[k] += element * force[r];
             }
         }
         for (std::size_t r = 0; r < 3; ++r) store(moves + r * stride + at, move[r]);

@@ -55,7 +55,7 @@ void DissectedCholesky::analyse(std::span<const Vec3> positions, std::span<const
     }
     value_.assign(first_value_.back(), 0.0f);  // above the diagonal and behind the last row zeros stay
     x_.resize(positions.size());
-    shared_among_ = 0;
+    parallel_workers_ = 0;
 }
 
 void DissectedCholesky::factor(std::span<const Mat3> diagonal, std::span<const Edge> edges,
@@ -200,9 +200,9 @@ void DissectedCholesky::solve_up(std::uint32_t index) {
 }
 
 // Subtrees of about equal work, largest first to the worker that has least.
-void DissectedCholesky::share_subtrees(int workers) {
-    if (shared_among_ == workers) return;
-    shared_among_ = workers;
+void DissectedCholesky::find_parallel_subtrees(int workers) {
+    if (parallel_workers_ == workers) return;
+    parallel_workers_ = workers;
     subtrees_ = {};
     subtrees_.of_worker.resize(static_cast<std::size_t>(workers));
     const std::size_t fronts = order_.fronts.size();
@@ -241,20 +241,20 @@ void DissectedCholesky::share_subtrees(int workers) {
 }
 
 void DissectedCholesky::solve(std::span<Vec3f> x, TaskPool& workers) {
-    constexpr std::size_t worth_sharing = 100000;  // numbers
-    const int count = value_.size() < worth_sharing ? 1 : workers.workers();
-    share_subtrees(count);
+    constexpr std::size_t min_parallel_count = 100000;  // numbers
+    const int count = value_.size() < min_parallel_count ? 1 : workers.workers();
+    find_parallel_subtrees(count);
     for (std::size_t place = 0; place < x_.size(); ++place) x_[place] = x[order_.node[place]];
-    const auto share = [&](const auto& work) {
+    const auto fraction = [&](const auto& work) {
         if (count == 1) return work(0);
         workers.run(work);
     };
-    share([&](int worker) {
+    fraction([&](int worker) {
         for (const std::uint32_t f : subtrees_.of_worker[static_cast<std::size_t>(worker)]) solve_down(f);
     });
     for (const std::uint32_t f : subtrees_.rest) solve_down(f);
     for (std::size_t k = subtrees_.rest.size(); k-- > 0;) solve_up(subtrees_.rest[k]);
-    share([&](int worker) {
+    fraction([&](int worker) {
         const auto& fronts = subtrees_.of_worker[static_cast<std::size_t>(worker)];
         for (std::size_t k = fronts.size(); k-- > 0;) solve_up(fronts[k]);
     });

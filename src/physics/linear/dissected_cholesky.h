@@ -47,7 +47,7 @@ private:
     void eliminate_down(const Front& front, float* w) const;
     void solve_down(std::uint32_t front);
     void solve_up(std::uint32_t front);
-    void share_subtrees(int workers);
+    void find_parallel_subtrees(int workers);
 
     NestedDissection order_;
     std::vector<std::size_t> first_value_;  // by front: a column after the other of 3 size() numbers
@@ -56,7 +56,7 @@ private:
     std::vector<std::vector<float>> local_;  // by front, of the last solve: own numbers, then what it leaves its parent
     std::vector<Vec3f> x_;                   // by place
     Subtrees subtrees_;
-    int shared_among_ = 0;
+    int parallel_workers_ = 0;
 };
 
 }  // namespace embody::physics::linear

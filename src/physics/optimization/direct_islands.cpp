@@ -11,16 +11,16 @@ namespace embody::physics::optimization {
 
 namespace {
 
-constexpr std::uint32_t least_levels = 4;        // lower ones come to rest in the sweeps
-constexpr std::size_t most_products_high = 300;  // of 6×6 blocks: chains, few bodies a level
-constexpr double least_mass_ratio = 20;          // of what lies above to what is below
-constexpr std::size_t most_products_bad = 4000;  // where they could not
-constexpr double least_load_ratio = 2;           // of all that lies above to a body of a tree below
+constexpr std::uint32_t min_levels = 4;         // lower ones come to rest in the sweeps
+constexpr std::size_t max_products_high = 300;  // of 6×6 blocks: chains, few bodies a level
+constexpr double min_mass_ratio = 20;           // of what lies above to what is below
+constexpr std::size_t max_products_bad = 4000;  // where they could not
+constexpr double min_load_ratio = 2;            // of all that lies above to a body of a tree below
 
 /// Bodies of a level, and the extremes of their masses.
 struct Level {
     std::size_t bodies = 0;
-    double least_inverse_mass = 1e300, largest_inverse_mass = 0, mass = 0;
+    double min_inverse_mass = 1e300, largest_inverse_mass = 0, mass = 0;
 };
 using Levels = std::span<const Level>;
 
@@ -32,7 +32,7 @@ Levels count_levels(const Island& island, const Islands& islands, std::span<cons
         const std::uint32_t body = islands.bodies[island.first_body + k];
         Level& level = levels[std::min<std::size_t>(islands.level[body], island.deepest_level + 1)];
         ++level.bodies;
-        level.least_inverse_mass = std::min(level.least_inverse_mass, bodies[body].inverse_mass);
+        level.min_inverse_mass = std::min(level.min_inverse_mass, bodies[body].inverse_mass);
         level.largest_inverse_mass = std::max(level.largest_inverse_mass, bodies[body].inverse_mass);
         level.mass += 1 / bodies[body].inverse_mass;
     }
@@ -51,12 +51,12 @@ std::size_t block_products(Levels levels) {
 
 // The heaviest body above another one, over that one.
 double mass_ratio(Levels levels) {
-    double ratio = 1, least_inverse_above = 1e300;
+    double ratio = 1, min_inverse_above = 1e300;
     for (std::size_t i = levels.size(); i-- > 0;) {
         const Level& level = levels[i];
         if (level.bodies == 0) continue;
-        ratio = std::max(ratio, level.largest_inverse_mass / least_inverse_above);
-        least_inverse_above = std::min(least_inverse_above, level.least_inverse_mass);
+        ratio = std::max(ratio, level.largest_inverse_mass / min_inverse_above);
+        min_inverse_above = std::min(min_inverse_above, level.min_inverse_mass);
     }
     return ratio;
 }
@@ -94,16 +94,16 @@ bool is_moving_kinematic(const BodyState& body) {
 DirectUse direct_use_of(const Island& island, const Islands& islands, std::span<const Contact> contacts,
                         std::span<const BodyState> bodies) {
     if (island.joint_count > 0 || island.contact_count == 0) return DirectUse::never;
-    if (island.body_count > DirectContactSolver::most_bodies) return DirectUse::never;
+    if (island.body_count > DirectContactSolver::max_bodies) return DirectUse::never;
     for (std::uint32_t k = 0; k < island.contact_count; ++k) {
         const Contact& contact = contacts[islands.contacts[island.first_contact + k]];
         if (is_moving_kinematic(bodies[contact.a]) || is_moving_kinematic(bodies[contact.b])) return DirectUse::never;
     }
     const Levels levels = count_levels(island, islands, bodies);
     const std::size_t products = block_products(levels);
-    const bool is_bad = mass_ratio(levels) > least_mass_ratio, is_high = island.deepest_level >= least_levels;
-    if (load_ratio(levels) > least_load_ratio && is_tree(island, islands, contacts, bodies)) return DirectUse::always;
-    if (products <= (is_bad ? most_products_bad : is_high ? most_products_high : 0)) return DirectUse::always;
+    const bool is_bad = mass_ratio(levels) > min_mass_ratio, is_high = island.deepest_level >= min_levels;
+    if (load_ratio(levels) > min_load_ratio && is_tree(island, islands, contacts, bodies)) return DirectUse::always;
+    if (products <= (is_bad ? max_products_bad : is_high ? max_products_high : 0)) return DirectUse::always;
     return DirectUse::while_slow;
 }
 

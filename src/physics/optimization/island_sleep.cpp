@@ -21,24 +21,24 @@ namespace embody::physics::optimization {
 namespace {
 
 // Whether a surface point has moved farther than `way` since the quiet time began.
-bool has_moved_on(const SleepRecord& record, const BodyState& state, double reach, double way) {
+bool has_moved_on(const SleepRecord& record, const BodyState& state, double reach, double travel) {
     const Quat turn = state.rotation * conjugate(record.quiet_rotation);
     const double chord = 2 * length(Vec3{turn.x, turn.y, turn.z}) * reach;
-    return distance(state.center, record.quiet_center) + chord > way;
+    return distance(state.center, record.quiet_center) + chord > travel;
 }
 
 }  // namespace
 
 void track_quietness(SleepRecord& record, const BodyState& state, const BodyConstants& constants, double reach,
                      const QuietRules& rules) {
-    constexpr double share_of_way = 1.0 / 60;  // see above; validation.SleepOnlyInBalance fails without it
+    constexpr double travel_fraction = 1.0 / 60;  // see above; validation.SleepOnlyInBalance fails without it
     const double energy_per_mass = kinetic_energy(state, constants) / constants.mass;
     const bool is_quiet = record.allowed && energy_per_mass <= record.threshold;
     record.state = is_quiet ? SleepState::wants_to_sleep : SleepState::active;
-    const double way = share_of_way * std::sqrt(2 * record.threshold) * rules.time_to_sleep;
+    const double travel = travel_fraction * std::sqrt(2 * record.threshold) * rules.time_to_sleep;
     if (!is_quiet) {
         record.quiet_time = 0;
-    } else if (record.quiet_time == 0 || (!rules.may_move_on && has_moved_on(record, state, reach, way))) {
+    } else if (record.quiet_time == 0 || (!rules.may_move_on && has_moved_on(record, state, reach, travel))) {
         record.quiet_time = rules.time_step;
         record.quiet_center = state.center;
         record.quiet_rotation = state.rotation;

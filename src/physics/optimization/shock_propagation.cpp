@@ -15,7 +15,7 @@ namespace embody::physics::optimization {
 namespace {
 
 constexpr std::uint32_t deep = 4;  // levels from which the solver's own correction is too slow
-constexpr double share = 0.2;      // of the rest taken out in one step
+constexpr double fraction = 0.2;   // of the rest taken out in one step
 
 // What a unit impulse at the point does to its normal speed, 1/kg.
 double response_of(const Contact& contact, const ContactPoint& point, std::span<const BodyState> bodies) {
@@ -42,7 +42,7 @@ void propagate_shock(const Island& island, const Islands& islands, std::span<con
             depth = std::max(depth, beyond - softness.sag(response_of(contact, point, bodies), point.impulse));
         }
         if (depth <= 0) continue;
-        const Vec3 shift = contact.normal * (share * depth);
+        const Vec3 shift = contact.normal * (fraction * depth);
         if (level_b > level_a) {
             bodies[contact.b].center += shift;
         } else {

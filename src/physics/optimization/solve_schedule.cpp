@@ -12,7 +12,7 @@ namespace embody::physics::optimization {
 
 namespace {
 
-constexpr std::uint32_t most_points = Manifold::max_points;
+constexpr std::uint32_t max_points = Manifold::max_points;
 constexpr std::uint32_t widest_batch = 16;  // contacts; whatever the processor has, so that the order is the same
 
 // The lowest colour that neither body has, of those with a batch to fill if there are any; what finds none is left for
@@ -56,10 +56,10 @@ void build_schedule(std::span<const std::uint32_t> order, std::span<const Contac
     const std::uint32_t stages = colour_stages(order, contacts, bodies, s);
 
     // By stage, in it what carried a load before what did not, and by falling number of points: one counting sort.
-    constexpr std::uint32_t kinds = 2 * most_points;
+    constexpr std::uint32_t kinds = 2 * max_points;
     const auto key_of = [&](std::size_t k) {
         const ContactSummary& contact = contacts[order[k]];
-        return s.stage_of[k] * kinds + (contact.was_loaded ? 0 : most_points) + (most_points - contact.count);
+        return s.stage_of[k] * kinds + (contact.was_loaded ? 0 : max_points) + (max_points - contact.count);
     };
     s.first_of_key.assign(stages * kinds + 1, 0);
     for (std::size_t k = 0; k < order.size(); ++k) ++s.first_of_key[key_of(k) + 1];

@@ -32,12 +32,12 @@ struct ImpactPrediction {
 /// Memory of the impact stage, so that a steady step allocates nothing. Of the last step it knows held_accelerations.
 struct ImpactMemory {
     // By body.
-    std::vector<std::uint8_t> is_supported;   ///< a contact carried it in the last step
-    std::vector<double> last_time;            ///< its last impact in this step, s
-    std::vector<double> liveliness;           ///< product of the restitutions of its bounces in this step
-    std::vector<float> speed_gain;            ///< most that its free motion can add to an approach in the step, m/s
-    std::vector<std::uint32_t> path_of_body;  ///< first of its path's states, see BodyPaths
-    std::vector<BodyState> path_states;       ///< with the inverse inertia of the start of the step
+    std::vector<std::uint8_t> is_supported;     ///< a contact carried it in the last step
+    std::vector<double> last_time;              ///< its last impact in this step, s
+    std::vector<double> remaining_restitution;  ///< product of the restitutions of its bounces in this step
+    std::vector<float> speed_gain;              ///< most that its free motion can add to an approach in the step, m/s
+    std::vector<std::uint32_t> path_of_body;    ///< first of its path's states, see BodyPaths
+    std::vector<BodyState> path_states;         ///< with the inverse inertia of the start of the step
     std::vector<std::uint32_t> remembered_bodies;
 
     // By contact; the lists of each body's contacts once there is an impact at all.
@@ -66,7 +66,7 @@ struct ImpactMemory {
     };
     std::vector<HeldAcceleration> held_accelerations;  ///< by body; empty without joints
 
-    std::size_t heap_bounces = 0;    ///< of bodies that others carry
+    std::size_t pile_bounces = 0;    ///< of bodies that others carry
     std::size_t assembly_nodes = 0;  ///< bodies and joints of all jointed assemblies that were solved in this step
 
     // Of the present impact.

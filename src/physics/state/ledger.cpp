@@ -79,7 +79,7 @@ void Ledger::remember(std::uint32_t body) {
     motion.spin = motion.mean_spin = state.angular_velocity;
     motion.rotation = state.rotation;
     motion.moment = motion.scaled_impulse = motion.scaled_moment = {};
-    motion.kept_share = 1;
+    motion.kept_fraction = 1;
     motion.rolls = false;
 }
 
@@ -125,17 +125,17 @@ void Ledger::note_impact(std::span<const ImpactSite> sites, double energy_change
 // work on both ways; what was carried went without them and only changed its place.
 void Ledger::add_displaced(std::uint32_t body) {
     const BodyState& state = world_.rigid.motion[body];
-    const Vec3 way = state.center - motions_[body].center;
+    const Vec3 displacement = state.center - motions_[body].center;
     const Vec3 weight = world_.rigid.constants[body].mass * gravity_on(world_, body);
     if (world_.impacts.is_supported[body]) {
-        add(StepCause::position_correction, -dot(weight, way), {}, {});
+        add(StepCause::position_correction, -dot(weight, displacement), {}, {});
         return;
     }
     const SteadyForces forces = forces_on(world_, body);
-    add(StepCause::gravity, dot(weight, way), {}, {});
-    add(StepCause::forces, dot(forces.user, way), {}, {});
-    add(StepCause::air, dot(forces.air, way), {}, {});
-    add(StepCause::coupling, dot(forces.coupling, way), {}, {});
+    add(StepCause::gravity, dot(weight, displacement), {}, {});
+    add(StepCause::forces, dot(forces.user, displacement), {}, {});
+    add(StepCause::air, dot(forces.air, displacement), {}, {});
+    add(StepCause::coupling, dot(forces.coupling, displacement), {}, {});
 }
 
 // What a joint passed on in the impacts. That is no work between bodies in free motion, but an impulse where it leads
@@ -220,12 +220,12 @@ void Ledger::add_damping(std::uint32_t body) {
         cross(motion.mean_center, impulse) + moment);
 }
 
-void Ledger::note_scaled(std::uint32_t body, double share) {
+void Ledger::note_scaled(std::uint32_t body, double fraction) {
     // What was stopped whole tells nothing of its velocity; that was all energy which the joints had no right to.
-    if (!(share > 0)) return;
+    if (!(fraction > 0)) return;
     const BodyState& state = world_.rigid.motion[body];
     const BodyConstants& constants = world_.rigid.constants[body];
-    const double change = 1 - 1 / share;
+    const double change = 1 - 1 / fraction;
     motions_[body].scaled_impulse += constants.mass * change * state.linear_velocity;
     motions_[body].scaled_moment += change * spin_momentum(state.rotation, state.angular_velocity, constants);
 }
@@ -242,9 +242,9 @@ void Ledger::add_scaling(std::uint32_t body) {
 void Ledger::add_correction(std::uint32_t body) {
     const Motion& motion = motions_[body];
     const double mass = world_.rigid.constants[body].mass;
-    const Vec3 way = world_.rigid.motion[body].center - motion.center - motion.mean_velocity * time_;
-    add(StepCause::position_correction, -mass * dot(gravity_on(world_, body), way), {},
-        cross(way, mass * motion.mean_velocity));
+    const Vec3 displacement = world_.rigid.motion[body].center - motion.center - motion.mean_velocity * time_;
+    add(StepCause::position_correction, -mass * dot(gravity_on(world_, body), displacement), {},
+        cross(displacement, mass * motion.mean_velocity));
 }
 
 void Ledger::add_push(const Push& push, StepCause cause) {
@@ -278,9 +278,9 @@ void Ledger::for_each_push(const Island& island, Visit visit) const {
         const std::uint32_t index = world_.islands.contacts[island.first_contact + k];
         const Contact& contact = world_.contacts.list[index];
         const ContactTotals& before = contact_totals_[index];
-        const double share = std::min(motions_[contact.a].kept_share, motions_[contact.b].kept_share);
-        const auto change = [share](float now, float then) {
-            return share * (static_cast<double>(now) - static_cast<double>(then));
+        const double fraction = std::min(motions_[contact.a].kept_fraction, motions_[contact.b].kept_fraction);
+        const auto change = [fraction](float now, float then) {
+            return fraction * (static_cast<double>(now) - static_cast<double>(then));
         };
         for (std::size_t i = 0; i < contact.count; ++i) {
             const ContactPoint& point = contact.points[i];
@@ -292,7 +292,7 @@ void Ledger::for_each_push(const Island& island, Visit visit) const {
         const Vec3 force = Vec3(contact.tangent_1) * change(total.along_1, before.friction[0]) +
                            tangent_2(contact) * change(total.along_2, before.friction[1]);
         const Vec3 moment =
-            Vec3(contact.normal) * change(total.twist, before.friction[2]) + Vec3(contact.rolling) * (share * parts);
+            Vec3(contact.normal) * change(total.twist, before.friction[2]) + Vec3(contact.rolling) * (fraction * parts);
         if (force == Vec3{} && moment == Vec3{}) continue;
         const Anchor anchor = anchor_of(contact);
         visit(Push{contact.a, contact.b, anchor.arm_a, anchor.arm_b, force, moment});

@@ -32,9 +32,9 @@ public:
     void note_impact(std::span<const ImpactSite> sites, double energy_change);
     void close_impacts();
     /// Of the impulses that its contacts report, the share that a body was given.
-    void note_kept_share(std::uint32_t body, double share) { motions_[body].kept_share = share; }
+    void note_kept_fraction(std::uint32_t body, double fraction) { motions_[body].kept_fraction = fraction; }
     /// Its velocities were scaled to this share, which keeps energy from growing.
-    void note_scaled(std::uint32_t body, double share);
+    void note_scaled(std::uint32_t body, double fraction);
     /// It was taken through the step by the equations of pure rolling.
     void note_rolled(std::uint32_t body) { motions_[body].rolls = true; }
     /// An island was solved through the next `time`, s: a substep where there are joints, else the step.
@@ -55,7 +55,7 @@ private:
         Vec3 mean_center, mean_velocity, mean_spin;
         Vec3 moment;                         ///< of its contacts over the stage, about the centre of mass, N m s
         Vec3 scaled_impulse, scaled_moment;  ///< by note_scaled(), N s, N m s
-        double kept_share = 1;               ///< of its contacts' impulses
+        double kept_fraction = 1;            ///< of its contacts' impulses
         bool rolls = false;                  ///< purely, through the whole step: its contacts do no work
     };
     /// What contacts and joints had done before the running part of the step.

@@ -73,7 +73,7 @@ struct SubstepMemory {
     struct EnergyBound {
         Island island;
         const JointSystem* system;
-        double energy, mending;
+        double energy, correction;
     };
     std::vector<EnergyBound> energy_bounds;
 

@@ -30,9 +30,9 @@ static_assert(sizeof(TouchBody) == 64);
 /// What the touch stage asks of every pair in every step: little, since most pairs are apart and stay so.
 struct PairWatch {
     BroadPhase::Pair pair;
-    double look_again = 0;     ///< the pair has no contacts before both bodies' paths together are as long, m
-    std::uint32_t record = 0;  ///< in TouchMemory::records
-    std::uint32_t count = 0;   ///< of its contacts
+    double next_check_travel = 0;  ///< the pair has no contacts before both bodies' paths together are as long, m
+    std::uint32_t record = 0;      ///< in TouchMemory::records
+    std::uint32_t count = 0;       ///< of its contacts
 };
 static_assert(sizeof(PairWatch) == 24);
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "physics/definitions/step_report.h"
-#include "physics/stages/share_awake.h"
+#include "physics/stages/parallel_for_awake.h"
 #include "physics/state/contact_state.h"
 #include "physics/state/event_state.h"
 #include "physics/state/rigid_state.h"

@@ -37,7 +37,7 @@ constexpr std::array<LimitText, 9> limit_texts = {{
      "A liquid's motion left the finite numbers; it was frozen where it was."},
     {physics::StepLimit::fluid_particles_lost,
      "Liquid ran so far away that it was taken out; a floor or walls keep it."},
-    {physics::StepLimit::impact_rounds_exhausted,
+    {physics::StepLimit::impact_iterations_exhausted,
      "An impact was too complicated for one step; a smaller time step helps."},
     {physics::StepLimit::deep_penetration, "Things overlap deeply; place them apart or use a smaller time step."},
 }};

@@ -16,12 +16,12 @@ TEST(BoxTree, BoxesPutBackWithoutAQueryTakeNoMoreRoom) {
     BoxTree tree;
     for (std::uint32_t i = 0; i < count; ++i) tree.insert(i, box_at(i));
     tree.refresh();
-    for (int round = 1; round <= 200; ++round) {
+    for (int iteration = 1; iteration <= 200; ++iteration) {
         for (std::uint32_t i = 0; i < count; ++i) {
             tree.remove(i);
-            tree.insert(i, box_at(i + round));
+            tree.insert(i, box_at(i + iteration));
         }
-        ASSERT_LT(tree.leaf_count() * BoxNode::lanes, 5 * count) << "round " << round;
+        ASSERT_LT(tree.leaf_count() * BoxNode::lanes, 5 * count) << "round " << iteration;
     }
 
     // All are there, where they were put last, and count as changed.

@@ -137,8 +137,8 @@ TEST(BroadPhase, finds_the_same_pairs_on_any_number_of_workers_far_from_the_orig
         }
         EXPECT_EQ(missing, 0u);
         for (std::uint32_t body = 0; body < 1000; ++body) {
-            const Vec3 way{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
-            bounds[body] = {bounds[body].lower + way, bounds[body].upper + way};
+            const Vec3 displacement{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+            bounds[body] = {bounds[body].lower + displacement, bounds[body].upper + displacement};
             for (BroadPhase* phase : {&serial, &parallel}) phase->move(body, bounds[body], {});
         }
     }
@@ -155,7 +155,7 @@ TEST(BroadPhase, four_thousand_bodies_in_one_point_keep_a_bounded_number_of_pair
     }
     const auto pairs = phase.update_pairs(one_worker);
     EXPECT_TRUE(phase.has_too_many_pairs());
-    EXPECT_LE(pairs.size(), count * (BroadPhase::most_partners + 1));
+    EXPECT_LE(pairs.size(), count * (BroadPhase::max_partners + 1));
     EXPECT_EQ(pairs, other.update_pairs(two_workers));
     for (std::uint32_t body = 0; body < count; ++body) {
         EXPECT_TRUE(std::binary_search(pairs.begin(), pairs.end(), BroadPhase::Pair{body, count})) << body;

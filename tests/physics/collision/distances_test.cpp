@@ -49,12 +49,12 @@ TEST(CoreDistance, OfBallsIsThatOfTheirCentres) {
     Random random(1);
     const auto a = make_shape(SphereShape{0.3}), b = make_shape(SphereShape{0.5});
     for (int trial = 0; trial < 100; ++trial) {
-        const Vec3 way = any_point(random, 2);
+        const Vec3 displacement = any_point(random, 2);
         const CoreDistance found =
-            core_distance(Core(placed(convex_of(*a), {}, {})), Core(placed(convex_of(*b), {}, way)));
+            core_distance(Core(placed(convex_of(*a), {}, {})), Core(placed(convex_of(*b), {}, displacement)));
         // A ball's core is its centre.
-        EXPECT_NEAR(found.distance, length(way), 1e-9);
-        EXPECT_LT(length(found.on_b - way), 1e-9);
+        EXPECT_NEAR(found.distance, length(displacement), 1e-9);
+        EXPECT_LT(length(found.on_b - displacement), 1e-9);
     }
 }
 
@@ -95,15 +95,15 @@ TEST(CoreDistance, OverlappingBoxesPartAlongTheirLeastDepth) {
     Random random(3);
     const auto box = make_shape(BoxShape{{0.5, 0.5, 0.5}});
     for (int trial = 0; trial < 100; ++trial) {
-        Vec3 way = any_point(random, 0.4);
+        Vec3 displacement = any_point(random, 0.4);
         const int axis = static_cast<int>(random.below(3));
-        way[axis] = random.unit() < 0.5 ? -0.9 : 0.9;
-        const Core a(placed(convex_of(*box), {}, {})), b(placed(convex_of(*box), {}, way));
+        displacement[axis] = random.unit() < 0.5 ? -0.9 : 0.9;
+        const Core a(placed(convex_of(*box), {}, {})), b(placed(convex_of(*box), {}, displacement));
         const CoreDistance found = core_distance(a, b);
         ASSERT_TRUE(found.overlap);
         Vec3 normal;
         ASSERT_TRUE(penetration_normal(a, b, found, normal));
-        EXPECT_NEAR(normal[axis], way[axis] > 0 ? 1 : -1, 1e-6);
+        EXPECT_NEAR(normal[axis], displacement[axis] > 0 ? 1 : -1, 1e-6);
     }
 }
 
@@ -210,14 +210,14 @@ TEST(RayAtConvex, EndsOnTheSurface) {
             EXPECT_FALSE(hit);
             continue;
         }
-        const double way = hit ? hit->distance : 4;
+        const double displacement = hit ? hit->distance : 4;
         for (int i = 1; i < 20; ++i) {
-            const Vec3 p = origin + direction * (way * i / 20);
+            const Vec3 p = origin + direction * (displacement * i / 20);
             EXPECT_GT(distance_from_surface(convex, p).distance, -1e-9);
         }
         if (!hit) continue;
         ++hits;
-        EXPECT_NEAR(distance_from_surface(convex, origin + direction * way).distance, 0, 1e-7);
+        EXPECT_NEAR(distance_from_surface(convex, origin + direction * displacement).distance, 0, 1e-7);
         EXPECT_LT(dot(hit->normal, direction), 1e-9);
     }
     EXPECT_GT(hits, 200);
@@ -321,13 +321,14 @@ TEST(ConvexPair, IsSeenFromTheFirst) {
     const auto shapes = convexes(random);
     for (int trial = 0; trial < 50; ++trial) {
         const Quat first = random_rotation(random), second = random_rotation(random);
-        const Vec3 way = any_point(random, 3), p = any_point(random, 1);
+        const Vec3 displacement = any_point(random, 3), p = any_point(random, 1);
         for (int c = 0; c < 3; ++c) {
             EXPECT_LT(length(turn_of(first).column(c) - to_matrix(first).column(c)), 1e-12);
         }
-        const ConvexPair pair(convex_of(*shapes[0]), turn_of(first), convex_of(*shapes[1]), turn_of(second), way);
+        const ConvexPair pair(convex_of(*shapes[0]), turn_of(first), convex_of(*shapes[1]), turn_of(second),
+                              displacement);
         // A point of the second in the world, seen from the first.
-        const Vec3 world = way + rotate(second, p);
+        const Vec3 world = displacement + rotate(second, p);
         EXPECT_LT(length(pair.placed_b().to_frame(p) - rotate_inverse(first, world)), 1e-12);
         EXPECT_LT(length(pair.placed_b().to_local(pair.placed_b().to_frame(p)) - p), 1e-12);
     }

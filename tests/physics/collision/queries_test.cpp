@@ -21,10 +21,10 @@ TEST(Capsules, of_two_points_meet_what_the_shape_meets) {
         Random random(5);
         for (int trial = 0; trial < 200; ++trial) {
             const Transform pose{{5, -3, 2}, random_rotation(random)};
-            const Vec3 middle = pose.position + random_direction(random) * 0.7, way = random_direction(random);
+            const Vec3 middle = pose.position + random_direction(random) * 0.7, travel = random_direction(random);
             std::vector<Manifold> own, of_shape;
-            collide_capsule(middle - 0.3 * way, middle + 0.3 * way, 0.05, *shape, pose, 0.1, own);
-            collide(*capsule, {middle, from_two_vectors({0, 1, 0}, way)}, *shape, pose, 0.1, of_shape);
+            collide_capsule(middle - 0.3 * travel, middle + 0.3 * travel, 0.05, *shape, pose, 0.1, own);
+            collide(*capsule, {middle, from_two_vectors({0, 1, 0}, travel)}, *shape, pose, 0.1, of_shape);
             ASSERT_EQ(own.size(), of_shape.size()) << shape_name(definition) << trial;
             if (own.empty()) continue;
             EXPECT_LT(length(own[0].normal - of_shape[0].normal), 1e-6) << shape_name(definition) << trial;

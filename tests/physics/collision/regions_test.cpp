@@ -81,13 +81,13 @@ ContactFeature square(double half, Vec3 center, Vec3 normal) {
 TEST(ContactRegion, IsTheCommonPartOfTwoSquares) {
     Random random(2);
     for (int trial = 0; trial < 100; ++trial) {
-        const Vec3 way{random.between(-1.4, 1.4), 0.02, random.between(-1.4, 1.4)};
+        const Vec3 displacement{random.between(-1.4, 1.4), 0.02, random.between(-1.4, 1.4)};
         ContactRegion region;
         region.normal = {0, 1, 0};
-        clip_to_region(square(1, {}, {0, 1, 0}), square(0.5, way, {0, -1, 0}), true, 0, 0.05, region);
+        clip_to_region(square(1, {}, {0, 1, 0}), square(0.5, displacement, {0, -1, 0}), true, 0, 0.05, region);
         ASSERT_EQ(region.points.size(), 4u);
-        const double low_x = std::max(-1.0, way.x - 0.5), high_x = std::min(1.0, way.x + 0.5);
-        const double low_z = std::max(-1.0, way.z - 0.5), high_z = std::min(1.0, way.z + 0.5);
+        const double low_x = std::max(-1.0, displacement.x - 0.5), high_x = std::min(1.0, displacement.x + 0.5);
+        const double low_z = std::max(-1.0, displacement.z - 0.5), high_z = std::min(1.0, displacement.z + 0.5);
         for (const ManifoldPoint& point : region.points) {
             EXPECT_NEAR(point.separation, 0.02, 1e-12);
             EXPECT_NEAR(point.position.y, 0.01, 1e-12);
@@ -147,8 +147,8 @@ TEST(ContactRegion, CrossedSegmentsMeetAtOnePointAndParallelOnesAtTwo) {
 
 TEST(BoxPair, StacksOnFourCorners) {
     const auto box = make_shape(BoxShape{{0.5, 0.5, 0.5}});
-    const auto meet = [&](Vec3 way, double margin, Manifold& manifold) {
-        const ConvexPair pair(convex_of(*box), Mat3::identity(), convex_of(*box), Mat3::identity(), way);
+    const auto meet = [&](Vec3 displacement, double margin, Manifold& manifold) {
+        const ConvexPair pair(convex_of(*box), Mat3::identity(), convex_of(*box), Mat3::identity(), displacement);
         PairMemory memory;
         return collide_boxes(pair, margin, memory, manifold);
     };
@@ -170,10 +170,11 @@ TEST(CurveCrossing, OfTwoCapsulesIsWhereTheirAxesPass) {
     for (int trial = 0; trial < 50; ++trial) {
         // One along Y, the other turned about X by an angle and moved along Z's normal.
         const double angle = random.between(0.5, 2.5);
-        const Vec3 way{0.3, random.between(-0.4, 0.4), random.between(-0.4, 0.4)};
+        const Vec3 displacement{0.3, random.between(-0.4, 0.4), random.between(-0.4, 0.4)};
         CurveCrossing crossing;
-        ASSERT_TRUE(cross_curves(placed(*capsule, {}, {}), placed(*capsule, from_axis_angle({1, 0, 0}, angle), way),
-                                 {1, 0, 0}, crossing));
+        ASSERT_TRUE(cross_curves(placed(*capsule, {}, {}),
+                                 placed(*capsule, from_axis_angle({1, 0, 0}, angle), displacement), {1, 0, 0},
+                                 crossing));
         ASSERT_TRUE(crossing.is_within);
         EXPECT_NEAR(std::fabs(crossing.normal.x), 1, 1e-6);
         EXPECT_NEAR(crossing.on_b.x - crossing.on_a.x, 0.3, 1e-6);
@@ -228,15 +229,15 @@ TEST(ConvexPairs, ABallMeetsABoxAtItsNearestPoint) {
     Random random(5);
     const auto ball = make_shape(SphereShape{0.3}), box = make_shape(BoxShape{{0.5, 0.4, 0.6}});
     for (int trial = 0; trial < 100; ++trial) {
-        const Vec3 way = any_point(random, 1.2);
-        const double gap = distance_from_surface(convex_of(*box), -way).distance - 0.3;
+        const Vec3 displacement = any_point(random, 1.2);
+        const double gap = distance_from_surface(convex_of(*box), -displacement).distance - 0.3;
         PairMemory memory;
         ContactRegion region;
-        collide_sphere(placed(*ball, {}, {}), placed(*box, {}, way), 0.1, memory, region);
+        collide_sphere(placed(*ball, {}, {}), placed(*box, {}, displacement), 0.1, memory, region);
         ASSERT_EQ(region.points.size(), gap <= 0.1 ? 1u : 0u);
         if (region.points.empty()) continue;
         EXPECT_NEAR(region.points[0].separation, gap, 1e-9);
-        EXPECT_LT(dot(region.normal, way), length(way) + 1e-9);
+        EXPECT_LT(dot(region.normal, displacement), length(displacement) + 1e-9);
     }
 }
 

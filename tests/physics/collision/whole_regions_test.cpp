@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A region says that it is whole where no other corner of two hulls is within the margin, and only there: such contacts
-// follow their bodies until they have moved by Manifold::whole_way.
+// follow their bodies until they have moved by Manifold::whole_travel.
 #include <numbers>
 
 #include "physics/collision/collision_probe.h"

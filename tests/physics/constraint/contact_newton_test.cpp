@@ -73,27 +73,27 @@ TEST(ContactNewton, KeepsMomentumAndTheLawsOfContact) {
     Random random(11);
     ContactNewton newton;
     int solved = 0;
-    for (int round = 0; round < 300; ++round) {
-        FloatingColumn column(2 + round % 5, random);
+    for (int iteration = 0; iteration < 300; ++iteration) {
+        FloatingColumn column(2 + iteration % 5, random);
         newton.begin_step();
         newton.begin(0, column.bodies, column.patches);
         if (!newton.find_velocities(column.free, column.velocity, column.patches)) continue;
         ++solved;
-        ASSERT_LT(length(column.momentum(column.velocity) - column.momentum(column.free)), 1e-9) << round;
+        ASSERT_LT(length(column.momentum(column.velocity) - column.momentum(column.free)), 1e-9) << iteration;
         ASSERT_LT(length(column.angular_momentum(column.velocity) - column.angular_momentum(column.free)), 1e-9);
-        ASSERT_LE(column.energy(column.velocity), column.energy(column.free) * (1 + 1e-6)) << round;
+        ASSERT_LE(column.energy(column.velocity), column.energy(column.free) * (1 + 1e-6)) << iteration;
         for (const DirectPatch& patch : column.patches) {
             const PatchTwist u = relative_twist(patch, column.velocity);
             double load = 0;
             for (const DirectPatch::Point& point : patch.points) {
                 const double speed = dot(row_of(point), u.normal_part);
-                ASSERT_GE(point.load, 0) << round;
-                ASSERT_GT(speed, -1e-3) << round;
-                ASSERT_LT(point.load * speed, 1e-3) << round;
+                ASSERT_GE(point.load, 0) << iteration;
+                ASSERT_GT(speed, -1e-3) << iteration;
+                ASSERT_LT(point.load * speed, 1e-3) << iteration;
                 load += point.load;
             }
             const Vec3 f = patch.friction;
-            ASSERT_LE(std::hypot(f.x, f.y), patch.friction_dynamic * load * 1.001 + 1e-9) << round;
+            ASSERT_LE(std::hypot(f.x, f.y), patch.friction_dynamic * load * 1.001 + 1e-9) << iteration;
         }
     }
     // Far wilder than what a step meets; the sweeps take the others.
@@ -104,8 +104,8 @@ TEST(ContactNewton, RestKeepsMomentumAndLiesInTheCone) {
     Random random(12);
     ContactNewton newton;
     int solved = 0;
-    for (int round = 0; round < 300; ++round) {
-        FloatingColumn column(2 + round % 5, random);
+    for (int iteration = 0; iteration < 300; ++iteration) {
+        FloatingColumn column(2 + iteration % 5, random);
         newton.begin_step();
         newton.begin(0, column.bodies, column.patches);
         for (DirectPatch& patch : column.patches) {
@@ -114,18 +114,18 @@ TEST(ContactNewton, RestKeepsMomentumAndLiesInTheCone) {
         }
         if (!newton.find_rest(column.free, column.velocity, column.patches)) continue;
         ++solved;
-        ASSERT_LT(length(column.momentum(column.velocity) - column.momentum(column.free)), 1e-9) << round;
+        ASSERT_LT(length(column.momentum(column.velocity) - column.momentum(column.free)), 1e-9) << iteration;
         ASSERT_LT(length(column.angular_momentum(column.velocity) - column.angular_momentum(column.free)), 1e-9);
         for (const DirectPatch& patch : column.patches) {
             const PatchTwist u = relative_twist(patch, column.velocity);
             double load = 0;
             for (const DirectPatch::Point& point : patch.points) {
-                ASSERT_GE(point.load, 0) << round;
-                ASSERT_GT(dot(row_of(point), u.normal_part), -1e-2) << round;
+                ASSERT_GE(point.load, 0) << iteration;
+                ASSERT_GT(dot(row_of(point), u.normal_part), -1e-2) << iteration;
                 load += point.load;
             }
             const Vec3 f = patch.friction;
-            ASSERT_LE(std::hypot(f.x, f.y), patch.friction_static * load * (1 + 1e-9) + 1e-12) << round;
+            ASSERT_LE(std::hypot(f.x, f.y), patch.friction_static * load * (1 + 1e-9) + 1e-12) << iteration;
         }
     }
     // Bodies that move at a metre a second are far from rest.

@@ -26,9 +26,9 @@ TEST(FollowBall, ContactOverAFaceIsThatOfANewComparison) {
     EXPECT_TRUE(before[0].is_whole);
     Contact followed = make_contact(0, 1, before[0], bodies);
 
-    const Vec3 way{2e-3, 5e-4, -1e-3};
-    bodies[1].center += way;
-    follow_bodies(followed, {.shift = to_vec3f(way),
+    const Vec3 displacement{2e-3, 5e-4, -1e-3};
+    bodies[1].center += displacement;
+    follow_bodies(followed, {.shift = to_vec3f(displacement),
                              .axes = {to_vec3f({1, 0, 0}), to_vec3f({0, 1, 0}), to_vec3f({0, 0, 1})},
                              .apart = to_vec3f(bodies[1].center),
                              .spin_b = to_vec3f({1, 2, 3}),
@@ -44,8 +44,8 @@ TEST(FollowBall, ContactOverAFaceIsThatOfANewComparison) {
 // Nearer to a side of the face than the way it is kept for, or over an edge, a ball must be compared again sooner.
 TEST(FollowBall, ContactIsWholeOnlyWellWithinAFace) {
     const double height = half_height + radius;
-    EXPECT_TRUE(ball_on_box({1 - 1.1 * Manifold::whole_way, height, 0}).at(0).is_whole);
-    EXPECT_FALSE(ball_on_box({1 - 0.9 * Manifold::whole_way, height, 0}).at(0).is_whole);
+    EXPECT_TRUE(ball_on_box({1 - 1.1 * Manifold::whole_travel, height, 0}).at(0).is_whole);
+    EXPECT_FALSE(ball_on_box({1 - 0.9 * Manifold::whole_travel, height, 0}).at(0).is_whole);
     EXPECT_FALSE(ball_on_box({1.1, height - 0.02, 0}).at(0).is_whole);
 }
 
@@ -59,8 +59,8 @@ TEST(FollowBall, ContactOverAHullsFaceIsWholeOnlyWellWithinIt) {
         return manifolds.at(0).is_whole;
     };
     EXPECT_TRUE(is_whole(0));
-    EXPECT_TRUE(is_whole(1 - 1.1 * Manifold::whole_way));
-    EXPECT_FALSE(is_whole(1 - 0.9 * Manifold::whole_way));
+    EXPECT_TRUE(is_whole(1 - 1.1 * Manifold::whole_travel));
+    EXPECT_FALSE(is_whole(1 - 0.9 * Manifold::whole_travel));
 }
 
 }  // namespace

@@ -175,21 +175,22 @@ TEST(ContactWorks, AreTheChangeOfTheKineticEnergy) {
         bodies.add(2, {0.2, 0.3, 0.4}, {}, any_rotation(random));
         const VelocityPair free{any_vector(random, 2), any_vector(random, 2)},
             change{any_vector(random, 1), any_vector(random, 1)};
-        const auto energy_at = [&](double share) {
-            bodies.state[0].linear_velocity = free.linear + change.linear * share;
-            bodies.state[0].angular_velocity = free.angular + change.angular * share;
+        const auto energy_at = [&](double fraction) {
+            bodies.state[0].linear_velocity = free.linear + change.linear * fraction;
+            bodies.state[0].angular_velocity = free.angular + change.angular * fraction;
             return bodies.energy();
         };
         const ContactWork work = contact_work(bodies.constants[0], bodies.state[0].rotation, free, change);
-        for (const double share : {0.3, 1.0}) {
-            EXPECT_NEAR(work.linear * share + work.quadratic * share * share, energy_at(share) - energy_at(0), 1e-9);
+        for (const double fraction : {0.3, 1.0}) {
+            EXPECT_NEAR(work.linear * fraction + work.quadratic * fraction * fraction,
+                        energy_at(fraction) - energy_at(0), 1e-9);
         }
-        const double share = share_without_gain(work);
-        EXPECT_GE(share, 0);
-        EXPECT_LE(share, 1);
-        EXPECT_LE(energy_at(share), energy_at(0) + 1e-9);
+        const double fraction = fraction_without_gain(work);
+        EXPECT_GE(fraction, 0);
+        EXPECT_LE(fraction, 1);
+        EXPECT_LE(energy_at(fraction), energy_at(0) + 1e-9);
         if (energy_at(1) <= energy_at(0)) {
-            EXPECT_EQ(share, 1);
+            EXPECT_EQ(fraction, 1);
         }
     }
 }

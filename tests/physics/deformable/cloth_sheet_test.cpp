@@ -176,11 +176,11 @@ TEST(ClothSheet, SlidesDownAnInclineByCoulombsLaw) {
         scene.bodies.push_back(plane.body);
         const Vec3 start = scene.at(0);
         scene.run(1);
-        const double way = dot(scene.at(0) - start, {std::cos(angle), -std::sin(angle), 0});
+        const double travel = dot(scene.at(0) - start, {std::cos(angle), -std::sin(angle), 0});
         // Backward Euler's way is longer by a substep's share.
         const double right =
             std::max(0.0, gravity * (std::sin(angle) - mu * std::cos(angle)) / 2) * (1 + scene.substep.h);
-        EXPECT_NEAR(way, right, 0.04 * right + 5e-4) << mu;
+        EXPECT_NEAR(travel, right, 0.04 * right + 5e-4) << mu;
     }
 }
 

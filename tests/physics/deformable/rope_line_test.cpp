@@ -127,19 +127,19 @@ TEST(RopeLine, BreaksWhereTheTensionIsTooLarge) {
 
 TEST(RopeLine, GripsADrumAsACapstan) {
     // Reference case "capstan": 1.5 turns, μ = 0.3, T2 / T1 = exp(μ φ) while it slips.
-    const double radius = 0.1, thickness = 2e-3, mu = 0.3, segment = 0.005, way = radius + thickness;
+    const double radius = 0.1, thickness = 2e-3, mu = 0.3, segment = 0.005, travel = radius + thickness;
     const double turn = 3 * pi, slack = 0.4, pulled = 0.2;
     std::vector<Vec3> nodes;
-    const double whole = slack + turn * way + pulled;
+    const double whole = slack + turn * travel + pulled;
     const int count = static_cast<int>(std::ceil(whole / segment));
     for (int i = 0; i <= count; ++i) {
-        const double s = whole * i / count - slack, angle = s / way;
+        const double s = whole * i / count - slack, angle = s / travel;
         if (s < 0)
-            nodes.push_back({way, s, 0});
+            nodes.push_back({travel, s, 0});
         else if (angle < turn)
-            nodes.push_back({way * std::cos(angle), way * std::sin(angle), 0});
+            nodes.push_back({travel * std::cos(angle), travel * std::sin(angle), 0});
         else
-            nodes.push_back({-way, -(s - turn * way), 0});
+            nodes.push_back({-travel, -(s - turn * travel), 0});
     }
     DeformableDefinition definition = rope_between(
         {}, {whole, 0, 0}, whole / count,

@@ -83,7 +83,7 @@ TEST(RopeTwist, DerivativesOfTheAngleAreThoseOfItsEnergy) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(slope(turns[0].turn[c]), mode.by_turn[0][c], 1e-5) << c;
 
     // Second derivatives: what a move adds to the right side, against how the first ones change.
-    loose.clamps.foretell(std::vector<double>{1.0});
+    loose.clamps.predict(std::vector<double>{1.0});
     for (std::size_t i = 0; i < line.size(); ++i) {
         for (int c = 0; c < 3; ++c) {
             moves.assign(line.size(), {});
@@ -175,7 +175,7 @@ TEST(RopeTwist, DiscOnAWireSwingsAsATorsionPendulum) {
 
 // A long rod under tension T, twisted with that share of Greenhill's moment, M² = 4 EI T, and then bent a little: how
 // wide it is some seconds later, over how wide it was.
-double growth_at(double share) {
+double growth_at(double fraction) {
     const double rigidity = 1e-3, twist_rigidity = rigidity / 1.3, tension = 1, strain = 1e-3;
     const int parts = 100;
     auto definition = clamped_rope(1, parts,
@@ -190,7 +190,7 @@ double growth_at(double share) {
     LooseBody hand(SphereShape{1e-3}, {{1 + strain, 0, 0}, {}}, 0.5);
     scene.bodies.push_back(hand.body);
     scene.attachments = {0};
-    const double turn = share * 2 * std::sqrt(rigidity * tension) / twist_rigidity;
+    const double turn = fraction * 2 * std::sqrt(rigidity * tension) / twist_rigidity;
     scene.bodies[0].path_turn = scene.bodies[0].path_spin = {120 * std::tan(turn / 240 / 2), 0, 0};
     scene.run(4);
     scene.bodies[0].path_turn = scene.bodies[0].path_spin = {};
@@ -212,8 +212,8 @@ double growth_at(double share) {
 
 TEST(RopeTwist, TwistedRodUnderTensionBucklesAtGreenhillsMoment) {
     // Clamped ends hold a little more: between 4 EI (T + π² EI/L²) and 4 EI (T + 4 π² EI/L²), 0.5 and 2 % of M here.
-    for (const double share : {0.5, 0.9, 0.99}) EXPECT_LT(growth_at(share), 0.01) << share;
-    for (const double share : {1.03, 1.1, 1.3}) EXPECT_GT(growth_at(share), 10) << share;
+    for (const double fraction : {0.5, 0.9, 0.99}) EXPECT_LT(growth_at(fraction), 0.01) << fraction;
+    for (const double fraction : {1.03, 1.1, 1.3}) EXPECT_GT(growth_at(fraction), 10) << fraction;
 }
 
 // A free rope between two clamped balls.
@@ -315,7 +315,7 @@ TEST(RopeTwist, LooseRopeThatIsTwistedFoldsUpAndComesToRest) {
         EXPECT_FALSE(scene.deformable.is_frozen());
         EXPECT_LT(scene.fastest(), 0.05) << rigidity;
         RecordProperty("fastest_" + std::to_string(rigidity), std::to_string(fastest));
-        RecordProperty("rounds_" + std::to_string(rigidity), std::to_string(scene.deformable.rounds()));
+        RecordProperty("rounds_" + std::to_string(rigidity), std::to_string(scene.deformable.iterations()));
         EXPECT_LT(fastest, 20) << rigidity;
     }
 }

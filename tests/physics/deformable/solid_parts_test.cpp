@@ -63,9 +63,9 @@ TEST(SolidElements, RigidMotionsCostNothing) {
     for (int trial = 0; trial < 10; ++trial) {
         Elements brick;
         const Quat rotation = any_rotation(random);
-        const Vec3 way = any_vector(random, 5);
+        const Vec3 displacement = any_vector(random, 5);
         std::vector<Vec3> positions;
-        for (const Vec3 p : brick.rest) positions.push_back(way + rotate(rotation, p));
+        for (const Vec3 p : brick.rest) positions.push_back(displacement + rotate(rotation, p));
         brick.elements.reset_rotations(rotation);
         const double stiffest = std::get<SoftSolid>(brick.definition.matter).youngs_modulus * 0.1;
         for (const Vec3 force : brick.forces(positions)) EXPECT_LT(length(force), 1e-6 * stiffest);
@@ -319,10 +319,10 @@ TEST(PlacedSurface, FindsTheNearestPointAndWhatIsInside) {
 
 TEST(SurfacePairs, TheShortestWayOutIsWhereBoxesOverlapLeast) {
     const Bounds box{{0, 0, 0}, {1, 1, 1}};
-    const WayOut up = shortest_way({{0.2, 0.9, 0.2}, {1.2, 1.9, 1.2}}, box, true);
+    const ExitDirection up = min_travel({{0.2, 0.9, 0.2}, {1.2, 1.9, 1.2}}, box, true);
     EXPECT_EQ(up.axis, 1);
     EXPECT_EQ(up.sign, 1);
-    const WayOut aside = shortest_way({{-0.95, 0.2, 0.2}, {0.05, 1.2, 1.2}}, box, true);
+    const ExitDirection aside = min_travel({{-0.95, 0.2, 0.2}, {0.05, 1.2, 1.2}}, box, true);
     EXPECT_EQ(aside.axis, 0);
     EXPECT_EQ(aside.sign, -1);
 }

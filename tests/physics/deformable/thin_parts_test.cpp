@@ -184,7 +184,7 @@ TEST(NodeContacts, AreWithWhatANodeMayReach) {
     bodies[0].shape = box.get();
     bodies[0].start_center = bodies[0].start.position = {0, -0.5, 0};
     bodies[0].step_time = 1.0 / 60;
-    EXPECT_EQ(way_of(bodies[0], 1.0 / 60), 0);
+    EXPECT_EQ(displacement_of(bodies[0], 1.0 / 60), 0);
     Nodes nodes = nodes_at({{0, 0.012, 0}, {0, 0.2, 0}, {0.3, 0.2, 0}, {5, 0.01, 0}});
     nodes.velocity[2] = nodes.mean_velocity[2] = {0, -20, 0};
     const std::vector<std::uint32_t> all{0, 1, 2, 3};
@@ -199,7 +199,7 @@ TEST(NodeContacts, AreWithWhatANodeMayReach) {
     }
     EXPECT_EQ(found, (std::vector<std::uint32_t>{0, 2}));  // near, and fast enough
     bodies[0].path_velocity = {0, 3, 0};
-    EXPECT_NEAR(way_of(bodies[0], 1.0 / 60), 0.05, 0.01);
+    EXPECT_NEAR(displacement_of(bodies[0], 1.0 / 60), 0.05, 0.01);
 }
 
 // Sheets that cross: candidates hold every pair that is near, and nearest points are so far apart as a trial finds.
@@ -217,8 +217,8 @@ TEST(ThinPairs, CandidatesHoldAllThatIsNear) {
     constexpr double radius = 0.01;
     for (int trial = 0; trial < 10; ++trial) {
         Nodes below = nodes_at(definition.nodes), above = nodes_at(definition.nodes);
-        const Vec3 way{random.between(-0.1, 0.1), 0.015, random.between(-0.1, 0.1)};
-        for (Vec3& p : above.position) p += way + Vec3{0, random.between(-0.01, 0.03), 0};
+        const Vec3 displacement{random.between(-0.1, 0.1), 0.015, random.between(-0.1, 0.1)};
+        for (Vec3& p : above.position) p += displacement + Vec3{0, random.between(-0.01, 0.03), 0};
         const ThinSurface a{&below, triangles, edges, radius, 0.1}, b{&above, triangles, edges, radius, 0.1};
         std::vector<ThinCandidate> candidates;
         find_thin_candidates(a, b, 1.0 / 60, 9.81, workers, candidates);
@@ -353,17 +353,18 @@ TEST(RopeSegments, DirectionsAndHowTheyChange) {
     for (int trial = 0; trial < 50; ++trial) {
         const Vec3 edge = any_vector(random, 1);
         const SegmentDirection direction = direction_of(edge, 0.5);
-        EXPECT_NEAR(length(direction.way), 1, 1e-12);
+        EXPECT_NEAR(length(direction.displacement), 1, 1e-12);
         for (int a = 0; a < 3; ++a) {
             constexpr double step = 1e-6;
             Vec3 more = edge, less = edge;
             more[a] += step;
             less[a] -= step;
-            const Vec3 slope = (direction_of(more, 0.5).way - direction_of(less, 0.5).way) / (2 * step);
+            const Vec3 slope =
+                (direction_of(more, 0.5).displacement - direction_of(less, 0.5).displacement) / (2 * step);
             EXPECT_LT(length(direction.by_end.column(a) - slope), 1e-6 / length_squared(edge));
         }
     }
-    EXPECT_LT(length(direction_of({1e-9, 0, 0}, 1).way), 1e-6);  // next to no length
+    EXPECT_LT(length(direction_of({1e-9, 0, 0}, 1).displacement), 1e-6);  // next to no length
     const Mat3 damping = damping_of_growth({0.5, 0, 0}, 3);
     EXPECT_NEAR(dot(damping * Vec3{1, 0, 0}, {1, 0, 0}), 3, 1e-9);
     EXPECT_LT(length(damping * Vec3{0, 1, 0}), 0.01);
@@ -442,12 +443,13 @@ TEST(PatchTree, FindsPatchesThatLieOverEachOther) {
     const std::set<std::array<std::uint32_t, 2>> listed(pairs.begin(), pairs.end());
     for (std::uint32_t a = 0; a < triangles.size(); ++a) {
         for (std::uint32_t b = a + 1; b < triangles.size(); ++b) {
-            bool share = false;
-            for (const std::uint32_t node : triangles[a]) share = share || std::ranges::count(triangles[b], node) > 0;
+            bool fraction = false;
+            for (const std::uint32_t node : triangles[a])
+                fraction = fraction || std::ranges::count(triangles[b], node) > 0;
             // Far from the fold, one over the other.
             const double x = sheet.nodes[triangles[a][0]].x, y = sheet.nodes[triangles[b][0]].x;
             const bool is_opposite = std::min(x, y) < -0.2 && std::max(x, y) > 0.2;
-            if (share || !is_opposite || !overlaps(boxes[a], boxes[b])) continue;
+            if (fraction || !is_opposite || !overlaps(boxes[a], boxes[b])) continue;
             const std::uint32_t one = tree.leaf_of(a), other = tree.leaf_of(b);
             EXPECT_TRUE(listed.contains({std::min(one, other), std::max(one, other)}));
         }

@@ -155,8 +155,8 @@ TEST(FluidFaces, GradientsOfALinearPressureAreExact) {
                 } else if (upper >= 0 || lower >= 0) {
                     // Nothing at the surface, so far away.
                     const int liquid = upper >= 0 ? cell : below, air = upper >= 0 ? below : cell;
-                    const double way = PressureSystem::gap_share(grid.surface[liquid], grid.surface[air]);
-                    const double rise = x[grid.row[liquid]] / way * (upper >= 0 ? 1 : -1);
+                    const double travel = PressureSystem::gap_fraction(grid.surface[liquid], grid.surface[air]);
+                    const double rise = x[grid.row[liquid]] / travel * (upper >= 0 ? 1 : -1);
                     EXPECT_NEAR(grid.velocity[axis][cell], 1 - scale * rise, 1e-4 * (1 + std::fabs(rise)));
                     ++outer;
                 }

@@ -154,7 +154,7 @@ TEST(Fluid, ALumpInFreeFallKeepsItsMomentumButForGravity) {
     }
 }
 
-// A box thrown into a floating lump: what one loses the other gains.
+// A box thrown into a floating component: what one loses the other gains.
 TEST(Fluid, MomentumGoesFromBodyToLiquid) {
     for (const double viscosity : {0.0, 5.0}) {
         auto world = make_world({.gravity = {0, 0, 0}});

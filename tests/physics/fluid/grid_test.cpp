@@ -142,12 +142,12 @@ TEST(FluidGrid, DropsByThemselvesAreLeftOut) {
     for (int i = 0; i < 4; ++i) particles.push_back(at(4.0f + 3.0f * static_cast<float>(i), 0.5f, 0.5f));
     LiquidBlock block(h, particles);
     // Where the static obstacles are not known yet all meet the grid; then they are known.
-    block.grid.sort(block.particles, LiquidBlock::particle_share, {}, block.workers);
+    block.grid.sort(block.particles, LiquidBlock::particle_fraction, {}, block.workers);
     EXPECT_EQ(block.grid.on_grid(), count);
     for (std::size_t i = 0; i < count; ++i) EXPECT_LT(block.particles[i].position[0], 1);
     // But for what a moving obstacle may meet.
     const Bounds near{{3.9, 0.4, 0.4}, {4.1, 0.6, 0.6}};
-    block.grid.sort(block.particles, LiquidBlock::particle_share, std::span(&near, 1), block.workers);
+    block.grid.sort(block.particles, LiquidBlock::particle_fraction, std::span(&near, 1), block.workers);
     EXPECT_EQ(block.grid.on_grid(), count + 1);
 }
 
@@ -161,12 +161,12 @@ TEST(FluidGrid, WhatIsKnownOfStaticObstaclesMovesWithTheBox) {
         return grid.index({x - grid.lower()[0], y - grid.lower()[1], z - grid.lower()[2]});
     };
     grid.static_distance[place(1, 2, 3)] = -1.25f;
-    grid.static_share[1][place(3, 0, 2)] = 0.75f;
+    grid.static_fraction[1][place(3, 0, 2)] = 0.75f;
     particles.push_back(at(-3, -2, 2.5f));
     EXPECT_EQ(grid.cover(particles, workers), 0u);
     ASSERT_NE(grid.lower(), before);
     EXPECT_EQ(grid.static_distance[place(1, 2, 3)], -1.25f);
-    EXPECT_EQ(grid.static_share[1][place(3, 0, 2)], 0.75f);
+    EXPECT_EQ(grid.static_fraction[1][place(3, 0, 2)], 0.75f);
     EXPECT_EQ(std::count(grid.static_distance.begin(), grid.static_distance.end(), -1.25f), 1);
 }
 

@@ -51,13 +51,13 @@ inline std::vector<FluidParticle> scatter(Random& random, std::size_t count, dou
 
 /// What a part of a step knows before pressure: particles sorted on a grid, obstacles measured, faces with velocities.
 struct LiquidBlock {
-    static constexpr float particle_share = 0.125f;  // of a cell
+    static constexpr float particle_fraction = 0.125f;  // of a cell
 
     LiquidBlock(double h, std::vector<FluidParticle> matter, std::span<FluidObstacle> met = {})
         : grid(h), obstacles(Vec3{}), particles(std::move(matter)) {
         grid.cover(particles, workers);
         obstacles.begin(met, grid);
-        grid.sort(particles, particle_share, obstacles.in_reach(0, h), workers);
+        grid.sort(particles, particle_fraction, obstacles.in_reach(0, h), workers);
         obstacles.measure(0, grid, workers);
         transfer();
     }
@@ -67,7 +67,7 @@ struct LiquidBlock {
             const float* p = particles[i].position;
             places.push_back({p[0], p[1], p[2]});
         }
-        particles_to_grid(grid, particles, places, particle_share, workers);
+        particles_to_grid(grid, particles, places, particle_fraction, workers);
     }
     /// Centre of a face, m.
     [[nodiscard]] Vec3 face_center(int axis, const Cell& c) const {

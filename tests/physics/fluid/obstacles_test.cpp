@@ -55,9 +55,9 @@ TEST(ObstacleProbe, OutOfReachThereIsNothing) {
     EXPECT_FALSE(probe.look_at({{-1, -1, -1}, {1, 1, 1}}, 0.5));
     EXPECT_EQ(probe.nearest({0, 0, 0}).distance, 0.5);
     EXPECT_FALSE(probe.crossing({0, 0, 0}, {0, 0, 0}));
-    float shares[8] = {};
-    probe.add_octants({0, 0, 0}, h, shares);
-    for (const float share : shares) EXPECT_EQ(share, 0);
+    float fractions[8] = {};
+    probe.add_octants({0, 0, 0}, h, fractions);
+    for (const float fraction : fractions) EXPECT_EQ(fraction, 0);
 }
 
 TEST(ObstacleProbe, BallsAndCapsulesAreAsFarAsTheirFormulaSays) {
@@ -117,7 +117,7 @@ TEST(ObstacleProbe, AClosedMeshIsTheSolidThatItEncloses) {
         const auto a = probe.crossing(p, to), b = solid.crossing(p, to);
         ASSERT_EQ(a.has_value(), b.has_value());
         if (!a) continue;
-        EXPECT_NEAR(a->share, b->share, 1e-6);
+        EXPECT_NEAR(a->fraction, b->fraction, 1e-6);
         EXPECT_NEAR(dot(a->normal, b->normal), 1, 1e-6);
     }
 }
@@ -132,7 +132,7 @@ TEST(ObstacleProbe, APlaneIsAHalfSpace) {
     EXPECT_FALSE(probe.is_thinner({0, -1, 0}, {0, 1, 0}, 100));
     const auto crossing = probe.crossing({0, 1.1, 0}, {0, -0.9, 0});
     ASSERT_TRUE(crossing);
-    EXPECT_NEAR(crossing->share, 0.5, 1e-9);
+    EXPECT_NEAR(crossing->fraction, 0.5, 1e-9);
     EXPECT_FALSE(probe.look_at({{0, 5, 0}, {1, 6, 1}}, 1));
 }
 
@@ -159,15 +159,15 @@ TEST(ObstacleProbe, OctantsOfABoxAlongTheAxesAreExact) {
         Vec3 p = any_point(random, 0.1);
         p.x = half.x + random.between(-h, h) / 2;
         if (trial % 2 == 0) p.z = half.z + random.between(-h, h) / 2;
-        float shares[8] = {};
-        probe.add_octants(p, h, shares);
+        float fractions[8] = {};
+        probe.add_octants(p, h, fractions);
         for (int octant = 0; octant < 8; ++octant) {
             double wanted = 1;
             for (int a = 0; a < 3; ++a) {
                 const double low = p[a] + (octant >> a & 1 ? 0 : -h / 2), high = low + h / 2;
                 wanted *= std::clamp(std::min(high, half[a]) - std::max(low, -half[a]), 0.0, h / 2) / (h / 2);
             }
-            EXPECT_NEAR(shares[octant], wanted, 1e-6);
+            EXPECT_NEAR(fractions[octant], wanted, 1e-6);
         }
     }
 }
@@ -184,9 +184,9 @@ TEST(ObstacleProbe, OctantsSumToTheVolume) {
             for (int y = -20; y < 20; ++y) {
                 for (int x = -20; x < 20; ++x) {
                     const Vec3 p{(x + 0.5) * edge, (y + 0.5) * edge, (z + 0.5) * edge};
-                    float shares[8] = {};
-                    probe.add_octants(p, edge, shares);
-                    for (const float share : shares) sum += share;
+                    float fractions[8] = {};
+                    probe.add_octants(p, edge, fractions);
+                    for (const float fraction : fractions) sum += fraction;
                 }
             }
         }
@@ -243,7 +243,7 @@ TEST(ObstacleRegion, OutOfReachNothingIsAdded) {
     region.begin(water.grid, water.cell_at({0.1, 0.1, 0.1}), water.cell_at({0.9, 0.9, 0.9}));
     EXPECT_FALSE(region.add(probe));
     region.finish();
-    EXPECT_EQ(region.share(0, region.index(water.cell_at({0.5, 0.5, 0.5}))), 0);
+    EXPECT_EQ(region.fraction(0, region.index(water.cell_at({0.5, 0.5, 0.5}))), 0);
     EXPECT_EQ(region.room(region.index(water.cell_at({0.5, 0.5, 0.5}))), 1);
 }
 
@@ -261,14 +261,14 @@ TEST(ObstacleRegion, AWallThinnerThanACellShutsItsFaces) {
             int shut = 0;
             for (double at = 0.45; at < 0.8; at += h) {
                 const int cell = region.index(water.cell_at({x, at, 0.55}));
-                const bool is_shut = region.share(1, cell) == 1;
+                const bool is_shut = region.fraction(1, cell) == 1;
                 shut += is_shut;
                 EXPECT_EQ(is_shut, (region.thin(cell) & closed_y) != 0);
                 if (is_shut) {
                     EXPECT_LT(region.filled(1, cell), 0.2f);
                     EXPECT_TRUE(region.thin(cell) & near_thin);
                 }
-                EXPECT_EQ(region.thin(cell) & closed_y ? region.share(1, cell) : 1, 1);
+                EXPECT_EQ(region.thin(cell) & closed_y ? region.fraction(1, cell) : 1, 1);
             }
             EXPECT_GE(shut, 1);
             EXPECT_LE(shut, 2);
@@ -293,10 +293,10 @@ TEST(ObstacleRegion, ASmallVolumeIsSpreadAroundItsCentre) {
                 for (int y = lower[1]; y < upper[1]; ++y) {
                     for (int x = lower[0]; x < upper[0]; ++x) {
                         const int at = region.index({x, y, z});
-                        const double share = axis < 3 ? region.share(axis, at) : 1 - region.room(at);
-                        sum += share;
+                        const double fraction = axis < 3 ? region.fraction(axis, at) : 1 - region.room(at);
+                        sum += fraction;
                         center +=
-                            share * (axis < 3 ? water.face_center(axis, {x, y, z}) : water.grid.center({x, y, z}));
+                            fraction * (axis < 3 ? water.face_center(axis, {x, y, z}) : water.grid.center({x, y, z}));
                     }
                 }
             }
@@ -315,7 +315,7 @@ TEST(FluidObstacles, WithoutAnyAllIsOpen) {
             EXPECT_EQ(water.grid.obstacle_owner[cell], -1);
         });
     }
-    EXPECT_EQ(water.obstacles.surprise(), 0);
+    EXPECT_EQ(water.obstacles.unexpected_displacement(), 0);
     EXPECT_EQ(water.obstacles.velocity_at(-1, {1, 2, 3}), Vec3{});
 }
 
@@ -368,11 +368,11 @@ TEST(FluidObstacles, KnowHowFarTheyAreFromWhereTheyWereLeft) {
     box.center = obstacles.moving()[0].center;
     box.pose = {box.center, obstacles.moving()[0].rotation};
     obstacles.begin(std::span(&box, 1), water.grid);
-    EXPECT_NEAR(obstacles.surprise(), 0, 1e-12);
+    EXPECT_NEAR(obstacles.unexpected_displacement(), 0, 1e-12);
     box.center.z += 0.05;
     box.pose.position.z += 0.05;
     obstacles.begin(std::span(&box, 1), water.grid);
-    EXPECT_NEAR(obstacles.surprise(), 0.05, 1e-9);
+    EXPECT_NEAR(obstacles.unexpected_displacement(), 0.05, 1e-9);
     obstacles.begin_catching_up();
     EXPECT_NEAR(obstacles.moving()[0].linear_velocity.z, 0.05, 1e-9);
     obstacles.end_catching_up();
@@ -382,7 +382,7 @@ TEST(FluidObstacles, KnowHowFarTheyAreFromWhereTheyWereLeft) {
     box.center.z += 3;
     box.pose.position.z += 3;
     obstacles.begin(std::span(&box, 1), water.grid);
-    EXPECT_EQ(obstacles.surprise(), 0);
+    EXPECT_EQ(obstacles.unexpected_displacement(), 0);
     for (const Bounds& reach : obstacles.in_reach(0.02, h)) {
         EXPECT_TRUE(contains(reach, enlarged(shape->bounds(box.pose), 6 * h)));
     }
@@ -449,7 +449,7 @@ TEST(WallFriction, SlowsTheLayerAtAWallAndPullsAtIt) {
         water.set_velocity([](Vec3) { return Vec3{2, 0, 0}; });
         const double before = water.face_momenta().linear.x;
         constexpr double particle_mass = 1000 * h * h * h / 8;
-        rub_along_walls(water.grid, water.obstacles, 1000, 0.001, particle_mass, 0.01, water.workers);
+        apply_wall_friction(water.grid, water.obstacles, 1000, 0.001, particle_mass, 0.01, water.workers);
         const double lost = (before - water.face_momenta().linear.x) * particle_mass;
         const float first = water.grid.velocity[0][water.index_at({0.6, 0.05, 0.6})];
         EXPECT_EQ(water.grid.velocity[0][water.index_at({0.6, 0.25, 0.6})], 2);

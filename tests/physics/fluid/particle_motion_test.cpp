@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Particles that move: kept out of obstacles, slowed at walls as drops, and lumps of them that keep their momenta.
+// Particles that move: kept out of obstacles, slowed at walls as drops, and components of them that keep their momenta.
 #include "physics/fluid/particles/collide_particles.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include "physics/collision/shapes/collision_shape.h"
 #include "physics/fluid/liquid_block.h"
 #include "physics/fluid/particles/drops.h"
-#include "physics/fluid/particles/free_lumps.h"
+#include "physics/fluid/particles/free_components.h"
 #include "physics/fluid/pressure/pressure_system.h"
 #include "physics/fluid/solver.h"
 
@@ -162,8 +162,8 @@ TEST(Drops, StayWhereTheirRimOrTheirYieldStressHoldsThem) {
     EXPECT_EQ(floor.slowed(at_wall, {by_yield / 2, 0, by_yield / 2}).x, 0);
 }
 
-// What was done to the particles of a free lump as a whole is undone.
-TEST(FreeLumps, KeepTheirMomentumAndAngularMomentum) {
+// What was done to the particles of a free component as a whole is undone.
+TEST(FreeComponents, KeepTheirMomentumAndAngularMomentum) {
     Random random(4);
     auto particles = fill_cells(h, {0, 0, 0}, {6, 6, 6});
     auto other = fill_cells(h, {16, 0, 0}, {22, 6, 6});
@@ -174,8 +174,8 @@ TEST(FreeLumps, KeepTheirMomentumAndAngularMomentum) {
     LiquidBlock block(h, particles);
     PressureSystem system;
     system.build(block.grid, block.workers);
-    FreeLumps lumps;
-    lumps.begin(block.grid, system, block.obstacles, block.particles, true);
+    FreeComponents components;
+    components.begin(block.grid, system, block.obstacles, block.particles, true);
     const auto momenta = [&](bool is_first) {
         Vec3 place, linear, angular;
         double count = 0;
@@ -198,7 +198,7 @@ TEST(FreeLumps, KeepTheirMomentumAndAngularMomentum) {
         for (int a = 0; a < 3; ++a) p.velocity[a] += static_cast<float>(push[a]);
     }
     const Vec3 gravity{0, -0.1, 0};
-    lumps.end(gravity, block.obstacles, 1, block.particles);
+    components.end(gravity, block.obstacles, 1, block.particles);
     const auto first_after = momenta(true), second_after = momenta(false);
     const double count = static_cast<double>(block.particles.size()) / 2;
     EXPECT_LT(length(first_after.first - first.first - gravity * count), 1e-3 * count);
@@ -207,14 +207,14 @@ TEST(FreeLumps, KeepTheirMomentumAndAngularMomentum) {
     EXPECT_LT(length(second_after.second - second.second), 2e-3 * count);
 }
 
-TEST(FreeLumps, WhatStandsOnTheGroundIsNotFree) {
+TEST(FreeComponents, WhatStandsOnTheGroundIsNotFree) {
     Floor floor;
     PressureSystem system;
     system.build(floor.block.grid, floor.block.workers);
-    FreeLumps lumps;
-    lumps.begin(floor.block.grid, system, floor.block.obstacles, floor.block.particles, true);
+    FreeComponents components;
+    components.begin(floor.block.grid, system, floor.block.obstacles, floor.block.particles, true);
     for (FluidParticle& p : floor.block.particles) p.velocity[0] = 3;
-    lumps.end({}, floor.block.obstacles, 1, floor.block.particles);
+    components.end({}, floor.block.obstacles, 1, floor.block.particles);
     for (const FluidParticle& p : floor.block.particles) EXPECT_EQ(p.velocity[0], 3);
 }
 

@@ -30,7 +30,7 @@ std::vector<double> multiply(const FluidGrid& grid, const PressureSystem& system
                 if (grid.row[other] >= 0) {
                     y[row] += open * (x[row] - x[grid.row[other]]);
                 } else {
-                    y[row] += open / PressureSystem::gap_share(grid.surface[cell], grid.surface[other]) * x[row];
+                    y[row] += open / PressureSystem::gap_fraction(grid.surface[cell], grid.surface[other]) * x[row];
                 }
             }
         }
@@ -39,11 +39,11 @@ std::vector<double> multiply(const FluidGrid& grid, const PressureSystem& system
 }
 
 TEST(PressureSystem, GapIsTheShareOfTheWayToTheSurface) {
-    EXPECT_FLOAT_EQ(PressureSystem::gap_share(-0.25f, 0.75f), 0.25f);
-    EXPECT_FLOAT_EQ(PressureSystem::gap_share(-0.5f, 0.5f), 0.5f);
-    EXPECT_FLOAT_EQ(PressureSystem::gap_share(-0.5f, -0.5f), 1);  // no surface on the way
-    EXPECT_GT(PressureSystem::gap_share(-1e-9f, 1), 0);
-    EXPECT_LT(PressureSystem::gap_share(-1e-9f, 1), 0.01f);
+    EXPECT_FLOAT_EQ(PressureSystem::gap_fraction(-0.25f, 0.75f), 0.25f);
+    EXPECT_FLOAT_EQ(PressureSystem::gap_fraction(-0.5f, 0.5f), 0.5f);
+    EXPECT_FLOAT_EQ(PressureSystem::gap_fraction(-0.5f, -0.5f), 1);  // no surface on the way
+    EXPECT_GT(PressureSystem::gap_fraction(-1e-9f, 1), 0);
+    EXPECT_LT(PressureSystem::gap_fraction(-1e-9f, 1), 0.01f);
 }
 
 TEST(PressureSystem, OfNoLiquidHasNoRows) {
@@ -62,7 +62,7 @@ TEST(PressureSystem, SolvesWhatTheMatrixSays) {
         for (int trial = 0; trial < 3; ++trial) {
             LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {14, 9, 11}));
             for (auto& open : block.grid.open) {
-                for (float& share : open) share = random.unit() < 0.1 ? 0.0f : static_cast<float>(random.unit());
+                for (float& fraction : open) fraction = random.unit() < 0.1 ? 0.0f : static_cast<float>(random.unit());
             }
             PressureSystem system;
             system.build(block.grid, pool);

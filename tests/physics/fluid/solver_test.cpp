@@ -83,10 +83,10 @@ TEST(FluidSolver, ABlockInFreeFlightMovesAsOne) {
         const double t = steps * dt;
         ASSERT_EQ(solver.particles().size(), before.size());
         // Symplectic Euler: half a step more of gravity's way.
-        const Vec3 way = velocity * t + gravity * (t * (t + dt) / 2);
+        const Vec3 displacement = velocity * t + gravity * (t * (t + dt) / 2);
         for (const FluidParticle& p : solver.particles()) {
             const Vec3 now{p.position[0], p.position[1], p.position[2]};
-            EXPECT_LT(length(now - before[p.id] - way), 2e-3 * h);
+            EXPECT_LT(length(now - before[p.id] - displacement), 2e-3 * h);
         }
         const Conserved end = solver.conserved(gravity);
         const double mass = 1000 * 0.6 * 0.6 * 0.6;

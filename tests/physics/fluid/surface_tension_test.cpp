@@ -67,8 +67,9 @@ TEST(SurfaceTension, ABallHasTwiceItsTensionByItsRadius) {
         for (int axis = 0; axis < 3; ++axis) {
             for (const int other : {cell - block.grid.stride(axis), cell + block.grid.stride(axis)}) {
                 if (block.grid.row[other] >= 0) continue;
-                const float share = PressureSystem::gap_share(block.grid.surface[cell], block.grid.surface[other]);
-                sum += surface.at(cell, other, share);
+                const float fraction =
+                    PressureSystem::gap_fraction(block.grid.surface[cell], block.grid.surface[other]);
+                sum += surface.at(cell, other, fraction);
                 ++count;
             }
         }
@@ -120,7 +121,7 @@ TEST(BoundLiquid, SharesItsMomentumWithTheBody) {
         for (int a = 0; a < 3; ++a) EXPECT_NEAR(alone[a], (a + 1) / mass, 1e-12);
 
         for (int i = 0; i < 30; ++i) {
-            BoundFace face{.axis = i % 3, .share = static_cast<float>(random.between(0.1, 1))};
+            BoundFace face{.axis = i % 3, .fraction = static_cast<float>(random.between(0.1, 1))};
             const Vec3 place{random.between(0.03, 0.09), random.between(0.03, 0.09), random.between(0.03, 0.09)};
             face.cell = block.index_at(place);
             Vec3 n;
@@ -134,7 +135,7 @@ TEST(BoundLiquid, SharesItsMomentumWithTheBody) {
              spin_after = inertia * moving.angular_velocity;
         for (const BoundFace& face : moving.bound) {
             EXPECT_GT(face.mass, 0);
-            EXPECT_LE(face.mass, density * h * h * h * face.share * (1 + 1e-6));
+            EXPECT_LE(face.mass, density * h * h * h * face.fraction * (1 + 1e-6));
             momentum[face.axis] += face.mass * face.speed;
             spin += face.turn * (face.mass * face.speed);
             const double speed = moving.linear_velocity[face.axis] + dot(face.turn, moving.angular_velocity);
@@ -159,7 +160,7 @@ TEST(BoundLiquid, AFixedBodyTakesItsMomentumAndStays) {
     FluidObstacle plate{.shape = shape.get()};
     MovingObstacle moving{.obstacle = &plate, .probe = ObstacleProbe(*shape, {{0.06, 0.06, 0.06}, {}})};
     moving.is_in_reach = true;
-    moving.bound.push_back({.axis = 1, .cell = block.index_at({0.065, 0.065, 0.065}), .share = 0.5f});
+    moving.bound.push_back({.axis = 1, .cell = block.index_at({0.065, 0.065, 0.065}), .fraction = 0.5f});
     bind_liquid(block.grid, 1000, {}, moving);
     EXPECT_EQ(moving.linear_velocity.y, 0);
     release_liquid(moving);

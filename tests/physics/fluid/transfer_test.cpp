@@ -39,7 +39,7 @@ struct LinearField {
 TEST(FluidTransfer, NoParticlesMakeNoFaceKnown) {
     LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {4, 4, 4}));
     block.particles.clear();
-    block.grid.sort(block.particles, LiquidBlock::particle_share, {}, block.workers);
+    block.grid.sort(block.particles, LiquidBlock::particle_fraction, {}, block.workers);
     block.transfer();
     EXPECT_TRUE(block.grid.tiles().empty());
 }
@@ -64,7 +64,7 @@ TEST(FluidTransfer, MassAndMomentumOfTheFacesAreTheParticles) {
                 }
             });
         }
-        EXPECT_NEAR(density, count * LiquidBlock::particle_share, 1e-5 * count);
+        EXPECT_NEAR(density, count * LiquidBlock::particle_fraction, 1e-5 * count);
         expect_near(masses, {count, count, count}, 1e-5 * count);
     }
 }

@@ -417,7 +417,7 @@ TEST(DebugDraw, WhatIsTooMuchIsLeftOutAndCounted) {
     const auto all = {DebugDrawFlag::shapes, DebugDrawFlag::bounds, DebugDrawFlag::contacts};
     const Drawn whole = drawn(*stacks.world, all);
     EXPECT_EQ(whole.count.lines_left_out + whole.count.points_left_out, 0u);
-    const Drawn part = drawn(*stacks.world, all, {.most_lines = 20, .most_points = 5});
+    const Drawn part = drawn(*stacks.world, all, {.max_lines = 20, .max_points = 5});
     EXPECT_EQ(part.count.lines, 20u);
     EXPECT_EQ(part.count.points, 5u);
     EXPECT_EQ(part.count.lines_left_out, whole.count.lines - 20);

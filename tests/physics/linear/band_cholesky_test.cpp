@@ -89,14 +89,14 @@ TEST(BandCholesky, AnEmptyMatrixIsSolved) {
 
 TEST(BandCholesky, SolvesAsEliminationDoes) {
     Random random(2);
-    for (int round = 0; round < 60; ++round) {
+    for (int iteration = 0; iteration < 60; ++iteration) {
         const std::size_t blocks = 1 + random.below(25);
         Matrices matrices(blocks, random);
         const std::vector<double> b = random_vector(3 * blocks, random);
         std::vector<Vec3> x = to_points(b);
-        ASSERT_TRUE(matrices.band.factorize()) << round;
+        ASSERT_TRUE(matrices.band.factorize()) << iteration;
         matrices.band.solve(x);
-        EXPECT_LT(largest_difference(to_numbers(x), matrices.dense.solve(b)), 1e-12) << round;
+        EXPECT_LT(largest_difference(to_numbers(x), matrices.dense.solve(b)), 1e-12) << iteration;
     }
 }
 
@@ -111,7 +111,7 @@ TEST(BandCholesky, MeanOfADiagonalBlockIsThatOfItsThreeNumbers) {
 
 TEST(BandCholesky, FixedNodesStayAndOthersMoveAsIfTheyWereZero) {
     Random random(3);
-    for (int round = 0; round < 30; ++round) {
+    for (int iteration = 0; iteration < 30; ++iteration) {
         constexpr std::size_t blocks = 9;
         Matrices matrices(blocks, random);
         std::vector<double> b = random_vector(3 * blocks, random);
@@ -125,10 +125,10 @@ TEST(BandCholesky, FixedNodesStayAndOthersMoveAsIfTheyWereZero) {
             }
         }
         std::vector<Vec3> x = to_points(b);
-        ASSERT_TRUE(matrices.band.factorize()) << round;
+        ASSERT_TRUE(matrices.band.factorize()) << iteration;
         matrices.band.solve(x);
-        EXPECT_LT(largest_difference(to_numbers(x), matrices.dense.solve(b)), 1e-12) << round;
-        for (const std::size_t i : fixed) EXPECT_EQ(x[i], Vec3{}) << round;
+        EXPECT_LT(largest_difference(to_numbers(x), matrices.dense.solve(b)), 1e-12) << iteration;
+        for (const std::size_t i : fixed) EXPECT_EQ(x[i], Vec3{}) << iteration;
     }
 }
 

@@ -79,7 +79,7 @@ struct Pair {
 
 TEST(BlockCholesky, SolvesMatricesOfRandomGraphs) {
     Random random(5);
-    for (int round = 0; round < 60; ++round) {
+    for (int iteration = 0; iteration < 60; ++iteration) {
         const auto nodes = static_cast<std::size_t>(1 + random.between(0, 24));
         Edges edges;
         for (int i = 0; i < static_cast<int>(nodes * random.between(0, 3)); ++i) {
@@ -88,7 +88,7 @@ TEST(BlockCholesky, SolvesMatricesOfRandomGraphs) {
             if (p != q) edges.push_back({p, q});
         }
         Pair pair(nodes, edges, random);
-        ASSERT_LT(pair.residual(random), 1e-9) << "round " << round;
+        ASSERT_LT(pair.residual(random), 1e-9) << "round " << iteration;
     }
 }
 

@@ -103,7 +103,7 @@ TEST(BlockLu, AnEmptyMatrixIsSolved) {
 
 TEST(BlockLu, SolvesTreesOfJointedBodies) {
     Random random(11);
-    for (int round = 0; round < 60; ++round) {
+    for (int iteration = 0; iteration < 60; ++iteration) {
         // Each body after the first hangs on an earlier one by a multiplier.
         const auto bodies = static_cast<std::uint16_t>(1 + random.between(0, 20));
         Edges edges;
@@ -113,13 +113,13 @@ TEST(BlockLu, SolvesTreesOfJointedBodies) {
             edges.push_back({joint, static_cast<std::uint16_t>(random.between(0, i))});
         }
         Matrix matrix(bodies, static_cast<std::size_t>(bodies - 1), edges, random);
-        ASSERT_LT(matrix.residual(random), 1e-10) << "round " << round;
+        ASSERT_LT(matrix.residual(random), 1e-10) << "round " << iteration;
     }
 }
 
 TEST(BlockLu, SolvesLoops) {
     Random random(12);
-    for (int round = 0; round < 60; ++round) {
+    for (int iteration = 0; iteration < 60; ++iteration) {
         const auto bodies = static_cast<std::uint16_t>(3 + random.between(0, 10));
         Edges edges;
         for (std::uint16_t i = 0; i < bodies; ++i) {
@@ -127,7 +127,7 @@ TEST(BlockLu, SolvesLoops) {
             edges.push_back({i, next});
         }
         Matrix matrix(bodies, 0, edges, random);
-        ASSERT_LT(matrix.residual(random), 1e-12) << "round " << round;
+        ASSERT_LT(matrix.residual(random), 1e-12) << "round " << iteration;
     }
 }
 

@@ -250,7 +250,7 @@ TEST(ConjugateGradient, ConvergesAsFastAsChebyshevSays) {
 
 TEST(ConjugateGradient, SolvesRandomSystemsAsEliminationDoes) {
     Random random(6);
-    for (int round = 0; round < 40; ++round) {
+    for (int iteration = 0; iteration < 40; ++iteration) {
         const std::size_t size = 1 + random.below(30);
         const DenseMatrix a = random_positive_definite(size, 0.5, random);
         const Numbers b = random_vector(size, random), expected = a.solve(b);
@@ -261,12 +261,12 @@ TEST(ConjugateGradient, SolvesRandomSystemsAsEliminationDoes) {
         other.inverse = [&](const Numbers& r) { return m.solve(r); };
         for (PlainSystem* system : {&plain, &diagonal, &whole, &other}) {
             const GradientResult result = conjugate_gradient(*system, to_the_end);
-            EXPECT_EQ(result.end, GradientEnd::converged) << round;
-            EXPECT_LT(largest_difference(system->x, expected), 1e-9) << round << " " << result.iterations;
+            EXPECT_EQ(result.end, GradientEnd::converged) << iteration;
+            EXPECT_LT(largest_difference(system->x, expected), 1e-9) << iteration << " " << result.iterations;
         }
         PlainSystem again(a, b);
         again.inverse = whole.inverse;
-        EXPECT_EQ(conjugate_gradient(again, {.iterations = 10, .relative = 1e-20}).iterations, 1) << round;
+        EXPECT_EQ(conjugate_gradient(again, {.iterations = 10, .relative = 1e-20}).iterations, 1) << iteration;
     }
 }
 

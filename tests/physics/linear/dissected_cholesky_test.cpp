@@ -130,11 +130,12 @@ TEST(DissectedCholesky, AnEmptyMeshIsSolved) { EXPECT_TRUE(Mesh{}.solve({}).empt
 
 TEST(DissectedCholesky, SolvesRandomGraphsAsEliminationDoes) {
     Random random(2);
-    for (int round = 0; round < 40; ++round) {
+    for (int iteration = 0; iteration < 40; ++iteration) {
         const std::size_t nodes = 1 + random.below(70);
         const Mesh mesh = random_mesh(nodes, random.between(0, 4), random);
         const std::vector<double> b = random_vector(3 * nodes, random);
-        ASSERT_LT(largest_difference(mesh.solve(b), mesh.dense().solve(b)), float_tolerance) << round << " " << nodes;
+        ASSERT_LT(largest_difference(mesh.solve(b), mesh.dense().solve(b)), float_tolerance)
+            << iteration << " " << nodes;
     }
 }
 
@@ -150,7 +151,7 @@ TEST(DissectedCholesky, TheOrderOfNodesAndEndsDoesNotMatter) {
     Random random(4);
     const Mesh mesh = random_mesh(60, 3, random);
     const std::vector<double> b = random_vector(180, random), expected = mesh.solve(b);
-    for (int round = 0; round < 10; ++round) {
+    for (int iteration = 0; iteration < 10; ++iteration) {
         std::vector<std::uint32_t> number(60);
         for (std::uint32_t i = 0; i < 60; ++i) number[i] = i;
         for (std::size_t i = 60; i-- > 1;) std::swap(number[i], number[random.below(i + 1)]);
@@ -170,7 +171,7 @@ TEST(DissectedCholesky, TheOrderOfNodesAndEndsDoesNotMatter) {
         const std::vector<double> found = other.solve(right);
         for (std::size_t i = 0; i < 60; ++i) {
             for (std::size_t k = 0; k < 3; ++k)
-                EXPECT_NEAR(found[3 * number[i] + k], expected[3 * i + k], float_tolerance) << round;
+                EXPECT_NEAR(found[3 * number[i] + k], expected[3 * i + k], float_tolerance) << iteration;
         }
     }
 }
@@ -220,10 +221,11 @@ TEST(DissectedCholesky, ANewMatrixReplacesTheOldOne) {
     DissectedCholesky cholesky;
     cholesky.analyse(mesh.positions, mesh.edges);
     const std::vector<double> b = random_vector(120, random);
-    for (int round = 0; round < 3; ++round) {
+    for (int iteration = 0; iteration < 3; ++iteration) {
         mesh.make_springs(random);
         cholesky.factor(mesh.diagonal, mesh.edges, mesh.blocks);
-        EXPECT_LT(largest_difference(Mesh::solve_with(cholesky, b), mesh.dense().solve(b)), float_tolerance) << round;
+        EXPECT_LT(largest_difference(Mesh::solve_with(cholesky, b), mesh.dense().solve(b)), float_tolerance)
+            << iteration;
     }
 }
 
@@ -261,7 +263,7 @@ void expect_consistent(const NestedDissection& order, const Mesh& mesh) {
 
 TEST(NestedDissection, FrontsHoldEachNodeOnceAndReachAllItsNeighbours) {
     Random random(8);
-    for (int round = 0; round < 30; ++round) {
+    for (int iteration = 0; iteration < 30; ++iteration) {
         const Mesh mesh = random_mesh(1 + random.below(200), random.between(0, 3), random);
         expect_consistent(dissect(mesh.positions, mesh.edges), mesh);
     }

@@ -10,8 +10,8 @@
 
 #include "foundation/random.h"
 #include "physics/stages/access.h"
+#include "physics/stages/parallel_for_awake.h"
 #include "physics/stages/rigid/body_setup.h"
-#include "physics/stages/share_awake.h"
 #include "physics/stages/stages.h"
 #include "physics/stages/touch/pair_watch.h"
 #include "physics/state/activity_state.h"
@@ -60,8 +60,8 @@ TEST(BodyPaths, OfWhatFliesFreelyAreParabolas) {
     EXPECT_LT(length(paths.free_acceleration(brick.body) - g), 1e-12);
     const BodyState start = brick.world.rigid.motion[brick.body];
     const double step = brick.world.settings.time_step;
-    for (const double share : {0.0, 0.1, 0.37, 0.5, 0.99, 1.0}) {
-        const double t = share * step;
+    for (const double fraction : {0.0, 0.1, 0.37, 0.5, 0.99, 1.0}) {
+        const double t = fraction * step;
         const BodyState there = paths.state_at(brick.body, t);
         EXPECT_LT(length(there.center - (start.center + start.linear_velocity * t + g * (t * t / 2))), 1e-9);
         EXPECT_LT(length(there.linear_velocity - (start.linear_velocity + g * t)), 1e-9);

@@ -96,7 +96,7 @@ TEST(ToWake, RemembersEachBodyToWakeABoundedNumberOfTimes) {
     activity.sleep.resize(100);
     std::vector<std::uint32_t> named;
     for (std::uint32_t i = 0; i < 100; ++i) named.push_back(i);
-    for (int round = 0; round < 1000; ++round)
+    for (int iteration = 0; iteration < 1000; ++iteration)
         for (const std::uint32_t body : named) wake_later(activity, body);
     EXPECT_LE(activity.to_wake.size(), 2 * named.size() + 64);
     EXPECT_EQ(std::set<std::uint32_t>(activity.to_wake.begin(), activity.to_wake.end()).size(), named.size());

@@ -86,8 +86,8 @@ TEST(StepAccount, OfASlidingBlockIsFrictions) {
     ASSERT_TRUE(world->set_velocity(block, {4, 0, 0}, {}));
     const double start = world->center_of_mass(block).x;
     const Sums sums = run(*world, 30);
-    const double way = world->center_of_mass(block).x - start;
-    EXPECT_NEAR(sums.of(StepCause::contacts), -0.3 * 2 * g * way, 0.01 * 0.3 * 2 * g * way);
+    const double travel = world->center_of_mass(block).x - start;
+    EXPECT_NEAR(sums.of(StepCause::contacts), -0.3 * 2 * g * travel, 0.01 * 0.3 * 2 * g * travel);
     EXPECT_NEAR(sums.unexplained, 0, 1e-3);
     const StepAccount& account = *world->last_report().account;
     EXPECT_NEAR(account.of(StepCause::contacts).linear_impulse.x, -0.3 * 2 * g / 60, 1e-3);

@@ -107,7 +107,7 @@ public:
         struct Place {
             std::uint32_t level, node;
         };
-        Place waiting[BoxNode::lanes * most_levels];
+        Place waiting[BoxNode::lanes * max_levels];
         int count = 0;
         if (sorted_leaves_ > 0) waiting[count++] = {static_cast<std::uint32_t>(levels_.size()), 0};
         while (count > 0) {
@@ -150,7 +150,7 @@ public:
     }
 
 private:
-    static constexpr int most_levels = 12;  // 8^11 boxes
+    static constexpr int max_levels = 12;  // 8^11 boxes
     struct Entry {
         std::uint64_t key;
         std::uint32_t value, slot;

@@ -16,15 +16,15 @@ namespace {
 // A box wider than this would make every box above it useless; such bodies (planes) are kept in a list.
 constexpr double widest_in_tree = 1e7;
 // The enlargement: a tenth of the size, but no more than 5 cm, so that small things do not pair with far ones.
-constexpr double most_margin = 0.05;
+constexpr double max_margin = 0.05;
 // Worlds with fewer changed bodies look for pairs on one thread.
-constexpr std::uint32_t fewest_shared = 500;
+constexpr std::uint32_t min_parallel_count = 500;
 // As many pairs are always kept; beyond, as many as a body may have partners.
 constexpr std::size_t always_kept_pairs = 100000;
 
 double margin_of(const Bounds& bounds) {
     const Vec3 size = bounds.size();
-    return std::min(most_margin, 0.1 * std::max(size.x, std::max(size.y, size.z)));
+    return std::min(max_margin, 0.1 * std::max(size.x, std::max(size.y, size.z)));
 }
 
 Bounds enlarged_for(const Bounds& bounds, Vec3 motion) {
@@ -138,7 +138,7 @@ struct BroadPhase::State {
     void find_few_pairs_of(std::uint32_t body, Finder& finder) const;
     void keep_pairs();
     void sort_found();
-    [[nodiscard]] std::size_t most_pairs() const { return always_kept_pairs + most_partners * proxies.size(); }
+    [[nodiscard]] std::size_t max_pairs() const { return always_kept_pairs + max_partners * proxies.size(); }
 };
 
 namespace {
@@ -224,13 +224,13 @@ void BroadPhase::State::change_all() {
 
 // Stops where there are too many.
 void BroadPhase::State::find_new_pairs(TaskPool& workers) {
-    const bool are_many = changed.size() >= fewest_shared;
+    const bool are_many = changed.size() >= min_parallel_count;
     all_changed = movable.are_all_changed();
-    share_among(workers, movable.leaf_count(), are_many, [&](int worker, Share share) {
+    parallel_for(workers, movable.leaf_count(), are_many, [&](int worker, IndexRange range) {
         Finder& finder = finders[static_cast<std::size_t>(worker)];
-        for (auto leaf = share.first; leaf < share.last; ++leaf) {
+        for (auto leaf = range.first; leaf < range.last; ++leaf) {
             find_pairs_of_leaf(static_cast<std::uint32_t>(leaf), finder);
-            if (finder.pairs.size() > most_pairs()) return;
+            if (finder.pairs.size() > max_pairs()) return;
         }
     });
     for (std::uint32_t leaf = 0; leaf < immovable.leaf_count(); ++leaf) find_pairs_of_immovable_leaf(leaf, finders[0]);
@@ -252,15 +252,15 @@ void BroadPhase::State::find_few_pairs_of(std::uint32_t body, Finder& finder) co
         std::partial_sort(partners.begin(), last, partners.end());
         std::for_each(partners.begin(), last, [&](std::uint32_t other) { add_pair(finder.pairs, body, other); });
     };
-    add_lowest(true, most_partners);
-    add_lowest(false, most_immovable_partners);
+    add_lowest(true, max_partners);
+    add_lowest(false, max_immovable_partners);
 }
 
 void BroadPhase::State::find_few_pairs(TaskPool& workers) {
-    share_among(workers, proxies.size(), true, [&](int worker, Share share) {
+    parallel_for(workers, proxies.size(), true, [&](int worker, IndexRange range) {
         Finder& finder = finders[static_cast<std::size_t>(worker)];
         finder.pairs.clear();
-        for (auto body = share.first; body < share.last; ++body) {
+        for (auto body = range.first; body < range.last; ++body) {
             const Proxy& proxy = proxies[body];
             if (proxy.used && proxy.movable) find_few_pairs_of(static_cast<std::uint32_t>(body), finder);
         }
@@ -367,7 +367,7 @@ const std::vector<BroadPhase::Pair>& BroadPhase::update_pairs(TaskPool& workers)
     s.find_new_pairs(workers);
     std::size_t count = s.kept.size();
     for (const State::Finder& finder : s.finders) count += finder.pairs.size();
-    s.too_many = count > s.most_pairs();
+    s.too_many = count > s.max_pairs();
     if (s.too_many) {
         s.kept.clear();
         s.find_few_pairs(workers);

@@ -38,10 +38,10 @@ public:
     /// All pairs with overlapping enlarged bounds, sorted; each once, whatever the number of workers.
     const std::vector<Pair>& update_pairs(TaskPool& workers);
 
-    /// Whether more bodies lie in each other than pairs may be: then each movable body keeps pairs with `most_partners`
-    /// movable and `most_immovable_partners` immovable ones, those of the lowest indices above its own.
+    /// Whether more bodies lie in each other than pairs may be: then each movable body keeps pairs with `max_partners`
+    /// movable and `max_immovable_partners` immovable ones, those of the lowest indices above its own.
     [[nodiscard]] bool has_too_many_pairs() const;
-    static constexpr std::size_t most_partners = 32, most_immovable_partners = 256;
+    static constexpr std::size_t max_partners = 32, max_immovable_partners = 256;
 
     /// Another number after each change of the pairs.
     [[nodiscard]] std::uint64_t pairs_version() const;

@@ -115,9 +115,9 @@ struct FaceCorner {
     double x, y, height;
     std::uint32_t edge_in, edge_out;
 };
-constexpr std::size_t most_corners = 8;
+constexpr std::size_t max_corners = 8;
 struct ClipPolygon {
-    std::array<FaceCorner, most_corners + 1> corners;
+    std::array<FaceCorner, max_corners + 1> corners;
     int count = 0;
 
     void add(const FaceCorner& c) {
@@ -220,8 +220,8 @@ FaceCorner deepest_corner(const BoxView& v, const FaceContact& f, double separat
 
 /// Points of a region on the reference face, and what they are called.
 struct FaceRegion {
-    std::array<FlatPoint, most_corners + 2> points;
-    std::array<std::uint32_t, most_corners + 2> names{};
+    std::array<FlatPoint, max_corners + 2> points;
+    std::array<std::uint32_t, max_corners + 2> names{};
     int count = 0;
 
     void add(const FaceCorner& c, std::uint32_t name) {
@@ -329,7 +329,7 @@ bool fill_edge_manifold(const BoxView& v, const EdgeAxis& edge, const ConvexPair
 std::optional<FaceAxis> flat_face(Vec3 normal) {
     for (std::size_t k = 0; k < 3; ++k) {
         const double along = normal[static_cast<int>(k)];
-        if (std::fabs(along) > least_span_cosine)
+        if (std::fabs(along) > min_span_cosine)
             return FaceAxis{.separation = 0, .axis = k, .side = along > 0 ? 1.0 : -1.0};
     }
     return std::nullopt;

@@ -72,11 +72,11 @@ void find_region(const ConvexPair& pair, double margin, PairMemory& memory, Cont
 // Whether the balls around two pieces' inner points are farther apart than the margin: most pairs whose boxes overlap.
 bool balls_are_apart(const PlacedConvex& a, const PlacedConvex& b, double margin, PairMemory& memory) {
     const double reach = a.shape->reach + b.shape->reach;
-    const Vec3 way = interior_point(b) - interior_point(a);
-    const double squared = length_squared(way);
+    const Vec3 displacement = interior_point(b) - interior_point(a);
+    const double squared = length_squared(displacement);
     if (squared <= (reach + margin) * (reach + margin)) return false;
     const double distance = std::sqrt(squared);
-    memory.part_along(a.direction_to_local(way / distance), distance - reach);
+    memory.part_along(a.direction_to_local(displacement / distance), distance - reach);
     return true;
 }
 
@@ -204,10 +204,10 @@ void collide_capsule(Vec3 from, Vec3 to, double radius, const CollisionShape& b,
     convex.half_height = half;
     convex.bounds = {{-radius, -reach, -radius}, {radius, reach, radius}};
     convex.reach = reach;
-    const Vec3 way = normalized(to - from, {0, 1, 0});
+    const Vec3 displacement = normalized(to - from, {0, 1, 0});
     PairMemory nothing;
-    collide_data(capsule, {(from + to) / 2, from_two_vectors({0, 1, 0}, way)}, b.data(), pose_b, margin, nothing,
-                 manifolds);
+    collide_data(capsule, {(from + to) / 2, from_two_vectors({0, 1, 0}, displacement)}, b.data(), pose_b, margin,
+                 nothing, manifolds);
 }
 
 }  // namespace embody::physics::collision

@@ -246,7 +246,7 @@ void drop_chosen(ContactRegion& region, const ChosenPoints& chosen) {
 }  // namespace
 
 void append_manifolds(ContactRegion& region, const Mat3& turn, Vec3 origin, std::vector<Manifold>& manifolds) {
-    constexpr std::uint32_t most_parts = 2;
+    constexpr std::uint32_t max_parts = 2;
     const std::size_t first = manifolds.size();
     if (region.is_proper) {
         const auto count = static_cast<int>(region.points.size());
@@ -255,7 +255,7 @@ void append_manifolds(ContactRegion& region, const Mat3& turn, Vec3 origin, std:
         region.is_proper = false;
         return;
     }
-    for (std::uint32_t part = 0; part < most_parts && !region.points.empty(); ++part) {
+    for (std::uint32_t part = 0; part < max_parts && !region.points.empty(); ++part) {
         flatten(region);
         const auto count = static_cast<int>(region.flat.size());
         const ChosenPoints chosen = choose_four(region.flat.data(), count);

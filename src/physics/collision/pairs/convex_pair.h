@@ -31,8 +31,9 @@ struct ConvexPair {
     Mat3 turn;            ///< from b's frame to a's
     Vec3 place;           ///< b's origin in a's frame
 
-    ConvexPair(const Convex& first, const Mat3& first_turn, const Convex& second, const Mat3& second_turn, Vec3 way)
-        : a(&first), b(&second), turn_a(first_turn), turn_b(second_turn), apart(way) {
+    ConvexPair(const Convex& first, const Mat3& first_turn, const Convex& second, const Mat3& second_turn,
+               Vec3 displacement)
+        : a(&first), b(&second), turn_a(first_turn), turn_b(second_turn), apart(displacement) {
         turn = transposed_product(turn_a, turn_b);
         place = {dot(turn_a.x, apart), dot(turn_a.y, apart), dot(turn_a.z, apart)};
     }

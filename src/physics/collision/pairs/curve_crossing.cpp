@@ -13,7 +13,7 @@ namespace {
 // Directions within this sine of a side's or an edge's normal plane are taken to mean the side or the edge.
 constexpr double beside = 0.05;
 // Lines at a smaller angle than this run side by side.
-constexpr double least_sine = 0.03;
+constexpr double min_sine = 0.03;
 
 /// A point (tangent zero), a straight line, or the circle of a rim; and the point on it where the other is looked for.
 struct Curve {
@@ -36,8 +36,8 @@ struct Curve {
         if (is_beyond_end()) point = dot(point - from, tangent) < 0 ? from : to;
     }
     // Goes along the tangent and back to the curve.
-    void go(double way) {
-        point += tangent * way;
+    void go(double displacement) {
+        point += tangent * displacement;
         if (!is_circle) return;
         const Vec3 from_center = point - center;
         outward = normalized(from_center - axis * dot(axis, from_center), outward);
@@ -45,8 +45,8 @@ struct Curve {
         tangent = cross(axis, outward);
     }
     // How much faster than the tangent's the distance to the other curve grows, by the circle's own curvature.
-    [[nodiscard]] double curvature(Vec3 way_to_other) const {
-        return is_circle ? dot(way_to_other, outward) / radius : 0;
+    [[nodiscard]] double curvature(Vec3 direction_to_other) const {
+        return is_circle ? dot(direction_to_other, outward) / radius : 0;
     }
 };
 
@@ -139,21 +139,21 @@ bool get_curve(const PlacedConvex& convex, Vec3 direction, Curve& curve) {
 
 // Newton's method on half the squared distance of two points on the curves; false where it does not converge.
 bool approach(Curve& p, Curve& q) {
-    constexpr int most_steps = 12;
+    constexpr int max_steps = 12;
     const double size = 1e-300 + p.radius + q.radius + length(q.point - p.point);
-    for (int step = 0; step < most_steps; ++step) {
+    for (int step = 0; step < max_steps; ++step) {
         const Vec3 gap = q.point - p.point;
         const double cosine = dot(p.tangent, q.tangent);
         const double slope_p = dot(gap, p.tangent), slope_q = dot(gap, q.tangent);
         const double curved_p = 1 + p.curvature(gap), curved_q = 1 - q.curvature(gap);
         const double determinant = curved_p * curved_q - cosine * cosine;
         if (!(std::fabs(determinant) > 1e-7)) return false;
-        const double way_p = (curved_q * slope_p - cosine * slope_q) / determinant;
-        const double way_q = (cosine * slope_p - curved_p * slope_q) / determinant;
-        if (!(std::fabs(way_p) + std::fabs(way_q) < 16 * size)) return false;
-        p.go(way_p);
-        q.go(way_q);
-        if (std::fabs(way_p) + std::fabs(way_q) < 1e-9 * size) return true;
+        const double displacement_p = (curved_q * slope_p - cosine * slope_q) / determinant;
+        const double displacement_q = (cosine * slope_p - curved_p * slope_q) / determinant;
+        if (!(std::fabs(displacement_p) + std::fabs(displacement_q) < 16 * size)) return false;
+        p.go(displacement_p);
+        q.go(displacement_q);
+        if (std::fabs(displacement_p) + std::fabs(displacement_q) < 1e-9 * size) return true;
     }
     return false;
 }
@@ -174,8 +174,8 @@ void turn_to_end(Curve& curve, Vec3 other) {
         curve.tangent = {};
         return;
     }
-    const Vec3 way = other - curve.point, axis = curve.tangent;
-    const Vec3 outward = normalized(way - axis * dot(way, axis), any_perpendicular(axis));
+    const Vec3 displacement = other - curve.point, axis = curve.tangent;
+    const Vec3 outward = normalized(displacement - axis * dot(displacement, axis), any_perpendicular(axis));
     curve = {.is_circle = true, .center = curve.point, .axis = axis, .outward = outward, .radius = curve.reach};
     curve.point = curve.center + outward * curve.radius;
     curve.tangent = cross(axis, outward);
@@ -196,8 +196,8 @@ void meet_halfway(Curve& p, Curve& q) {
 Vec3 common_normal(const Curve& p, const Curve& q, Vec3 direction, double shortest) {
     const Vec3 across = cross(p.tangent, q.tangent), gap = q.point - p.point;
     const double sine = length(across), apart = length(gap);
-    if (sine <= least_sine && !(apart > shortest)) return {};
-    const Vec3 n = sine > least_sine ? across / sine : gap / apart;
+    if (sine <= min_sine && !(apart > shortest)) return {};
+    const Vec3 n = sine > min_sine ? across / sine : gap / apart;
     return dot(n, direction) < 0 ? -n : n;
 }
 
@@ -222,16 +222,15 @@ Hold hold_of(const Curve& curve, double square) {
 // Beyond it, at x = 90 degrees + z, the curves reach width cos z - d sin z, with the width l t or 0.4 t^2 r: far enough
 // until tan(45 degrees - z / 2) = d / width. From there on the balls inside the two solids must reach that far.
 bool is_best_crossing(const PlacedConvex& a, const PlacedConvex& b, const Curve& p, const Curve& q, Vec3 n) {
-    if (p.tangent == Vec3{} || q.tangent == Vec3{} ||
-        length_squared(cross(p.tangent, q.tangent)) < least_sine * least_sine)
+    if (p.tangent == Vec3{} || q.tangent == Vec3{} || length_squared(cross(p.tangent, q.tangent)) < min_sine * min_sine)
         return false;
     const double d = dot(n, p.point - q.point), square = 0.5 * (1 - std::fabs(dot(p.tangent, q.tangent)));
     const Hold of_p = hold_of(p, square), of_q = hold_of(q, square);
     if (!(d > 0 && d <= std::min(of_p.depth, of_q.depth))) return false;
 
     const double ratio = d / std::min(of_p.width, of_q.width), squared = ratio * ratio;
-    const Vec3 way = interior_point(b) - interior_point(a);
-    const double along = dot(way, n), aside = length(way - n * along);
+    const Vec3 displacement = interior_point(b) - interior_point(a);
+    const double along = dot(displacement, n), aside = length(displacement - n * along);
     const double radii = a.shape->inner + b.shape->inner;
     return along >= 0 && along * (1 - squared) - 2 * ratio * aside + (radii - d) * (1 + squared) >= 0;
 }
@@ -245,7 +244,7 @@ bool cross_curves(const PlacedConvex& a, const PlacedConvex& b, Vec3 direction, 
         crossing = {p.on_surface(n), q.on_surface(-n), n};
         return true;
     };
-    if (p.is_line() && q.is_line() && length_squared(cross(p.tangent, q.tangent)) < least_sine * least_sine) {
+    if (p.is_line() && q.is_line() && length_squared(cross(p.tangent, q.tangent)) < min_sine * min_sine) {
         meet_halfway(p, q);
         return offer_points(direction);
     }

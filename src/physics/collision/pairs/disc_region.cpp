@@ -48,16 +48,16 @@ void add_disc_on_polygon(const DiscOnPolygon& d) {
     const std::vector<Vec3>& corners = d.polygon.points;
     const auto count = static_cast<std::uint32_t>(corners.size());
     const auto side_at = [&](std::uint32_t i) { return corners[i + 1 == count ? 0 : i + 1] - corners[i]; };
-    double most_beyond = 0;
+    double max_beyond = 0;
     Vec3 start = d.disc.points[0] - d.disc.center;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const Vec3 way = corners[i] - center, along = side_at(i), outwards = cross(along, n);
+        const Vec3 displacement = corners[i] - center, along = side_at(i), outwards = cross(along, n);
         const double side = length(along);
         if (!(side > 0)) continue;
-        if (length_squared(way) <= r * r) d.add(corners[i], i);
-        const double beyond = -dot(way, outwards) / side, nearest = -dot(way, along) / side;
-        if (beyond > most_beyond) {
-            most_beyond = beyond;
+        if (length_squared(displacement) <= r * r) d.add(corners[i], i);
+        const double beyond = -dot(displacement, outwards) / side, nearest = -dot(displacement, along) / side;
+        if (beyond > max_beyond) {
+            max_beyond = beyond;
             start = -outwards;
         }
         if (std::fabs(beyond) >= r) continue;
@@ -91,8 +91,8 @@ bool add_disc_region(const ContactFeature& reference, const ContactFeature& inci
 
     // In the reference's plane: one inside the other, or a lens with two corners and two bulges.
     const Vec3 other = incident.center - n * dot(incident.center - reference.center, n);
-    const Vec3 way = other - reference.center;
-    const double apart = length(way), r = reference.radius, q = incident.radius;
+    const Vec3 displacement = other - reference.center;
+    const double apart = length(displacement), r = reference.radius, q = incident.radius;
     if (apart >= r + q) return false;
     std::array<Vec3, 4> points;
     std::uint32_t part = 0;
@@ -102,7 +102,7 @@ bool add_disc_region(const ContactFeature& reference, const ContactFeature& inci
         points = quarters(reference, n, reference.center);
         part = 4;
     } else {
-        const Vec3 u = way / apart, v = cross(n, u);
+        const Vec3 u = displacement / apart, v = cross(n, u);
         const double along = (apart * apart + r * r - q * q) / (2 * apart);
         const double aside = std::sqrt(std::fmax(0.0, r * r - along * along));
         points = {reference.center + u * r, reference.center + u * along + v * aside, other - u * q,

@@ -20,13 +20,13 @@ struct ManifoldPoint {
 /// corners than these tell, since they lie in no plane (a chair with uneven feet), has a second one with others.
 struct Manifold {
     static constexpr int max_points = 4;
-    static constexpr double whole_way = 0.0025;  // m
-    Vec3 normal;                                 ///< world, unit, from shape a to shape b
-    std::uint32_t piece_a = 0, piece_b = 0;      ///< child of a compound, triangle of a mesh; 0 otherwise
-    std::uint32_t part = 0;                      ///< 0 holds the deepest point; 1: the second four
+    static constexpr double whole_travel = 0.0025;  // m
+    Vec3 normal;                                    ///< world, unit, from shape a to shape b
+    std::uint32_t piece_a = 0, piece_b = 0;         ///< child of a compound, triangle of a mesh; 0 otherwise
+    std::uint32_t part = 0;                         ///< 0 holds the deepest point; 1: the second four
     int count = 0;
     /// No other corner of the two pieces is within the margin; a sphere meets one face or plane alone, and does so
-    /// until it has moved by whole_way.
+    /// until it has moved by whole_travel.
     bool is_whole = false;
     /// Whether the piece is of those that roll: spheres, capsules, cylinders and cones.
     bool a_is_round = false, b_is_round = false;

@@ -91,10 +91,10 @@ void gather_own_normals(AxisSearch& s, Vec3 normal, bool all_faces) {
 // Unit vectors n with dot(n, u) = p and dot(n, v) = q: a u + b v + c u x v, where the square of the length gives c. Of
 // the two the one nearer to `wanted`; false where there is none or the lines are parallel.
 bool solve_normal(const SlopedLine& first, const SlopedLine& second, Vec3 wanted, Vec3& n) {
-    constexpr double least_square_sine = 1e-8;
+    constexpr double min_square_sine = 1e-8;
     const Vec3 u = first.direction, v = second.direction, across = cross(u, v);
     const double p = first.cosine, q = second.cosine, uv = dot(u, v), square_sine = length_squared(across);
-    if (!(square_sine > least_square_sine)) return false;
+    if (!(square_sine > min_square_sine)) return false;
     const double a = (p - uv * q) / square_sine, b = (q - uv * p) / square_sine;
     const double rest = 1 - (a * p + b * q);
     if (!(rest >= 0)) return false;
@@ -204,11 +204,11 @@ void limit_by_points(AxisSearch& s, Vec3 on_a, Vec3 on_b) {
 // `loss`.
 bool is_certain(AxisSearch& s, const CurveCrossing& crossing, double separation, double loss) {
     const double radii = s.core_a.depth + s.core_b.depth, hair = 1e-9 * s.size;
-    const Vec3 way = crossing.on_b - crossing.on_a;
-    if (crossing.is_within && std::fabs(separation - (dot(crossing.normal, way) - radii)) > hair) return false;
+    const Vec3 displacement = crossing.on_b - crossing.on_a;
+    if (crossing.is_within && std::fabs(separation - (dot(crossing.normal, displacement) - radii)) > hair) return false;
 
     // Cores that are apart are nearest there, for they are convex.
-    if (crossing.is_within && separation > -radii && separation >= length(way) - radii - hair) return true;
+    if (crossing.is_within && separation > -radii && separation >= length(displacement) - radii - hair) return true;
     if (crossing.is_best) return true;
     limit_by_points(s, crossing.on_a, crossing.on_b);
     return crossing.is_within && separation >= s.most - loss;
@@ -265,9 +265,9 @@ bool is_face_normal(const AxisSearch& s) {
 // From a normal to what is deepest along it, from there to the surface over it, whose normal is the next one. True
 // where a normal is certain or the pair is apart: mostly after two rounds. The one found does not depend on the start.
 bool search_by_surfaces(AxisSearch& s, Vec3 start) {
-    constexpr int most_rounds = 4;
+    constexpr int max_iterations = 4;
     Vec3 normal = start;
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int iteration = 0; iteration < max_iterations; ++iteration) {
         s.axis = {true, normal, s.touch_along(normal), false, {}, {}};
         if (s.axis.separation > s.margin) return s.accept();
         limit_by_points(s, s.on_a, s.on_b);
@@ -285,8 +285,8 @@ bool search_by_surfaces(AxisSearch& s, Vec3 start) {
 Vec3 first_normal(const AxisSearch& s) {
     const bool from_a = has_volume(*s.a.shape) && (!has_volume(*s.b.shape) || s.a.shape->reach >= s.b.shape->reach);
     const PlacedConvex &larger = from_a ? s.a : s.b, &smaller = from_a ? s.b : s.a;
-    const SurfaceDistance way = distance_from_surface(*larger.shape, larger.to_local(interior_point(smaller)));
-    const Vec3 outwards = larger.direction_to_frame(way.normal);
+    const SurfaceDistance displacement = distance_from_surface(*larger.shape, larger.to_local(interior_point(smaller)));
+    const Vec3 outwards = larger.direction_to_frame(displacement.normal);
     return from_a ? outwards : -outwards;
 }
 

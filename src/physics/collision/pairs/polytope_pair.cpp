@@ -61,7 +61,7 @@ FaceAxis best_face_axis(const Polytope& faces, const PlacedConvex& other, double
     s.bounds.assign(faces.normal_lanes.size(), 1e300);
     Extreme next{1e300, first};
     if (first >= count) next = lower_bounds(faces, start, s.bounds.data());
-    for (std::size_t rounds = 0; rounds <= count; ++rounds) {
+    for (std::size_t iterations = 0; iterations <= count; ++iterations) {
         // The face that promises most; of equal ones the first, whatever was measured before.
         if (next.along < best.separation) break;
         if (next.along == best.separation && (best.face == none || next.index > best.face)) break;
@@ -147,13 +147,13 @@ void measure_edge_pair(const EdgeArc& a, const EdgeArc& b, PolytopeSearch& s, Ed
 
 // False where far too many edges are left to pair them all: deep inside each other.
 bool best_edge_axis(double least, Vec3 witness_of_b, Vec3 witness_of_a, PolytopeSearch& s, EdgeAxis& best) {
-    constexpr std::size_t most_pairs = 40000;
+    constexpr std::size_t max_pairs = 40000;
     best.separation = least;
     const double depth = std::max(0.0, -least);
     gather_edges(*s.a, witness_of_b, depth, s);
     place_arcs_of_a(s);
     gather_edges(*s.b, witness_of_a, depth, s);
-    if (s.arcs_a.size() * s.edges.size() > most_pairs) return false;
+    if (s.arcs_a.size() * s.edges.size() > max_pairs) return false;
     place_arcs_of_b(s);
     for (const EdgeArc& a : s.arcs_a) {
         for (const EdgeArc& b : s.arcs_b) {
@@ -175,7 +175,7 @@ void get_edge(const PlacedConvex& placed, std::uint32_t edge, ContactFeature& fe
 
 // Pairs that are searched farther than this move too fast for their contacts to be followed: what else is near need not
 // be known. m
-constexpr double widest_followed = 8 * Manifold::whole_way;
+constexpr double widest_followed = 8 * Manifold::whole_travel;
 
 // Whether corners other than the given ones lie up to `level` along a direction of the polytope's own frame.
 bool has_other_corners(const Polytope& polytope, Vec3 direction, double level, std::span<const std::uint32_t> known,
@@ -247,7 +247,7 @@ void add_nearest_points(const PlacedConvex& a, const PlacedConvex& b, double mar
     }
 }
 
-double least_extent(const Convex& convex) {
+double min_extent(const Convex& convex) {
     const Vec3 size = convex.bounds.size();
     return std::min(size.x, std::min(size.y, size.z));
 }
@@ -286,7 +286,7 @@ bool collide_polytopes(const ConvexPair& pair, double margin, PairMemory& memory
         return true;
     }
     // Faces are preferred by a little: they give a region, and the choice does not flicker by rounding.
-    const double bias = 1e-4 * std::min(least_extent(*pair.a), least_extent(*pair.b));
+    const double bias = 1e-4 * std::min(min_extent(*pair.a), min_extent(*pair.b));
     s.heights.resize(s.a->normal_lanes.size());
     const bool is_inside_a = heights_over_faces(*s.a, face_a.witness, s.heights.data()) <= 0;
     Vec3 witness_of_a = is_inside_a ? face_a.witness : nearest_corner(*s.a, face_a.face, face_a.witness);

@@ -201,8 +201,8 @@ Vec3 facing_point(const PlacedConvex& convex, Vec3 direction, Vec3 point) {
         const double radial = std::sqrt(d.x * d.x + d.z * d.z), aside = std::sqrt(p.x * p.x + p.z * p.z);
         const double y = settle(d.y, shape.half_height, p.y);
         if (radial > across) return convex.to_frame({d.x / radial * shape.radius, y, d.z / radial * shape.radius});
-        const double share = aside > shape.radius ? shape.radius / aside : 1;
-        return convex.to_frame({p.x * share, y, p.z * share});
+        const double fraction = aside > shape.radius ? shape.radius / aside : 1;
+        return convex.to_frame({p.x * fraction, y, p.z * fraction});
     }
     return core_support(convex, direction);
 }
@@ -266,7 +266,7 @@ bool span_face(const PlacedConvex& owner, bool is_owner_a, const ContactFeature&
     if (owner.shape->kind != ConvexKind::polytope) return false;
     const Vec3 crossing_normal = region.normal, outwards = is_owner_a ? crossing_normal : -crossing_normal;
     const auto nearest = farthest(owner.shape->polytope.normal_lanes, owner.direction_to_local(outwards));
-    if (nearest.along < least_span_cosine) return false;
+    if (nearest.along < min_span_cosine) return false;
     get_polytope_face(owner, nearest.index, face);
     region.normal = is_owner_a ? face.normal : -face.normal;
     clip_to_region(face, line, is_owner_a, lift, margin, region);

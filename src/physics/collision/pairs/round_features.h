@@ -37,7 +37,7 @@ struct SlopedLine {
 void add_sloped_lines(const PlacedConvex& convex, Vec3 direction, std::vector<SlopedLine>& lines);
 
 /// How near the crossing's normal is to a face's where the two span that face: 8 degrees.
-inline constexpr double least_span_cosine = 0.99;
+inline constexpr double min_span_cosine = 0.99;
 /// Whether a face's region is as deep as the crossing.
 bool is_span(double deepest, double separation);
 /// Where an edge of a polytope crosses a line or edge of another shape that lies nearly flat on a face beside that

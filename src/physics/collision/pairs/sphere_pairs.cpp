@@ -103,9 +103,9 @@ Vec3 nearest_on_seen_edges(const Polytope& polytope, const std::vector<double>& 
     double least = 1e300;
     for (const Polytope::Edge& edge : polytope.edges) {
         if (heights[edge.left] <= 0 && heights[edge.right] <= 0) continue;
-        const Vec3 from = polytope.vertices[edge.from], way = polytope.vertices[edge.to] - from;
-        const double share = std::clamp(dot(p - from, way) / length_squared(way), 0.0, 1.0);
-        const Vec3 on_edge = from + way * share;
+        const Vec3 from = polytope.vertices[edge.from], travel = polytope.vertices[edge.to] - from;
+        const double fraction = std::clamp(dot(p - from, travel) / length_squared(travel), 0.0, 1.0);
+        const Vec3 on_edge = from + travel * fraction;
         const double squared = length_squared(p - on_edge);
         if (squared >= least) continue;
         least = squared;
@@ -154,16 +154,16 @@ SurfaceDistance distance_from_surface(const Convex& convex, Vec3 p, double enoug
 namespace {
 
 // Whether a sphere that meets the surface at `gap` meets the same face while its centre `p` moves by less than
-// Manifold::whole_way.
+// Manifold::whole_travel.
 bool stays_over_face(const Convex& convex, Vec3 p, const SurfaceDistance& gap) {
     if (!convex.is_box) {
         const Polytope& polytope = convex.polytope;
         return gap.face != Polytope::no_face &&
-               is_over_face(polytope, polytope.faces[gap.face], p, Manifold::whole_way);
+               is_over_face(polytope, polytope.faces[gap.face], p, Manifold::whole_travel);
     }
     const Vec3 inset = convex.bounds.upper - abs(p);
     int sides_within = 0;
-    for (int k = 0; k < 3; ++k) sides_within += gap.normal[k] == 0 && inset[k] >= Manifold::whole_way ? 1 : 0;
+    for (int k = 0; k < 3; ++k) sides_within += gap.normal[k] == 0 && inset[k] >= Manifold::whole_travel ? 1 : 0;
     return sides_within == 2;
 }
 

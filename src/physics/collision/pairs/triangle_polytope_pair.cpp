@@ -99,7 +99,7 @@ void lean_over_edge(TriangleSearch& s, std::size_t edge) {
     const Vec3 change = end - t.normal;
     std::uint32_t vertex = s.lowest;
     double passed = 0;
-    for (std::size_t rounds = 0; rounds < s.polytope.edges.size(); ++rounds) {
+    for (std::size_t iterations = 0; iterations < s.polytope.edges.size(); ++iterations) {
         // The first edge at which a neighbouring vertex becomes as low.
         const Vec3 here = s.polytope.vertices[vertex];
         double first = 1;
@@ -167,8 +167,9 @@ void clip_by_prism_side(const PrismSide& side, std::uint32_t name, TriangleScrat
         if (leaves) to[kept++] = u;
         if (leaves == (v.beyond <= 0)) continue;
         // Where the edge crosses the side, a new corner between this edge and the side.
-        const double share = u.beyond / (u.beyond - v.beyond);
-        to[kept++] = {u.point + (v.point - u.point) * share, 0, leaves ? u.edge_out : name, leaves ? name : u.edge_out};
+        const double fraction = u.beyond / (u.beyond - v.beyond);
+        to[kept++] = {u.point + (v.point - u.point) * fraction, 0, leaves ? u.edge_out : name,
+                      leaves ? name : u.edge_out};
     }
     scratch.count = kept;
     scratch.corners.swap(scratch.clipped);
@@ -182,9 +183,9 @@ double add_low_corners(const TriangleSearch& s, const PrismSide (&sides)[3], dou
     constexpr std::size_t corners_of_a_box = 8;
     const std::vector<Vec3>& vertices = s.polytope.vertices;
     if (vertices.size() <= corners_of_a_box) return -1e300;
-    constexpr double low_share = 0.1;
+    constexpr double low_fraction = 0.1;
     const Vec3 normal = s.triangle.normal;
-    const double highest = level + std::min(s.margin, s.triangle.height + low_share * s.convex.reach);
+    const double highest = level + std::min(s.margin, s.triangle.height + low_fraction * s.convex.reach);
     scratch.low.resize(s.polytope.vertex_lanes.size());
     const std::uint32_t count = find_low(s.polytope.vertex_lanes, normal, highest, scratch.low.data());
     for (std::uint32_t k = 0; k < count && scratch.low[k] < vertices.size(); ++k) {

@@ -127,7 +127,7 @@ bool widen_to_tetrahedron(const Core& a, const Core& b, std::vector<Vec3>& point
 }  // namespace
 
 bool penetration_normal(const Core& a, const Core& b, const CoreDistance& overlap, Vec3& normal) {
-    constexpr int most_iterations = 96;
+    constexpr int max_iterations = 96;
     constexpr double converged = 1e-6;
     thread_local Expansion expansion;
     expansion.clear();
@@ -147,7 +147,7 @@ bool penetration_normal(const Core& a, const Core& b, const CoreDistance& overla
     expansion.add_face(1, 3, 2);
 
     // Grow at the face nearest to the origin until the boundary itself is there.
-    for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    for (int iteration = 0; iteration < max_iterations; ++iteration) {
         const int nearest = expansion.nearest_face();
         if (nearest < 0) return false;
         const ExpandingFace face = expansion.faces[static_cast<std::size_t>(nearest)];

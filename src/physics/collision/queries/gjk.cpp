@@ -132,7 +132,7 @@ DifferencePoint difference_support(const Core& a, const Core& b, Vec3 direction)
 }
 
 CoreDistance core_distance(const Core& a, const Core& b, double enough, Vec3 start, double converged) {
-    constexpr int most_iterations = 100;
+    constexpr int max_iterations = 100;
     // Relative to the size of the coordinates: what rounding leaves of a distance of zero.
     constexpr double zero = 1e-14;
 
@@ -144,7 +144,7 @@ CoreDistance core_distance(const Core& a, const Core& b, double enough, Vec3 sta
     NearestPoint nearest = nearest_on_vertex(state.simplex, 0);
     double squared = length_squared(nearest.point), scale = std::sqrt(squared);
 
-    for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    for (int iteration = 0; iteration < max_iterations; ++iteration) {
         if (squared <= zero * zero * scale * scale) {
             state.overlap = true;
             break;

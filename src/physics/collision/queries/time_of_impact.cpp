@@ -73,13 +73,13 @@ Gap gap_between(const PlacedConvex& a, const PlacedConvex& b, double enough, Par
 }
 
 // Bounds of a piece and of all places on its `way` (world axes), in the frame of b's surface.
-Bounds bounds_in_surface(const PosedShapes& s, const PlacedConvex& piece, Vec3 way) {
+Bounds bounds_in_surface(const PosedShapes& s, const PlacedConvex& piece, Vec3 displacement) {
     const Vec3 h = piece.shape->bounds.half_extents();
     const Mat3 r = to_matrix(conjugate(s.pose_b.rotation)) * piece.rotation;
     const Vec3 c = inverse_transform_point(s.pose_b, s.pose_a.position + piece.to_frame(piece.shape->bounds.center()));
     const Vec3 e = abs(r.x) * h.x + abs(r.y) * h.y + abs(r.z) * h.z;
     Bounds bounds{c - e, c + e};
-    const Vec3 there = rotate_inverse(s.pose_b.rotation, way);
+    const Vec3 there = rotate_inverse(s.pose_b.rotation, displacement);
     bounds.add(Bounds{bounds.lower + there, bounds.upper + there});
     return bounds;
 }
@@ -87,7 +87,7 @@ Bounds bounds_in_surface(const PosedShapes& s, const PlacedConvex& piece, Vec3 w
 /// How far to look: gaps up to `enough`; of a surface only triangles within `beside` of the way.
 struct Reach {
     double enough = 0;
-    Vec3 way;
+    Vec3 displacement;
     double beside = 0;
 };
 
@@ -102,7 +102,8 @@ void for_each_gap(const PosedShapes& s, const Reach& reach, Visit&& visit) {
             // Triangles that show their front; one by one as flat convexes.
             thread_local std::vector<std::uint32_t> near;
             near.clear();
-            s.b.surface->find(enlarged(bounds_in_surface(s, piece, reach.way), std::min(reach.beside, 1e7)), near);
+            s.b.surface->find(enlarged(bounds_in_surface(s, piece, reach.displacement), std::min(reach.beside, 1e7)),
+                              near);
             for (const std::uint32_t index : near) {
                 const PlacedConvex triangle = s.placed_triangle(index);
                 const Polytope& flat = triangle.shape->polytope;
@@ -121,7 +122,7 @@ void for_each_gap(const PosedShapes& s, const Reach& reach, Visit&& visit) {
 /// A shape on its way: the centre on a line, the rotation along the shortest arc (normalised linear interpolation).
 struct Motion {
     Quat start_rotation, end_rotation;
-    Vec3 center, start_center, way;
+    Vec3 center, start_center, displacement;
     double turn_bound = 0;  ///< largest angular speed, rad per unit of time
 
     explicit Motion(const Sweep& sweep)
@@ -129,7 +130,7 @@ struct Motion {
           end_rotation(sweep.end.rotation),
           center(sweep.center),
           start_center(transform_point(sweep.start, sweep.center)),
-          way(transform_point(sweep.end, sweep.center) - start_center) {
+          displacement(transform_point(sweep.end, sweep.center) - start_center) {
         if (dot(start_rotation, end_rotation) < 0) {
             end_rotation = {-end_rotation.x, -end_rotation.y, -end_rotation.z, -end_rotation.w};
         }
@@ -142,7 +143,7 @@ struct Motion {
         const Quat p = start_rotation, q = end_rotation;
         const Quat mixed = normalized(
             Quat{p.x + (q.x - p.x) * t, p.y + (q.y - p.y) * t, p.z + (q.z - p.z) * t, p.w + (q.w - p.w) * t});
-        return {start_center + way * t - rotate(mixed, center), mixed};
+        return {start_center + displacement * t - rotate(mixed, center), mixed};
     }
     // No point of the shape moves faster than this by turning.
     [[nodiscard]] double turn_speed(const CollisionShape& shape) const {
@@ -156,9 +157,9 @@ struct Advancement {
     const CollisionShape& b;
     Motion motion_a, motion_b;
     ImpactSearch search;
-    Vec3 way = motion_a.way - motion_b.way;  ///< of a seen from b
+    Vec3 displacement = motion_a.displacement - motion_b.displacement;  ///< of a seen from b
     double turn_speed = motion_a.turn_speed(a) + motion_b.turn_speed(b);
-    double tolerance = std::fmax(1e-3 * std::fabs(search.target_separation), 1e-9 * (1 + length(way)));
+    double tolerance = std::fmax(1e-3 * std::fabs(search.target_separation), 1e-9 * (1 + length(displacement)));
     std::vector<PartPair> passed_over;
 
     [[nodiscard]] PosedShapes at(double time) const {
@@ -167,7 +168,7 @@ struct Advancement {
     // What may be met in the rest of the time.
     [[nodiscard]] Reach reach_at(double time) const {
         const double near = turn_speed * (1 - time) + search.target_separation + tolerance;
-        return {length(way) * (1 - time) + near, way * (1 - time), near};
+        return {length(displacement) * (1 - time) + near, displacement * (1 - time), near};
     }
     void pass_over_touching() {
         if (search.touching_at_start < 0) return;
@@ -197,20 +198,20 @@ double separation(const CollisionShape& a, const Transform& pose_a, const Collis
 std::optional<double> time_of_impact(const CollisionShape& a, const Sweep& path_a, const CollisionShape& b,
                                      const Sweep& path_b, const ImpactSearch& search) {
     EMBODY_ASSERT(!is_static_only(a.definition()));
-    constexpr int most_rounds = 128;
+    constexpr int max_iterations = 128;
     constexpr double harmless_step = 0.125;  // after which a harmless touch is looked at again
     Advancement advance{a, b, Motion(path_a), Motion(path_b), search};
     advance.pass_over_touching();
     const PosedShapes end = advance.at(1);
     double time = 0;
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int iteration = 0; iteration < max_iterations; ++iteration) {
         double step = 1;
         bool touches = false;
         for_each_gap(advance.at(time), advance.reach_at(time), [&](const Gap& gap) {
             // Parts that move away from each other are no impact, even if they touch now.
             // Overlapping ones have no direction to tell.
             const bool has_direction = length_squared(gap.direction) > 0;
-            const double speed = dot(advance.way, gap.direction) + advance.turn_speed;
+            const double speed = dot(advance.displacement, gap.direction) + advance.turn_speed;
             if ((speed <= 0 && has_direction) || advance.is_passed_over(gap.parts)) return;
             const double left = gap.distance - search.target_separation;
             const bool is_near = left <= std::fmax(advance.tolerance, harmless_step * speed);

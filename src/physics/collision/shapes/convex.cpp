@@ -218,23 +218,23 @@ Vec3 Core::support(Vec3 d) const {
 }
 
 double shrinkable(const Convex& convex) {
-    constexpr double share = 0.1;
+    constexpr double fraction = 0.1;
     switch (convex.kind) {
         case ConvexKind::sphere:
         case ConvexKind::capsule:
             return 0;
         case ConvexKind::polytope: {
             const Vec3 h = convex.bounds.upper;
-            return convex.is_box ? share * std::fmin(h.x, std::fmin(h.y, h.z)) : 0;
+            return convex.is_box ? fraction * std::fmin(h.x, std::fmin(h.y, h.z)) : 0;
         }
         case ConvexKind::cylinder:
-            return share * std::fmin(convex.radius, convex.half_height);
+            return fraction * std::fmin(convex.radius, convex.half_height);
         case ConvexKind::cone:
             break;
     }
     // Of the radius of the largest ball inside.
     const ConeSlope slope = cone_slope(convex);
-    return share * convex.radius * slope.radial / (1 + slope.axial);
+    return fraction * convex.radius * slope.radial / (1 + slope.axial);
 }
 
 Vec3 core_support(const PlacedConvex& convex, Vec3 direction) { return Core(convex).support(direction); }

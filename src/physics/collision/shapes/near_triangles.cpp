@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Nearest points of triangles, four at a time in floats: C. Ericson, "Real-Time Collision Detection", 2005, section
-// 5.1.5, with every case worked out and chosen from, since which of the seven it is cannot be foretold.
+// 5.1.5, with every case worked out and chosen from, since which of the seven it is cannot be predicted.
 #include "physics/collision/shapes/near_triangles.h"
 
 #include <algorithm>
@@ -41,9 +41,9 @@ Four3 nearest_to_origin(const Four3& a, const Four3& b, const Four3& c) {
     // Shares of ab and ac: inside, then on sides, then at corners, each before the last one.
     const Four zero{}, one = zero + 1;
     Four v = of_b / sum, w = of_c / sum;
-    const auto choose = [&](FourMask here, Four share_b, Four share_c) {
-        v = here ? share_b : v;
-        w = here ? share_c : w;
+    const auto choose = [&](FourMask here, Four fraction_b, Four fraction_c) {
+        v = here ? fraction_b : v;
+        w = here ? fraction_c : w;
     };
     const Four on_bc = to_c / (to_c + to_b);
     choose((of_a <= zero) & (to_c >= zero) & (to_b >= zero), one - on_bc, on_bc);

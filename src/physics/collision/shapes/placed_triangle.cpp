@@ -36,8 +36,8 @@ Vec3 PlacedTriangle::nearest_to(Vec3 p) const {
     Vec3 nearest;
     double least = 1e300;
     for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3 u = corners[i], way = along(i);
-        const Vec3 on_edge = u + way * std::clamp(dot(p - u, way) / length_squared(way), 0.0, 1.0);
+        const Vec3 u = corners[i], travel = along(i);
+        const Vec3 on_edge = u + travel * std::clamp(dot(p - u, travel) / length_squared(travel), 0.0, 1.0);
         const double squared = length_squared(on_edge - p);
         if (squared >= least) continue;
         least = squared;

@@ -55,8 +55,8 @@ struct PrismSide {
         if (t.half_dihedrals[edge] <= shallow_half_dihedral)
             outwards -= t.normal * static_cast<double>(t.half_dihedrals[edge]);
         // A tiny slack keeps points that lie on the side.
-        const Vec3 way = abs(t.along(edge));
-        offset = dot(outwards, t.corners[edge]) + 1e-9 * (way.x + way.y + way.z);
+        const Vec3 displacement = abs(t.along(edge));
+        offset = dot(outwards, t.corners[edge]) + 1e-9 * (displacement.x + displacement.y + displacement.z);
     }
     [[nodiscard]] double beyond(Vec3 p) const { return dot(outwards, p) - offset; }
 };

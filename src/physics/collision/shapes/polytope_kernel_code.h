@@ -31,7 +31,7 @@ std::uint32_t first_lane(std::size_t i, std::uint32_t mask) {
 }
 
 // The first number for which mask_at(i), the mask of the `width` numbers from i on, tells so; 0 where none does. Most
-// polytopes have no more than 64 of a kind: then there is no branch that cannot be foretold.
+// polytopes have no more than 64 of a kind: then there is no branch that cannot be predicted.
 template <class MaskAt>
 [[gnu::always_inline]] inline std::uint32_t find_first(std::size_t count, std::size_t width, MaskAt mask_at) {
     for (std::size_t block = 0; block < count; block += 64) {

@@ -38,16 +38,16 @@ Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold,
     contact.count = static_cast<std::uint8_t>(manifold.count);
     contact.a_is_round = manifold.a_is_round;
     contact.b_is_round = manifold.b_is_round;
-    const double share = place_in_gap(manifold.a_is_round, manifold.b_is_round);
+    const double fraction = place_in_gap(manifold.a_is_round, manifold.b_is_round);
     for (int i = 0; i < manifold.count; ++i) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const ManifoldPoint& found = manifold.points[static_cast<std::size_t>(i)];
         point.separation = static_cast<float>(found.separation);
         point.feature = found.feature;
-        const Vec3 gap = manifold.normal * found.separation, position = found.position + gap * (share - 0.5);
+        const Vec3 gap = manifold.normal * found.separation, position = found.position + gap * (fraction - 0.5);
         const Vec3 arm_a = position - bodies[a].center, arm_b = position - bodies[b].center;
         set_arms(contact, point, arm_a, arm_b, bodies);
-        const Vec3 place = seen.b_is_larger ? arm_a - gap * share : arm_b + gap * (1 - share);
+        const Vec3 place = seen.b_is_larger ? arm_a - gap * fraction : arm_b + gap * (1 - fraction);
         point.place = to_vec3f(rotate_inverse(seen.axes, place));
         point.place_separation = point.separation;
     }
@@ -83,8 +83,8 @@ Anchor anchor_of(const Contact& contact) {
         sum.arm_a += point.arm_a;
         sum.arm_b += point.arm_b;
     }
-    const double share = contact.count > 0 ? 1.0 / contact.count : 0;
-    return {sum.arm_a * share, sum.arm_b * share};
+    const double fraction = contact.count > 0 ? 1.0 / contact.count : 0;
+    return {sum.arm_a * fraction, sum.arm_b * fraction};
 }
 
 void match_points(const Contact& old_contact, Contact& new_contact) {

@@ -17,7 +17,7 @@ ContactWork contact_work(const BodyConstants& constants, Quat rotation, const Ve
             (constants.mass * length_squared(change.linear) + dot(turn, momentum)) / 2};
 }
 
-double share_without_gain(const ContactWork& work) {
+double fraction_without_gain(const ContactWork& work) {
     if (work.linear + work.quadratic <= 0) return 1;
     return work.linear < 0 ? std::min(1.0, -work.linear / work.quadratic) : 0;
 }

@@ -26,6 +26,6 @@ ContactWork contact_work(const BodyConstants& constants, Quat rotation, const Ve
 /// The largest share of what contacts did that gives no energy: contacts at rest and in sliding only take some (paper,
 /// eq. 4 and 7), and what sweeps that have not converged give is error. All impulses take the same share, so momentum
 /// is kept.
-double share_without_gain(const ContactWork& work);
+double fraction_without_gain(const ContactWork& work);
 
 }  // namespace embody::physics::constraint

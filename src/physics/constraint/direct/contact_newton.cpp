@@ -11,16 +11,16 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr double stiffness_share = 1e5;     // k over the heaviest mass,
+constexpr double stiffness_fraction = 1e5;  // k over the heaviest mass,
 constexpr double rest_stiffness = 1e-2;     // of that where the sweeps' loads are the guess for what rests,
 constexpr double settling_stiffness = 0.1;  // and where those of a step before are, which found it at rest
-constexpr int hasty_rounds = 4;             // of Newton's method with whole steps; then
-constexpr int lagged_rounds = 8;            // with steps as far as f falls
-constexpr int rest_rounds = 16;             // of such for what rests
+constexpr int undamped_iterations = 4;      // of Newton's method with whole steps; then
+constexpr int lagged_iterations = 8;        // with steps as far as f falls
+constexpr int rest_iterations = 16;         // of such for what rests
 constexpr double slope_tolerance = 0.1;     // of the slope along a step, where its length is searched
-constexpr int most_searches = 12;
-constexpr std::uint64_t least_idle = 15, most_idle = 960;  // steps to the next attempt after a vain one
-constexpr std::uint64_t most_rests = 60;  // steps in a row: what is not held by its last impulses then never will be
+constexpr int max_searches = 12;
+constexpr std::uint64_t min_idle = 15, max_idle = 960;  // steps to the next attempt after a vain one
+constexpr std::uint64_t max_rests = 60;   // steps in a row: what is not held by its last impulses then never will be
 constexpr std::uint64_t steps_kept = 60;  // what was found about a graph is kept for, unused
 constexpr double force_tolerance = 1e-7;  // of the largest load: a step that misses the impulses by less is the last
 constexpr std::uint32_t no_edge = 0xFFFFFFFFu;
@@ -81,7 +81,7 @@ void ContactNewton::begin(std::uint32_t key, std::span<const NewtonBody> bodies,
     bodies_ = bodies;
     double heaviest = 0;
     for (const NewtonBody& body : bodies) heaviest = std::max(heaviest, body.mass);
-    full_stiffness_ = stiffness_share * heaviest;
+    full_stiffness_ = stiffness_fraction * heaviest;
     has_factors_ = false;
     direction_.resize(bodies.size());
     right_side_.resize(bodies.size());
@@ -94,9 +94,9 @@ bool ContactNewton::has_given_up(std::uint32_t key) const {
     return index < structures_.size() && structures_[index].key == key && step_ < structures_[index].idle_until;
 }
 
-void ContactNewton::give_up() {
+void ContactNewton::abandon() {
     structure_->rests = 0;
-    structure_->idle = std::clamp(2 * structure_->idle, least_idle, most_idle);
+    structure_->idle = std::clamp(2 * structure_->idle, min_idle, max_idle);
     structure_->idle_until = step_ + structure_->idle;
 }
 
@@ -104,10 +104,10 @@ void ContactNewton::note_rest() {
     if (structure_->last_rest + 1 != step_) structure_->rests = 0;
     structure_->last_rest = step_;
     ++structure_->rests;
-    if (structure_->rests < most_rests) {
+    if (structure_->rests < max_rests) {
         structure_->idle = 0;
     } else {
-        give_up();
+        abandon();
     }
 }
 
@@ -202,10 +202,10 @@ bool ContactNewton::find_velocities(std::span<const Vec6> free, std::span<Vec6> 
                                     std::span<DirectPatch> patches) {
     stiffness_ = full_stiffness_;
     begin_from(free, velocity, patches);
-    bound_ = FrictionBound::hasty;
-    if (iterate(free, hasty_rounds, velocity, patches)) return true;
+    bound_ = FrictionBound::undamped;
+    if (iterate(free, undamped_iterations, velocity, patches)) return true;
     bound_ = FrictionBound::lagged;
-    return iterate(free, lagged_rounds, velocity, patches);
+    return iterate(free, lagged_iterations, velocity, patches);
 }
 
 bool ContactNewton::find_rest(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches) {
@@ -218,7 +218,7 @@ bool ContactNewton::find_rest(std::span<const Vec6> free, std::span<Vec6> veloci
         begin_coupled(patch);
         evaluate(patch, stiffness_, bound_);
     }
-    return iterate(free, rest_rounds, velocity, patches);
+    return iterate(free, rest_iterations, velocity, patches);
 }
 
 // The first step goes where all that was loaded and stuck stays so.
@@ -229,9 +229,9 @@ void ContactNewton::begin_from(std::span<const Vec6> free, std::span<Vec6> veloc
 }
 
 // Rounds until the impulses are right for this stiffness.
-bool ContactNewton::iterate(std::span<const Vec6> free, int rounds, std::span<Vec6> velocity,
+bool ContactNewton::iterate(std::span<const Vec6> free, int iterations, std::span<Vec6> velocity,
                             std::span<DirectPatch> patches) {
-    for (int round = 0; round < rounds; ++round) {
+    for (int iteration = 0; iteration < iterations; ++iteration) {
         if (!step(free, velocity, patches)) continue;
 
         // Friction under the loads that were found.
@@ -258,61 +258,61 @@ bool ContactNewton::step(std::span<const Vec6> free, std::span<Vec6> velocity, s
     for (DirectPatch& patch : patches) patch.change = relative_twist(patch, direction);
 
     // How far.
-    double share = 1;
-    if (bound_ != FrictionBound::hasty) {
+    double fraction = 1;
+    if (bound_ != FrictionBound::undamped) {
         slope_by_mass_ = curvature_by_mass_ = 0;
         for (std::size_t i = 0; i < bodies_.size(); ++i) {
             slope_by_mass_ -= dot(right_side_[i], direction[i]);
             curvature_by_mass_ += dot(momentum_of(bodies_[i], direction[i]), direction[i]);
         }
-        share = find_share(patches);
+        fraction = find_fraction(patches);
     }
-    for (std::size_t i = 0; i < bodies_.size(); ++i) add(velocity[i], direction[i], share);
-    return evaluate_after(share, patches) && share == 1;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) add(velocity[i], direction[i], fraction);
+    return evaluate_after(fraction, patches) && fraction == 1;
 }
 
 // df/dα at v + α d.
-double ContactNewton::slope_at(double share, std::span<const DirectPatch> patches) const {
-    double slope = slope_by_mass_ + share * curvature_by_mass_;
+double ContactNewton::slope_at(double fraction, std::span<const DirectPatch> patches) const {
+    double slope = slope_by_mass_ + fraction * curvature_by_mass_;
     for (const DirectPatch& patch : patches) {
-        slope -= dot(impulse_at(patch, patch.velocity + patch.change * share, stiffness_, bound_), patch.change);
+        slope -= dot(impulse_at(patch, patch.velocity + patch.change * fraction, stiffness_, bound_), patch.change);
     }
     return slope;
 }
 
 // Where f stops falling along the step, by the regula falsi (Illinois); the whole step where it falls that far.
-double ContactNewton::find_share(std::span<const DirectPatch> patches) const {
+double ContactNewton::find_fraction(std::span<const DirectPatch> patches) const {
     double low = 0, high = 1, at_low = slope_at(0, patches), at_high = slope_at(1, patches);
     const double enough = slope_tolerance * std::fabs(at_low);
     if (!(at_low < 0) || !(at_high > enough)) return 1;
-    double share = 1;
-    for (int i = 0; i < most_searches; ++i) {
-        share = (low * at_high - high * at_low) / (at_high - at_low);
-        const double slope = slope_at(share, patches);
+    double fraction = 1;
+    for (int i = 0; i < max_searches; ++i) {
+        fraction = (low * at_high - high * at_low) / (at_high - at_low);
+        const double slope = slope_at(fraction, patches);
         if (std::fabs(slope) <= enough) break;
-        (slope < 0 ? low : high) = share;
+        (slope < 0 ? low : high) = fraction;
         (slope < 0 ? at_low : at_high) = slope;
         (slope < 0 ? at_high : at_low) /= 2;
     }
-    return share;
+    return fraction;
 }
 
-// The impulses after a step; whether they are what the slopes foretold.
-bool ContactNewton::evaluate_after(double share, std::span<DirectPatch> patches) {
+// The impulses after a step; whether they are what the slopes predicted.
+bool ContactNewton::evaluate_after(double fraction, std::span<DirectPatch> patches) {
     double largest = 0, error = 0;
     for (DirectPatch& patch : patches) {
-        patch.change = patch.change * share;
+        patch.change = patch.change * fraction;
         const PatchTwist change = patch.change;
-        const Vec3 foretold_normal = patch.impulse.normal_part - patch.normal_slope * change.normal_part -
-                                     patch.coupling_slope * change.friction_part;
-        const Vec3 foretold_friction = patch.impulse.friction_part - patch.friction_slope * change.friction_part -
-                                       transpose(patch.coupling_slope) * change.normal_part;
-        foretell_loads(patch, stiffness_);
+        const Vec3 predicted_normal = patch.impulse.normal_part - patch.normal_slope * change.normal_part -
+                                      patch.coupling_slope * change.friction_part;
+        const Vec3 predicted_friction = patch.impulse.friction_part - patch.friction_slope * change.friction_part -
+                                        transpose(patch.coupling_slope) * change.normal_part;
+        predict_loads(patch, stiffness_);
         patch.velocity = patch.velocity + patch.change;
         evaluate(patch, stiffness_, bound_);
         largest = std::max(largest, std::fabs(patch.impulse.normal_part.x));
-        error = std::max(error, length_squared(patch.impulse.normal_part - foretold_normal));
-        error = std::max(error, length_squared(patch.impulse.friction_part - foretold_friction));
+        error = std::max(error, length_squared(patch.impulse.normal_part - predicted_normal));
+        error = std::max(error, length_squared(patch.impulse.friction_part - predicted_friction));
     }
     return std::sqrt(error) <= force_tolerance * std::max(largest, std::sqrt(error));
 }
@@ -322,7 +322,7 @@ void ContactNewton::drop_friction(std::span<DirectPatch> patches) {
     factor(patches);
 }
 
-void ContactNewton::find_shifts(std::span<const DirectPatch> patches, double share, double most,
+void ContactNewton::find_shifts(std::span<const DirectPatch> patches, double fraction, double most,
                                 std::span<Vec6> shifts) {
     std::fill(shifts.begin(), shifts.end(), Vec6{});
     for (const DirectPatch& patch : patches) {
@@ -330,8 +330,8 @@ void ContactNewton::find_shifts(std::span<const DirectPatch> patches, double sha
         for (int i = 0; i < patch.count; ++i) {
             const DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
             if (!point.is_loaded) continue;
-            const double way = std::clamp(-share * point.gap, -most, most);
-            pull.normal_part += row_of(point) * (stiffness_ * way);
+            const double travel = std::clamp(-fraction * point.gap, -most, most);
+            pull.normal_part += row_of(point) * (stiffness_ * travel);
         }
         add_impulse(patch, pull, shifts);
     }

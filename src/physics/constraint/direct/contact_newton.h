@@ -30,7 +30,7 @@ public:
     /// the last step.
     void begin(std::uint32_t key, std::span<const NewtonBody> bodies, std::span<const DirectPatch> patches);
     /// A list that was tried in vain, or that does not come to a stop, is not tried again for a while.
-    void give_up();
+    void abandon();
     /// The list was solved, and its bodies hardly move.
     void note_rest();
     [[nodiscard]] bool has_given_up(std::uint32_t key) const;
@@ -50,7 +50,7 @@ public:
     void drop_friction(std::span<DirectPatch> patches);
     /// Small motions that close `share` of the gaps and overlaps of all loaded points, each by `most` m at most; after
     /// find_velocities() or find_rest(), with the last factors.
-    void find_shifts(std::span<const DirectPatch> patches, double share, double most, std::span<Vec6> shifts);
+    void find_shifts(std::span<const DirectPatch> patches, double fraction, double most, std::span<Vec6> shifts);
 
 private:
     /// What was found about the graph of one list.
@@ -71,18 +71,18 @@ private:
     void factor(std::span<DirectPatch> patches);
     void set_patch_velocities(std::span<const Vec6> velocity, std::span<DirectPatch> patches) const;
     void begin_from(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches);
-    bool iterate(std::span<const Vec6> free, int rounds, std::span<Vec6> velocity, std::span<DirectPatch> patches);
+    bool iterate(std::span<const Vec6> free, int iterations, std::span<Vec6> velocity, std::span<DirectPatch> patches);
     bool step(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches);
-    bool evaluate_after(double share, std::span<DirectPatch> patches);
-    double slope_at(double share, std::span<const DirectPatch> patches) const;
-    double find_share(std::span<const DirectPatch> patches) const;
+    bool evaluate_after(double fraction, std::span<DirectPatch> patches);
+    double slope_at(double fraction, std::span<const DirectPatch> patches) const;
+    double find_fraction(std::span<const DirectPatch> patches) const;
 
     std::span<const NewtonBody> bodies_;
     double full_stiffness_ = 0;
     double stiffness_ = 0;                              // k, kg
     bool has_factors_ = false;                          // of this list
     std::size_t work_ = 0;                              // products of 6×6 blocks
-    FrictionBound bound_ = FrictionBound::hasty;        // steps go only as far as f falls, but in haste
+    FrictionBound bound_ = FrictionBound::undamped;     // steps go only as far as f falls, but in haste
     double slope_by_mass_ = 0, curvature_by_mass_ = 0;  // of f along the step, kg m²/s²
     std::vector<Vec6> direction_, right_side_;
     std::vector<Structure> structures_;

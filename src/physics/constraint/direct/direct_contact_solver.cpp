@@ -12,22 +12,23 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr double slow = 0.02;        // m/s: an island of slower points is solved once a step, if they stay slower
-constexpr double rest_speed = 1e-6;  // m/s, rad/s: changes that rounding may leave
-constexpr double rest_gap = 2e-5;    // m: what resting points may be apart or overlap
-constexpr double rest_mend = 0.5;    // of a gap or an overlap closed in the one solve of a step at rest,
-constexpr double slow_mend = 0.005;  // and in a substep of what moves: lifting is work that a rocking column keeps
-constexpr double rest_shift = 2e-3;  // m: of a body in a step at rest, at most
-constexpr double mend_speed = 3;     // m/s, at most
-constexpr double mend_gap = 1e-7;    // m: in motion smaller ones are let be
+constexpr double slow = 0.02;            // m/s: an island of slower points is solved once a step, if they stay slower
+constexpr double rest_speed = 1e-6;      // m/s, rad/s: changes that rounding may leave
+constexpr double rest_gap = 2e-5;        // m: what resting points may be apart or overlap
+constexpr double rest_correction = 0.5;  // of a gap or an overlap closed in the one solve of a step at rest,
+constexpr double slow_correction =
+    0.005;                               // and in a substep of what moves: lifting is work that a rocking column keeps
+constexpr double rest_shift = 2e-3;      // m: of a body in a step at rest, at most
+constexpr double correction_speed = 3;   // m/s, at most
+constexpr double correction_gap = 1e-7;  // m: in motion smaller ones are let be
 // Products of 6×6 blocks, of a round and of all lists of a step, where the sweeps would do as well.
-constexpr std::size_t most_products_slow = 16000, most_products_step = 60000;
+constexpr std::size_t max_products_slow = 16000, max_products_step = 60000;
 
 // How the point moved with the body in this step; on a round body only the tilt counts (contact.cpp).
-Vec3 motion_at(Vec3 way, const Quat& turn, Vec3 arm, bool is_round) {
-    if (!is_round) return way + rotate(turn, arm) - arm;
+Vec3 motion_at(Vec3 displacement, const Quat& turn, Vec3 arm, bool is_round) {
+    if (!is_round) return displacement + rotate(turn, arm) - arm;
     const double sign = turn.w < 0 ? -2 : 2;
-    return way + cross(sign * Vec3{turn.x, turn.y, turn.z}, arm);
+    return displacement + cross(sign * Vec3{turn.x, turn.y, turn.z}, arm);
 }
 
 }  // namespace
@@ -49,19 +50,19 @@ DirectContactSolver::Outcome DirectContactSolver::solve(const List& list, Effort
     const auto is_fast = [&](std::uint32_t body) { return length_squared(bodies[body].linear_velocity) > slow * slow; };
     if (only_slow && std::any_of(list.bodies.begin(), list.bodies.end(), is_fast)) return Outcome::unsolved;
 
-    const bool may_wait = newton_.has_given_up(list.bodies.front()) || newton_.work() > most_products_step;
+    const bool may_wait = newton_.has_given_up(list.bodies.front()) || newton_.work() > max_products_step;
     if (only_slow && may_wait) return Outcome::unsolved;
 
     // Slow bodies in one go; should they turn out to move, from the beginning again.
     gather(list, bodies, constants, contacts, 1);
-    if (only_slow && newton_.block_products() > most_products_slow) return Outcome::unsolved;
+    if (only_slow && newton_.block_products() > max_products_slow) return Outcome::unsolved;
     if (is_slow(slow)) {
         if (rest(only_slow, contacts) && is_slow(slow)) {
             newton_.note_rest();
             scatter(bodies, constants, contacts, 1);
             return Outcome::solved;
         }
-        if (only_slow) newton_.give_up();
+        if (only_slow) newton_.abandon();
     }
     if (only_slow) return Outcome::unsolved;
     gather(list, bodies, constants, contacts, moving_substeps_);
@@ -183,7 +184,7 @@ void DirectContactSolver::gather(const List& list, std::span<const BodyState> bo
         motion.linear_damping = 1 / (1 + h_ * c.linear_damping);
         motion.angular_damping = 1 / (1 + h_ * c.angular_damping);
         motion.acceleration = c.acceleration;
-        motion.way = state.center - state.start_center;
+        motion.displacement = state.center - state.start_center;
         motion.turn = state.turn;
         velocity_[i] = make_vec6(state.linear_velocity, state.angular_velocity);
         masses_[i] = {c.mass, c.is_isotropic ? c.inertia : rotate_tensor(state.rotation, c.inertia)};
@@ -203,7 +204,7 @@ void DirectContactSolver::scatter(std::span<BodyState> bodies, std::span<const B
         const Motion& motion = motion_[i];
         BodyState& state = bodies[motion.slot];
         const BodyConstants& c = constants[motion.slot];
-        state.center = state.start_center + motion.way;
+        state.center = state.start_center + motion.displacement;
         state.linear_velocity = velocity_[i].linear();
         state.angular_velocity = velocity_[i].angular();
         state.hidden_momentum = motion.hidden_momentum;
@@ -240,7 +241,7 @@ bool DirectContactSolver::rest(bool only_slow, std::span<const Contact> contacts
     if (worst_gap() > rest_gap) {
         // What sticks would hold on to its overlaps, or open other contacts while they close.
         newton_.drop_friction(patches_);
-        mend_positions(rest_mend, rest_shift, contacts);
+        correct_positions(rest_correction, rest_shift, contacts);
     }
     for (DirectPatch& patch : patches_) end_substep(patch);
     return true;
@@ -257,7 +258,7 @@ bool DirectContactSolver::move(int substeps, std::span<const Contact> contacts) 
         // Motion.
         drift();
         measure_gaps(contacts);
-        if (worst_gap() > mend_gap) mend_positions(slow_mend, mend_speed * h_, contacts);
+        if (worst_gap() > correction_gap) correct_positions(slow_correction, correction_speed * h_, contacts);
         for (DirectPatch& patch : patches_) end_substep(patch);
     }
     return true;
@@ -277,11 +278,11 @@ void DirectContactSolver::drift() {
     for (std::size_t i = 0; i < motion_.size(); ++i) {
         Motion& motion = motion_[i];
         const Vec3 v = velocity_[i].linear(), w = velocity_[i].angular();
-        motion.way += v * h_;
+        motion.displacement += v * h_;
         motion.turn = normalized(cayley(w * h_) * motion.turn);
 
         // A body near others that nothing touched: its mean velocity lies half a kick behind.
-        if (v == free_velocity_[i].linear()) motion.way -= motion.acceleration * (h_ * h_ / 2);
+        if (v == free_velocity_[i].linear()) motion.displacement -= motion.acceleration * (h_ * h_ / 2);
     }
 }
 
@@ -291,7 +292,7 @@ void DirectContactSolver::measure_gaps(std::span<const Contact> contacts) {
         const auto move = [&](std::int32_t body, Vec3 arm, bool is_round) {
             if (body < 0) return Vec3{};
             const Motion& motion = motion_[static_cast<std::size_t>(body)];
-            return motion_at(motion.way, motion.turn, arm, is_round);
+            return motion_at(motion.displacement, motion.turn, arm, is_round);
         };
         for (int i = 0; i < patch.count; ++i) {
             const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
@@ -312,13 +313,13 @@ double DirectContactSolver::worst_gap() const {
     return worst;
 }
 
-void DirectContactSolver::mend_positions(double share, double most, std::span<const Contact> contacts) {
-    newton_.find_shifts(patches_, share, mend_speed * h_, shift_);
+void DirectContactSolver::correct_positions(double fraction, double most, std::span<const Contact> contacts) {
+    newton_.find_shifts(patches_, fraction, correction_speed * h_, shift_);
     double longest = 0;
     for (const Vec6& shift : shift_) longest = std::max(longest, length(shift.linear()));
     const double scale = longest > most ? most / longest : 1;
     for (std::size_t i = 0; i < motion_.size(); ++i) {
-        motion_[i].way += shift_[i].linear() * scale;
+        motion_[i].displacement += shift_[i].linear() * scale;
         motion_[i].turn = normalized(cayley(shift_[i].angular() * scale) * motion_[i].turn);
     }
     measure_gaps(contacts);

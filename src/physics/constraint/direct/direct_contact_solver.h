@@ -15,7 +15,7 @@ namespace embody::physics::constraint {
 /// no island: it is given lists. Keeps its memory from step to step.
 class DirectContactSolver {
 public:
-    static constexpr std::size_t most_bodies = 256;
+    static constexpr std::size_t max_bodies = 256;
 
     /// Slots of movable bodies, and indices of all the contacts that they have with each other and with bodies that
     /// stand still.
@@ -51,7 +51,7 @@ private:
         Vec6 kick;                                       // of a substep, m/s, rad/s
         double linear_damping = 1, angular_damping = 1;  // factors a substep
         Vec3 acceleration;                               // m/s²
-        Vec3 way;                                        // of the centre of mass, m
+        Vec3 displacement;                               // of the centre of mass, m
         Quat turn;
         Vec3 hidden_momentum;  // as in BodyState
         double hidden_energy = 0;
@@ -73,7 +73,7 @@ private:
     void drift();
     void measure_gaps(std::span<const Contact> contacts);
     [[nodiscard]] double worst_gap() const;
-    void mend_positions(double share, double most, std::span<const Contact> contacts);
+    void correct_positions(double fraction, double most, std::span<const Contact> contacts);
 
     double time_step_ = 0;  // s
     int moving_substeps_ = 0;

@@ -8,9 +8,9 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr double lag_tolerance = 0.02;   // share of its size by which the metric of friction may be wrong
-constexpr double near = 1e-3;            // m/s: new points that part no faster are taken as loaded first
-constexpr double least_spin_arm = 1e-3;  // of the patch's extent: less is what rounding left of a single loaded point
+constexpr double lag_tolerance = 0.02;  // share of its size by which the metric of friction may be wrong
+constexpr double near = 1e-3;           // m/s: new points that part no faster are taken as loaded first
+constexpr double min_spin_arm = 1e-3;   // of the patch's extent: less is what rounding left of a single loaded point
 
 double wanted_load(const DirectPatch::Point& point, Vec3 normal_part, double stiffness) {
     return point.guess - stiffness * (dot(row_of(point), normal_part) + point.limit);
@@ -71,7 +71,7 @@ void add_rolling_slope(DirectPatch& patch, const Mat3& slope) {
 
 }  // namespace
 
-DirectPatch make_patch(std::uint32_t index, const Contact& contact, double substep_share) {
+DirectPatch make_patch(std::uint32_t index, const Contact& contact, double substep_fraction) {
     DirectPatch patch;
     patch.contact = index;
     patch.normal = contact.normal;
@@ -93,32 +93,32 @@ DirectPatch make_patch(std::uint32_t index, const Contact& contact, double subst
         point.s = dot(offset, patch.tangent_1);
         point.t = dot(offset, patch.tangent_2);
         point.gap = from.separation;
-        point.guess = from.impulse * substep_share;
+        point.guess = from.impulse * substep_fraction;
         point.total = from.total;
         point.inactive_until = from.inactive_until;
     }
     patch.sticks = contact.sticks;
     const PatchFriction& friction = contact.friction;
-    patch.friction_guess = Vec3{friction.along_1, friction.along_2, friction.twist} * substep_share;
-    const Vec3 rolling = contact.rolling * substep_share;
+    patch.friction_guess = Vec3{friction.along_1, friction.along_2, friction.twist} * substep_fraction;
+    const Vec3 rolling = contact.rolling * substep_fraction;
     patch.rolling_guess = {dot(rolling, patch.tangent_1), dot(rolling, patch.tangent_2), 0};
     return patch;
 }
 
-void write_patch(const DirectPatch& patch, double substep_share, Contact& contact) {
+void write_patch(const DirectPatch& patch, double substep_fraction, Contact& contact) {
     const auto to_float = [](double number) { return static_cast<float>(number); };
     for (int i = 0; i < contact.count; ++i) {
         const DirectPatch::Point& from = patch.points[static_cast<std::size_t>(i)];
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-        point.impulse = to_float(from.guess * substep_share);
+        point.impulse = to_float(from.guess * substep_fraction);
         point.total = to_float(from.total);
     }
-    const Vec3 f = patch.friction_guess * substep_share, total = patch.friction_total;
+    const Vec3 f = patch.friction_guess * substep_fraction, total = patch.friction_total;
     contact.friction = {to_float(f.x), to_float(f.y), to_float(f.z)};
     contact.friction_total.along_1 += to_float(total.x);
     contact.friction_total.along_2 += to_float(total.y);
     contact.friction_total.twist += to_float(total.z);
-    const Vec3 rolling = patch.rolling_guess * substep_share;
+    const Vec3 rolling = patch.rolling_guess * substep_fraction;
     contact.rolling = to_vec3f(rolling.x * patch.tangent_1 + rolling.y * patch.tangent_2);
     contact.sticks = patch.sticks;
 }
@@ -130,7 +130,7 @@ void lag_loads(DirectPatch& patch, bool from_guess) {
     double sum = 0, s = 0, t = 0;
     const auto points = std::span(patch.points).first(static_cast<std::size_t>(patch.count));
     const auto load_of = [&](const DirectPatch::Point& point) {
-        return from_guess ? point.guess : std::max(point.foretold, 0.0);
+        return from_guess ? point.guess : std::max(point.predicted, 0.0);
     };
     for (const DirectPatch::Point& point : points) {
         sum += load_of(point);
@@ -150,7 +150,7 @@ void lag_loads(DirectPatch& patch, bool from_guess) {
         extent = std::max(extent, distance);
     }
     arm = sum > 0 ? arm / sum : 0;
-    if (arm < least_spin_arm * extent) arm = 0;
+    if (arm < min_spin_arm * extent) arm = 0;
     if (patch.friction_dynamic > 0) arm += patch.torsion_arm / patch.friction_dynamic;
 
     // A centre that hardly moved stays, so that the factors serve again.
@@ -162,21 +162,21 @@ void lag_loads(DirectPatch& patch, bool from_guess) {
     patch.spin_arm = arm;
 }
 
-double foretold_load(const DirectPatch& patch) {
+double predicted_load(const DirectPatch& patch) {
     double load = 0;
     for (int i = 0; i < patch.count; ++i) {
-        load += std::max(patch.points[static_cast<std::size_t>(i)].foretold, 0.0);
+        load += std::max(patch.points[static_cast<std::size_t>(i)].predicted, 0.0);
     }
     return load;
 }
 
-// The loads that the last step foretold bound the friction: those at a velocity that is not yet the right one may be
+// The loads that the last step predicted bound the friction: those at a velocity that is not yet the right one may be
 // anything. What sticks keeps its metric, so that the factors serve again.
-void lag_foretold_loads(DirectPatch& patch) {
+void lag_predicted_loads(DirectPatch& patch) {
     if (patch.is_new || patch.is_sliding || patch.is_rolling) {
         lag_loads(patch, false);
     } else {
-        patch.lagged_load = foretold_load(patch);
+        patch.lagged_load = predicted_load(patch);
     }
 }
 
@@ -211,11 +211,11 @@ void end_substep(DirectPatch& patch) {
     if (patch.lagged_load > 0) patch.sticks = !patch.is_sliding;
 }
 
-void foretell_loads(DirectPatch& patch, double stiffness) {
+void predict_loads(DirectPatch& patch, double stiffness) {
     for (int i = 0; i < patch.count; ++i) {
         DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
         const double change = stiffness * dot(row_of(point), patch.change.normal_part);
-        point.foretold = point.is_loaded ? point.load - change : 0;
+        point.predicted = point.is_loaded ? point.load - change : 0;
     }
 }
 
@@ -254,7 +254,7 @@ InCone nearest_in_cone(const DirectPatch& patch, const PatchTwist& velocity, dou
     cone.friction = wanted_friction(patch, velocity.friction_part, stiffness);
     cone.size = length(cone.friction);
     cone.is_inside = cone.size <= mu * sum;
-    for (std::size_t round = 0; !cone.is_inside && round < points.size() + 2; ++round) {
+    for (std::size_t iteration = 0; !cone.is_inside && iteration < points.size() + 2; ++iteration) {
         double load = 0, loaded = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
             if (wanted[i] + mu * cone.shorter <= 0) continue;
@@ -309,7 +309,7 @@ Vec3 note_rolling(DirectPatch& patch, double stiffness) {
 void evaluate_coupled(DirectPatch& patch, double stiffness) {
     const InCone cone = nearest_in_cone(patch, patch.velocity, stiffness);
     const auto [normal_part, rows] = note_loads(patch, stiffness, [&](std::size_t i) { return cone.load[i]; });
-    patch.lagged_load = foretold_load(patch);
+    patch.lagged_load = predicted_load(patch);
     patch.is_sliding = !cone.is_inside;
     const Mat3 r = metric(patch);
     Mat3 slope = Mat3::identity();
@@ -327,18 +327,19 @@ void evaluate_coupled(DirectPatch& patch, double stiffness) {
 
 // Friction under the lagged load. In haste what has just met sticks, and where the sliding turned round within the step
 // it stops, rather than slide to and fro for ever.
-void evaluate_lagged(DirectPatch& patch, double stiffness, bool is_hasty) {
+void evaluate_lagged(DirectPatch& patch, double stiffness, bool is_undamped) {
     const PatchTwist& velocity = patch.velocity;
     const Vec3 normal_part = note_loads(patch, stiffness, [&](std::size_t i) {
                                  const DirectPatch::Point& point = patch.points[i];
                                  if (!point.is_active) return 0.0;
                                  return std::max(wanted_load(point, velocity.normal_part, stiffness), 0.0);
                              }).first;
-    lag_foretold_loads(patch);
+    lag_predicted_loads(patch);
     const bool is_new = patch.lagged_load == 0 && normal_part.x > 0;
     const Vec3 wanted = wanted_friction(patch, velocity.friction_part, stiffness);
     const bool turned_round = patch.is_sliding && dot(wanted, patch.slide_direction) < 0;
-    const double bound = is_hasty && (is_new || turned_round) ? length(wanted) : coefficient(patch) * patch.lagged_load;
+    const double bound =
+        is_undamped && (is_new || turned_round) ? length(wanted) : coefficient(patch) * patch.lagged_load;
     patch.bound = bound;
     patch.is_sliding = length(wanted) > bound;
     if (patch.is_sliding) patch.slide_direction = normalized(wanted);
@@ -352,7 +353,7 @@ void evaluate_lagged(DirectPatch& patch, double stiffness, bool is_hasty) {
 
 void evaluate(DirectPatch& patch, double stiffness, FrictionBound bound) {
     if (bound == FrictionBound::coupled) return evaluate_coupled(patch, stiffness);
-    evaluate_lagged(patch, stiffness, bound == FrictionBound::hasty);
+    evaluate_lagged(patch, stiffness, bound == FrictionBound::undamped);
 }
 
 PatchTwist impulse_at(const DirectPatch& patch, const PatchTwist& velocity, double stiffness, FrictionBound bound) {

@@ -28,9 +28,9 @@ inline double dot(const PatchTwist& a, const PatchTwist& b) {
 
 /// What bounds a patch's friction while Newton's method looks for it.
 enum class FrictionBound {
-    hasty,    ///< the load of the last round; what has just met, or turns round within the step, sticks
-    lagged,   ///< the load of the last round
-    coupled,  ///< the load itself, found with it: for what rests. What slides would be lifted
+    undamped,  ///< the load of the last round; what has just met, or turns round within the step, sticks
+    lagged,    ///< the load of the last round
+    coupled,   ///< the load itself, found with it: for what rests. What slides would be lifted
 };
 
 /// A contact region as the direct solver sees it (docs/physics/direct-solver.md): a law that gives the impulse for a
@@ -43,7 +43,7 @@ struct DirectPatch {
         double gap = 0;             ///< now, m
         double guess = 0;           ///< λ₀, N s
         double load = 0;            ///< λ, N s
-        double foretold = 0;        ///< λ by the slopes of the last round, N s
+        double predicted = 0;       ///< λ by the slopes of the last round, N s
         double total = 0;           ///< of the step, N s
         double limit = 0;           ///< the approach speed that the gap allows, m/s
         double inactive_until = 0;  ///< s in the step
@@ -83,10 +83,10 @@ struct DirectPatch {
          factored_coupling_slope = Mat3::zero();
 };
 
-/// From a contact; `substep_share` is what the new substep is of the last one.
-DirectPatch make_patch(std::uint32_t index, const Contact& contact, double substep_share);
-/// Hands back impulses: those of a substep are `substep_share` of the patch's.
-void write_patch(const DirectPatch& patch, double substep_share, Contact& contact);
+/// From a contact; `substep_fraction` is what the new substep is of the last one.
+DirectPatch make_patch(std::uint32_t index, const Contact& contact, double substep_fraction);
+/// Hands back impulses: those of a substep are `substep_fraction` of the patch's.
+void write_patch(const DirectPatch& patch, double substep_fraction, Contact& contact);
 
 /// How the normal part of a velocity becomes a point's speed of parting.
 inline Vec3 row_of(const DirectPatch::Point& point) { return {1, point.t, -point.s}; }
@@ -99,7 +99,7 @@ void begin_coupled(DirectPatch& patch);
 /// The impulses become the next guess and part of the step's totals.
 void end_substep(DirectPatch& patch);
 /// The points' loads after the patch's change of velocity, were the same ones loaded.
-void foretell_loads(DirectPatch& patch, double stiffness);
+void predict_loads(DirectPatch& patch, double stiffness);
 /// Whether it slides under the static coefficient: from then on the dynamic one counts.
 bool breaks_away(DirectPatch& patch);
 

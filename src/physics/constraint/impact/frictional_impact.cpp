@@ -34,14 +34,14 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // A sliding speed below this share of the start velocity counts as zero.
-constexpr double stop_share = 1e-9;
+constexpr double stop_fraction = 1e-9;
 // A slide that would miss its straight path by less than this share of its start velocity is taken as straight.
-constexpr double straight_share = 1e-8;
+constexpr double straight_fraction = 1e-8;
 // Most collisions end within the first short steps. Where A is ill-conditioned u_t decays slowly, and steps may grow;
 // they may from the start where less than the last digits is asked for.
-constexpr double exact_step_share = 0.1;
+constexpr double exact_step_fraction = 0.1;
 constexpr int short_steps = 400;
-constexpr double longest_share = 1.5;
+constexpr double max_fraction = 1.5;
 constexpr int max_steps = 20000;
 
 enum class Phase { compression, restitution };
@@ -121,12 +121,12 @@ ImpactState step_to_end(const Collision& k, double tau) {
     double low = 0, high = tau;
     double at_low = overshoot(k, k.s), at_high = overshoot(k, runge_kutta_step(k, k.s, tau));
     ImpactState best = runge_kutta_step(k, k.s, tau);
-    for (int i = 0; i < 60 && high - low > k.precision.end_share * tau; ++i) {
+    for (int i = 0; i < 60 && high - low > k.precision.end_fraction * tau; ++i) {
         const double guess = at_high > at_low ? high - at_high * (high - low) / (at_high - at_low) : (low + high) / 2;
         const double middle = std::clamp(guess, low, high);
         best = runge_kutta_step(k, k.s, middle);
         const double value = overshoot(k, best);
-        if (std::fabs(value) <= k.precision.end_share * std::max(at_high, -at_low)) break;
+        if (std::fabs(value) <= k.precision.end_fraction * std::max(at_high, -at_low)) break;
         if (value > 0) {
             high = middle;
             at_high = value;
@@ -149,7 +149,7 @@ bool slide_curved(const Collision& k) {
     const double norm_tt = std::fabs(k.a.x.x) + std::fabs(k.a.y.y) + 2 * std::fabs(k.a.x.y);
     const double norm_tn = std::fabs(k.a.z.x) + std::fabs(k.a.z.y);
     const double fastest_decay = k.c.friction_slide * norm_tt + norm_tn;
-    const double shortest = k.precision.step_share / fastest_decay, longest = longest_share / fastest_decay;
+    const double shortest = k.precision.step_fraction / fastest_decay, longest = max_fraction / fastest_decay;
     for (int i = 0; i < max_steps; ++i) {
         // A slow decay gets longer steps, within what keeps RK4 stable.
         const Vec3 sliding = tangential(k.s.velocity), rate = tangential(rate_over_tau(k, sliding).velocity);
@@ -157,9 +157,9 @@ bool slide_curved(const Collision& k) {
 
         // Towards its end the sliding hardly turns any more: what the rest of a straight path would miss is nothing.
         const double turning = std::fabs(sliding.x * rate.y - sliding.y * rate.x);
-        if (turning <= straight_share * start_slip * change) return slide_straight(k, sliding / slip);
-        const double wanted = change > 0 ? k.precision.step_share * slip / change : longest;
-        const bool is_short = i < short_steps && k.precision.step_share <= exact_step_share;
+        if (turning <= straight_fraction * start_slip * change) return slide_straight(k, sliding / slip);
+        const double wanted = change > 0 ? k.precision.step_fraction * slip / change : longest;
+        const bool is_short = i < short_steps && k.precision.step_fraction <= exact_step_fraction;
         const double tau = is_short ? shortest : std::clamp(wanted, shortest, longest);
         const ImpactState next = runge_kutta_step(k, k.s, tau);
         if (overshoot(k, next) >= 0) {
@@ -237,8 +237,8 @@ void run_phase(const Collision& k) {
 }
 
 ImpactPrecision at_least_relative(const ImpactPrecision& precision, const ImpactState& state) {
-    return {precision.step_share, precision.end_share,
-            std::max(precision.stop_speed, stop_share * length(state.velocity) + 1e-300)};
+    return {precision.step_fraction, precision.end_fraction,
+            std::max(precision.stop_speed, stop_fraction * length(state.velocity) + 1e-300)};
 }
 
 }  // namespace
@@ -268,7 +268,7 @@ ImpactOutcome solve_frictional_impact(const Mat3& inverse_mass, Vec3 velocity, c
 
     const double compression_work = -state.normal_work;
     const double work = coefficients.restitution * coefficients.restitution * compression_work;
-    release(inverse_mass, coefficients, work, state, {.stop_speed = stop_share * length(velocity)});
+    release(inverse_mass, coefficients, work, state, {.stop_speed = stop_fraction * length(velocity)});
     outcome.velocity_after = velocity + inverse_mass * state.impulse;
     outcome.impulse = state.impulse;
     outcome.sticks = state.sticks;

@@ -16,9 +16,9 @@ struct ImpactCoefficients {
 
 /// How finely eq. (3) is integrated.
 struct ImpactPrecision {
-    double step_share = 0.1;   ///< share of the fastest decay of the sliding that one step spans, 0.01 … 0.5
-    double end_share = 1e-13;  ///< share of a step within which the end of a phase is found
-    double stop_speed = 0;     ///< m/s of sliding that counts as none; 1e-9 of the start speed is the least
+    double step_fraction = 0.1;   ///< share of the fastest decay of the sliding that one step spans, 0.01 … 0.5
+    double end_fraction = 1e-13;  ///< share of a step within which the end of a phase is found
+    double stop_speed = 0;        ///< m/s of sliding that counts as none; 1e-9 of the start speed is the least
 };
 
 /// Where a micro-collision stands: what eq. (3) integrates over the normal impulse.

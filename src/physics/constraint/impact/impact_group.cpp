@@ -105,7 +105,7 @@ void make_ready(ImpactWork& work, std::span<const BodyState> bodies) {
 
 // The end of a compression without its path. If it ends in sticking, the impulse is the one that stops the point,
 // whatever the path; a slide that hardly turns goes along its mean direction. False: neither.
-bool estimate_compression(const Mat3& a, const ImpactCoefficients& c, double least_cosine, ImpactState& state) {
+bool estimate_compression(const Mat3& a, const ImpactCoefficients& c, double min_cosine, ImpactState& state) {
     const Vec3 u = state.velocity;
     const double slip = std::sqrt(u.x * u.x + u.y * u.y);
     Vec3 direction = slip > 0 ? Vec3{u.x / slip, u.y / slip, 0} : Vec3{};
@@ -117,7 +117,7 @@ bool estimate_compression(const Mat3& a, const ImpactCoefficients& c, double lea
         const Vec3 end = u + rate * amount;
         const double end_slip = std::sqrt(end.x * end.x + end.y * end.y), along = end.x * u.x + end.y * u.y;
         if (along <= 0) break;
-        if (along < least_cosine * slip * end_slip) return false;
+        if (along < min_cosine * slip * end_slip) return false;
         if (pass == 1) {
             state.impulse += ratio * amount;
             state.velocity = end;
@@ -137,8 +137,8 @@ bool estimate_compression(const Mat3& a, const ImpactCoefficients& c, double lea
 
 // Whether the compression of one more round may be estimated: all sites, or those that only rest on each other once
 // the collision itself has been followed.
-bool may_estimate(const ImpactWork& work, SlidePath path, std::size_t round) {
-    return path == SlidePath::estimated || (work.site->coefficients.restitution <= 0 && round > 0);
+bool may_estimate(const ImpactWork& work, SlidePath path, std::size_t iteration) {
+    return path == SlidePath::estimated || (work.site->coefficients.restitution <= 0 && iteration > 0);
 }
 
 bool is_same_pair(const ImpactWork& x, const ImpactWork& y) { return x.site->a == y.site->a && x.site->b == y.site->b; }
@@ -173,51 +173,53 @@ struct CompressionRules {
 
 // Compresses one site as if it were alone: its state after it, and its normal work. The bodies stay as they are.
 void compress_alone(ImpactWork& work, std::span<const BodyState> bodies, const CompressionRules& rules,
-                    std::size_t round) {
+                    std::size_t iteration) {
     make_ready(work, bodies);
     const Vec3 before = work.state.impulse;
     const ImpactCoefficients& coefficients = work.site->coefficients;
     work.state.velocity = site_velocity(work, bodies);
     const double approach = -work.state.velocity.z;
-    if (may_estimate(work, rules.path, round) &&
-        estimate_compression(work.inverse_mass, coefficients, round == 0 ? 0.9 : 0.5, work.state)) {
+    if (may_estimate(work, rules.path, iteration) &&
+        estimate_compression(work.inverse_mass, coefficients, iteration == 0 ? 0.9 : 0.5, work.state)) {
         // Along a straight path.
         work.state.normal_work = -0.5 * approach * (work.state.impulse.z - before.z);
         return;
     }
     const double stop_speed = rules.fastest;
-    const bool is_fine = round == 0 && rules.path == SlidePath::followed;
-    compress(work.inverse_mass, coefficients, work.state,
-             is_fine ? ImpactPrecision{.step_share = 0.25, .end_share = 1e-6, .stop_speed = slide_rounding * stop_speed}
-                     : ImpactPrecision{.step_share = 0.5, .end_share = 1e-3, .stop_speed = 1e-3 * stop_speed});
+    const bool is_fine = iteration == 0 && rules.path == SlidePath::followed;
+    compress(
+        work.inverse_mass, coefficients, work.state,
+        is_fine
+            ? ImpactPrecision{.step_fraction = 0.25, .end_fraction = 1e-6, .stop_speed = slide_rounding * stop_speed}
+            : ImpactPrecision{.step_fraction = 0.5, .end_fraction = 1e-3, .stop_speed = 1e-3 * stop_speed});
 }
 
 // Compresses these sites at once: each as if it were alone, then all by the same share, so far that the first of them
 // no longer approaches.
 void compress_together(std::span<ImpactWork* const> sites, std::span<BodyState> bodies, const CompressionRules& rules,
-                       std::size_t round, std::vector<Vec3>& impulses) {
+                       std::size_t iteration, std::vector<Vec3>& impulses) {
     impulses.clear();
     for (ImpactWork* work : sites) {
         const Vec3 before = work->state.impulse;
-        compress_alone(*work, bodies, rules, round);
+        compress_alone(*work, bodies, rules, iteration);
         impulses.push_back(work->state.impulse - before);
         work->state.impulse = before;
         work->velocity = normal_velocity(*work, bodies);
     }
     for (std::size_t i = 0; i < sites.size(); ++i) apply(*sites[i], impulses[i], bodies);
-    double share = 1;
+    double fraction = 1;
     for (const ImpactWork* work : sites) {
         const double change = normal_velocity(*work, bodies) - work->velocity;
-        if (change > 0) share = std::min(share, -work->velocity / change);
+        if (change > 0) fraction = std::min(fraction, -work->velocity / change);
     }
     for (std::size_t i = 0; i < sites.size(); ++i) {
         ImpactWork& work = *sites[i];
-        if (share < 1) apply(work, impulses[i] * (share - 1), bodies);
-        work.state.impulse += impulses[i] * share;
+        if (fraction < 1) apply(work, impulses[i] * (fraction - 1), bodies);
+        work.state.impulse += impulses[i] * fraction;
     }
     for (std::size_t i = 0; i < sites.size(); ++i) {
         const double mean = (sites[i]->velocity + normal_velocity(*sites[i], bodies)) / 2;
-        sites[i]->compression_work -= mean * impulses[i].z * share;
+        sites[i]->compression_work -= mean * impulses[i].z * fraction;
     }
 }
 
@@ -231,20 +233,20 @@ int compress_all(ImpactGroupMemory& memory, std::span<BodyState> bodies, SlidePa
     // Many sites need not come to the last digit: the substeps hold what is left.
     const bool is_rough = works.size() > 8 || path == SlidePath::estimated;
     const CompressionRules rules{path, (is_rough ? 1e-2 : 1e-4) * fastest + 1e-12, fastest};
-    const std::size_t most_rounds = 64 + 64 * works.size();
-    for (std::size_t round = 0; round < most_rounds; ++round) {
+    const std::size_t max_iterations = 64 + 64 * works.size();
+    for (std::size_t iteration = 0; iteration < max_iterations; ++iteration) {
         find_fastest(works, bodies, rules.tolerance, 1e-9 * fastest, memory.fastest);
         if (memory.fastest.empty()) {
             return static_cast<int>(std::count_if(works.begin(), works.end(),
                                                   [](const ImpactWork& work) { return work.state.impulse.z > 0; }));
         }
         if (memory.fastest.size() > 1) {
-            compress_together(memory.fastest, bodies, rules, round, memory.impulses);
+            compress_together(memory.fastest, bodies, rules, iteration, memory.impulses);
             continue;
         }
         ImpactWork& work = *memory.fastest.front();
         const Vec3 before = work.state.impulse;
-        compress_alone(work, bodies, rules, round);
+        compress_alone(work, bodies, rules, iteration);
         work.compression_work -= work.state.normal_work;
         apply(work, work.state.impulse - before, bodies);
     }
@@ -254,7 +256,7 @@ int compress_all(ImpactGroupMemory& memory, std::span<BodyState> bodies, SlidePa
 // Stronge's expansion of a site that collided alone.
 void expand_alone(ImpactWork& work, std::span<BodyState> bodies, SlidePath path) {
     ImpactPrecision precision =
-        path == SlidePath::estimated ? ImpactPrecision{.step_share = 0.5, .end_share = 1e-3} : ImpactPrecision{};
+        path == SlidePath::estimated ? ImpactPrecision{.step_fraction = 0.5, .end_fraction = 1e-3} : ImpactPrecision{};
     // A slide that stopped with the compression has left no direction to slide on along, but its rounding.
     precision.stop_speed = slide_rounding * length(work.velocity_before);
     const double e = work.site->coefficients.restitution;
@@ -361,10 +363,11 @@ void limit_expansion(std::vector<ImpactWork>& works, std::span<BodyState> bodies
     // Roots of ½ product s² + before s + (excess − before − ½ product) = 0: the smaller energy change at s = 0 is <= 0.
     const double constant = excess - before - 0.5 * product;
     const double discriminant = before * before - 2 * product * constant;
-    double share = 0;
-    if (product > 0 && discriminant >= 0) share = std::clamp((-before + std::sqrt(discriminant)) / product, 0.0, 1.0);
+    double fraction = 0;
+    if (product > 0 && discriminant >= 0)
+        fraction = std::clamp((-before + std::sqrt(discriminant)) / product, 0.0, 1.0);
     for (ImpactWork& work : works) {
-        work.expansion *= share;
+        work.expansion *= fraction;
         if (work.is_ready) apply(work, work.expansion, bodies);
     }
     sum_impulses(works);

@@ -66,8 +66,8 @@ void ImpactJoints::choose_matrix() {
     auto found = std::find_if(analysed_.begin(), analysed_.end(), is_it);
     if (found == analysed_.end()) {
         const auto is_older = [](const Analysed& a, const Analysed& b) { return a.last_use < b.last_use; };
-        found = analysed_.size() < most_analysed ? analysed_.emplace(analysed_.end())
-                                                 : std::min_element(analysed_.begin(), analysed_.end(), is_older);
+        found = analysed_.size() < max_analysed ? analysed_.emplace(analysed_.end())
+                                                : std::min_element(analysed_.begin(), analysed_.end(), is_older);
         found->bodies = bodies_.size();
         found->nodes = nodes;
         found->edges = edges_;

@@ -46,7 +46,7 @@ public:
     void add_to_totals(std::span<const Push> pushes, const View& view);
 
     /// How many structures of assemblies are remembered.
-    static constexpr std::size_t most_analysed = 16;
+    static constexpr std::size_t max_analysed = 16;
 
 private:
     struct Place {
@@ -71,7 +71,7 @@ private:
     std::vector<std::uint32_t> bodies_;
     std::vector<Place> places_;
     std::vector<BlockPattern::Edge> edges_;
-    std::vector<Analysed> analysed_;  // at most most_analysed; those longest out of use make room
+    std::vector<Analysed> analysed_;  // at most max_analysed; those longest out of use make room
     std::size_t chosen_ = 0;          // of analysed_
     std::uint64_t uses_ = 0;
     std::vector<Vec6> unknowns_;  // changes of the bodies' velocities, impulses of the joints

@@ -92,7 +92,7 @@ double coordinate_of(const Joint& joint, const Frames& frames) {
 }
 
 // Joints are mended no faster than this: bodies that a user joined far apart come together instead of bursting.
-constexpr double fastest_mending = 5;  // m/s or rad/s
+constexpr double max_correction_speed = 5;  // m/s or rad/s
 
 Vec3 angular_effect(const BodyState& body, Vec3 row) { return body.inverse_inertia * row; }
 
@@ -315,7 +315,7 @@ double row_speed(const Joint& joint, const JointRow& row, std::span<const BodySt
 }
 
 double rest_of_error(double error, double substep) {
-    const double most = fastest_mending * substep;
+    const double most = max_correction_speed * substep;
     return error - std::clamp(error, -most, most);
 }
 

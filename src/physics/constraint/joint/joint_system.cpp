@@ -25,9 +25,9 @@ constexpr double tolerance = 1e-10;        // m/s, rad/s: what may be left of a 
 constexpr double good_enough = 1e-6;       // the same where rounding allows no less
 constexpr double hopeless = 1e6;           // the same from where no round leads back
 constexpr double fast_enough = 0.1;        // a round that leaves less of the error needs no new factors
-constexpr int most_rounds = 20;            // of Newton's method
-constexpr int patient_rounds = 4;          // in which the error may rise
-constexpr int most_halvings = 4;           // of a substep
+constexpr int max_iterations = 20;         // of Newton's method
+constexpr int line_search_iterations = 4;  // in which the error may rise
+constexpr int max_halvings = 4;            // of a substep
 constexpr double energy_tolerance = 1e-9;  // share by which joints may seem to do work
 constexpr double regularisation = 1e-10;   // E over the row's own J M⁻¹ Jᵀ
 
@@ -83,7 +83,7 @@ void JointSystem::set(const JointedList& list, const View& view) {
     }
     std::sort(carriers_.begin(), carriers_.end());
     carriers_.erase(std::unique(carriers_.begin(), carriers_.end()), carriers_.end());
-    starts_.resize(most_halvings + 1);
+    starts_.resize(max_halvings + 1);
     find_spin_axes(view);
     if (is_known) return;
     analysed_bodies_ = bodies_.size();
@@ -117,8 +117,8 @@ void JointSystem::begin_phase(SolvePhase phase, double substep, Motion motion, c
         }
 
         // The unknown is the half of a row's impulse that comes before the drift.
-        const double share = impulse_time_ > 0 ? substep / impulse_time_ : 0;
-        for (double& impulse : impulses.rows) impulse *= share;
+        const double fraction = impulse_time_ > 0 ? substep / impulse_time_ : 0;
+        for (double& impulse : impulses.rows) impulse *= fraction;
         const auto pose_of = [&](std::uint32_t body) -> Transform {
             return {view.bodies[body].center, view.bodies[body].rotation};
         };
@@ -397,10 +397,10 @@ double JointSystem::round(const View& view) {
 // Newton's method; whether it came to an end.
 bool JointSystem::iterate(const View& view) {
     double last = 0, error = 0;
-    for (int count = 0; count < most_rounds; ++count) {
+    for (int count = 0; count < max_iterations; ++count) {
         error = round(view);
         if (error <= tolerance || (error <= good_enough && count > 1 && error > last / 4)) return true;
-        if (!(error < hopeless) || (count >= patient_rounds && error > last / 2)) return false;
+        if (!(error < hopeless) || (count >= line_search_iterations && error > last / 2)) return false;
         last = error;
     }
     return error <= good_enough;
@@ -409,8 +409,8 @@ bool JointSystem::iterate(const View& view) {
 void JointSystem::advance(double time, const View& view, Errors errors) {
     errors_ = errors;
     prepare_all(view);
-    advance(time, most_halvings, view);
-    errors_ = Errors::mended;
+    advance(time, max_halvings, view);
+    errors_ = Errors::corrected;
 }
 
 void JointSystem::list_carriers(const View& view, std::vector<std::pair<std::uint32_t, BodyState>>& carriers) const {
@@ -518,12 +518,12 @@ double JointSystem::bound_energy(double most, const View& view) const {
     if (has_motor_ || std::any_of(carriers_.begin(), carriers_.end(), moves)) return 1;
     const double energy = kinetic_energy(view);
     if (!(energy > most * (1 + energy_tolerance))) return 1;
-    const double share = std::sqrt(most / energy);
+    const double fraction = std::sqrt(most / energy);
     for (const Body& body : bodies_) {
-        view.bodies[body.slot].linear_velocity *= share;
-        view.bodies[body.slot].angular_velocity *= share;
+        view.bodies[body.slot].linear_velocity *= fraction;
+        view.bodies[body.slot].angular_velocity *= fraction;
     }
-    return share;
+    return fraction;
 }
 
 double JointSystem::mass(const View& view) const {

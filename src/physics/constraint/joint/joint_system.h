@@ -32,7 +32,7 @@ public:
 
     /// Whether a list is small enough.
     [[nodiscard]] static bool fits(const JointedList& list) {
-        return list.bodies.size() + list.joints.size() <= BlockPattern::most_nodes;
+        return list.bodies.size() + list.joints.size() <= BlockPattern::max_nodes;
     }
 
     /// How far a body may turn in a substep. Small: the joints are solved by their rows at its start. That is robust,
@@ -40,7 +40,7 @@ public:
     enum class Motion { any, small };
 
     /// What becomes of the joints' errors in a motion. Kept: the way back leads to where it began.
-    enum class Errors { mended, kept };
+    enum class Errors { corrected, kept };
 
     /// Takes the list over. Bodies keep their slots and joints their places until the next call.
     void set(const JointedList& list, const View& view);
@@ -50,7 +50,7 @@ public:
     /// Moves what nothing but joints and forces acts on through `time`, s: halves of the kick, the joints' impulses and
     /// the drift; back, if the time is negative. A motion that is too fast for one go is taken in parts. Bodies outside
     /// the list that joints hold on to go along by their own velocities.
-    void advance(double time, const View& view, Errors errors = Errors::mended);
+    void advance(double time, const View& view, Errors errors = Errors::corrected);
     /// Lists those bodies as they are now.
     void list_carriers(const View& view, std::vector<std::pair<std::uint32_t, BodyState>>& carriers) const;
 
@@ -139,7 +139,7 @@ private:
     SolvePhase phase_ = SolvePhase::position;
     double substep_ = 0;  // s
     bool is_first_ = true, is_linear_ = false, has_factors_ = false;
-    Errors errors_ = Errors::mended;
+    Errors errors_ = Errors::corrected;
     double impulse_time_ = 0;  // s: the last impulses of the position phase, both halves, were for so long
     bool has_motor_ = false;
     std::vector<Start> starts_;  // by the number of halvings left

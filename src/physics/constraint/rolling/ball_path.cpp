@@ -18,19 +18,19 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr double same_normal = 1 - 1e-9;     // cosine
-constexpr double part_turn = 0.06;           // rad of the normal, or of a swing's phase, in a part
-constexpr double part_way = 0.5;             // of the radius, in a part
-constexpr int most_halvings = 6;             // of a part
-constexpr double slow = 2e-3;                // m/s: slower by itself and by a step's gravity, it comes to rest
-constexpr double slow_resisted = 0.05;       // m/s: the same of what the ground resists to roll
-constexpr double least_way = 1e-9;           // of the radius, in a part: less is standing still
-constexpr double most_gap = 2e-4;            // m: farther from the ground it does not touch
-constexpr double soft_sag = 1e-5;            // m: so deep the contact solver carries it (validation.SleepOnlyInBalance)
-constexpr double deepest = 0.1;              // of the radius: deeper, the contact solver takes it out
-constexpr double most_parting = 1e-3;        // m/s, and
-constexpr double most_parting_share = 0.02;  // of the speed: faster, it leaves the ground
-constexpr double most_fall = 0.05;           // m/s: faster, what did not touch before has an impact
+constexpr double same_normal = 1 - 1e-9;  // cosine
+constexpr double part_turn = 0.06;        // rad of the normal, or of a swing's phase, in a part
+constexpr double partial_travel = 0.5;    // of the radius, in a part
+constexpr int max_halvings = 6;           // of a part
+constexpr double slow = 2e-3;             // m/s: slower by itself and by a step's gravity, it comes to rest
+constexpr double slow_resisted = 0.05;    // m/s: the same of what the ground resists to roll
+constexpr double min_travel = 1e-9;       // of the radius, in a part: less is standing still
+constexpr double max_gap = 2e-4;          // m: farther from the ground it does not touch
+constexpr double soft_sag = 1e-5;         // m: so deep the contact solver carries it (validation.SleepOnlyInBalance)
+constexpr double deepest = 0.1;           // of the radius: deeper, the contact solver takes it out
+constexpr double max_parting = 1e-3;      // m/s, and
+constexpr double max_parting_fraction = 0.02;  // of the speed: faster, it leaves the ground
+constexpr double max_fall = 0.05;              // m/s: faster, what did not touch before has an impact
 
 const double smooth_cosine = std::cos(smooth_edge_angle);
 
@@ -65,33 +65,33 @@ void BallPath::find(Vec3 center, double margin) {
 
 // Puts the ball onto the ground near by: the surfaces there count as planes. The touch is the last one that moved it.
 bool BallPath::settle(BallPlace& at, const Vec3* last_normal, double margin) {
-    constexpr int rounds = 8;           // planes that it is put onto in turn
+    constexpr int iterations = 8;       // planes that it is put onto in turn
     constexpr double rounding = 1e-12;  // m
     find(at.center, margin);
     if (touches_.empty()) return false;
-    Vec3 way;
+    Vec3 displacement;
     std::size_t chosen = 0;
-    for (int round = 0; round < rounds; ++round) {
+    for (int iteration = 0; iteration < iterations; ++iteration) {
         double least = 1e300;
         std::size_t nearest = 0;
         for (std::size_t i = 0; i < touches_.size(); ++i) {
-            const double gap = touches_[i].gap + dot(way, touches_[i].normal);
+            const double gap = touches_[i].gap + dot(displacement, touches_[i].normal);
             if (gap >= least) continue;
             least = gap;
             nearest = i;
         }
-        if (round > 0 && least > -rounding) break;
+        if (iteration > 0 && least > -rounding) break;
         chosen = nearest;
-        way -= touches_[nearest].normal * least;
+        displacement -= touches_[nearest].normal * least;
     }
-    if (!(length(way) < part_way * radius_)) return false;
-    at.center += way;
+    if (!(length(displacement) < partial_travel * radius_)) return false;
+    at.center += displacement;
     at.touch = touches_[chosen];
     at.ground = ground_of_[chosen];
 
     // What it comes to beside another place is hit.
     const auto is_beside = [&](const BallTouch& touch) {
-        return touch.gap + dot(way, touch.normal) < rounding + 1e-6 * radius_ &&
+        return touch.gap + dot(displacement, touch.normal) < rounding + 1e-6 * radius_ &&
                dot(touch.normal, at.touch.normal) < smooth_cosine && dot(touch.normal, at.motion.velocity) <= 0;
     };
     return std::none_of(touches_.begin(), touches_.end(), is_beside) ||
@@ -122,7 +122,7 @@ bool BallPath::is_flat(const BallPlace& at) const {
 bool BallPath::is_plain(const BallPlace& at) {
     const bool is_level = length(cross(acceleration_, at.touch.normal)) <= 1e-6 * length(acceleration_);
     if (!(is_level || resists_) || !is_flat(at)) return false;
-    find(at.center + at.motion.velocity * step_, most_gap);
+    find(at.center + at.motion.velocity * step_, max_gap);
     return is_flat(at);
 }
 
@@ -134,13 +134,13 @@ bool BallPath::begin(BallPlace& at, bool has_company) {
     at.motion = {state_.linear_velocity, state_.angular_velocity, radius_, inertia};
     const double speed = length(at.motion.velocity);
     const double reach = speed * step_ + length(acceleration_) * step_ * step_ / 2;
-    if (!settle(at, nullptr, std::min(reach, radius_) + most_gap)) return false;
+    if (!settle(at, nullptr, std::min(reach, radius_) + max_gap)) return false;
     const Vec3 n = at.touch.normal;
     const double gap = at.touch.gap, closing = -dot(at.motion.velocity, n);
     const bool is_on_face = is_flat(at);
-    if (gap > std::min(most_gap, deepest * radius_) || gap < -deepest * radius_ || is_plain(at)) return false;
-    if (-closing > most_parting + (bounces_ ? 0 : most_parting_share * speed)) return false;
-    if (closing > (was_touching_ && !bounces_ ? most_fall + smooth_edge_angle * speed : most_fall)) return false;
+    if (gap > std::min(max_gap, deepest * radius_) || gap < -deepest * radius_ || is_plain(at)) return false;
+    if (-closing > max_parting + (bounces_ ? 0 : max_parting_fraction * speed)) return false;
+    if (closing > (was_touching_ && !bounces_ ? max_fall + smooth_edge_angle * speed : max_fall)) return false;
 
     // What is left of the motion into the ground goes; the way out of it is taken from the motion.
     at.motion.velocity += n * closing;
@@ -164,8 +164,8 @@ int BallPath::count_parts(const BallPlace& at) const {
                                                               : 1 / radius_);
     }
     const double rate = std::max(speed * curvature, std::sqrt(length(acceleration_) * curvature));
-    const double parts =
-        std::max({rate * step_ / part_turn, speed * step_ / (part_way * radius_), static_cast<double>(ball_.substeps)});
+    const double parts = std::max(
+        {rate * step_ / part_turn, speed * step_ / (partial_travel * radius_), static_cast<double>(ball_.substeps)});
     return static_cast<int>(std::ceil(std::min(parts, 1e6)));
 }
 
@@ -233,7 +233,7 @@ bool BallPath::advance(BallPlace& at, double time, int halvings) {
     const std::optional<double> lost = turn_or_hit(next, last_normal, time);
     if (!lost) return false;
     const double left = at.motion.energy() + dot(acceleration_, next.center - at.center) + friction_work + *lost;
-    const bool may_halve = halvings > 0 && moved > least_way * radius_;
+    const bool may_halve = halvings > 0 && moved > min_travel * radius_;
     if (!set_energy(next.motion, next.touch.normal, left, next.rolls) && may_halve) return in_halves();
     at = next;
     return true;
@@ -261,7 +261,7 @@ bool BallPath::write(const BallPlace& at, Vec3 received, RolledBall& rolled) con
     return true;
 }
 
-bool BallPath::advance(BallPlace& at, double time) { return advance(at, time, most_halvings); }
+bool BallPath::advance(BallPlace& at, double time) { return advance(at, time, max_halvings); }
 
 bool BallPath::see_curvature(BallPlace& at, double part) {
     if (at.touch.knows_curvature || at.touch.is_flat) return true;
@@ -275,7 +275,7 @@ bool BallPath::roll(RolledBall& rolled) {
     BallPlace start;
     if (!begin(start, false)) return false;
     int parts = count_parts(start);
-    if (parts > most_parts) return false;
+    if (parts > max_parts) return false;
     if (!see_curvature(start, step_ / parts)) return false;
     BallPlace at = start;
     for (int i = 0; i < parts; ++i) {

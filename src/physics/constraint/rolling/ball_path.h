@@ -65,7 +65,7 @@ class BallPath {
 public:
     BallPath(const BallInStep& ball, BallSurroundings& surroundings);
 
-    static constexpr int most_parts = 256;  ///< of a step
+    static constexpr int max_parts = 256;  ///< of a step
 
     /// Alone through the whole step. False, and nothing told, where it lifts off, hits something, has come to rest or
     /// moves on level ground.

@@ -96,7 +96,7 @@ bool set_energy(BallMotion& ball, Vec3 normal, double energy, bool rolls) {
 
 std::optional<Vec3> collide_balls(const CollidingBall& a, const CollidingBall& b, Vec3 direction, double restitution,
                                   double friction) {
-    constexpr double most_lift = 1e-3;  // m/s
+    constexpr double max_lift = 1e-3;  // m/s
     const auto yielding_along = [&](const CollidingBall& ball) {
         const double into_ground = dot(direction, ball.ground);
         return (1 - into_ground * into_ground) / ball.mass;
@@ -112,15 +112,14 @@ std::optional<Vec3> collide_balls(const CollidingBall& a, const CollidingBall& b
     slip -= direction * dot(direction, slip);
     const double speed = length(slip);
     const double yielding = (1 + 1 / a.motion.inertia) / a.mass + (1 + 1 / b.motion.inertia) / b.mass;
-    const Vec3 rubbing = speed > 0 ? slip * (-std::min(1 / yielding, friction * normal / speed)) : Vec3{};
-    const Vec3 impulse = direction * normal + rubbing;
-    if (-dot(impulse, a.ground) > most_lift * a.mass || dot(impulse, b.ground) > most_lift * b.mass)
-        return std::nullopt;
+    const Vec3 friction_impulse = speed > 0 ? slip * (-std::min(1 / yielding, friction * normal / speed)) : Vec3{};
+    const Vec3 impulse = direction * normal + friction_impulse;
+    if (-dot(impulse, a.ground) > max_lift * a.mass || dot(impulse, b.ground) > max_lift * b.mass) return std::nullopt;
     const auto push = [&](const CollidingBall& ball, double sign) {
         BallMotion& motion = ball.motion;
         const Vec3 change = impulse * (sign / ball.mass);
         motion.velocity += change - ball.ground * dot(change, ball.ground);
-        motion.spin -= cross(direction, rubbing) / (motion.inertia * motion.radius * ball.mass);
+        motion.spin -= cross(direction, friction_impulse) / (motion.inertia * motion.radius * ball.mass);
     };
     push(a, -1);
     push(b, 1);

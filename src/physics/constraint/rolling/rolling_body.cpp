@@ -18,17 +18,17 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr double touch_gap = 2e-4;      // m: nearer to the ground than this a ring touches
-constexpr double side_gap = 5e-5;       // m: no farther apart are both ends of a line that touches
-constexpr double most_slip = 0.05;      // of the speed of turning, that is stopped at the start
-constexpr double slow_slip = 0.01;      // m/s: is stopped as well
-constexpr double most_approach = 0.05;  // m/s along the normal: slower than any impact
-constexpr double least_lean = 0.005;  // sine of the angle between axis and normal: flatter, the rim lies on the ground
-constexpr double least_turn = 1e-3;   // rad of the axis in a step: slower, the contact solver loses nothing
-constexpr double fast_turn = 0.5;     // rad of the body in a step: faster, the solver's small turns are none
+constexpr double touch_gap = 2e-4;     // m: nearer to the ground than this a ring touches
+constexpr double side_gap = 5e-5;      // m: no farther apart are both ends of a line that touches
+constexpr double max_slip = 0.05;      // of the speed of turning, that is stopped at the start
+constexpr double slow_slip = 0.01;     // m/s: is stopped as well
+constexpr double max_approach = 0.05;  // m/s along the normal: slower than any impact
+constexpr double min_lean = 0.005;     // sine of the angle between axis and normal: flatter, the rim lies on the ground
+constexpr double min_turn = 1e-3;      // rad of the axis in a step: slower, the contact solver loses nothing
+constexpr double fast_turn = 0.5;      // rad of the body in a step: faster, the solver's small turns are none
 constexpr double body_part_turn = 0.08;  // rad in a part of the step, at most
-constexpr int most_parts = 400;          // of a step
-constexpr double most_mending = 1e-3;    // share of the energy that Runge-Kutta may miss in a step
+constexpr int max_parts = 400;           // of a step
+constexpr double max_correction = 1e-3;  // share of the energy that Runge-Kutta may miss in a step
 
 /// Where a ring is lowest, from the centre of mass, and how fast that place moves.
 struct Lowest {
@@ -55,7 +55,7 @@ private:
         return dot(at.center + lowest(ring, at).arm - ground_.point, ground_.normal);
     }
     [[nodiscard]] double allowed_slip(const Moving& at) const {
-        return slow_slip + (ground_.holds ? most_slip * length(at.spin) * body_.size : 0);
+        return slow_slip + (ground_.holds ? max_slip * length(at.spin) * body_.size : 0);
     }
     bool choose_rings(const Moving& at);
     [[nodiscard]] bool on_side() const { return ring_ != end_; }
@@ -90,8 +90,8 @@ Lowest Roller::lowest(const RollingRing& ring, const Moving& at) const {
 
 // Of the line on the ground, level, from the end to the ring.
 Vec3 Roller::line(const Moving& at) const {
-    const Vec3 way = lowest(*ring_, at).arm - lowest(*end_, at).arm;
-    return normalized(way - ground_.normal * dot(way, ground_.normal));
+    const Vec3 displacement = lowest(*ring_, at).arm - lowest(*end_, at).arm;
+    return normalized(displacement - ground_.normal * dot(displacement, ground_.normal));
 }
 
 // The lowest ring, or the outermost two of those that touch where the body rolls along the line between them.
@@ -115,7 +115,7 @@ bool Roller::choose_rings(const Moving& at) {
         ring_ = end_ = &body_.rings[static_cast<std::size_t>(least - gaps.begin())];
     }
     const double along = dot(ground_.normal, rotate(at.rotation, body_.axis));
-    return on_side() || ring_->radius == 0 || 1 - along * along > least_lean * least_lean;
+    return on_side() || ring_->radius == 0 || 1 - along * along > min_lean * min_lean;
 }
 
 // What slips is stopped, by the least impulse at the place that touches.
@@ -123,7 +123,7 @@ bool Roller::begin(const BodyState& state, Moving& at) {
     at = {state.center, state.rotation, state.angular_velocity};
     if (!choose_rings(at)) return false;
     const Vec3 arm = lowest(*ring_, at).arm, slip = velocity_at(state, arm);
-    if (length(slip) > allowed_slip(at) || std::fabs(dot(slip, ground_.normal)) > most_approach) return false;
+    if (length(slip) > allowed_slip(at) || std::fabs(dot(slip, ground_.normal)) > max_approach) return false;
     at.center -= ground_.normal * dot(at.center + arm - ground_.point, ground_.normal);
 
     // The angular momentum about the place that touches stays.
@@ -238,8 +238,8 @@ std::optional<Vec3> Roller::roll(BodyState& state, double time) {
     if (!begin(state, at)) return std::nullopt;
     const double rate = rate_of(at);
     const auto parts = static_cast<int>(std::ceil(rate * time / body_part_turn));
-    const bool is_slow = axis_rate(at) * time < least_turn && length(at.spin) * time < fast_turn;
-    if (is_slow || !(parts <= most_parts)) return std::nullopt;
+    const bool is_slow = axis_rate(at) * time < min_turn && length(at.spin) * time < fast_turn;
+    if (is_slow || !(parts <= max_parts)) return std::nullopt;
 
     // The way up out of the ground is taken from the motion.
     const double start = energy(at) - constants_.mass * dot(constants_.acceleration, state.center - at.center);
@@ -251,9 +251,9 @@ std::optional<Vec3> Roller::roll(BodyState& state, double time) {
         if (!stays_on_rings(at)) return std::nullopt;
     }
     const double now = energy(at), kinetic = now + constants_.mass * dot(constants_.acceleration, at.center);
-    const double share = 1 + (start - now) / kinetic;
-    if (!(std::fabs(share - 1) < most_mending)) return std::nullopt;
-    at.spin *= std::sqrt(share);
+    const double fraction = 1 + (start - now) / kinetic;
+    if (!(std::fabs(fraction - 1) < max_correction)) return std::nullopt;
+    at.spin *= std::sqrt(fraction);
 
     const Vec3 arm = lowest(*ring_, at).arm;
     state.center = at.center;

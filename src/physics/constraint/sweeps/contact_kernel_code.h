@@ -252,7 +252,7 @@ EMBODY_WIDE_INLINE NormalLoad solve_normals(float* batch, const RegionMotion& mo
         const Wide rest = kind == Sweep::positions ? impulse[k] * kept[k] : impulse[k];
         return maximum(rest - speed[k], zero);
     };
-    for (int round = 0; round < physics::constraint::normal_rounds; ++round) {
+    for (int iteration = 0; iteration < physics::constraint::normal_iterations; ++iteration) {
         for (int k = 0; k < points; ++k) solve_point(k, wanted(k));
         // The way back begins at each contact's last point but one, whatever the batch's other contacts have.
         for (int k = points - 2; k >= 0; --k) {

@@ -259,7 +259,7 @@ void fill(float* batch, int points, const BatchSource& source) {
     std::memcpy(batch + BatchHead::body_b * lanes, source.body_b, sizeof(WideMask));
 
     // Points, and the anchor in their middle.
-    Wide near_row[physics::constraint::BatchHead::most_points][row_floats], rest_row[row_floats];
+    Wide near_row[physics::constraint::BatchHead::max_points][row_floats], rest_row[row_floats];
     Wide3 arm_a{zero, zero, zero}, arm_b{zero, zero, zero};
     Wide count = zero;
     for (int k = 0; k < points; ++k) {
@@ -278,9 +278,9 @@ void fill(float* batch, int points, const BatchSource& source) {
         store(point + BatchPoint::inactive_until * lanes, rest_row[5]);
         store(point + BatchPoint::normal_mass * lanes, select(is_there, one, zero));  // prepare() puts the mass here
     }
-    const Wide share = inverse(count);
-    arm_a = arm_a * share;
-    arm_b = arm_b * share;
+    const Wide fraction = inverse(count);
+    arm_a = arm_a * fraction;
+    arm_b = arm_b * fraction;
 
     // The region.
     Wide row[row_floats];

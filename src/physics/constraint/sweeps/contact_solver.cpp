@@ -94,7 +94,7 @@ void solve_normals(Contact& contact, const PreparedContact& prepared, SolvePhase
         change[i] += step;
         for (std::size_t j = 0; j < points.size(); ++j) speed[j] += prepared.coupling[i][j] * step;
     };
-    for (int round = 0; round < normal_rounds; ++round) {
+    for (int iteration = 0; iteration < normal_iterations; ++iteration) {
         for (std::size_t i = 0; i < points.size(); ++i) solve_point(i);
         for (std::size_t i = points.size() - 1; i-- > 0;) solve_point(i);
     }

@@ -14,7 +14,7 @@ namespace {
 
 // Batches that a worker needs in the mean of all stages, and in one stage: below, what bodies' velocities take from one
 // worker's cache to the other's, and the waiting at the stages' ends, is more than what is saved.
-constexpr std::size_t fewest_batches_in_mean = 4, fewest_batches_shared = 2;
+constexpr std::size_t fewest_batches_in_mean = 4, min_parallel_batches = 2;
 
 float to_float(double number) { return static_cast<float>(number); }
 
@@ -74,7 +74,7 @@ void WideContactSolver::begin(const Members& members, double substep, int subste
     for (std::uint32_t i = 0; i < groups_.size(); ++i) group_of_row_.insert(group_of_row_.end(), groups_[i].bodies, i);
     free_.resize(movable_rows_);
     work_.resize(movable_rows_);
-    kept_share_.resize(groups_.size());
+    kept_fraction_.resize(groups_.size());
 }
 
 void WideContactSolver::fill_row(std::size_t row, const Work& work) {
@@ -88,12 +88,12 @@ void WideContactSolver::fill_row(std::size_t row, const Work& work) {
         state.hidden_momentum = {};
         if (has_gyroscopic_torque(state, c, step)) split_gyroscopic_of_turns(state, c, step, substeps_);
     }
-    const Vec3 way = state.center - state.start_center;
+    const Vec3 displacement = state.center - state.start_center;
     const Vec3 v = state.linear_velocity, w = state.angular_velocity;
     const Quat& q = state.turn;
     start_[row] = {{to_float(v.x), to_float(v.y), to_float(v.z), to_float(w.x), to_float(w.y), to_float(w.z)}};
-    motion_[row] = {{to_float(way.x), to_float(way.y), to_float(way.z), to_float(q.x), to_float(q.y), to_float(q.z),
-                     to_float(q.w)}};
+    motion_[row] = {{to_float(displacement.x), to_float(displacement.y), to_float(displacement.z), to_float(q.x),
+                     to_float(q.y), to_float(q.z), to_float(q.w)}};
     const Mat3& i = state.inverse_inertia;
     inertia_[row] = {{to_float(i.x.x), to_float(i.x.y), to_float(i.x.z), to_float(i.y.y), to_float(i.y.z),
                       to_float(i.z.z), to_float(state.inverse_mass)}};
@@ -167,7 +167,7 @@ void WideContactSolver::fill_batch(const Batch& batch, std::span<const Contact> 
     std::memcpy(data + BatchHead::writable * lanes(), writable, sizeof writable);
 }
 
-Share WideContactSolver::batches_of_stage(std::size_t stage) const {
+IndexRange WideContactSolver::batches_of_stage(std::size_t stage) const {
     return {stages_[stage], stage + 1 < stages_.size() ? stages_[stage + 1] : batches_.size()};
 }
 
@@ -175,7 +175,7 @@ Share WideContactSolver::batches_of_stage(std::size_t stage) const {
 // as many of each number, and in each the same part of that order: so it meets the same bodies in all stages, and the
 // contacts that it had in the touch stage. What is left over is dealt in turn.
 void WideContactSolver::deal_stage(std::size_t stage) {
-    const Share all = batches_of_stage(stage);
+    const IndexRange all = batches_of_stage(stage);
     const std::size_t workers = parts_.size();
     std::size_t turn = 0;
     for (std::size_t first = all.first, last = first; first < all.last; first = last) {
@@ -200,8 +200,8 @@ void WideContactSolver::deal_batches(int workers) {
     }
     is_shared_.clear();
     for (std::size_t stage = 0; stage < stages_.size(); ++stage) {
-        const Share all = batches_of_stage(stage);
-        const bool is_shared = all.last - all.first >= fewest_batches_shared * parts_.size();
+        const IndexRange all = batches_of_stage(stage);
+        const bool is_shared = all.last - all.first >= min_parallel_batches * parts_.size();
         is_shared_.push_back(is_shared ? 1 : 0);
         if (is_shared) {
             deal_stage(stage);
@@ -231,17 +231,17 @@ void WideContactSolver::sweep_down(const Work& work, int worker, Kernel kernel) 
     if (is_pending) work.barrier.wait();
 }
 
-void WideContactSolver::solve_share(const Work& work, int worker) {
+void WideContactSolver::solve_fraction(const Work& work, int worker) {
     const BodyRows rows{velocity_[0].value, motion_[0].value,  start_[0].value,
                         kick_[0].value,     damping_[0].value, kicked_[0].value};
     const ContactKernels& k = *kernels_;
     ContactSweep sweep = work.sweep;
 
     // Row 0 never moves.
-    const Share share = share_of(slot_of_row_.size() - 1, worker, work.workers);
-    const auto first_row = static_cast<std::int32_t>(share.first + 1),
-               last_row = static_cast<std::int32_t>(share.last + 1);
-    for (std::size_t row = share.first + 1; row < share.last + 1; ++row) fill_row(row, work);
+    const IndexRange range = range_of(slot_of_row_.size() - 1, worker, work.workers);
+    const auto first_row = static_cast<std::int32_t>(range.first + 1),
+               last_row = static_cast<std::int32_t>(range.last + 1);
+    for (std::size_t row = range.first + 1; row < range.last + 1; ++row) fill_row(row, work);
     work.barrier.wait();
     const std::vector<std::uint32_t>& own = parts_[static_cast<std::size_t>(worker)].batches;
     for (const std::uint32_t i : own) {
@@ -272,14 +272,14 @@ void WideContactSolver::solve_share(const Work& work, int worker) {
     }
 
     // What the contacts did gives no energy.
-    const std::size_t last_movable = std::min(share.last + 1, movable_rows_);
-    for (std::size_t row = share.first + 1; row < last_movable; ++row) measure_work(row, work);
+    const std::size_t last_movable = std::min(range.last + 1, movable_rows_);
+    for (std::size_t row = range.first + 1; row < last_movable; ++row) measure_work(row, work);
     work.barrier.wait();
-    if (worker == 0) set_kept_shares();
+    if (worker == 0) set_kept_fractions();
     work.barrier.wait();
 
     // Results.
-    for (std::size_t row = share.first + 1; row < last_movable; ++row) {
+    for (std::size_t row = range.first + 1; row < last_movable; ++row) {
         const std::uint32_t body = slot_of_row_[row];
         bound_work(row);
         write_body(row, work.bodies[body], work.constants[body]);
@@ -317,9 +317,9 @@ void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::
     Barrier barrier(workers);
     const Work work{bodies, constants, contacts, summaries, softness, sweep, passes, workers, barrier};
     if (workers == 1) {
-        solve_share(work, 0);
+        solve_fraction(work, 0);
     } else {
-        pool.run([&](int worker) { solve_share(work, worker); });
+        pool.run([&](int worker) { solve_fraction(work, worker); });
     }
 }
 
@@ -342,7 +342,7 @@ void WideContactSolver::measure_work(std::size_t row, const Work& work) {
 }
 
 // In the order of the rows, whoever measured them.
-void WideContactSolver::set_kept_shares() {
+void WideContactSolver::set_kept_fractions() {
     std::size_t row = 1;
     for (std::size_t i = 0; i < groups_.size(); ++i) {
         ContactWork sum;
@@ -350,15 +350,15 @@ void WideContactSolver::set_kept_shares() {
         for (; row < end; ++row) {
             if (groups_[i].is_bounded) sum += work_[row];
         }
-        kept_share_[i] = to_float(share_without_gain(sum));
+        kept_fraction_[i] = to_float(fraction_without_gain(sum));
     }
 }
 
 void WideContactSolver::bound_work(std::size_t row) {
-    const float share = kept_share_[group_of_row_[row]];
-    if (share >= 1) return;
+    const float fraction = kept_fraction_[group_of_row_[row]];
+    if (fraction >= 1) return;
     float* v = velocity_[row].value;
-    for (int i = 0; i < 6; ++i) v[i] = free_[row].value[i] + share * (v[i] - free_[row].value[i]);
+    for (int i = 0; i < 6; ++i) v[i] = free_[row].value[i] + fraction * (v[i] - free_[row].value[i]);
 }
 
 void WideContactSolver::write_body(std::size_t row, BodyState& state, const BodyConstants& constants) const {

@@ -50,8 +50,8 @@ public:
                std::span<ContactSummary> summaries, TaskPool& pool);
     /// Of what the contacts did to a movable body, how much it kept in the last solve(), see contact_work.h: impulses
     /// are handed out as they were before.
-    [[nodiscard]] double kept_share(std::uint32_t body) const {
-        return static_cast<double>(kept_share_[group_of_row_[static_cast<std::size_t>(row_of(body))]]);
+    [[nodiscard]] double kept_fraction(std::uint32_t body) const {
+        return static_cast<double>(kept_fraction_[group_of_row_[static_cast<std::size_t>(row_of(body))]]);
     }
 
 private:
@@ -91,17 +91,17 @@ private:
     [[nodiscard]] std::size_t contact_of(std::size_t lane) const {
         return static_cast<std::size_t>(contact_row_[lane] / ContactRow::size);
     }
-    [[nodiscard]] Share batches_of_stage(std::size_t stage) const;
+    [[nodiscard]] IndexRange batches_of_stage(std::size_t stage) const;
     void deal_stage(std::size_t stage);
     void deal_batches(int workers);
     void fill_lanes(const Batch& batch, std::span<const Contact> contacts);
     void fill_batch(const Batch& batch, std::span<const Contact> contacts);
-    void solve_share(const Work& work, int worker);
+    void solve_fraction(const Work& work, int worker);
     /// Calls kernel(batch's floats, points) for this worker's batches, stage after stage from the top down.
     template <class Kernel>
     void sweep_down(const Work& work, int worker, Kernel kernel);
     void measure_work(std::size_t row, const Work& work);
-    void set_kept_shares();
+    void set_kept_fractions();
     void bound_work(std::size_t row);
     void write_body(std::size_t row, BodyState& state, const BodyConstants& constants) const;
     void write_contact(const Batch& batch, std::uint32_t lane, const ContactSoftness& softness, Contact& contact,
@@ -120,7 +120,7 @@ private:
     std::vector<ContactWork> work_;  // of the contacts on each movable body
     std::vector<std::uint32_t> group_of_row_;
     std::vector<Group> groups_;
-    std::vector<float> kept_share_;  // of what contacts did to a group
+    std::vector<float> kept_fraction_;  // of what contacts did to a group
 
     std::vector<Batch> batches_;
     std::vector<std::uint32_t> stages_;                               // first batch of each

@@ -76,13 +76,14 @@ void ClothLayers::find_boxes(const Search& search, TaskPool& workers) {
     }
     triangle_boxes_.resize(triangles_.size());
     leans_.resize(triangles_.size());
-    share_among(workers, triangles_.size(), triangles_.size() >= 1000, [&](int, Share share) {
-        for (std::size_t t = share.first; t < share.last; ++t) {
+    parallel_for(workers, triangles_.size(), triangles_.size() >= 1000, [&](int, IndexRange range) {
+        for (std::size_t t = range.first; t < range.last; ++t) {
             const auto [p, q, r] = triangles_[t];
             triangle_boxes_[t] = box_around(triangles_[t]);
             const Vec3 a = nodes.position[q] - nodes.position[p], b = nodes.position[r] - nodes.position[p];
-            const Vec3 a_way = search.moves[q] - search.moves[p], b_way = search.moves[r] - search.moves[p];
-            leans_[t] = leans_of(cross(a, b)) & leans_of(cross(a + a_way, b + b_way));
+            const Vec3 a_displacement = search.moves[q] - search.moves[p],
+                       b_displacement = search.moves[r] - search.moves[p];
+            leans_[t] = leans_of(cross(a, b)) & leans_of(cross(a + a_displacement, b + b_displacement));
         }
     });
     patches_.update(triangle_boxes_, leans_);
@@ -149,9 +150,9 @@ void ClothLayers::find(const Nodes& nodes, double thickness, std::span<const Vec
         std::vector<LayerContact> nodes, edges;
     };
     std::vector<Found> found(static_cast<std::size_t>(std::max(1, workers.workers())));
-    share_among(workers, leaf_pairs_.size(), leaf_pairs_.size() >= 200, [&](int worker, Share share) {
+    parallel_for(workers, leaf_pairs_.size(), leaf_pairs_.size() >= 200, [&](int worker, IndexRange range) {
         Found& own = found[static_cast<std::size_t>(worker)];
-        for (std::size_t p = share.first; p < share.last; ++p)
+        for (std::size_t p = range.first; p < range.last; ++p)
             search_pair(search, leaf_pairs_[p], own.nodes, own.edges);
     });
     // Whatever the order of the patches.
@@ -168,39 +169,40 @@ void ClothLayers::find(const Nodes& nodes, double thickness, std::span<const Vec
 
 namespace {
 
-Vec3 way_of(const LayerContact& contact, std::span<const Vec3> moves) {
-    Vec3 way;
-    for (std::size_t k = 0; k < 4; ++k) way += contact.weight[k] * moves[contact.node[k]];
-    return way;
+Vec3 displacement_of(const LayerContact& contact, std::span<const Vec3> moves) {
+    Vec3 displacement;
+    for (std::size_t k = 0; k < 4; ++k) displacement += contact.weight[k] * moves[contact.node[k]];
+    return displacement;
 }
 
-double give_of(const LayerContact& contact, std::span<const double> give) {
+double compliance_of(const LayerContact& contact, std::span<const double> compliance) {
     double sum = 0;
-    for (std::size_t k = 0; k < 4; ++k) sum += contact.weight[k] * contact.weight[k] * give[contact.node[k]];
+    for (std::size_t k = 0; k < 4; ++k) sum += contact.weight[k] * contact.weight[k] * compliance[contact.node[k]];
     return sum;
 }
 
-void push(const LayerContact& contact, Vec3 by, std::span<const double> give, std::span<Vec3> moves) {
-    for (std::size_t k = 0; k < 4; ++k) moves[contact.node[k]] += (contact.weight[k] * give[contact.node[k]]) * by;
+void push(const LayerContact& contact, Vec3 by, std::span<const double> compliance, std::span<Vec3> moves) {
+    for (std::size_t k = 0; k < 4; ++k)
+        moves[contact.node[k]] += (contact.weight[k] * compliance[contact.node[k]]) * by;
 }
 
 // Where pushes did not part them all: nodes that would pass through each other go together for this substep, with the
 // mean of their moves (X. Provot, "Collision and self-collision handling in cloth model", 1997).
-void join(std::span<const LayerContact> contacts, double thickness, std::span<const double> give,
+void join(std::span<const LayerContact> contacts, double thickness, std::span<const double> compliance,
           std::span<Vec3> moves) {
-    constexpr double least_share = 0.2;
-    constexpr int most_rounds = 20;
+    constexpr double min_fraction = 0.2;
+    constexpr int max_iterations = 20;
     std::vector<std::uint32_t> zone(moves.size());
     for (std::uint32_t i = 0; i < zone.size(); ++i) zone[i] = i;
     const auto root_of = [&](std::uint32_t i) {
         while (zone[i] != i) i = zone[i] = zone[zone[i]];
         return i;
     };
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int iteration = 0; iteration < max_iterations; ++iteration) {
         bool has_joined = false;
         for (const LayerContact& contact : contacts) {
-            const double end = contact.distance + dot(contact.normal, way_of(contact, moves));
-            if (end >= least_share * std::min(thickness, contact.distance)) continue;
+            const double end = contact.distance + dot(contact.normal, displacement_of(contact, moves));
+            if (end >= min_fraction * std::min(thickness, contact.distance)) continue;
             for (std::size_t k = 1; k < 4; ++k) {
                 const std::uint32_t a = root_of(contact.node[0]), b = root_of(contact.node[k]);
                 if (a == b) continue;
@@ -215,16 +217,16 @@ void join(std::span<const LayerContact> contacts, double thickness, std::span<co
         for (std::uint32_t i = 0; i < moves.size(); ++i) {
             const std::uint32_t root = root_of(i);
             if (root != i) is_joined[root] = true;
-            if (give[i] == 0) {
+            if (compliance[i] == 0) {
                 is_held[root] = true;
                 continue;
             }
-            weight[root] += 1 / give[i];
-            sum[root] += (1 / give[i]) * moves[i];
+            weight[root] += 1 / compliance[i];
+            sum[root] += (1 / compliance[i]) * moves[i];
         }
         for (std::uint32_t i = 0; i < moves.size(); ++i) {
             const std::uint32_t root = root_of(i);
-            if (is_joined[root] && give[i] > 0) moves[i] = is_held[root] ? Vec3{} : sum[root] / weight[root];
+            if (is_joined[root] && compliance[i] > 0) moves[i] = is_held[root] ? Vec3{} : sum[root] / weight[root];
         }
     }
 }
@@ -241,40 +243,43 @@ std::vector<ThinCandidate> ClothLayers::near(const Nodes& nodes, double reach, s
     return candidates;
 }
 
-double ClothLayers::longest_way(const Nodes& nodes, double thickness, std::span<const Vec3> moves, TaskPool& workers) {
+double ClothLayers::max_displacement(const Nodes& nodes, double thickness, std::span<const Vec3> moves,
+                                     TaskPool& workers) {
     find(nodes, thickness, moves, workers);
     double longest = 0;
-    for (const LayerContact& contact : contacts_) longest = std::max(longest, length(way_of(contact, moves)));
+    for (const LayerContact& contact : contacts_) longest = std::max(longest, length(displacement_of(contact, moves)));
     return longest;
 }
 
-void ClothLayers::part(const Nodes& nodes, double thickness, double friction, std::span<const double> give,
+void ClothLayers::part(const Nodes& nodes, double thickness, double friction, std::span<const double> compliance,
                        std::span<Vec3> moves, TaskPool& workers) {
-    constexpr int rounds = 10;
+    constexpr int iterations = 10;
     find(nodes, thickness, moves, workers);
     std::vector<double> pushed(contacts_.size(), 0);  // m kg, so far
-    for (int round = 0; round < rounds; ++round) {
+    for (int iteration = 0; iteration < iterations; ++iteration) {
         bool is_parted = true;
         for (std::size_t c = 0; c < contacts_.size(); ++c) {
             const LayerContact& contact = contacts_[c];
-            const double sum = give_of(contact, give), target = std::min(thickness, contact.distance);
-            const double distance = contact.distance + dot(contact.normal, way_of(contact, moves));
+            const double sum = compliance_of(contact, compliance), target = std::min(thickness, contact.distance);
+            const double distance = contact.distance + dot(contact.normal, displacement_of(contact, moves));
             if (distance >= target || sum == 0) continue;
             is_parted = false;
             pushed[c] += (target - distance) / sum;
-            push(contact, ((target - distance) / sum) * contact.normal, give, moves);
+            push(contact, ((target - distance) / sum) * contact.normal, compliance, moves);
         }
         if (is_parted) break;
     }
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
         if (pushed[c] == 0) continue;
         const LayerContact& contact = contacts_[c];
-        const Vec3 way = way_of(contact, moves), sliding = way - dot(way, contact.normal) * contact.normal;
+        const Vec3 displacement = displacement_of(contact, moves),
+                   sliding = displacement - dot(displacement, contact.normal) * contact.normal;
         const double size = length(sliding);
         if (size == 0) continue;
-        push(contact, (-std::min(friction * pushed[c], size / give_of(contact, give)) / size) * sliding, give, moves);
+        push(contact, (-std::min(friction * pushed[c], size / compliance_of(contact, compliance)) / size) * sliding,
+             compliance, moves);
     }
-    join(contacts_, thickness, give, moves);
+    join(contacts_, thickness, compliance, moves);
 }
 
 }  // namespace embody::physics::deformable

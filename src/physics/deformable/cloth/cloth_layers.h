@@ -35,14 +35,14 @@ public:
     /// far apart, or as near as it was: the nodes give way by `give` (1/kg, 0: not at all), sliding is braked by
     /// friction. Momentum is kept. What moves by more than about half an edge against another layer in one substep may
     /// be missed.
-    void part(const Nodes& nodes, double thickness, double friction, std::span<const double> give,
+    void part(const Nodes& nodes, double thickness, double friction, std::span<const double> compliance,
               std::span<Vec3> moves, TaskPool& workers);
     /// What may come nearer than twice `reach` (m) by these moves, in the order that PairSprings asks for.
     [[nodiscard]] std::vector<ThinCandidate> near(const Nodes& nodes, double reach, std::span<const Vec3> moves,
                                                   TaskPool& workers);
     /// The longest way (m) that those which come near each other by these moves go against each other.
-    [[nodiscard]] double longest_way(const Nodes& nodes, double thickness, std::span<const Vec3> moves,
-                                     TaskPool& workers);
+    [[nodiscard]] double max_displacement(const Nodes& nodes, double thickness, std::span<const Vec3> moves,
+                                          TaskPool& workers);
     /// Mean, m.
     [[nodiscard]] double edge_length() const { return edge_length_; }
     /// Each once.

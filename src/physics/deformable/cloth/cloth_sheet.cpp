@@ -128,8 +128,8 @@ void ClothSheet::find_strains(const Substep& substep, TaskPool& workers) {
     strains_.resize(triangles_.size());
     air_.resize(triangles_.size());
     winds_.resize(triangles_.size());
-    const auto work = [&](int, Share share) {
-        for (std::size_t t = share.first; t < share.last; ++t) {
+    const auto work = [&](int, IndexRange range) {
+        for (std::size_t t = range.first; t < range.last; ++t) {
             const ClothTriangle& triangle = triangles_[t];
             Strain& strain = strains_[t];
             strain.f = strain.g = {};
@@ -141,11 +141,11 @@ void ClothSheet::find_strains(const Substep& substep, TaskPool& workers) {
                 velocity += nodes_.mean_velocity[triangle.node[k]] / 3;
             }
             const double f = length(strain.f), g = length(strain.g), angle = dot(strain.f, strain.g);
-            strain.f_way = normalized(strain.f, {1, 0, 0});
-            strain.g_way = normalized(strain.g, any_perpendicular(strain.f_way));
+            strain.f_displacement = normalized(strain.f, {1, 0, 0});
+            strain.g_displacement = normalized(strain.g, any_perpendicular(strain.f_displacement));
             const double k = cloth_.stretch_stiffness, s = cloth_.shear_stiffness;
-            strain.f_stress = k * (f - 1) * strain.f_way + s * angle * strain.g;
-            strain.g_stress = k * (g - 1) * strain.g_way + s * angle * strain.f;
+            strain.f_stress = k * (f - 1) * strain.f_displacement + s * angle * strain.g;
+            strain.g_stress = k * (g - 1) * strain.g_displacement + s * angle * strain.f;
             // The second derivative of ½ (|f| - 1)² is f̂ f̂ᵀ / |f| + (1 - 1/|f|) 1.
             strain.across_ff = f > 0 ? k * (1 - 1 / f) : -k;
             strain.across_gg = g > 0 ? k * (1 - 1 / g) : -k;
@@ -164,7 +164,7 @@ void ClothSheet::find_strains(const Substep& substep, TaskPool& workers) {
             air_[t] = std::sqrt(substep.air_density * cloth_.drag_coefficient * triangle.area * through / 6) * normal;
         }
     };
-    share_among(workers, triangles_.size(), triangles_.size() >= 1000, work);
+    parallel_for(workers, triangles_.size(), triangles_.size() >= 1000, work);
 }
 
 // `near`: to work with.
@@ -195,8 +195,8 @@ void ClothSheet::fill_row(std::size_t i, const Substep& substep, std::vector<Blo
         const Vec3 angle = b * strain.g + d * strain.f;  // derivative of f·g
         for (std::size_t other = 0; other < 3; ++other) {
             const double b2 = triangle.warp[other], d2 = triangle.weft[other];
-            Mat3 block = (area * strain.warp * b * b2) * symmetric_outer(strain.f_way) +
-                         (area * strain.weft * d * d2) * symmetric_outer(strain.g_way) +
+            Mat3 block = (area * strain.warp * b * b2) * symmetric_outer(strain.f_displacement) +
+                         (area * strain.weft * d * d2) * symmetric_outer(strain.g_displacement) +
                          (area * strain.shear) * outer(angle, b2 * strain.g + d2 * strain.f);
             const double across =
                 area * (strain.across_ff * b * b2 + strain.across_gg * d * d2 + strain.across_fg * (b * d2 + d * b2));
@@ -227,9 +227,9 @@ void ClothSheet::fill_rows(const Substep& substep, TaskPool& workers) {
         weight_[i] = nodes_.mass[i] * substep.gravity;
         small_load_[i] = {0, nodes_.mass[i] * least, 0};
     }
-    share_among(workers, count, count >= 1000, [&](int, Share share) {
+    parallel_for(workers, count, count >= 1000, [&](int, IndexRange range) {
         std::vector<Block> near;
-        for (std::size_t i = share.first; i < share.last; ++i) fill_row(i, substep, near);
+        for (std::size_t i = range.first; i < range.last; ++i) fill_row(i, substep, near);
     });
 }
 
@@ -241,17 +241,17 @@ bool ClothSheet::solve_moves(const Substep& substep, std::span<const TouchedBody
     for (std::size_t i = 0; i < nodes_.size(); ++i) moves_[i] = h * nodes_.mean_velocity[i];
     springs_.choose(moves_, body_moves_, true);
     layer_springs_.choose(moves_, true);
-    rounds_ = solves_ = 0;
-    constexpr int most_solves = 4;
+    iterations_ = solves_ = 0;
+    constexpr int max_solves = 4;
     std::vector<TouchSpring> all;
     for (;;) {
         all.assign(springs_.springs().begin(), springs_.springs().end());
         all.insert(all.end(), layer_springs_.springs().begin(), layer_springs_.springs().end());
-        const int rounds = solver.solve(std::array{system()}, {}, all, inertias_, moves_, body_moves_, workers);
-        if (rounds == ClothSolver::not_finite) return false;
-        rounds_ += rounds;
+        const int iterations = solver.solve(std::array{system()}, {}, all, inertias_, moves_, body_moves_, workers);
+        if (iterations == ClothSolver::not_finite) return false;
+        iterations_ += iterations;
         ++solves_;
-        if (all.empty() || solves_ == most_solves) break;
+        if (all.empty() || solves_ == max_solves) break;
         // The last solve's springs stay as they were in it, so that what bodies feel is what nodes felt.
         TouchSprings next = springs_;
         PairSprings next_layers = layer_springs_;
@@ -302,18 +302,18 @@ void ClothSheet::find_layers(const Substep& substep, TaskPool& workers) {
 
 // What no spring held off in time; what lies on a body gives way last.
 void ClothSheet::part_layers(TaskPool& workers) {
-    constexpr double give_on_body = 0.05, least_share = 0.5;
-    std::vector<double> give = nodes_.inverse_mass;
+    constexpr double compliance_on_body = 0.05, min_fraction = 0.5;
+    std::vector<double> compliance = nodes_.inverse_mass;
     for (const TouchSpring& spring : springs_.springs()) {
         for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count) && spring.acts; ++k)
-            give[spring.node[k]] = give_on_body * nodes_.inverse_mass[spring.node[k]];
+            compliance[spring.node[k]] = compliance_on_body * nodes_.inverse_mass[spring.node[k]];
     }
-    layers_->part(nodes_, least_share * apart(), layer_friction_.sliding, give, moves_, workers);
+    layers_->part(nodes_, min_fraction * apart(), layer_friction_.sliding, compliance, moves_, workers);
 }
 
 // Layers are kept apart reliably where they pass each other by no more than half an edge: faster ones take more parts.
 int ClothSheet::parts_of(double h, TaskPool& workers) {
-    constexpr int most_parts = 4;
+    constexpr int max_parts = 4;
     const double edge = layers_->edge_length();
     Vec3 mean;
     double mass = 0, fastest = 0;
@@ -325,8 +325,8 @@ int ClothSheet::parts_of(double h, TaskPool& workers) {
     if (2 * h * fastest <= edge) return 1;
     moves_.resize(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) moves_[i] = h * nodes_.mean_velocity[i];
-    const double way = layers_->longest_way(nodes_, apart(), moves_, workers);
-    return static_cast<int>(std::clamp(std::ceil(2 * way / edge), 1.0, double{most_parts}));
+    const double travel = layers_->max_displacement(nodes_, apart(), moves_, workers);
+    return static_cast<int>(std::clamp(std::ceil(2 * travel / edge), 1.0, double{max_parts}));
 }
 
 void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> contacts,
@@ -335,7 +335,7 @@ void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> co
     const PartPushes pushes(bodies);
     if (is_frozen_) return;
     const int parts = parts_of(substep.h, workers);
-    int rounds = 0, solves = 0;
+    int iterations = 0, solves = 0;
     for (int part = 0; part < parts; ++part) {
         Substep own = substep;
         own.h = substep.h / parts;
@@ -344,10 +344,10 @@ void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> co
         begin(own, contacts, between, attachment_bodies, bodies, workers);
         if (!solve_moves(own, bodies, workers)) return freeze();
         end(own, moves_, body_moves_, {}, bodies, workers);
-        rounds += rounds_;
+        iterations += iterations_;
         solves += solves_;
     }
-    rounds_ = rounds;
+    iterations_ = iterations;
     solves_ = solves;
 }
 

@@ -69,7 +69,7 @@ public:
     /// True once a number was none: it stays where it last was.
     [[nodiscard]] bool is_frozen() const { return is_frozen_; }
     /// Rounds of conjugate gradients in the last substep, and solves.
-    [[nodiscard]] int rounds() const { return rounds_; }
+    [[nodiscard]] int iterations() const { return iterations_; }
     [[nodiscard]] int solves() const { return solves_; }
 
     ClothSolver solver;
@@ -82,10 +82,10 @@ private:
     };
     // Of a triangle, this substep: F's columns and what the energy makes of them.
     struct Strain {
-        Vec3 f, g;                                           // images of the unit steps along warp and weft
-        Vec3 f_way, g_way;                                   // their directions
-        Vec3 f_stress, g_stress;                             // derivatives of the energy per area by f and g, N/m
-        double warp = 0, weft = 0, shear = 0;                // stiffness along f_way, g_way, of the angle, N/m
+        Vec3 f, g;                             // images of the unit steps along warp and weft
+        Vec3 f_displacement, g_displacement;   // their directions
+        Vec3 f_stress, g_stress;               // derivatives of the energy per area by f and g, N/m
+        double warp = 0, weft = 0, shear = 0;  // stiffness along f_displacement, g_displacement, of the angle, N/m
         double across_ff = 0, across_fg = 0, across_gg = 0;  // stiffness by stress, N/m
     };
 
@@ -123,7 +123,7 @@ private:
     std::vector<BodyInertia> inertias_;
     std::vector<BodyMove> body_moves_;
     bool is_frozen_ = false;
-    int rounds_ = 0, solves_ = 0;
+    int iterations_ = 0, solves_ = 0;
 };
 
 }  // namespace embody::physics::deformable

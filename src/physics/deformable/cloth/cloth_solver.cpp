@@ -212,7 +212,7 @@ struct ClothSolver::WorkerSystem {
     std::span<const BodyInertia> bodies;
     Barrier& barrier;
     bool is_first;
-    Share chunks;
+    IndexRange chunks;
     bool has_others = !of.coupled_.empty() || !of.factors_.empty();
 
     // find_residual() has found r.
@@ -315,8 +315,8 @@ double ClothSolver::guess(std::span<const SheetSystem> sheets, std::span<const L
 // Of the guess, forces of springs with it.
 void ClothSolver::find_residual(std::span<const SheetSystem> sheets, std::span<const TouchSpring> springs,
                                 std::span<const BodyInertia> bodies, TaskPool& workers) {
-    share_among(workers, chunks_.size(), nodes_ >= worth_sharing, [&](int, Share share) {
-        for (std::size_t c = share.first; c < share.last; ++c) multiply_rows(sheets, c);
+    parallel_for(workers, chunks_.size(), nodes_ >= min_parallel_count, [&](int, IndexRange range) {
+        for (std::size_t c = range.first; c < range.last; ++c) multiply_rows(sheets, c);
     });
     add_springs(springs, bodies);
     for (std::size_t s = 0; s < sheets.size(); ++s) {
@@ -352,12 +352,12 @@ int ClothSolver::solve(std::span<const SheetSystem> sheets, std::span<const Line
     curvatures_.back() = 0;
     // The norm of the preconditioner leaves out fixed nodes: their residual is the force that holds them.
     constexpr double rounding = 1e-12;  // floats cannot tell less of the first residual
-    const GradientLimits limits{most_rounds, tolerance * tolerance * load, rounding};
-    const int count = nodes_ >= worth_sharing ? workers.workers() : 1;
+    const GradientLimits limits{max_iterations, tolerance * tolerance * load, rounding};
+    const int count = nodes_ >= min_parallel_count ? workers.workers() : 1;
     Barrier barrier(count);
     GradientResult result;
     const auto work = [&](int worker) {
-        const Share chunks = share_of(chunks_.size(), worker, count);
+        const IndexRange chunks = range_of(chunks_.size(), worker, count);
         WorkerSystem system{*this, sheets, springs, bodies, barrier, worker == 0, chunks};
         const GradientResult own = conjugate_gradient(system, limits);
         if (worker == 0) result = own;

@@ -50,10 +50,10 @@ public:
 
     static constexpr int not_finite = -1;
     double tolerance = 5e-3;
-    int most_rounds = 200;
+    int max_iterations = 200;
 
 private:
-    static constexpr std::size_t worth_sharing = 1000;  // nodes
+    static constexpr std::size_t min_parallel_count = 1000;  // nodes
 
     struct BodyFactor {
         std::array<double, 36> factor{};  // of its mass and what springs add, what nodes give way taken off
@@ -84,7 +84,7 @@ private:
     void prepare_bodies(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
     bool prepare_lines(std::span<const LineSystem> lines, std::span<const TouchSpring> springs);
     void prepare_line_holds(std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies);
-    void give_way(const LineHold& hold);
+    void apply_line_hold(const LineHold& hold);
     double guess(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
                  std::span<const TouchSpring> springs, std::span<const Vec3> moves);
     void find_residual(std::span<const SheetSystem> sheets, std::span<const TouchSpring> springs,

@@ -64,7 +64,7 @@ void ClothSolver::prepare_line_holds(std::span<const TouchSpring> springs, std::
 }
 
 // What the body feels of a line that gives way: less by Cᵀ A⁻¹ C.
-void ClothSolver::give_way(const LineHold& hold) {
+void ClothSolver::apply_line_hold(const LineHold& hold) {
     for (std::size_t r = 0; r < 6; ++r) {
         for (std::size_t c = 0; c < 6; ++c) {
             double sum = 0;

@@ -106,8 +106,8 @@ bool ClothSolver::prepare(std::span<const SheetSystem> sheets, std::span<const L
     inverse_.resize(nodes_);
     for (std::size_t s = 0; s < sheets.size(); ++s) {
         const std::size_t count = sheets[s].rhs.size();
-        share_among(workers, count, count >= worth_sharing, [&](int, Share share) {
-            for (std::size_t i = share.first; i < share.last; ++i) {
+        parallel_for(workers, count, count >= min_parallel_count, [&](int, IndexRange range) {
+            for (std::size_t i = range.first; i < range.last; ++i) {
                 const std::size_t at = sheet_first_[s] + i, slice = place_[at] / slice_rows,
                                   lane = place_[at] % slice_rows;
                 inverse_[at] = sheets[s].fixed[i] != 0 ? Block{} : to_block(inverse_or_zero(to_matrix(own_[at])));
@@ -173,7 +173,7 @@ void ClothSolver::prepare_bodies(std::span<const TouchSpring> springs, std::span
         const Mat3 felt = is_single ? k - k * to_matrix(inverse_[spring.node[0]]) * k : k;
         add_at_arm(factor, felt, spring.arm);
     }
-    for (const LineHold& hold : line_holds_) give_way(hold);
+    for (const LineHold& hold : line_holds_) apply_line_hold(hold);
     for (BodyFactor& body : body_factors_) factorize(body.factor);
 }
 

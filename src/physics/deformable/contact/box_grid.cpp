@@ -5,8 +5,8 @@ namespace embody::physics::deformable {
 
 // Counting sort of the boxes into the cells that they may reach.
 void BoxGrid::fill(std::span<const Bounds> boxes, double usual_size) {
-    constexpr double cell_share = 1.5;  // cells over usual size
-    constexpr double most_cells = 8;    // that a box spans along an axis
+    constexpr double cell_fraction = 1.5;  // cells over usual size
+    constexpr double max_cells = 8;        // that a box spans along an axis
     std::size_t buckets = 1;
     while (buckets < 2 * boxes.size()) buckets *= 2;
     double longest = 0;
@@ -14,7 +14,7 @@ void BoxGrid::fill(std::span<const Bounds> boxes, double usual_size) {
         const Vec3 sides = box.upper - box.lower;
         longest = std::max({longest, sides.x, sides.y, sides.z});
     }
-    cell_size_ = std::max(cell_share * usual_size, longest / most_cells);
+    cell_size_ = std::max(cell_fraction * usual_size, longest / max_cells);
     start_.assign(buckets + 1, 0);
     for (const Bounds& box : boxes) for_each_bucket(box, [&](std::size_t b) { ++start_[b + 1]; });
     for (std::size_t b = 0; b < buckets; ++b) start_[b + 1] += start_[b];

@@ -46,9 +46,9 @@ private:
         Float4 lower{}, upper{};
     };
     [[nodiscard]] static RoundedBox rounded(const Bounds& box) {
-        constexpr double share = 1e-6;
-        const auto down = [](double x) { return static_cast<float>(x - share * std::fabs(x)); };
-        const auto up = [](double x) { return static_cast<float>(x + share * std::fabs(x)); };
+        constexpr double fraction = 1e-6;
+        const auto down = [](double x) { return static_cast<float>(x - fraction * std::fabs(x)); };
+        const auto up = [](double x) { return static_cast<float>(x + fraction * std::fabs(x)); };
         return {Float4{down(box.lower.x), down(box.lower.y), down(box.lower.z), 0},
                 Float4{up(box.upper.x), up(box.upper.y), up(box.upper.z), 0}};
     }

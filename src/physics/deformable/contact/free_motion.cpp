@@ -21,7 +21,7 @@ void keep_momenta(const Nodes& nodes, std::span<const Vec3> given, double h, std
     const Vec3 mean = momentum / mass, shift = (h / mass) * (momentum - moved), new_center = center + h * mean;
     for (Vec3& move : moves) move += shift;
     // The turn changes the arms too, so it takes some rounds.
-    for (int round = 0; round < 5; ++round) {
+    for (int iteration = 0; iteration < 5; ++iteration) {
         Mat3 inertia = Mat3::zero();
         Vec3 missing = angular;
         for (std::size_t i = 0; i < nodes.size(); ++i) {

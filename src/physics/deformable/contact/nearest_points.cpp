@@ -28,9 +28,9 @@ std::array<double, 3> nearest_weights(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
 }
 
 double nearest_along(Vec3 p, Vec3 a, Vec3 b) {
-    const Vec3 way = b - a;
-    const double size = length_squared(way);
-    return size > 0 ? std::clamp(dot(p - a, way) / size, 0.0, 1.0) : 0;
+    const Vec3 displacement = b - a;
+    const double size = length_squared(displacement);
+    return size > 0 ? std::clamp(dot(p - a, displacement) / size, 0.0, 1.0) : 0;
 }
 
 bool nearest_inside(Vec3 a, Vec3 b, Vec3 c, Vec3 d, double& s, double& t) {

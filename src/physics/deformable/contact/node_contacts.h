@@ -24,7 +24,7 @@ void find_node_contacts(const Nodes& nodes, std::span<const std::uint32_t> candi
                         std::vector<NodeContact>& contacts, TaskPool& workers);
 
 /// How far a body's surface goes on its path within `time_step` (s), at most, m.
-double way_of(const TouchedBody& body, double time_step);
+double displacement_of(const TouchedBody& body, double time_step);
 
 /// How far the node's surface is off the plane (m; negative: in it) `time` (s) after the step began.
 double gap(const NodeContact& contact, Vec3 node_position, double radius, const TouchedBody& body, double time);

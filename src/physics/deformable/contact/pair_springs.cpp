@@ -74,8 +74,8 @@ bool PairSprings::Search::is_next_to(const ThinContact& known, const ThinCandida
 
 // A sheet has no inside: which side something is on is remembered.
 void PairSprings::Search::recall(Found& found) const {
-    constexpr double same_way = 0.8, same_side = 0.5;  // cosines
-    constexpr double farthest = 3;                     // radii on the wrong side: beyond it has really gone through
+    constexpr double same_direction = 0.8, same_side = 0.5;  // cosines
+    constexpr double farthest = 3;  // radii on the wrong side: beyond it has really gone through
     const auto is_before = [](const ThinContact& m, const auto& key) { return m.key() < key; };
     const ThinContact* nearest = nullptr;
     double most = same_side;
@@ -93,7 +93,7 @@ void PairSprings::Search::recall(Found& found) const {
         found.normal = -found.normal;
         found.distance = -found.distance;
     }
-    if (most > same_way) found.memory = nearest;
+    if (most > same_direction) found.memory = nearest;
 }
 
 // Whether it may touch within the substep: by its own speed and what gravity adds.
@@ -108,7 +108,7 @@ bool PairSprings::Search::is_near(const Found& found) const {
 
 // A node touches the nearest of the triangles, and of others those that lie in another direction.
 void PairSprings::Search::add_nodes(std::span<const ThinCandidate> of_node, std::vector<Found>& kept) const {
-    constexpr double other_way = 0.5;  // cosine
+    constexpr double other_direction = 0.5;  // cosine
     std::vector<Found> near;
     for (const ThinCandidate& candidate : of_node) {
         Found found;
@@ -117,8 +117,10 @@ void PairSprings::Search::add_nodes(std::span<const ThinCandidate> of_node, std:
     std::ranges::stable_sort(near, {}, [](const Found& found) { return std::fabs(found.distance); });
     const std::size_t first = kept.size();
     for (const Found& found : near) {
-        const auto is_same_way = [&](const Found& other) { return dot(other.normal, found.normal) > other_way; };
-        if (std::none_of(kept.begin() + static_cast<std::ptrdiff_t>(first), kept.end(), is_same_way))
+        const auto is_same_direction = [&](const Found& other) {
+            return dot(other.normal, found.normal) > other_direction;
+        };
+        if (std::none_of(kept.begin() + static_cast<std::ptrdiff_t>(first), kept.end(), is_same_direction))
             kept.push_back(found);
     }
 }
@@ -126,15 +128,15 @@ void PairSprings::Search::add_nodes(std::span<const ThinCandidate> of_node, std:
 // Of two sheets: whether both ends of either edge touch the other sheet from the same side.
 bool PairSprings::Search::is_held(const Found& edges, std::span<const Vec3> held_a,
                                   std::span<const Vec3> held_b) const {
-    constexpr double same_way = 0.7;  // cosine
-    const auto holds = [&](Vec3 normal) { return dot(normal, edges.normal) > same_way; };
+    constexpr double same_direction = 0.7;  // cosine
+    const auto holds = [&](Vec3 normal) { return dot(normal, edges.normal) > same_direction; };
     const auto& node = edges.points.node;
     return holds(held_a[node[0]]) || holds(held_a[node[1]]) || holds(-held_b[node[2]]) || holds(-held_b[node[3]]);
 }
 
 void PairSprings::add(const Search& search, const Found& found) {
     constexpr double stiffness_factor = 20;  // over the inertia of the heavier, and of what weighs on it
-    constexpr double least_weight = 0.1;     // of a node that bears what lies there
+    constexpr double min_weight = 0.1;       // of a node that bears what lies there
     constexpr double recovery = 0.2;         // share of a depth that is parted in a substep
     constexpr double fastest = 0.2;          // m/s: no faster than this
     constexpr double forgotten = 0.2;        // of both radii: at that depth layers of one sheet remember no force
@@ -142,7 +144,7 @@ void PairSprings::add(const Search& search, const Found& found) {
     TouchSpring spring{.node = found.points.node, .weight = found.points.weight, .count = found.points.count};
     std::array<double, 2> mass{};
     const bool is_self = &search.a == &search.b;
-    double give = 0, load = found.memory != nullptr && !is_self ? found.memory->carried : 0;
+    double compliance = 0, load = found.memory != nullptr && !is_self ? found.memory->carried : 0;
     for (int k = 0; k < found.points.count; ++k) {
         const auto at = static_cast<std::size_t>(k);
         const ThinMember& member = search.member_of(found, k);
@@ -150,13 +152,13 @@ void PairSprings::add(const Search& search, const Found& found) {
         const double weight = found.points.weight[at];
         const std::size_t side = k < found.points.count_first ? 0 : 1;
         mass[side] += std::fabs(weight) * member.surface.nodes->mass[node];
-        give += weight * weight * member.surface.nodes->inverse_mass[node];
-        if (std::fabs(weight) > least_weight) load = std::max(load, member.load[node]);
+        compliance += weight * weight * member.surface.nodes->inverse_mass[node];
+        if (std::fabs(weight) > min_weight) load = std::max(load, member.load[node]);
         spring.node[at] = member.first + node;
     }
-    if (give == 0) return;
+    if (compliance == 0) return;
     spring.stiffness = stiffness_factor * std::max({mass[0], mass[1], load}) / (h * h);
-    spring.inertia = 1 / (give * h * h);
+    spring.inertia = 1 / (compliance * h * h);
     spring.normal = found.normal;
     const double gap = found.distance - search.radius;
     spring.gap = gap > 0 ? gap : std::max(recovery * gap, -fastest * h);
@@ -229,9 +231,9 @@ void PairSprings::begin(std::span<const ThinMember> members, std::span<const Thi
     }
 }
 
-bool PairSprings::choose(std::span<const Vec3> moves, bool is_foretold) {
+bool PairSprings::choose(std::span<const Vec3> moves, bool is_predicted) {
     SpringChange sum;
-    for (TouchSpring& spring : springs_) choose_contact(spring, spring.lead(moves, {}), is_foretold, sum);
+    for (TouchSpring& spring : springs_) choose_contact(spring, spring.lead(moves, {}), is_predicted, sum);
     return sum.change > tolerance * sum.acting;
 }
 

@@ -50,7 +50,7 @@ public:
     void begin(std::span<const ThinMember> members, std::span<const ThinPair> pairs, const ThinContacts& memories,
                double h, double gravity);
     /// As TouchSprings::choose(), for moves of all nodes.
-    bool choose(std::span<const Vec3> moves, bool is_foretold);
+    bool choose(std::span<const Vec3> moves, bool is_predicted);
     /// Adds the forces of the springs to `given` (N), by node, and remembers.
     void finish(std::span<const Vec3> moves, std::span<Vec3> given, ThinContacts& memories);
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_; }

@@ -64,10 +64,10 @@ void match(const SweptFeatures& first, const SweptFeatures& second, ThinFeature 
     BoxGrid grid;
     grid.fill(second.box, second.usual_size);
     std::vector<std::vector<ThinCandidate>> found(static_cast<std::size_t>(std::max(1, workers.workers())));
-    share_among(workers, first.box.size(), first.box.size() >= 1000, [&](int worker, Share share) {
+    parallel_for(workers, first.box.size(), first.box.size() >= 1000, [&](int worker, IndexRange range) {
         std::vector<ThinCandidate>& own = found[static_cast<std::size_t>(worker)];
         std::vector<std::uint32_t> others;
-        for (std::size_t i = share.first; i < share.last; ++i) {
+        for (std::size_t i = range.first; i < range.last; ++i) {
             others.clear();
             grid.visit(first.box[i], [&](std::uint32_t k) {
                 if (overlaps(first.box[i], second.box[k])) others.push_back(second.feature[k]);

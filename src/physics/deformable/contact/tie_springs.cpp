@@ -30,14 +30,14 @@ void TieSprings::begin(std::span<const PlacedTie> ties, double h, double gravity
         const Tie& tie = *placed.tie;
         TouchSpring spring = spring_of(placed);
         Vec3 apart = placed.own->position[tie.node];
-        double mass = 0, give = placed.own->inverse_mass[tie.node];
+        double mass = 0, compliance = placed.own->inverse_mass[tie.node];
         for (std::size_t k = 0; k < 3; ++k) {
             if (tie.weight[k] == 0) continue;
             apart -= tie.weight[k] * placed.other->position[tie.other_nodes[k]];
             mass += tie.weight[k] * placed.other->mass[tie.other_nodes[k]];
-            give += tie.weight[k] * tie.weight[k] * placed.other->inverse_mass[tie.other_nodes[k]];
+            compliance += tie.weight[k] * tie.weight[k] * placed.other->inverse_mass[tie.other_nodes[k]];
         }
-        if (give == 0) continue;
+        if (compliance == 0) continue;
         const double most = recovery_speed * h, distance = length(apart);
         if (distance > most) apart *= most / distance;
         spring.stiffness =

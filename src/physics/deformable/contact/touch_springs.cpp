@@ -22,8 +22,8 @@ void begin_recovery(TouchSpring& spring, const TouchedBody& body, double h) {
     spring.friction = {};
     spring.stiffness = stiffness_factor * spring.inertia;
     const Vec3 turning = cross(spring.arm, spring.normal);
-    const double body_give = body.inverse_mass + dot(turning, body.inverse_inertia * turning);  // 1/kg
-    if (body_give > 0) spring.stiffness = std::min(spring.stiffness, recovery_factor / (body_give * h * h));
+    const double body_compliance = body.inverse_mass + dot(turning, body.inverse_inertia * turning);  // 1/kg
+    if (body_compliance > 0) spring.stiffness = std::min(spring.stiffness, recovery_factor / (body_compliance * h * h));
     spring.gap = -recovery_speed * h - dot(spring.carried, spring.normal);
 }
 
@@ -31,7 +31,7 @@ void begin_recovery(TouchSpring& spring, const TouchedBody& body, double h) {
 // can only stop what slides; where the slip is so long that friction cannot end it in this substep, the limit itself.
 // Expected of what stuck is what the point would do alone with the limit instead of the larger force that it had. What
 // stuck in the last substep does so up to the static limit. Returns by how much the force is another than before, N.
-double choose_friction(TouchSpring& spring, Vec3 s, double load, bool is_foretold) {
+double choose_friction(TouchSpring& spring, Vec3 s, double load, bool is_predicted) {
     double limit = spring.friction.coefficient(spring.sticks) * load;
     const Mat3 plane = Mat3::identity() - outer(spring.normal, spring.normal);
     const Vec3 loose = spring.hold - across(spring.carried, spring.normal);  // stretch with s = 0
@@ -39,29 +39,29 @@ double choose_friction(TouchSpring& spring, Vec3 s, double load, bool is_foretol
     const double size = length(stretch);
     const double excess = length(force) - limit;
     const bool has_stuck = length(force) > 0.99 * spring.stiffness * size;
-    const double expected = !is_foretold && has_stuck && excess > 0 ? size + excess / spring.inertia : size;
+    const double expected = !is_predicted && has_stuck && excess > 0 ? size + excess / spring.inertia : size;
     const bool sticks = limit > 0 && spring.stiffness * expected <= limit;
     if (!sticks) limit = spring.friction.sliding * load;
     const double tangent = sticks ? spring.stiffness : limit > 0 ? limit / expected : 0;
     spring.matrix = tangent * plane;
     spring.load = -tangent * loose;
     if (!sticks && spring.inertia * expected > 2 * limit && size > 0) {
-        const Vec3 way = stretch / size;
-        spring.load -= (limit - tangent * dot(way, loose)) * way;
-        spring.matrix = spring.matrix - tangent * outer(way, way);
+        const Vec3 displacement = stretch / size;
+        spring.load -= (limit - tangent * dot(displacement, loose)) * displacement;
+        spring.matrix = spring.matrix - tangent * outer(displacement, displacement);
     }
     return length(force - (spring.load - spring.matrix * s));
 }
 
 }  // namespace
 
-void choose_contact(TouchSpring& spring, Vec3 s, bool is_foretold, SpringChange& sum) {
+void choose_contact(TouchSpring& spring, Vec3 s, bool is_predicted, SpringChange& sum) {
     const double push_before = dot(spring.pull, spring.normal);
     const double depth = -(spring.gap + dot(spring.normal, s)), push = push_before + spring.stiffness * depth;
     const bool is_new = !spring.acts;
     if (is_new != (push <= 0)) sum.change += std::fabs(push);
     // What pushed in the last substep is let go by a solve alone: the stiff spring calls every breath a leave.
-    spring.acts = push > 0 || (is_foretold && push_before > 0);
+    spring.acts = push > 0 || (is_predicted && push_before > 0);
     // Of what does not touch, as much as it would take to bring it there alone.
     sum.near += spring.acts ? std::fabs(push) : std::min(std::fabs(push), spring.inertia * std::fabs(depth));
     if (!spring.acts) {
@@ -71,8 +71,8 @@ void choose_contact(TouchSpring& spring, Vec3 s, bool is_foretold, SpringChange&
     }
     sum.acting += std::fabs(push);
     // How deep something came that was not held back tells what it takes to stop it, not what the spring would push.
-    const double expected = is_foretold ? push_before : is_new ? push_before + spring.inertia * depth : push;
-    sum.change += choose_friction(spring, s, expected, is_foretold);
+    const double expected = is_predicted ? push_before : is_new ? push_before + spring.inertia * depth : push;
+    sum.change += choose_friction(spring, s, expected, is_predicted);
     spring.matrix += spring.stiffness * outer(spring.normal, spring.normal);
     spring.load += (push_before - spring.stiffness * spring.gap) * spring.normal;
 }
@@ -131,8 +131,9 @@ double energy_of(const BodyInertia& inertia, const BodyMove& move) {
     return inertia.mass / 2 * length_squared(move.shift) + 0.5 * dot(move.turn, inertia.inertia * move.turn);
 }
 
-std::vector<double> shares_of(std::span<const TouchSpring> springs, std::span<const Vec3> node_moves,
-                              std::span<const BodyMove> body_moves, std::span<const BodyInertia> inertias, double h) {
+std::vector<double> fractions_of(std::span<const TouchSpring> springs, std::span<const Vec3> node_moves,
+                                 std::span<const BodyMove> body_moves, std::span<const BodyInertia> inertias,
+                                 double h) {
     constexpr double most = 4;         // times the energy that the body's move takes
     constexpr double slow_push = 0.5;  // m/s: what speeds it up by less does no harm
     std::vector<BodyMove> pushes(inertias.size());
@@ -142,7 +143,7 @@ std::vector<double> shares_of(std::span<const TouchSpring> springs, std::span<co
         pushes[spring.body].shift -= force;
         pushes[spring.body].turn -= cross(spring.arm, force);
     }
-    std::vector<double> shares(inertias.size(), 1);
+    std::vector<double> fractions(inertias.size(), 1);
     for (std::size_t b = 0; b < inertias.size(); ++b) {
         if (!inertias[b].moves) continue;
         const auto& [force, torque] = pushes[b];
@@ -150,9 +151,9 @@ std::vector<double> shares_of(std::span<const TouchSpring> springs, std::span<co
                               0.5 * dot(torque, inverse_or_zero(inertias[b].inertia) * torque);
         const double moved = energy_of(inertias[b], body_moves[b]);
         const double small = 0.5 * inertias[b].mass * slow_push * slow_push * h * h;
-        if (pushed > most * moved + small) shares[b] = std::sqrt(moved / pushed);
+        if (pushed > most * moved + small) fractions[b] = std::sqrt(moved / pushed);
     }
-    return shares;
+    return fractions;
 }
 
 bool TouchSprings::recall(const TouchedBody& body, TouchSpring& spring) const {
@@ -184,7 +185,7 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
     const Place& place = places_[plane.body];
     Vec3 point, velocity;
     bool is_free = false;
-    double give = 0;  // 1/kg
+    double compliance = 0;  // 1/kg
     for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k) {
         const std::uint32_t node = spring.node[k];
         point += spring.weight[k] * nodes.position[node];
@@ -192,7 +193,7 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
         if (!node_stiffness.empty())
             spring.stiffness = std::max(spring.stiffness, stiffness_factor * node_stiffness[node]);
         spring.inertia += spring.weight[k] * nodes.mass[node] / (substep.h * substep.h);
-        give += spring.weight[k] * spring.weight[k] * nodes.inverse_mass[node];
+        compliance += spring.weight[k] * spring.weight[k] * nodes.inverse_mass[node];
         is_free |= nodes.inverse_mass[node] > 0;
     }
     spring.body = plane.body;
@@ -205,11 +206,11 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
     if (!is_free || spring.gap > reach) return;
     spring.arm += across(offset, spring.normal);
     spring.friction = friction_between(material, body.material, *substep.surface_pairs);
-    spring.carried = place.way_of(spring.arm) + substep.h * plane.velocity;
+    spring.carried = place.displacement_of(spring.arm) + substep.h * plane.velocity;
     const double gap_at_start = spring.gap + dot(spring.carried, spring.normal);
     const double came_in = std::max(0.0, dot(spring.carried - substep.h * velocity, spring.normal));
     const bool is_known = recall(body, spring);
-    if (node_stiffness.empty()) soften(substep, give, body.inverse_mass > 0, spring);
+    if (node_stiffness.empty()) soften(substep, compliance, body.inverse_mass > 0, spring);
     if (!is_known && gap_at_start < -recovery_speed * substep.h - came_in) {
         if (std::ranges::find(attachment_bodies, plane.body) != attachment_bodies.end()) return;
         begin_recovery(spring, body, substep.h);
@@ -219,12 +220,12 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
 
 // As between sheets (pair_springs.cpp): by inertia and by that of what weighs on it. That of a body would ask for
 // stiffer springs than these: with memory they would swing up, so they have none.
-void TouchSprings::soften(const Substep& substep, double give, bool is_with_body, TouchSpring& spring) {
+void TouchSprings::soften(const Substep& substep, double compliance, bool is_with_body, TouchSpring& spring) {
     if (is_with_body) spring.pull = spring.hold = {};
     const double g = length(substep.gravity), squared = substep.h * substep.h;
     const double carried = g > 0 ? length(spring.pull) / g : 0;
     spring.stiffness = std::max(stiffness_factor * spring.inertia, load_factor * carried / squared);
-    spring.inertia = 1 / (give * squared);
+    spring.inertia = 1 / (compliance * squared);
     spring.gap = std::max(spring.gap, -recovery_speed * substep.h);
 }
 
@@ -249,7 +250,7 @@ void TouchSprings::add(const Nodes& nodes, const SegmentContact& contact, std::s
 TouchSprings::Place TouchSprings::place_of(const TouchedBody& body, const Substep& substep) {
     const double end = substep.time + substep.h;
     Place place{body.center_at(end), body.rotation_at(end)};
-    place.way = place.center - body.center_before(substep.h, end);
+    place.displacement = place.center - body.center_before(substep.h, end);
     place.back = body.rotation_before(substep.h, end) * transpose(place.rotation);
     return place;
 }
@@ -285,7 +286,7 @@ void TouchSprings::begin(const Nodes& nodes, std::span<const NodeContact> contac
     }
 }
 
-bool TouchSprings::choose(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, bool is_foretold) {
+bool TouchSprings::choose(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, bool is_predicted) {
     SpringChange sum;
     for (TouchSpring& spring : springs_) {
         if (spring.is_attachment) {
@@ -294,7 +295,7 @@ bool TouchSprings::choose(std::span<const Vec3> node_moves, std::span<const Body
             spring.load = spring.pull - spring.stiffness * spring.carried;
             continue;
         }
-        choose_contact(spring, spring.lead(node_moves, body_moves), is_foretold, sum);
+        choose_contact(spring, spring.lead(node_moves, body_moves), is_predicted, sum);
     }
     return sum.change > tolerance * sum.near;
 }
@@ -313,7 +314,7 @@ bool TouchSprings::stop(TouchSpring& spring, std::span<Vec3> node_moves, std::sp
 }
 
 void TouchSprings::finish(std::span<Vec3> node_moves, std::span<const BodyMove> body_moves, const Substep& substep,
-                          std::span<TouchedBody> bodies, std::span<const double> shares) {
+                          std::span<TouchedBody> bodies, std::span<const double> fractions) {
     memory_.clear();
     for (TouchSpring& spring : springs_) {
         if (spring.acts)
@@ -321,7 +322,7 @@ void TouchSprings::finish(std::span<Vec3> node_moves, std::span<const BodyMove> 
         else if (!stop(spring, node_moves, body_moves))
             continue;
         if (spring.body == no_body) continue;
-        if (!shares.empty()) spring.felt *= shares[spring.body];
+        if (!fractions.empty()) spring.felt *= fractions[spring.body];
         const Vec3 s = spring.lead(node_moves, body_moves), force = spring.felt;
         bodies[spring.body].push(-substep.h * force, spring.arm, substep.h);
         if (spring.is_recovery) continue;

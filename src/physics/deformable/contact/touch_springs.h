@@ -104,17 +104,17 @@ double energy_pressed(const TouchSpring& spring, std::span<const Vec3> node_move
 /// Of each body, how much of what the springs push it for these moves it may get: 1 where it goes by that as the solve
 /// has it in the substep of h seconds, less where a solve that has not come to its end left stiff springs with far
 /// more.
-std::vector<double> shares_of(std::span<const TouchSpring> springs, std::span<const Vec3> node_moves,
-                              std::span<const BodyMove> body_moves, std::span<const BodyInertia> inertias, double h);
+std::vector<double> fractions_of(std::span<const TouchSpring> springs, std::span<const Vec3> node_moves,
+                                 std::span<const BodyMove> body_moves, std::span<const BodyInertia> inertias, double h);
 
 /// How much of contacts' forces has changed, N, beside those of contacts that act, and those that all that are near
 /// would have: the finer and the coarser measure.
 struct SpringChange {
     double change = 0, acting = 0, near = 0;
 };
-/// Whether a contact acts, and how its friction does, for that lead (m). `is_foretold`: of moves by inertia alone, no
+/// Whether a contact acts, and how its friction does, for that lead (m). `is_predicted`: of moves by inertia alone, no
 /// measure of forces: those of the last substep are.
-void choose_contact(TouchSpring& spring, Vec3 s, bool is_foretold, SpringChange& sum);
+void choose_contact(TouchSpring& spring, Vec3 s, bool is_predicted, SpringChange& sum);
 /// After a substep: what is left of a tangential stretch (m) that the contact cannot hold with that push (N); notes
 /// whether it sticks. `h`: of the substep, s.
 Vec3 held_stretch(TouchSpring& spring, Vec3 stretch, double push, double h);
@@ -143,14 +143,14 @@ public:
     void add(const Nodes& nodes, const SheetContact& contact, std::span<const TouchedBody> bodies,
              const Substep& substep);
     /// Which springs act, and how friction does, for these moves. True where that has changed by more than a solve is
-    /// worth. `is_foretold`: as of choose_contact().
-    bool choose(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, bool is_foretold);
+    /// worth. `is_predicted`: as of choose_contact().
+    bool choose(std::span<const Vec3> node_moves, std::span<const BodyMove> body_moves, bool is_predicted);
     /// Goes on with what the contacts of another deformable of as many nodes felt last.
     void go_on_from(const TouchSprings& other) { memory_ = other.memory_; }
     /// Pushes the bodies, and remembers. Changes moves of nodes that came in where no spring acted. `shares`: as of
-    /// shares_of(), or none.
+    /// fractions_of(), or none.
     void finish(std::span<Vec3> node_moves, std::span<const BodyMove> body_moves, const Substep& substep,
-                std::span<TouchedBody> bodies, std::span<const double> shares = {});
+                std::span<TouchedBody> bodies, std::span<const double> fractions = {});
 
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_; }
 
@@ -170,16 +170,16 @@ private:
     struct Place {
         Vec3 center;
         Mat3 rotation;
-        Vec3 way;                      // of the centre in the substep, m
+        Vec3 displacement;             // of the centre in the substep, m
         Mat3 back = Mat3::identity();  // what turns directions of its end to those of its start
         /// How far the point that is there then goes in the substep, m.
-        [[nodiscard]] Vec3 way_of(Vec3 arm) const { return way + arm - back * arm; }
+        [[nodiscard]] Vec3 displacement_of(Vec3 arm) const { return displacement + arm - back * arm; }
     };
     static Place place_of(const TouchedBody& body, const Substep& substep);
     // Of a contact at a point, once its nodes and weights are known. Without stiffness of nodes: by inertia and load.
     void complete(const Nodes& nodes, const NodeContact& plane, std::span<const TouchedBody> bodies,
                   const Substep& substep, std::span<const double> node_stiffness, TouchSpring& spring);
-    static void soften(const Substep& substep, double give, bool is_with_body, TouchSpring& spring);
+    static void soften(const Substep& substep, double compliance, bool is_with_body, TouchSpring& spring);
     [[nodiscard]] bool is_attached(std::uint32_t node, std::uint32_t body) const;
     // False where the contact is new.
     bool recall(const TouchedBody& body, TouchSpring& spring) const;

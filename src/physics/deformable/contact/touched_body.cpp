@@ -9,7 +9,7 @@ Mat3 TouchedBody::rotation_on_path(double time, Vec3 off) const {
     return to_matrix(cayley(time * path_turn + bend(time) * path_spin_up + off));
 }
 
-Vec3 TouchedBody::way(double h, double time, Vec3 arm) const {
+Vec3 TouchedBody::displacement(double h, double time, Vec3 arm) const {
     const double off = time - (step_time + h) / 2;
     const Vec3 linear = path_velocity + off * path_acceleration + velocity;
     const Vec3 angular = path_spin + off * path_spin_up + spin;

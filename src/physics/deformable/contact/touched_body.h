@@ -53,7 +53,7 @@ struct TouchedBody {
         return rotation_on_path(time - h, turn - h * spin);
     }
     /// How far the point at `arm` from its centre goes in the substep of h seconds that ends at `time`, m.
-    [[nodiscard]] Vec3 way(double h, double time, Vec3 arm) const;
+    [[nodiscard]] Vec3 displacement(double h, double time, Vec3 arm) const;
     /// Moves it into a substep of h seconds: takes off what the path has in it already, goes on with the rest.
     void enter_substep(double h);
     /// After the last of `substeps`, before those that push it once for the whole step: what comes back at once moves

@@ -21,11 +21,11 @@ namespace {
 
 constexpr double turn_around = 2 * 3.14159265358979323846;
 constexpr std::uint32_t other_holder = 0xFFFFFFFEu;  // the slot of no body: the angle alone is known
-constexpr double most_folded = 0.02;  // 1 + a·b where curvature ends to grow: folded back by 168 degrees
+constexpr double max_folded = 0.02;  // 1 + a·b where curvature ends to grow: folded back by 168 degrees
 
 double one_plus_cosine(Vec3 a, Vec3 b, double least) { return std::max(1 + dot(a, b), least); }
 
-Vec3 curvature_of(Vec3 a, Vec3 b) { return (2 / one_plus_cosine(a, b, most_folded)) * cross(a, b); }
+Vec3 curvature_of(Vec3 a, Vec3 b) { return (2 / one_plus_cosine(a, b, max_folded)) * cross(a, b); }
 
 // By the smallest turn that takes the unit vector a to b.
 Vec3 carried(Vec3 v, Vec3 a, Vec3 b) {
@@ -107,7 +107,7 @@ void RopeClamps::find_bends(const Start& start, std::span<const Frame> at_start)
             const std::size_t s = next - 1;
             HalfBend bend{i, s, start.rope.bend_rigidity / (start.segments[s].length / 2)};
             const Vec3 edge = start.nodes.position[s + 1] - start.nodes.position[s];
-            bend.start = direction_of(edge, start.segments[s].length).way - at_start[i].axis;
+            bend.start = direction_of(edge, start.segments[s].length).displacement - at_start[i].axis;
             bend.damping =
                 damping_of_growth(bend.start, bend.stiffness * start.rope.rayleigh_damping / start.substep.h);
             bends_.push_back(bend);
@@ -156,13 +156,13 @@ void RopeClamps::begin(const Start& start) {
 
 double RopeClamps::read_angle(std::size_t from_node, std::size_t to_node, const Frame& from, const Frame& to,
                               std::span<const Vec3> places) const {
-    Vec3 way = from.axis, side = from.side;
+    Vec3 displacement = from.axis, side = from.side;
     for (std::size_t s = from_node; s < to_node; ++s) {
-        const Vec3 next = normalized(places[s + 1] - places[s], way);
-        side = carried(side, way, next);
-        way = next;
+        const Vec3 next = normalized(places[s + 1] - places[s], displacement);
+        side = carried(side, displacement, next);
+        displacement = next;
     }
-    side = carried(side, way, to.axis);
+    side = carried(side, displacement, to.axis);
     return arc_tangent(dot(cross(side, to.side), to.axis), dot(side, to.side));
 }
 
@@ -178,7 +178,7 @@ double RopeClamps::angle_of(const Span& span, std::span<const Vec3> places,
 Vec3 RopeClamps::turn_of(const HalfBend& bend, std::span<const Vec3> places,
                          std::span<const BodyMove> body_moves) const {
     const Vec3 edge = places[bend.segment + 1] - places[bend.segment];
-    return direction_of(edge, lengths_[bend.segment]).way - frame_of(held_[bend.held], body_moves).axis;
+    return direction_of(edge, lengths_[bend.segment]).displacement - frame_of(held_[bend.held], body_moves).axis;
 }
 
 RopeClamps::Bow RopeClamps::bow_of(const Span& span, std::span<const Vec3> places,
@@ -190,7 +190,7 @@ RopeClamps::Bow RopeClamps::bow_of(const Span& span, std::span<const Vec3> place
         bow.directions.push_back(direction_of(places[s + 1] - places[s], lengths_[s]));
     bow.directions.push_back({frame_of(to, body_moves).axis, Mat3::zero()});
     for (std::size_t i = 1; i < bow.directions.size(); ++i)
-        bow.curvature.push_back(curvature_of(bow.directions[i - 1].way, bow.directions[i].way));
+        bow.curvature.push_back(curvature_of(bow.directions[i - 1].displacement, bow.directions[i].displacement));
     return bow;
 }
 
@@ -205,11 +205,11 @@ TwistMode RopeClamps::mode_of(const Span& span, const Bow& bow) const {
         Vec3 by_direction;
         if (i > 0) by_direction += 0.5 * bow.curvature[i - 1];
         if (i < last) by_direction += 0.5 * bow.curvature[i];
-        const Vec3 way = bow.directions[i].way;
+        const Vec3 displacement = bow.directions[i].displacement;
         if (i == 0) {
-            mode.by_turn[0] = cross(way, by_direction) - way;
+            mode.by_turn[0] = cross(displacement, by_direction) - displacement;
         } else if (i == last) {
-            mode.by_turn[1] = cross(way, by_direction) + way;
+            mode.by_turn[1] = cross(displacement, by_direction) + displacement;
         } else {
             const Vec3 by_end = transpose(bow.directions[i].by_end) * by_direction;
             mode.by_node[from.clamp.node + i] += by_end;
@@ -225,7 +225,7 @@ void RopeClamps::add_curvature(const HalfBend& bend, std::span<const Vec3> place
     const std::size_t s = bend.segment;
     const Held& held = held_[bend.held];
     const SegmentDirection direction = direction_of(places[s + 1] - places[s], lengths_[s]);
-    const Vec3 axis = frame_of(held, body_moves).axis, turn = direction.way - axis;
+    const Vec3 axis = frame_of(held, body_moves).axis, turn = direction.displacement - axis;
     const Mat3 stiffness = bend.stiffness * Mat3::identity() + bend.damping;
     const Mat3 by_turn = skew(axis), by_end = direction.by_end;
     Vec3 moved = by_end * (moves[s + 1] - moves[s]);
@@ -253,11 +253,14 @@ void RopeClamps::add_curvature(const Span& span, const Bow& bow, std::span<const
     for (std::size_t c = 0; c < bow.curvature.size(); ++c) {
         const SegmentDirection &a = bow.directions[c], &b = bow.directions[c + 1];
         const Vec3 bend = bow.curvature[c];
-        const Vec3 middle = (a.way + b.way) / one_plus_cosine(a.way, b.way, most_folded);
+        const Vec3 middle =
+            (a.displacement + b.displacement) / one_plus_cosine(a.displacement, b.displacement, max_folded);
         const Mat3 pair = symmetric(outer(bend, middle));
         // Edges that are directions of clamps do not move with nodes: their by_end is zero.
-        const Mat3 own_a = a.by_end * pair * a.by_end + 2.0 * symmetric(outer(a.by_end * (a.by_end * bend), a.way));
-        const Mat3 own_b = b.by_end * pair * b.by_end + 2.0 * symmetric(outer(b.by_end * (b.by_end * bend), b.way));
+        const Mat3 own_a =
+            a.by_end * pair * a.by_end + 2.0 * symmetric(outer(a.by_end * (a.by_end * bend), a.displacement));
+        const Mat3 own_b =
+            b.by_end * pair * b.by_end + 2.0 * symmetric(outer(b.by_end * (b.by_end * bend), b.displacement));
         const Mat3 mixed = a.by_end * (pair - skew(middle)) * b.by_end;
         const std::array<double, 3> by_a{-1, 1, 0}, by_b{0, -1, 1};
         for (std::size_t r = 0; r < 3; ++r) {
@@ -290,7 +293,7 @@ void RopeClamps::add(std::span<const Vec3> places, std::span<const Vec3> moves, 
     }
 }
 
-void RopeClamps::foretell(std::span<const double> moments) {
+void RopeClamps::predict(std::span<const double> moments) {
     for (std::size_t i = 0; i < spans_.size(); ++i) spans_[i].moment = moments[i];
 }
 

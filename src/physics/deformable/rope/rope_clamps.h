@@ -34,8 +34,8 @@ public:
     /// positive definite only as far as the rope bears them.
     void add(std::span<const Vec3> places, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
              bool with_curvature, RopeSystem& system) const;
-    /// Of the twists, as a solve has foretold them, N m.
-    void foretell(std::span<const double> moments);
+    /// Of the twists, as a solve has predicted them, N m.
+    void predict(std::span<const double> moments);
     /// Elastic energy and damping, J.
     [[nodiscard]] double energy(std::span<const Vec3> places, std::span<const BodyMove> body_moves) const;
     /// Pushes the bodies, and remembers.
@@ -64,7 +64,7 @@ private:
         std::size_t from = 0, to = 0;       // indices of held_
         double stiffness = 0, damping = 0;  // GJ / L, N m/rad; the same of the change in the substep
         double straight = 0;                // what the angle is read as without twist, rad
-        double angle = 0, moment = 0;       // when the substep began; as foretold, N m
+        double angle = 0, moment = 0;       // when the substep began; as predicted, N m
     };
     // What is kept of a span from substep to substep.
     struct Memory {

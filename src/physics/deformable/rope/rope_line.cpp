@@ -63,7 +63,7 @@ RopeLine::Bend RopeLine::bend_at(std::size_t node, std::span<const Vec3> positio
     const SegmentDirection after = direction_of(e1, segments_[node].length);
     bend.is_whole = true;
     bend.stiffness = rope_.bend_rigidity / ((segments_[node - 1].length + segments_[node].length) / 2);
-    bend.turn = after.way - before.way;
+    bend.turn = after.displacement - before.displacement;
     bend.by_node = {before.by_end, -1.0 * (before.by_end + after.by_end), after.by_end};
     return bend;
 }
@@ -95,15 +95,15 @@ void RopeLine::add_stretch(std::size_t segment, double h) {
     const Vec3 edge = places_[b] - places_[a];
     const double now = length(edge);
     const Tension tension = damped_tension_at(segment, now, h);
-    const Vec3 way = normalized(edge, {1, 0, 0});
+    const Vec3 displacement = normalized(edge, {1, 0, 0});
     // (EA/l₀) t tᵀ + (T/l)(1 - t tᵀ); a pressed segment buckles, which is left to the forces. T is what the last round
-    // foretold, not what its nodes' places say: those it has moved by d across, which lengthens the segment by d²/2l.
+    // predicted, not what its nodes' places say: those it has moved by d across, which lengthens the segment by d²/2l.
     const double across = std::max(pulls_[segment], 0.0) / std::max(now, 1e-12);
-    const Mat3 stiffness = (tension.slope - across) * outer(way, way) + across * Mat3::identity();
+    const Mat3 stiffness = (tension.slope - across) * outer(displacement, displacement) + across * Mat3::identity();
     system_.band.add(a, a, stiffness);
     system_.band.add(b, b, stiffness);
     system_.band.add(b, a, -1.0 * stiffness);
-    const Vec3 force = tension.force * way + stiffness * (moves_[a] - moves_[b]);
+    const Vec3 force = tension.force * displacement + stiffness * (moves_[a] - moves_[b]);
     system_.rhs[a] += force;
     system_.rhs[b] -= force;
 }
@@ -179,7 +179,7 @@ double RopeLine::merit(const Substep& substep, std::span<const BodyInertia> iner
     return sum + clamps_.energy(at, body_moves);
 }
 
-void RopeLine::foretell(const Substep& substep, std::span<const Vec3> from, std::span<const Vec3> to) {
+void RopeLine::predict(const Substep& substep, std::span<const Vec3> from, std::span<const Vec3> to) {
     for (std::size_t s = 0; s < segments_.size(); ++s) {
         const Vec3 edge = places_[s + 1] - places_[s], moved = to[s + 1] - from[s + 1] - to[s] + from[s];
         pulls_[s] = damped_tension_at(s, length(edge) + dot(normalized(edge, {1, 0, 0}), moved), substep.h).force;
@@ -191,16 +191,16 @@ bool RopeLine::take_step(const Substep& substep, std::span<const BodyInertia> in
     const std::vector<Vec3> from = moves_, full = next_moves_;
     const std::vector<BodyMove> body_from = body_moves_, body_full = next_body_moves_;
     const double before = merit(substep, inertias, from, body_from);
-    for (double share = 1; share > 1e-3; share /= 2) {
-        for (std::size_t i = 0; i < from.size(); ++i) moves_[i] = from[i] + share * (full[i] - from[i]);
+    for (double fraction = 1; fraction > 1e-3; fraction /= 2) {
+        for (std::size_t i = 0; i < from.size(); ++i) moves_[i] = from[i] + fraction * (full[i] - from[i]);
         for (std::size_t b = 0; b < body_from.size(); ++b) {
-            body_moves_[b].shift = body_from[b].shift + share * (body_full[b].shift - body_from[b].shift);
-            body_moves_[b].turn = body_from[b].turn + share * (body_full[b].turn - body_from[b].turn);
+            body_moves_[b].shift = body_from[b].shift + fraction * (body_full[b].shift - body_from[b].shift);
+            body_moves_[b].turn = body_from[b].turn + fraction * (body_full[b].turn - body_from[b].turn);
         }
         const double after = merit(substep, inertias, moves_, body_moves_);
         if (!std::isfinite(after)) continue;
         if (after <= before + 1e-9 * std::fabs(before)) {
-            foretell(substep, from, moves_);
+            predict(substep, from, moves_);
             return true;
         }
     }
@@ -224,7 +224,7 @@ void RopeLine::assemble(const Substep& substep, bool with_curvature) {
 
 // One linear solve with springs, touched bodies and twists. Past the moments that the bent rope bears, without how they
 // press it sideways: that is left to the forces.
-bool RopeLine::solve_round(const Substep& substep, std::span<const BodyInertia> inertias) {
+bool RopeLine::solve_iteration(const Substep& substep, std::span<const BodyInertia> inertias) {
     next_body_moves_ = body_moves_;
     std::vector<TouchSpring> all;
     if (!held_.empty()) {
@@ -240,12 +240,12 @@ bool RopeLine::solve_round(const Substep& substep, std::span<const BodyInertia> 
         assemble(substep, false);
         if (!solve()) return false;
     }
-    clamps_.foretell(moments_);
+    clamps_.predict(moments_);
     return true;
 }
 
 bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> bodies) {
-    constexpr int most_rounds = 12;
+    constexpr int max_iterations = 12;
     constexpr double small = 1e-4;  // of a segment's length
     const std::vector<BodyInertia> inertias = inertias_of(bodies, substep.h);
     TouchSprings chosen = springs_;
@@ -260,10 +260,10 @@ bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> 
     std::vector<Vec3> best_moves = moves_;
     std::vector<BodyMove> best_body_moves = body_moves_;
     double least = merit_pressed(substep, inertias);
-    for (rounds_ = 1;; ++rounds_) {
+    for (iterations_ = 1;; ++iterations_) {
         springs_ = chosen;
-        if (rounds_ > 1) assemble(substep);
-        if (!solve_round(substep, inertias)) return false;
+        if (iterations_ > 1) assemble(substep);
+        if (!solve_iteration(substep, inertias)) return false;
         const std::vector<Vec3> before = moves_;
         if (!take_step(substep, inertias)) return false;
         double change = 0;
@@ -277,12 +277,12 @@ bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> 
             least = left;
             best_moves = moves_;
             best_body_moves = body_moves_;
-        } else if (rounds_ == most_rounds) {
+        } else if (iterations_ == max_iterations) {
             moves_ = best_moves;
             body_moves_ = best_body_moves;
             springs_.choose(moves_, body_moves_, false);
         }
-        if (rounds_ == most_rounds) return true;
+        if (iterations_ == max_iterations) return true;
     }
 }
 
@@ -352,14 +352,14 @@ void RopeLine::advance(const Substep& substep, std::span<const NodeContact> cont
     held_.assign(held.begin(), held.end());
     begin(substep, contacts, segment_contacts, attachment_bodies, bodies);
     if (!solve_moves(substep, bodies)) return freeze();
-    std::vector<double> shares;
+    std::vector<double> fractions;
     if (!clamps_.holds_any())
-        shares = shares_of(springs_.springs(), moves_, body_moves_, inertias_of(bodies, substep.h), substep.h);
-    end(substep, moves_, body_moves_, {}, bodies, shares);
+        fractions = fractions_of(springs_.springs(), moves_, body_moves_, inertias_of(bodies, substep.h), substep.h);
+    end(substep, moves_, body_moves_, {}, bodies, fractions);
 }
 
 void RopeLine::end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
-                   std::span<const Vec3> given, std::span<TouchedBody> bodies, std::span<const double> shares) {
+                   std::span<const Vec3> given, std::span<TouchedBody> bodies, std::span<const double> fractions) {
     new_breaks_.clear();
     if (is_frozen_) return;
     const std::size_t count = nodes_.size();
@@ -375,7 +375,7 @@ void RopeLine::end(const Substep& substep, std::span<const Vec3> moves, std::spa
         keep_momenta(nodes_, all, substep.h, moves_);
     }
     held_.clear();
-    springs_.finish(moves_, body_moves, substep, bodies, shares);
+    springs_.finish(moves_, body_moves, substep, bodies, fractions);
     if (clamps_.holds_any()) {
         for (std::size_t i = 0; i < count; ++i) places_[i] = nodes_.position[i] + moves_[i];
         clamps_.finish(places_, body_moves, substep.h, bodies);

@@ -34,11 +34,11 @@ public:
     /// What the solve minimises of the rope alone, without springs and clamps, J.
     [[nodiscard]] double energy(const Substep& substep, std::span<const Vec3> moves) const;
     /// What its segments pull with where the solve about the moves `from` goes to `to`: for the next linearize().
-    void foretell(const Substep& substep, std::span<const Vec3> from, std::span<const Vec3> to);
+    void predict(const Substep& substep, std::span<const Vec3> from, std::span<const Vec3> to);
     /// Goes by these moves, which touch() was solved with. `given`: forces on the nodes besides, N; none or one a node.
     /// Pushes the bodies; `shares` as of TouchSprings::finish().
     void end(const Substep& substep, std::span<const Vec3> moves, std::span<const BodyMove> body_moves,
-             std::span<const Vec3> given, std::span<TouchedBody> bodies, std::span<const double> shares);
+             std::span<const Vec3> given, std::span<TouchedBody> bodies, std::span<const double> fractions);
     [[nodiscard]] TouchSprings& touch() { return springs_; }
     [[nodiscard]] bool has_clamps() const { return clamps_.holds_any(); }
     /// Of the first at rest, m.
@@ -71,7 +71,7 @@ public:
     /// True once a number was none: it stays where it last was.
     [[nodiscard]] bool is_frozen() const { return is_frozen_; }
     /// Rounds of Newton's method in the last substep.
-    [[nodiscard]] int rounds() const { return rounds_; }
+    [[nodiscard]] int iterations() const { return iterations_; }
 
 private:
     // How the direction turns at a node, with its derivatives by the three nodes.
@@ -90,7 +90,7 @@ private:
     void assemble(const Substep& substep, bool with_curvature = true);
     void add_stretch(std::size_t segment, double h);
     void add_curvature(std::size_t node);
-    bool solve_round(const Substep& substep, std::span<const BodyInertia> inertias);
+    bool solve_iteration(const Substep& substep, std::span<const BodyInertia> inertias);
     // What the round's step minimises: inertia, elastic energy, damping and springs of these moves, J.
     using SpringEnergy = double (*)(const TouchSpring&, std::span<const Vec3>, std::span<const BodyMove>);
     [[nodiscard]] double merit(const Substep& substep, std::span<const BodyInertia> inertias,
@@ -121,12 +121,12 @@ private:
     std::vector<Vec3> small_load_;       // N
     std::vector<Bend> bends_;            // by node, when the substep began
     std::vector<double> start_lengths_;  // of segments, then, m
-    std::vector<double> pulls_;          // of segments, as the last round foretold them, N
+    std::vector<double> pulls_;          // of segments, as the last round predicted them, N
     std::vector<double> node_stiffness_;
     std::vector<BodyMove> body_moves_, next_body_moves_;
-    std::vector<double> moments_;  // of twists, as the last round foretold them, N m
+    std::vector<double> moments_;  // of twists, as the last round predicted them, N m
     bool is_frozen_ = false;
-    int rounds_ = 0;
+    int iterations_ = 0;
 };
 
 }  // namespace embody::physics::deformable

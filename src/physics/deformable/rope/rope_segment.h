@@ -15,8 +15,8 @@ struct RopeSegment {
 
 /// Which way a segment goes, and how that changes with the place of its end (with that of its start: the opposite).
 struct SegmentDirection {
-    Vec3 way;     ///< unit, shorter where the segment has next to no length
-    Mat3 by_end;  ///< 1/m
+    Vec3 displacement;  ///< unit, shorter where the segment has next to no length
+    Mat3 by_end;        ///< 1/m
 };
 inline SegmentDirection direction_of(Vec3 edge, double rest_length) {
     const double l = std::max(length(edge), 0.01 * rest_length);

@@ -9,7 +9,7 @@ namespace embody::physics::deformable {
 namespace {
 
 constexpr double air_pressure = 101'325;  // Pa, of the standard atmosphere (ISO 2533)
-constexpr double least_share = 0.05;      // of the volume at rest: what is squashed more presses no harder
+constexpr double min_fraction = 0.05;     // of the volume at rest: what is squashed more presses no harder
 
 }  // namespace
 
@@ -33,7 +33,7 @@ void EnclosedGas::measure(std::span<const std::array<std::uint32_t, 3>> surface,
         slope_[face[1]] += ca;
         slope_[face[2]] += ab;
     }
-    volume_ = std::max(volume_, least_share * rest_volume_);
+    volume_ = std::max(volume_, min_fraction * rest_volume_);
 }
 
 // ∫ p₀ (1 - V₀/V) dV

@@ -83,16 +83,16 @@ void NodeCompliance::set_block(std::size_t i, std::size_t j, const Mat3& block) 
 
 void NodeCompliance::complete(const DissectedCholesky& factor, std::span<const std::uint8_t> is_pinned,
                               TaskPool& workers) {
-    constexpr std::size_t worth_sharing = 16;  // new nodes
+    constexpr std::size_t min_parallel_count = 16;  // new nodes
     const std::size_t known = columns_.size(), added = size() - known;
     if (added == 0) return;
     make_room(size());
     columns_.resize(size());
-    share_among(workers, added, added >= worth_sharing, [&](int, Share share) {
-        for (std::size_t k = share.first; k < share.last; ++k) columns_[known + k] = factor.columns(nodes_[known + k]);
+    parallel_for(workers, added, added >= min_parallel_count, [&](int, IndexRange range) {
+        for (std::size_t k = range.first; k < range.last; ++k) columns_[known + k] = factor.columns(nodes_[known + k]);
     });
-    share_among(workers, added, added >= worth_sharing, [&](int, Share share) {
-        for (std::size_t i = known + share.first; i < known + share.last; ++i) {
+    parallel_for(workers, added, added >= min_parallel_count, [&](int, IndexRange range) {
+        for (std::size_t i = known + range.first; i < known + range.last; ++i) {
             for (std::size_t j = 0; j <= i; ++j) {
                 const bool is_held = is_pinned[nodes_[i]] != 0 || is_pinned[nodes_[j]] != 0;
                 set_block(i, j, is_held ? Mat3::zero() : factor.inverse_block(columns_[i], columns_[j]));

@@ -10,10 +10,11 @@ namespace embody::physics::deformable {
 
 namespace {
 
-constexpr int most_rounds = 5, sweeps_a_round = 2, most_leaning_sweeps = 10;
-constexpr double close_enough = 2e-6;   // m: no contact moves by more in the last sweep
-constexpr double small_share = 0.05;    // or by this of what the first sweeps did: forces are kept for the next substep
-constexpr double slid_share = 0.02;     // or by this of the farthest way that two slide or close in the substep
+constexpr int max_iterations = 5, sweeps_a_round = 2, max_leaning_sweeps = 10;
+constexpr double close_enough = 2e-6;  // m: no contact moves by more in the last sweep
+constexpr double small_fraction =
+    0.05;                               // or by this of what the first sweeps did: forces are kept for the next substep
+constexpr double slid_fraction = 0.02;  // or by this of the farthest way that two slide or close in the substep
 constexpr double not_worth_it = 1e-7;   // m: a contact that would move by less is left as it is
 constexpr double recovery_speed = 0.5;  // m/s: what overlaps is parted no faster
 // Of a contact's own compliance along the normal: where contacts say the same of a place, all bear a part.
@@ -56,7 +57,7 @@ void SolidContacts::solve(std::span<SolidContact> contacts, Solids solids, std::
                           double time, TaskPool& workers) {
     gather(contacts, solids, bodies, h, time);
     for (std::size_t s = 0; s < solids.size(); ++s) touched_[s].complete(*solids[s], workers);
-    for (Active& active : active_) find_give(active, h);
+    for (Active& active : active_) find_compliance(active, h);
     find_groups(solids.size(), bodies);
     probe_forces_.assign(bodies.size(), {});
     probe_torques_.assign(bodies.size(), {});
@@ -73,14 +74,14 @@ void SolidContacts::solve(std::span<SolidContact> contacts, Solids solids, std::
 // A group that is most of the work by all workers together, else each by one.
 void SolidContacts::find_forces(double h, TaskPool& workers) {
     if (groups_.empty()) return;
-    std::size_t first_shared = 0;
-    if (2 * groups_[0].active.size() > active_.size()) find_forces(groups_[first_shared++], h, workers);
-    std::atomic<std::size_t> next = first_shared;
+    std::size_t first_parallel = 0;
+    if (2 * groups_[0].active.size() > active_.size()) find_forces(groups_[first_parallel++], h, workers);
+    std::atomic<std::size_t> next = first_parallel;
     const auto work = [&](int) {
         TaskPool alone(1);
         for (std::size_t g = next++; g < groups_.size(); g = next++) find_forces(groups_[g], h, alone);
     };
-    if (groups_.size() > first_shared + 1 && workers.workers() > 1)
+    if (groups_.size() > first_parallel + 1 && workers.workers() > 1)
         workers.run(work);
     else
         work(0);
@@ -143,12 +144,12 @@ void SolidContacts::find_forces(const Group& group, double h, TaskPool& workers)
     double moved = sweeps(), best = moved;
     double slid = 0;
     for (const Active* active : group.active) slid = std::max(slid, length(active->slid));
-    const double enough = std::max({close_enough, small_share * moved, slid_share * slid});
+    const double enough = std::max({close_enough, small_fraction * moved, slid_fraction * slid});
     const auto keep = [&] {
         for (Active* active : group.active) active->best = active->contact->force;
     };
     keep();
-    for (int round = 0; round < most_rounds && moved > enough; ++round) {
+    for (int iteration = 0; iteration < max_iterations && moved > enough; ++iteration) {
         solve_together(group, h, workers);
         moved = sweeps();
         if (!(moved < best)) continue;
@@ -160,14 +161,14 @@ void SolidContacts::find_forces(const Group& group, double h, TaskPool& workers)
         moved = best;
     }
     double last = 0;
-    for (int k = 0; k < most_leaning_sweeps && moved > enough; ++k) {
+    for (int k = 0; k < max_leaning_sweeps && moved > enough; ++k) {
         for (Active* active : group.active) active->before = active->contact->force;
         moved = sweep(group, h, k % 2 == 0);
         double size = 0;
         for (const Active* active : group.active) size += length_squared(active->contact->force - active->before);
         const double factor = k > 0 && size < last ? size / last : 0;
         last = size;
-        if (k + 1 < most_leaning_sweeps && moved > enough) lean_on(group, factor, h);
+        if (k + 1 < max_leaning_sweeps && moved > enough) lean_on(group, factor, h);
     }
 }
 
@@ -225,14 +226,14 @@ void SolidContacts::place_against_body(Active& active, Vec3 at, Vec3 was, double
         active.arm = body.rotation_before(h, time) * contact.anchor;
         const Vec3 before = was - body.center_before(h, time) - active.arm;
         const double off = length(before), most = recovery_speed * h;
-        active.slid = at - was - body.way(h, time, active.arm) + (off > most ? (most / off) * before : before);
+        active.slid = at - was - body.displacement(h, time, active.arm) + (off > most ? (most / off) * before : before);
         return;
     }
     const Vec3 center = body.center_at(time), anchor = rotation * contact.anchor;
     active.gap = dot(at - center - anchor, active.normal) - contact.radius;
     // The body's surface under the point, and how far it has gone in the substep.
     active.arm = at - (contact.radius + active.gap) * active.normal - center;
-    active.slid = at - was - body.way(h, time, active.arm);
+    active.slid = at - was - body.displacement(h, time, active.arm);
 }
 
 void SolidContacts::add_terms(Active& active, const CarriedPoint& point, double sign) {
@@ -242,21 +243,21 @@ void SolidContacts::add_terms(Active& active, const CarriedPoint& point, double 
     }
 }
 
-void SolidContacts::find_give(Active& active, double h) const {
+void SolidContacts::find_compliance(Active& active, double h) const {
     // Of the solids: Σ wₐ w_b W_ab
     for (std::size_t a = 0; a < active.term_count; ++a) {
         for (std::size_t b = 0; b < active.term_count; ++b) {
             const Term &one = active.terms[a], &two = active.terms[b];
             if (one.solid != two.solid) continue;
-            active.give += (one.weight * two.weight) * touched_[one.solid].block(one.number, two.number);
+            active.compliance += (one.weight * two.weight) * touched_[one.solid].block(one.number, two.number);
         }
     }
     if (active.body == nullptr) return;
     // Of the body: h² (1/m - [arm] I⁻¹ [arm])
     const Mat3 arm = skew(active.arm);
     const double inverse_mass = active.body->inverse_mass;
-    active.give += (h * h) * (Mat3::diagonal({inverse_mass, inverse_mass, inverse_mass}) -
-                              arm * active.body->inverse_inertia * arm);
+    active.compliance += (h * h) * (Mat3::diagonal({inverse_mass, inverse_mass, inverse_mass}) -
+                                    arm * active.body->inverse_inertia * arm);
 }
 
 // How far the two have moved from each other by forces of this solve.
@@ -293,27 +294,28 @@ double SolidContacts::relax(Active& active, double h) {
     const SolidContact& contact = *active.contact;
     if (contact.holds) {
         const Vec3 off = active.slid + moved(active) + soft_part(active, contact.force);
-        apply(active, (-1 / (1 + softness)) * embody::solve(active.give, off), h);
+        apply(active, (-1 / (1 + softness)) * embody::solve(active.compliance, off), h);
         return length(off);
     }
 
     // Along the normal: force where there is no gap, none where there is one.
     const Vec3 n = active.normal;
-    const double give = dot(n, active.give * n);
-    if (!(give > 0)) return 0;
+    const double compliance = dot(n, active.compliance * n);
+    if (!(compliance > 0)) return 0;
     const double before = dot(contact.force, n);
     Vec3 relative = active.slid + moved(active) + soft_part(active, contact.force);
     const double missing = active.target - active.gap + dot(n, active.slid - relative);
-    const double after = std::max(0.0, before + missing / ((1 + softness) * give));
+    const double after = std::max(0.0, before + missing / ((1 + softness) * compliance));
     const Vec3 along = (after - before) * n;
-    relative += active.give * along;
+    relative += active.compliance * along;
 
     // Against sliding, within Coulomb's cone. The larger of the two tangential compliances is at most their sum.
-    const double tangential_give = trace(active.give) - give;
+    const double tangential_compliance = trace(active.compliance) - compliance;
     const Vec3 sliding = relative - dot(relative, n) * n;
-    const Vec3 wanted = within_cone(contact.force + along - sliding / tangential_give, n, contact.present_friction());
+    const Vec3 wanted =
+        within_cone(contact.force + along - sliding / tangential_compliance, n, contact.present_friction());
     const Vec3 change = wanted - contact.force, across = change - dot(change, n) * n;
-    const double moved_by = std::max(std::fabs(after - before) * give, length(across) * tangential_give);
+    const double moved_by = std::max(std::fabs(after - before) * compliance, length(across) * tangential_compliance);
     if (moved_by > not_worth_it) apply(active, along + across, h);
     return moved_by;
 }
@@ -328,9 +330,9 @@ Vec3 SolidContacts::within_cone(Vec3 force, Vec3 normal, double friction) {
 
 // By how much a contact gives way to a force beyond what bodies and solids do, m.
 Vec3 SolidContacts::soft_part(const Active& active, Vec3 force) {
-    if (active.contact->holds) return softness * (active.give * force);
+    if (active.contact->holds) return softness * (active.compliance * force);
     const Vec3 n = active.normal;
-    return (softness * dot(n, active.give * n) * dot(force, n)) * n;
+    return (softness * dot(n, active.compliance * n) * dot(force, n)) * n;
 }
 
 // For the next substep. Within one a contact has one limit: sweeps pass through forces that none would hold.

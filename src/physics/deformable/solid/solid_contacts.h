@@ -44,12 +44,12 @@ private:
         SolidContact* contact = nullptr;
         std::array<Term, 6> terms{};
         std::size_t term_count = 0;
-        TouchedBody* body = nullptr;  ///< none: between solids
-        Vec3 normal, arm;             ///< arm: from the body's centre
-        double gap = 0, target = 0;   ///< of the free motion, and the least allowed, m
-        Vec3 slid;                    ///< relative motion in the substep, free, m
-        Vec3 shift, turn;             ///< of the body when `gap` was taken
-        Mat3 give = Mat3::zero();     ///< relative motion by a force on it, m/N
+        TouchedBody* body = nullptr;     ///< none: between solids
+        Vec3 normal, arm;                ///< arm: from the body's centre
+        double gap = 0, target = 0;      ///< of the free motion, and the least allowed, m
+        Vec3 slid;                       ///< relative motion in the substep, free, m
+        Vec3 shift, turn;                ///< of the body when `gap` was taken
+        Mat3 compliance = Mat3::zero();  ///< relative motion by a force on it, m/N
         State state = State::open;
         Vec3 before, best;         ///< force before a sweep, and of the best round, N
         Vec3 direction;            ///< of sweeps with conjugate directions, N
@@ -63,7 +63,7 @@ private:
     void gather(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h, double time);
     void place_against_body(Active& active, Vec3 at, Vec3 was, double h, double time) const;
     void add_terms(Active& active, const CarriedPoint& point, double sign);
-    void find_give(Active& active, double h) const;
+    void find_compliance(Active& active, double h) const;
     [[nodiscard]] Vec3 moved(const Active& active) const;
     void apply(const Active& active, Vec3 force, double h);
     double relax(Active& active, double h);

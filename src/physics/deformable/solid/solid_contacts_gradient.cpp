@@ -46,7 +46,7 @@ Vec3 SolidContacts::free_part(const Active& active, Vec3 v) {
 }
 
 void SolidContacts::probe(const Group& group, TaskPool& workers) {
-    constexpr std::size_t worth_sharing = 100;  // contacts
+    constexpr std::size_t min_parallel_count = 100;  // contacts
     struct Part {
         std::uint32_t solid = 0;
         std::size_t part = 0;
@@ -56,8 +56,8 @@ void SolidContacts::probe(const Group& group, TaskPool& workers) {
         touched_[solid].begin_probe();
         for (std::size_t part = 0; part < touched_[solid].probe_parts(); ++part) parts.push_back({solid, part});
     }
-    share_among(workers, parts.size(), group.active.size() >= worth_sharing, [&](int, Share share) {
-        for (std::size_t k = share.first; k < share.last; ++k) touched_[parts[k].solid].run_probe(parts[k].part);
+    parallel_for(workers, parts.size(), group.active.size() >= min_parallel_count, [&](int, IndexRange range) {
+        for (std::size_t k = range.first; k < range.last; ++k) touched_[parts[k].solid].run_probe(parts[k].part);
     });
     for (const std::uint32_t solid : group.solids) touched_[solid].end_probe();
 }
@@ -96,7 +96,7 @@ void SolidContacts::respond(const Group& group, double h, TaskPool& workers) {
 // z = M⁻¹ r, M a contact's own compliance; r·z.
 double SolidContacts::precondition(Active& active) {
     ContactGradient& own = active.gradient;
-    own.z = free_part(active, embody::solve(active.give, own.r));
+    own.z = free_part(active, embody::solve(active.compliance, own.r));
     return dot(own.r, own.z);
 }
 
@@ -138,10 +138,10 @@ void SolidContacts::solve_together(const Group& group, double h, TaskPool& worke
             return {product, product};
         }
     };
-    constexpr int most_iterations = 8;
+    constexpr int max_iterations = 8;
     constexpr double tolerance = 0.01;  // of the first r·z
     System system{*this, group, h, workers};
-    conjugate_gradient(system, {.iterations = most_iterations, .relative = tolerance});
+    conjugate_gradient(system, {.iterations = max_iterations, .relative = tolerance});
     for (Active* const one : group.active) {
         Active& active = *one;
         if (active.state == State::open) continue;

@@ -14,11 +14,11 @@ namespace {
 // Of the true stiffness along a move over the metric's.
 constexpr double stiffest_ratio = 1.3;
 // Of its energy: as much may come from nowhere, by rounding and by rotations that lag.
-constexpr double most_surplus = 0.01;
+constexpr double max_surplus = 0.01;
 // Nodes that go less than this of a triangle's side in a substep make none.
-constexpr double slow_share = 0.02;
+constexpr double slow_fraction = 0.02;
 // rad: velocities are turned back no farther, where a substep turns the whole by more than it can follow.
-constexpr double most_turn_back = 0.3;
+constexpr double max_turn_back = 0.3;
 
 }  // namespace
 
@@ -107,7 +107,7 @@ void SolidDeformable::begin_substep(double h, Vec3 gravity) {
     // of the whole earlier.
     if (is_new_) {
         const WholeMotion whole = motion_of_whole(nodes_);
-        const double back = std::min(h / 2, most_turn_back / std::max(length(whole.spin), 1e-9));  // s
+        const double back = std::min(h / 2, max_turn_back / std::max(length(whole.spin), 1e-9));  // s
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
             if (!(nodes_.inverse_mass[i] > 0)) continue;
             const Vec3 turning = is_free_ ? cross(whole.spin, nodes_.mean_velocity[i] - whole.velocity) : Vec3{};
@@ -184,7 +184,7 @@ void SolidDeformable::find_gas_move(TaskPool& workers) {
     double along = 0;
     for (const std::uint32_t node : surface_nodes_) along += dot(gas_->slope()[node], gas_move_[node]);
     const double stiffness = gas_->stiffness();
-    gas_share_ = stiffness / (1 + stiffness * along);
+    gas_fraction_ = stiffness / (1 + stiffness * along);
 }
 
 void SolidDeformable::quasi_newton_move(std::span<const Vec3> force, std::span<Vec3> move, TaskPool& workers) {
@@ -192,7 +192,7 @@ void SolidDeformable::quasi_newton_move(std::span<const Vec3> force, std::span<V
     if (!gas_) return;
     double along = 0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) along += dot(gas_move_[i], force[i]);
-    for (std::size_t i = 0; i < nodes_.size(); ++i) move[i] -= (gas_share_ * along) * gas_move_[i];
+    for (std::size_t i = 0; i < nodes_.size(); ++i) move[i] -= (gas_fraction_ * along) * gas_move_[i];
 }
 
 // d = Q L⁻ᵀ L⁻¹ Qᵀ r
@@ -278,7 +278,7 @@ std::optional<double> SolidDeformable::find_surplus() {
     double farthest = 0;
     for (std::size_t i = 0; i < nodes_.size(); ++i)
         farthest = std::max(farthest, length_squared(nodes_.position[i] - start_[i]));
-    if (farthest < slow_share * slow_share * mean_side_ * mean_side_) return std::nullopt;
+    if (farthest < slow_fraction * slow_fraction * mean_side_ * mean_side_) return std::nullopt;
     if (!energy_at_start_)
         energy_at_start_ = kinetic_energy_at_start_ + (elastic_energy_ ? *elastic_energy_ : elastic_energy(start_));
     double work = 0;
@@ -292,7 +292,7 @@ std::optional<double> SolidDeformable::find_surplus() {
 
 // What was too much before may only become less.
 bool SolidDeformable::is_too_much(std::optional<double> surplus) const {
-    return surplus && !(*surplus <= std::max(most_surplus * *energy_at_start_, surplus_));
+    return surplus && !(*surplus <= std::max(max_surplus * *energy_at_start_, surplus_));
 }
 
 // What further rounds leave is taken off: the move of the substep beyond that of the whole is made shorter, down to
@@ -303,13 +303,13 @@ bool SolidDeformable::keep_energy() {
     const bool is_shortened = is_too_much(left);
     if (is_shortened) {
         const RigidMove whole = is_free_ ? move_of_whole() : RigidMove{};
-        constexpr int most_halvings = 4;
-        for (int k = 1; k <= most_halvings && is_too_much(left); ++k) {
-            const double share = k < most_halvings ? 0.5 : 0;
+        constexpr int max_halvings = 4;
+        for (int k = 1; k <= max_halvings && is_too_much(left); ++k) {
+            const double fraction = k < max_halvings ? 0.5 : 0;
             for (std::size_t i = 0; i < nodes_.size(); ++i) {
                 if (!(nodes_.inverse_mass[i] > 0)) continue;
                 const Vec3 along = whole.at(start_[i]);
-                nodes_.position[i] = along + share * (nodes_.position[i] - along);
+                nodes_.position[i] = along + fraction * (nodes_.position[i] - along);
             }
             left = find_surplus();
         }

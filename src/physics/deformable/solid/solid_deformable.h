@@ -56,9 +56,10 @@ public:
     void complete_compliance(TaskPool& workers) { compliance_.complete(factor_, is_pinned_, workers); }
     /// The metric of this substep is so many times that of the factor.
     [[nodiscard]] double stretch() const { return stretch_; }
-    /// Of the gas within: forces f move the nodes by gas_share() g (g·f) less, g this, m/Pa, world axes; empty: no gas.
+    /// Of the gas within: forces f move the nodes by gas_fraction() g (g·f) less, g this, m/Pa, world axes; empty: no
+    /// gas.
     [[nodiscard]] const std::vector<Vec3>& gas_move() const { return gas_move_; }
-    [[nodiscard]] double gas_share() const { return gas_share_; }
+    [[nodiscard]] double gas_fraction() const { return gas_fraction_; }
     [[nodiscard]] Quat turn(std::size_t node) const {
         return elements_.node_rotations()[node] * conjugate(factor_rotations_[node]);
     }
@@ -130,7 +131,7 @@ private:
 
     std::optional<EnclosedGas> gas_;
     std::vector<Vec3> gas_move_;  // P⁻¹ ∂V/∂x, m/Pa
-    double gas_share_ = 0;        // c in (P + k g gᵀ)⁻¹ = P⁻¹ - c (P⁻¹ g)(P⁻¹ g)ᵀ
+    double gas_fraction_ = 0;     // c in (P + k g gᵀ)⁻¹ = P⁻¹ - c (P⁻¹ g)(P⁻¹ g)ᵀ
 
     // The factor of the matrix at rest, for substeps of factor_h_ seconds, and what is known of its inverse.
     DissectedCholesky factor_;

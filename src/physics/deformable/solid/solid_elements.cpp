@@ -22,7 +22,7 @@ Mat3 symmetric_part(const Mat3& m) { return 0.5 * (m + transpose(m)); }
 double squares(const Mat3& m) { return length_squared(m.x) + length_squared(m.y) + length_squared(m.z); }
 
 // Strain beyond which it is as if it were full: it flows no further, so that nothing is rolled out to nothing.
-constexpr double most_plastic_strain = 0.5;
+constexpr double max_plastic_strain = 0.5;
 
 }  // namespace
 
@@ -177,8 +177,8 @@ void SolidElements::linearise(std::span<const Vec3> position, std::span<const Ve
     }
     for (std::size_t e = 0; e < size(); ++e) {
         Mat3 whole =
-            (1 - share_of_nodes) * stress(deformation_[e], rotation_[e], plastic_[e], start_stretch_[e], damping_rate);
-        for (const std::uint32_t node : corners_[e]) whole += (share_of_nodes / 4) * node_stress_[node];
+            (1 - node_fraction) * stress(deformation_[e], rotation_[e], plastic_[e], start_stretch_[e], damping_rate);
+        for (const std::uint32_t node : corners_[e]) whole += (node_fraction / 4) * node_stress_[node];
         whole = volume_[e] * whole;
         Vec3 sum;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -215,25 +215,26 @@ void SolidElements::add_stiffness(float factor, std::span<const Vec3f> move, std
         std::fill(g, g + 9, 0.0f);
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec3f d = move[corners[k + 1]];
-            const Vec3f way{d.x - origin.x, d.y - origin.y, d.z - origin.z};
+            const Vec3f displacement{d.x - origin.x, d.y - origin.y, d.z - origin.z};
             const Vec3f slope = to_vec3f(gradient_[e][k]);
             const float along[3] = {slope.x, slope.y, slope.z};
             for (int c = 0; c < 3; ++c) {
-                g[3 * c] += way.x * along[c];
-                g[3 * c + 1] += way.y * along[c];
-                g[3 * c + 2] += way.z * along[c];
+                g[3 * c] += displacement.x * along[c];
+                g[3 * c + 1] += displacement.y * along[c];
+                g[3 * c + 2] += displacement.z * along[c];
             }
         }
     }
     for (std::size_t i = 0; i < node_rotation_.size(); ++i) {
         float g[9] = {};
         for (const Around& a : around(i)) {
-            const auto share = static_cast<float>(a.share);
-            for (int k = 0; k < 9; ++k) g[k] += share * gradient_f_[a.element].value[k];
+            const auto fraction = static_cast<float>(a.fraction);
+            for (int k = 0; k < 9; ++k) g[k] += fraction * gradient_f_[a.element].value[k];
         }
         stress_of(node_rotation_f_[i].value, g, node_stress_f_[i].value);
     }
-    const auto own_share = static_cast<float>(1 - share_of_nodes), node_share = static_cast<float>(share_of_nodes / 4);
+    const auto own_fraction = static_cast<float>(1 - node_fraction),
+               one_node_fraction = static_cast<float>(node_fraction / 4);
     for (std::size_t e = 0; e < size(); ++e) {
         float s[9];
         stress_of(rotation_f_[e].value, gradient_f_[e].value, s);
@@ -241,7 +242,7 @@ void SolidElements::add_stiffness(float factor, std::span<const Vec3f> move, std
         for (int k = 0; k < 9; ++k) {
             float around_it = 0;
             for (const std::uint32_t node : corners_[e]) around_it += node_stress_f_[node].value[k];
-            s[k] = scale * (own_share * s[k] + node_share * around_it);
+            s[k] = scale * (own_fraction * s[k] + one_node_fraction * around_it);
         }
         Vec3f sum;
         const auto add = [](Vec3f& to, float x, float y, float z) { to = {to.x + x, to.y + y, to.z + z}; };
@@ -266,18 +267,18 @@ double SolidElements::energy(std::span<const Vec3> position) const {
     std::vector<Mat3> deformation(size());
     for (std::size_t e = 0; e < size(); ++e) {
         deformation[e] = gradient(e, position);
-        sum += (1 - share_of_nodes) * volume_[e] * density(deformation[e], rotation_[e], plastic_[e]);
+        sum += (1 - node_fraction) * volume_[e] * density(deformation[e], rotation_[e], plastic_[e]);
     }
     for (std::size_t i = 0; i < node_rotation_.size(); ++i) {
         const Mat3 mean = mean_around(i, deformation);
-        sum += share_of_nodes * node_volume_[i] * density(mean, node_rotation_[i], node_plastic_[i]);
+        sum += node_fraction * node_volume_[i] * density(mean, node_rotation_[i], node_plastic_[i]);
     }
     return sum;
 }
 
 Mat3 SolidElements::mean_around(std::size_t node, std::span<const Mat3> of_elements) const {
     Mat3 mean = Mat3::zero();
-    for (const Around& a : around(node)) mean += a.share * of_elements[a.element];
+    for (const Around& a : around(node)) mean += a.fraction * of_elements[a.element];
     return mean;
 }
 
@@ -302,7 +303,7 @@ void SolidElements::flow(const Mat3& deformation, Quat rotation, Mat3& plastic) 
     if (!(stress > yield_stress_)) return;
     plastic += (1 - yield_stress_ / stress) * elastic;
     const double strain = std::sqrt(squares(plastic));
-    if (strain > most_plastic_strain) plastic = (most_plastic_strain / strain) * plastic;
+    if (strain > max_plastic_strain) plastic = (max_plastic_strain / strain) * plastic;
 }
 
 void SolidElements::take_plastic_strain(const SolidElements& other) {

@@ -22,7 +22,7 @@ namespace embody::physics::deformable {
 /// in the substep, which no turn makes.
 class SolidElements {
 public:
-    static constexpr double share_of_nodes = 0.7;
+    static constexpr double node_fraction = 0.7;
 
     SolidElements(const SoftSolid& solid, std::span<const Vec3> rest);
 
@@ -61,7 +61,7 @@ private:
     struct Around {  ///< a tetrahedron at a node
         std::uint32_t element = 0;
         std::uint32_t corner = 0;
-        double share = 0;  ///< of the node's volume
+        double fraction = 0;  ///< of the node's volume
     };
     [[nodiscard]] std::span<const Around> around(std::size_t node) const {
         return {around_.data() + first_around_[node], first_around_[node + 1] - first_around_[node]};

@@ -111,9 +111,9 @@ void PlacedSurface::visit_crossings(Vec3 p, int axis, Visit&& visit) const {
 std::optional<PlacedSurface::Place> PlacedSurface::find_exit(Vec3 p, int axis, double sign) const {
     std::optional<Place> last;
     visit_crossings(p, axis, [&](std::uint32_t t, const std::array<double, 3>& weight, double at_axis) {
-        const double way = sign * (at_axis - p[axis]);
-        if (!(way > 0) || (last && -last->distance >= way)) return;
-        last = Place{solid_.surface()[t], weight, {}, -way};
+        const double travel = sign * (at_axis - p[axis]);
+        if (!(travel > 0) || (last && -last->distance >= travel)) return;
+        last = Place{solid_.surface()[t], weight, {}, -travel};
     });
     if (last) last->normal[axis] = sign;
     return last;
@@ -127,7 +127,7 @@ bool PlacedSurface::encloses(Vec3 p) const {
     return before % 2 == 1 && after % 2 == 1;
 }
 
-double PlacedSurface::share_within(const PlacedSurface& other, double depth) const {
+double PlacedSurface::fraction_within(const PlacedSurface& other, double depth) const {
     constexpr std::size_t most = 64;
     const std::vector<std::uint32_t>& nodes = solid_.surface_nodes();
     const std::size_t step = (nodes.size() + most - 1) / most;
@@ -141,8 +141,8 @@ double PlacedSurface::share_within(const PlacedSurface& other, double depth) con
     return asked > 0 ? static_cast<double>(inside) / static_cast<double>(asked) : 0;
 }
 
-WayOut shortest_way(const Bounds& one, const Bounds& two, bool is_later) {
-    WayOut best;
+ExitDirection min_travel(const Bounds& one, const Bounds& two, bool is_later) {
+    ExitDirection best;
     double least = std::numeric_limits<double>::infinity();
     for (const int axis : {1, 0, 2}) {
         const double forth = two.upper[axis] - one.lower[axis];
@@ -156,7 +156,7 @@ WayOut shortest_way(const Bounds& one, const Bounds& two, bool is_later) {
 
 namespace {
 
-constexpr double sure_depth = 0.5, least_depth = 0.1;  // of points asked, in mean sides
+constexpr double sure_depth = 0.5, min_depth = 0.1;  // of points asked, in mean sides
 
 double volume(const Bounds& box) {
     const Vec3 size = box.size();
@@ -165,14 +165,14 @@ double volume(const Bounds& box) {
 
 // Where much of one of the two lies within the other, as a scene may begin; or where any does and they have been
 // parting.
-std::optional<WayOut> find_way_out(const SolidDeformable& one, const PlacedSurface& surface_one,
-                                   const SolidDeformable& two, const PlacedSurface& surface_two, bool is_later,
-                                   bool is_parting) {
-    const double depth = is_parting ? least_depth : sure_depth;
+std::optional<ExitDirection> find_exit_direction(const SolidDeformable& one, const PlacedSurface& surface_one,
+                                                 const SolidDeformable& two, const PlacedSurface& surface_two,
+                                                 bool is_later, bool is_parting) {
+    const double depth = is_parting ? min_depth : sure_depth;
     const double most =
-        std::max(surface_one.share_within(surface_two, depth), surface_two.share_within(surface_one, depth));
+        std::max(surface_one.fraction_within(surface_two, depth), surface_two.fraction_within(surface_one, depth));
     if (!(is_parting ? most > 0 : most >= much_within)) return std::nullopt;
-    return shortest_way(one.bounds(), two.bounds(), is_later);
+    return min_travel(one.bounds(), two.bounds(), is_later);
 }
 
 bool may_be_within(const Bounds& one, const Bounds& two) {
@@ -192,21 +192,21 @@ void find_surface_contacts(const SolidDeformable& one, std::uint32_t one_number,
     }
     if (nodes.empty()) return;
     const PlacedSurface surface(two);
-    std::optional<WayOut> way;
+    std::optional<ExitDirection> travel;
     if (is_parting || may_be_within(one.bounds(), two.bounds()))
-        way = find_way_out(one, PlacedSurface(one), two, surface, one_number > two_number, is_parting);
+        travel = find_exit_direction(one, PlacedSurface(one), two, surface, one_number > two_number, is_parting);
     for (const std::uint32_t node : nodes) {
         const Vec3 p = one.nodes().position[node];
         auto place = surface.find(p, std::max(reach + radius, surface.deepest()));
         // What is too deep to be told where it came from, or would be pushed deeper.
-        if (way && (!place || way->sign * place->normal[way->axis] < 0))
-            place = surface.find_exit(p, way->axis, way->sign);
+        if (travel && (!place || travel->sign * place->normal[travel->axis] < 0))
+            place = surface.find_exit(p, travel->axis, travel->sign);
         if (!place) continue;
         SolidContact contact;
         contact.normal = place->normal;
         contact.other = {two_number, 3, place->triangle, place->weight};
         contact.point = {one_number, 1, {node}, {1}};
-        contact.parts = way.has_value();
+        contact.parts = travel.has_value();
         contact.radius = radius;
         contact.friction = friction;
         contacts.push_back(contact);

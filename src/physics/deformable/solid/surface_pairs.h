@@ -12,12 +12,12 @@
 namespace embody::physics::deformable {
 
 /// The way on which one thing leaves another that it lies within.
-struct WayOut {
+struct ExitDirection {
     int axis = 0;
     double sign = 1;
 };
 /// The shortest on which the box of `one` leaves that of `two`; of equal ones the first upwards for the later one.
-[[nodiscard]] WayOut shortest_way(const Bounds& one, const Bounds& two, bool is_later);
+[[nodiscard]] ExitDirection min_travel(const Bounds& one, const Bounds& two, bool is_later);
 
 inline constexpr double much_within = 0.125;  ///< share of one thing within another: not the work of contact
 
@@ -42,7 +42,7 @@ public:
     /// How deep a point may be inside and still be told where it came from, m.
     [[nodiscard]] double deepest() const { return deepest_; }
     /// Which share of points evenly chosen beneath this surface, by `depth` of the mean side, is inside of the other.
-    [[nodiscard]] double share_within(const PlacedSurface& other, double depth) const;
+    [[nodiscard]] double fraction_within(const PlacedSurface& other, double depth) const;
 
 private:
     [[nodiscard]] Vec3 at(std::uint32_t node) const { return solid_.nodes().position[node]; }

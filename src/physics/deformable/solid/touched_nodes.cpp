@@ -20,8 +20,8 @@ void TouchedNodes::complete(SolidDeformable& solid, TaskPool& workers) {
     const std::size_t count = compliance_->size();
     turn_.resize(count);
     for (std::size_t i = 0; i < count; ++i) turn_[i] = to_matrix(solid.turn(compliance_->node(i)));
-    gas_share_ = solid.gas_move().empty() ? 0 : scale_ * solid.gas_share();
-    if (gas_share_ != 0) {
+    gas_fraction_ = solid.gas_move().empty() ? 0 : scale_ * solid.gas_fraction();
+    if (gas_fraction_ != 0) {
         gas_.assign(3 * compliance_->stride(), 0.0f);
         for (std::size_t i = 0; i < count; ++i) {
             const Vec3f own = to_vec3f(transpose(turn_[i]) * solid.gas_move()[compliance_->node(i)]);
@@ -34,8 +34,8 @@ void TouchedNodes::complete(SolidDeformable& solid, TaskPool& workers) {
     for (auto* vectors : {&force_, &probe_force_, &probe_moves_}) vectors->assign(count, {});
     probe_own_force_.assign(3 * compliance_->stride(), 0.0f);
     // As many whatever the number of workers: they decide in which order is added.
-    constexpr std::size_t most_parts = 4, worth_parting = 8 * column_multiple;  // nodes
-    probe_part_moves_.resize(count < worth_parting ? 1 : most_parts);
+    constexpr std::size_t max_parts = 4, worth_parting = 8 * column_multiple;  // nodes
+    probe_part_moves_.resize(count < worth_parting ? 1 : max_parts);
 }
 
 Mat3 TouchedNodes::block(std::size_t i, std::size_t j) const {
@@ -44,7 +44,7 @@ Mat3 TouchedNodes::block(std::size_t i, std::size_t j) const {
         own(static_cast<int>(k % 3), static_cast<int>(k / 3)) =
             scale_ * static_cast<double>(compliance_->rows(j)[k * compliance_->stride() + i]);
     const Mat3 block = turn_[i] * own * transpose(turn_[j]);
-    return gas_share_ == 0 ? block : block - gas_share_ * outer(move_of(i, gas_), move_of(j, gas_));
+    return gas_fraction_ == 0 ? block : block - gas_fraction_ * outer(move_of(i, gas_), move_of(j, gas_));
 }
 
 Vec3 TouchedNodes::move_of(std::size_t number, const std::vector<float>& moves) const {
@@ -57,8 +57,8 @@ void TouchedNodes::push(std::size_t number, Vec3 force) {
     const Vec3f own = to_vec3f(transpose(turn_[number]) * (scale_ * force));
     widest_kernels<ColumnKernels>().add_moves(moved_.data(), compliance_->rows(number), compliance_->stride(), own.x,
                                               own.y, own.z);
-    if (gas_share_ == 0) return;
-    const auto taken = static_cast<float>(gas_share_ * dot(move_of(number, gas_), force));
+    if (gas_fraction_ == 0) return;
+    const auto taken = static_cast<float>(gas_fraction_ * dot(move_of(number, gas_), force));
     for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] -= taken * gas_[i];
 }
 
@@ -79,8 +79,8 @@ void TouchedNodes::run_probe(std::size_t part) {
     const std::size_t stride = compliance_->stride();
     const auto tiles = static_cast<double>((size() + column_multiple - 1) / column_multiple);
     const auto tile_of = [&](std::size_t k) {
-        const double share = static_cast<double>(k) / static_cast<double>(probe_parts());
-        return static_cast<std::size_t>(std::lround(tiles * std::sqrt(share)));
+        const double fraction = static_cast<double>(k) / static_cast<double>(probe_parts());
+        return static_cast<std::size_t>(std::lround(tiles * std::sqrt(fraction)));
     };
     std::vector<float>& moves = probe_part_moves_[part];
     moves.assign(3 * stride, 0.0f);
@@ -90,14 +90,14 @@ void TouchedNodes::run_probe(std::size_t part) {
 
 void TouchedNodes::end_probe() {
     double taken = 0;
-    if (gas_share_ != 0) {
+    if (gas_fraction_ != 0) {
         for (std::size_t i = 0; i < size(); ++i) taken += dot(move_of(i, gas_), probe_force_[i]);
-        taken *= gas_share_;
+        taken *= gas_fraction_;
     }
     for (std::size_t i = 0; i < size(); ++i) {
         Vec3 sum;
         for (const std::vector<float>& moves : probe_part_moves_) sum += move_of(i, moves);
-        probe_moves_[i] = gas_share_ == 0 ? sum : sum - taken * move_of(i, gas_);
+        probe_moves_[i] = gas_fraction_ == 0 ? sum : sum - taken * move_of(i, gas_);
     }
 }
 

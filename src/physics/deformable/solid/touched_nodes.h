@@ -48,7 +48,7 @@ private:
 
     NodeCompliance* compliance_ = nullptr;
     double scale_ = 1;          // of the compliance
-    double gas_share_ = 0;      // what the gas takes away, see SolidDeformable::gas_move()
+    double gas_fraction_ = 0;   // what the gas takes away, see SolidDeformable::gas_move()
     std::vector<float> gas_;    // in the nodes' own axes: rows x, y, z
     std::vector<Mat3> turn_;    // from the nodes' own axes
     std::vector<float> moved_;  // in the nodes' own axes, m: rows x, y, z

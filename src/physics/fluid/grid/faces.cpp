@@ -107,10 +107,10 @@ void extrapolate(FluidGrid& grid, std::array<std::vector<float>, 3>& field, int 
     const auto tiles = grid.tiles();
     std::vector<std::vector<FaceValue>> found(static_cast<std::size_t>(workers.workers()));
     for (int layer = 0; layer < layers; ++layer) {
-        share_among(workers, tiles.size(), tiles.size() > 16, [&](int worker, Share share) {
+        parallel_for(workers, tiles.size(), tiles.size() > 16, [&](int worker, IndexRange range) {
             auto& list = found[static_cast<std::size_t>(worker)];
             list.clear();
-            for (std::size_t i = share.first; i < share.last; ++i) list_next_layer(grid, field, tiles[i], list);
+            for (std::size_t i = range.first; i < range.last; ++i) list_next_layer(grid, field, tiles[i], list);
         });
         for (auto& list : found) {
             for (const FaceValue& face : list) {
@@ -136,9 +136,9 @@ void admit_drops(FluidGrid& grid, TaskPool& workers) {
 void follow_obstacles(FluidGrid& grid, const FluidObstacles& obstacles, double sticking, TaskPool& workers) {
     const auto tiles = grid.tiles();
     std::vector<std::vector<FaceValue>> found(static_cast<std::size_t>(workers.workers()));
-    share_among(workers, tiles.size(), tiles.size() > 16, [&](int worker, Share share) {
+    parallel_for(workers, tiles.size(), tiles.size() > 16, [&](int worker, IndexRange range) {
         auto& list = found[static_cast<std::size_t>(worker)];
-        for (std::size_t i = share.first; i < share.last; ++i) {
+        for (std::size_t i = range.first; i < range.last; ++i) {
             grid.for_cells(tiles[i], [&](int cell, const Cell& c) {
                 for (int axis = 0; axis < 3; ++axis) {
                     if (grid.open[axis][cell] > 0 || !grid.known[axis][cell]) continue;
@@ -156,8 +156,8 @@ void outflow(const FluidGrid& grid, const FluidObstacles& obstacles, const Press
              std::vector<double>& flow, TaskPool& workers) {
     flow.resize(system.size());
     const double area = grid.cell_size() * grid.cell_size();
-    share_among(workers, flow.size(), flow.size() > 2000, [&](int, Share share) {
-        for (std::size_t row = share.first; row < share.last; ++row) {
+    parallel_for(workers, flow.size(), flow.size() > 2000, [&](int, IndexRange range) {
+        for (std::size_t row = range.first; row < range.last; ++row) {
             const auto cell = static_cast<int>(system.cell(row));
             double sum = 0;
             for (int axis = 0; axis < 3; ++axis) {
@@ -178,15 +178,15 @@ void outflow(const FluidGrid& grid, const FluidObstacles& obstacles, const Press
 
 void add_surface_pressure(const FluidGrid& grid, const PressureSystem& system, const SurfacePressure& surface,
                           std::vector<double>& b, TaskPool& workers) {
-    share_among(workers, b.size(), b.size() > 2000, [&](int, Share share) {
-        for (std::size_t row = share.first; row < share.last; ++row) {
+    parallel_for(workers, b.size(), b.size() > 2000, [&](int, IndexRange range) {
+        for (std::size_t row = range.first; row < range.last; ++row) {
             const auto cell = static_cast<int>(system.cell(row));
             for (int axis = 0; axis < 3; ++axis) {
                 const int stride = grid.stride(axis);
                 for (const int other : {cell - stride, cell + stride}) {
                     const float open = grid.open[axis][std::max(cell, other)];
                     if (open <= 0 || grid.row[other] >= 0) continue;
-                    const float gap = PressureSystem::gap_share(grid.surface[cell], grid.surface[other]);
+                    const float gap = PressureSystem::gap_fraction(grid.surface[cell], grid.surface[other]);
                     b[row] += static_cast<double>(open) / gap * surface.at(cell, other, gap);
                 }
             }
@@ -215,7 +215,7 @@ void subtract_gradient(FluidGrid& grid, std::span<const double> x, const Surface
                     difference = x[upper] - x[lower];
                 } else {
                     const int liquid = upper >= 0 ? cell : below, air = upper >= 0 ? below : cell;
-                    const float gap = PressureSystem::gap_share(grid.surface[liquid], grid.surface[air]);
+                    const float gap = PressureSystem::gap_fraction(grid.surface[liquid], grid.surface[air]);
                     const double outside = surface.is_none() ? 0 : surface.at(liquid, air, gap);
                     difference = (x[grid.row[liquid]] - outside) / (upper >= 0 ? gap : -gap);
                 }

@@ -158,7 +158,7 @@ void FluidGrid::resize(const Cell& lower, const Cell& upper) {
     carry_over(pressure, from, to);
     carry_over(static_distance, from, to, far);
     carry_over(static_room, from, to, 1.0f);
-    for (auto& array : static_share) carry_over(array, from, to);
+    for (auto& array : static_fraction) carry_over(array, from, to);
     carry_over(static_thin, from, to);
     carry_over(is_static_known, box_of(old_lower, old_size, tile), box_of(lower_, size_, tile));
     obstacle = static_distance;
@@ -172,8 +172,8 @@ void FluidGrid::sort(std::vector<FluidParticle>& particles, float volume, std::s
     const std::size_t count = particles.size();
     cell_of_.resize(count);
     tile_of_particle_.resize(count);
-    share_among(workers, count, count > few_particles, [&](int, Share share) {
-        for (std::size_t i = share.first; i < share.last; ++i) {
+    parallel_for(workers, count, count > few_particles, [&](int, IndexRange range) {
+        for (std::size_t i = range.first; i < range.last; ++i) {
             const float* p = particles[i].position;
             const Cell c{static_cast<int>(in_cells(p[0], 0)), static_cast<int>(in_cells(p[1], 1)),
                          static_cast<int>(in_cells(p[2], 2))};
@@ -202,8 +202,8 @@ void FluidGrid::sort(std::vector<FluidParticle>& particles, float volume, std::s
     on_grid_ = next;
     for (std::size_t i = 0; i < count; ++i) cell_of_[i] = is_on_grid(i) ? first_particle[cell_of_[i]]++ : next++;
     sorted_.resize(count);
-    share_among(workers, count, count > few_particles, [&](int, Share share) {
-        for (std::size_t i = share.first; i < share.last; ++i) sorted_[cell_of_[i]] = particles[i];
+    parallel_for(workers, count, count > few_particles, [&](int, IndexRange range) {
+        for (std::size_t i = range.first; i < range.last; ++i) sorted_[cell_of_[i]] = particles[i];
     });
     for_tiles(workers, [&](const Cell& corner) {
         for_cells(corner, [&](int cell, const Cell&) { first_particle[cell] -= particle_count[cell]; });

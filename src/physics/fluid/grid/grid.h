@@ -93,8 +93,8 @@ public:
     /// Calls work(corner) for each active tile, shared among the workers; `work` may write to its own tile only.
     template <class Work>
     void for_tiles(TaskPool& workers, Work work) const {
-        share_among(workers, active_.size(), active_.size() > 16, [&](int, Share share) {
-            for (std::size_t i = share.first; i < share.last; ++i) work(active_[i]);
+        parallel_for(workers, active_.size(), active_.size() > 16, [&](int, IndexRange range) {
+            for (std::size_t i = range.first; i < range.last; ++i) work(active_[i]);
         });
     }
 
@@ -114,7 +114,7 @@ public:
     std::array<std::vector<float>, 3> shift;         ///< displacement of a face against clumping, m
 
     // Of static obstacles alone, kept from step to step.
-    std::array<std::vector<float>, 3> static_share;
+    std::array<std::vector<float>, 3> static_fraction;
     std::vector<float> static_distance, static_room;
     std::vector<std::uint8_t> static_thin;
     std::vector<std::uint8_t> is_static_known;  ///< by tile

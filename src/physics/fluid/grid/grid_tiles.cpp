@@ -13,10 +13,10 @@ namespace {
 // A tile with so many particles, one and a half a cell, is not looked at closer.
 constexpr std::uint32_t full_tile = 192;
 // Liquid cells hold half of what has room in them (height_of_surface in liquid_cells.cpp); what may soon be one counts.
-constexpr float wet_share = 0.45f;
+constexpr float wet_fraction = 0.45f;
 // A cell or two of them in a tile are a few drops beside each other, as long as they are not full.
 constexpr int few_cells = 2;
-constexpr float full_share = 0.9f;
+constexpr float full_fraction = 0.9f;
 
 /// The eight centres around a place and their trilinear weights.
 struct Centers {
@@ -94,9 +94,9 @@ void FluidGrid::mark_wet_tiles(const std::vector<FluidParticle>& particles, floa
         for (const int cell : centers.cells) {
             const float most = static_room[cell], filled = density[cell];
             density[cell] = 0;  // counted once
-            if (most < least_room || filled < wet_share * most) continue;
+            if (most < min_room || filled < wet_fraction * most) continue;
             const int t = tile_of({cell % across, cell % layer / across, cell / layer});
-            if (++wet_cells_[t] > few_cells || filled > full_share * most) tile_state_[t] |= tile_wet;
+            if (++wet_cells_[t] > few_cells || filled > full_fraction * most) tile_state_[t] |= tile_wet;
         }
     }
 }

@@ -22,7 +22,7 @@ struct MarkedCell {
 // What the open neighbours make of a cell that is not liquid by itself. Without `and_narrow` narrow ones do not count.
 void look_around(const FluidGrid& grid, int cell, bool and_narrow, std::vector<MarkedCell>& marked) {
     if (grid.surface[cell] < 0) return;
-    const bool is_narrow = grid.room[cell] < least_room;
+    const bool is_narrow = grid.room[cell] < min_room;
     int liquid = 0, dry = 0;
     float sum = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -30,11 +30,11 @@ void look_around(const FluidGrid& grid, int cell, bool and_narrow, std::vector<M
         for (const int side : {-1, 1}) {
             if (grid.open[axis][side < 0 ? cell : cell + stride] <= 0) continue;
             const int other = cell + side * stride;
-            const bool counts = and_narrow || grid.room[other] >= least_room;
+            const bool counts = and_narrow || grid.room[other] >= min_room;
             if (grid.surface[other] < 0 && counts) {
                 ++liquid;
                 sum += grid.surface[other];
-            } else if (grid.room[other] >= least_room) {
+            } else if (grid.room[other] >= min_room) {
                 ++dry;
             }
         }
@@ -55,14 +55,14 @@ void mark_beside_liquid(FluidGrid& grid, TaskPool& workers) {
         std::vector<int> narrow;
     };
     std::vector<Found> found(static_cast<std::size_t>(workers.workers()));
-    share_among(workers, tiles.size(), tiles.size() > 16, [&](int worker, Share share) {
+    parallel_for(workers, tiles.size(), tiles.size() > 16, [&](int worker, IndexRange range) {
         Found& own = found[static_cast<std::size_t>(worker)];
-        for (std::size_t i = share.first; i < share.last; ++i) {
+        for (std::size_t i = range.first; i < range.last; ++i) {
             grid.for_cells(tiles[i], [&](int cell, const Cell&) {
                 const std::size_t before = own.marked.size();
                 look_around(grid, cell, false, own.marked);
                 const bool is_dry = own.marked.size() == before && grid.surface[cell] >= 0;
-                if (is_dry && grid.room[cell] < least_room && grid.obstacle[cell] > -1) own.narrow.push_back(cell);
+                if (is_dry && grid.room[cell] < min_room && grid.obstacle[cell] > -1) own.narrow.push_back(cell);
             });
         }
     });
@@ -82,8 +82,8 @@ void number_rows(FluidGrid& grid, LiquidCells& liquid, TaskPool& workers) {
     const auto tiles = grid.tiles();
     std::vector<int>& first = liquid.first_row;
     first.assign(tiles.size() + 1, 0);
-    share_among(workers, tiles.size(), tiles.size() > 16, [&](int, Share share) {
-        for (std::size_t i = share.first; i < share.last; ++i) {
+    parallel_for(workers, tiles.size(), tiles.size() > 16, [&](int, IndexRange range) {
+        for (std::size_t i = range.first; i < range.last; ++i) {
             int rows = 0;
             grid.for_cells(tiles[i], [&](int cell, const Cell&) {
                 grid.row[cell] = -1;
@@ -99,8 +99,8 @@ void number_rows(FluidGrid& grid, LiquidCells& liquid, TaskPool& workers) {
     });
     for (std::size_t i = 0; i < tiles.size(); ++i) first[i + 1] += first[i];
     liquid.cells.resize(static_cast<std::size_t>(first.back()));
-    share_among(workers, tiles.size(), tiles.size() > 16, [&](int, Share share) {
-        for (std::size_t i = share.first; i < share.last; ++i) {
+    parallel_for(workers, tiles.size(), tiles.size() > 16, [&](int, IndexRange range) {
+        for (std::size_t i = range.first; i < range.last; ++i) {
             if (first[i] == first[i + 1]) continue;
             grid.for_cells(tiles[i], [&](int cell, const Cell&) {
                 if (grid.row[cell] < 0) return;
@@ -117,7 +117,7 @@ void mark_liquid(FluidGrid& grid, LiquidCells& liquid, TaskPool& workers) {
     grid.for_tiles(workers, [&](const Cell& corner) {
         grid.for_cells(corner, [&](int cell, const Cell&) {
             const float room = grid.room[cell];
-            grid.surface[cell] = room < least_room ? 1 : -height_of_surface(grid.density[cell] / room);
+            grid.surface[cell] = room < min_room ? 1 : -height_of_surface(grid.density[cell] / room);
         });
     });
 

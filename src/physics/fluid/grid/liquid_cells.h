@@ -11,7 +11,7 @@
 namespace embody::physics::fluid {
 
 /// Cells of which obstacles leave less have no surface of their own: they take it from their neighbours.
-inline constexpr float least_room = 0.3f;
+inline constexpr float min_room = 0.3f;
 
 /// The cells of liquid by row.
 struct LiquidCells {

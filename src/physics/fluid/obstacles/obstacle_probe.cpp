@@ -100,12 +100,12 @@ struct FacesOfCube {
 // How much thicker the hulls of a compound are met, m. Those of catalogue models lie up to 0.8 mm (a mug of 12 cm) to
 // 1.3 mm (a bathtub of 1.7 m) inside of the surface that they stand for.
 double seal_of(const CollisionShape& shape) {
-    constexpr double share = 0.01, most = 0.0015;  // of its longest side; m
+    constexpr double fraction = 0.01, most = 0.0015;  // of its longest side; m
     const auto* compound = std::get_if<CompoundShape>(&shape.definition());
     if (compound == nullptr || compound->children.size() < 2) return 0;
     if (!std::holds_alternative<HullShape>(compound->children.front().shape)) return 0;
     const Vec3 size = shape.local_bounds().size();
-    return std::min(most, share * std::max({size.x, size.y, size.z}));
+    return std::min(most, fraction * std::max({size.x, size.y, size.z}));
 }
 
 // Where a way (unit direction) enters a polytope whose faces lie `seal` farther out; nothing from inside. By clipping
@@ -138,7 +138,7 @@ Vec3 octant_offset(int octant) {
 Vec3 rotate_back(const Mat3& rotation, Vec3 v) { return {dot(rotation.x, v), dot(rotation.y, v), dot(rotation.z, v)}; }
 
 // Share of a cube of that edge behind a face at this distance from its centre: exact for faces along the axes.
-double share_behind(const ObstacleDistance& face, double edge) {
+double fraction_behind(const ObstacleDistance& face, double edge) {
     const Vec3 n = abs(face.normal);
     if (face.distance < -edge) return 1;
     return std::clamp(0.5 - face.distance / (edge * (n.x + n.y + n.z)), 0.0, 1.0);
@@ -251,14 +251,14 @@ ObstacleDistance ObstacleProbe::nearest(Vec3 p) const {
     return best;
 }
 
-void ObstacleProbe::add_octants(Vec3 p, double edge, float* shares) const {
+void ObstacleProbe::add_octants(Vec3 p, double edge, float* fractions) const {
     const double half = edge / 2;
-    const auto add = [&](int octant, double share) {
-        shares[octant] = std::min(1.0f, shares[octant] + static_cast<float>(share));
+    const auto add = [&](int octant, double fraction) {
+        fractions[octant] = std::min(1.0f, fractions[octant] + static_cast<float>(fraction));
     };
     if (shape_->data().is_plane || shape_->data().surface) {
         for (int octant = 0; octant < octants; ++octant) {
-            add(octant, share_behind(nearest(p + octant_offset(octant) * edge), half));
+            add(octant, fraction_behind(nearest(p + octant_offset(octant) * edge), half));
         }
         return;
     }
@@ -272,11 +272,11 @@ void ObstacleProbe::add_octants(Vec3 p, double edge, float* shares) const {
         for (int octant = 0; octant < octants; ++octant) {
             const Vec3 offset = octant_offset(octant) * edge;
             const TwoFaces two = faces.at(center + rotate_back(piece.rotation, offset));
-            double share = share_behind({two.first.distance, piece.rotation * two.first.normal}, half);
+            double fraction = fraction_behind({two.first.distance, piece.rotation * two.first.normal}, half);
             if (two.second.distance > -half) {
-                share *= share_behind({two.second.distance, piece.rotation * two.second.normal}, half);
+                fraction *= fraction_behind({two.second.distance, piece.rotation * two.second.normal}, half);
             }
-            add(octant, share);
+            add(octant, fraction);
         }
     }
 }
@@ -312,27 +312,28 @@ std::optional<ObstacleProbe::Crossing> ObstacleProbe::crossing_of_pieces(Vec3 a,
 }
 
 std::optional<ObstacleProbe::Crossing> ObstacleProbe::crossing(Vec3 a, Vec3 b) const {
-    const Vec3 way = b - a;
-    const double whole = length(way);
+    const Vec3 displacement = b - a;
+    const double whole = length(displacement);
     if (!(whole > 0)) return std::nullopt;
     if (shape_->data().is_plane) {
-        const auto hit = cast_ray(*shape_, pose_, a, way / whole, whole);
+        const auto hit = cast_ray(*shape_, pose_, a, displacement / whole, whole);
         return hit ? std::optional(Crossing{hit->distance / whole, hit->normal}) : std::nullopt;
     }
-    if (!shape_->data().surface) return crossing_of_pieces(a, way / whole, whole);
+    if (!shape_->data().surface) return crossing_of_pieces(a, displacement / whole, whole);
 
     // Both sides of triangles count. T. Möller, B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997.
     std::optional<Crossing> first;
     for (const Triangle& triangle : near_triangles_) {
         const auto& [c0, c1, c2] = triangle.corners;
-        const Vec3 e1 = c1 - c0, e2 = c2 - c0, p = cross(way, e2);
+        const Vec3 e1 = c1 - c0, e2 = c2 - c0, p = cross(displacement, e2);
         const double determinant = dot(e1, p);
         if (determinant == 0) continue;
         const Vec3 from = a - c0, q = cross(from, e1);
-        const double u = dot(from, p) / determinant, v = dot(way, q) / determinant, t = dot(e2, q) / determinant;
+        const double u = dot(from, p) / determinant, v = dot(displacement, q) / determinant,
+                     t = dot(e2, q) / determinant;
         constexpr double slack = 1e-9;
         if (u < -slack || v < -slack || u + v > 1 + slack || t < 0 || t > 1) continue;
-        if (first && t >= first->share) continue;
+        if (first && t >= first->fraction) continue;
         first = Crossing{t, determinant > 0 ? triangle.normal : -triangle.normal};
     }
     return first;

@@ -35,13 +35,13 @@ public:
     [[nodiscard]] ObstacleDistance nearest(Vec3 p) const;
     /// Shares of the eight octants of the axis-aligned cube around p, of that edge, inside the obstacle: 0 … 1, added
     /// to `shares`. Bit 0 of an octant's number: its upper half in x, bit 1: in y, bit 2: in z.
-    void add_octants(Vec3 p, double edge, float* shares) const;
+    void add_octants(Vec3 p, double edge, float* fractions) const;
     /// Whether the obstacle ends within `depth` behind the surface nearest to p, which is inside.
     [[nodiscard]] bool is_thinner(Vec3 p, Vec3 normal, double depth) const;
     /// First place of the way from a to b where a surface is met, from either side of triangles, from outside of
     /// obstacles: share of the way, and the normal against it.
     struct Crossing {
-        double share = 0;
+        double fraction = 0;
         Vec3 normal;
     };
     [[nodiscard]] std::optional<Crossing> crossing(Vec3 a, Vec3 b) const;

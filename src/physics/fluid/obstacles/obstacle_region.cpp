@@ -13,11 +13,11 @@ constexpr double half_diagonal = 1.7320508;
 
 // Whether a wall stands between two places, and not the tip of an edge: its sides look away from each other.
 bool is_walled(const ObstacleProbe& probe, Vec3 a, Vec3 b) {
-    constexpr double least_opposed = -0.5;
+    constexpr double min_opposed = -0.5;
     const auto entry = probe.crossing(a, b);
     if (!entry) return false;
     const auto exit = probe.crossing(b, a);
-    return !exit || dot(entry->normal, exit->normal) < least_opposed;
+    return !exit || dot(entry->normal, exit->normal) < min_opposed;
 }
 
 }  // namespace
@@ -33,7 +33,7 @@ void ObstacleRegion::begin(const FluidGrid& grid, const Cell& lower, const Cell&
     }
     distance_.assign(cells, static_cast<float>(reach));
     octants_.assign(8 * cells, 0);
-    for (auto& share : share_) share.assign(cells, 0);
+    for (auto& fraction : fraction_) fraction.assign(cells, 0);
     thin_.assign(cells, 0);
     is_cut_.assign(cells, 0);
     any_thin_ = any_cut_ = false;
@@ -75,7 +75,7 @@ void ObstacleRegion::shut_thin(const ObstacleProbe& probe) {
     constexpr double thickness = 1.9;  // cells: nothing is left open of the faces beside a wall of two
     constexpr float on_surface = 1e-3f;
     const auto shut = [&](int axis, int cell) {
-        share_[axis][cell] = 1;
+        fraction_[axis][cell] = 1;
         thin_[cell] |= static_cast<std::uint8_t>(1 << axis);
         any_thin_ = true;
     };
@@ -137,13 +137,13 @@ void ObstacleRegion::mark_near_thin() {
 }
 
 void ObstacleRegion::finish() {
-    if (any_thin_) filled_ = share_;
+    if (any_thin_) filled_ = fraction_;
     for (int z = 1; z < size_[2]; ++z) {
         for (int y = 1; y < size_[1]; ++y) {
             for (int x = 1; x < size_[0]; ++x) {
                 const int cell = x + size_[0] * (y + size_[1] * z);
                 for (int axis = 0; axis < 3; ++axis) {
-                    const bool is_shut = share_[axis][cell] == 1;
+                    const bool is_shut = fraction_[axis][cell] == 1;
                     const int below = cell - stride(axis);
                     float sum = 0;
                     if (is_cut_[cell] || is_cut_[below]) {
@@ -152,7 +152,7 @@ void ObstacleRegion::finish() {
                             sum += octants_[8 * (is_upper ? below : cell) + octant];
                         }
                     }
-                    if (!is_shut) share_[axis][cell] = sum / 8;
+                    if (!is_shut) fraction_[axis][cell] = sum / 8;
                     if (any_thin_) filled_[axis][cell] = sum / 8;
                 }
             }
@@ -207,7 +207,7 @@ void ObstacleRegion::spread(Vec3 place, double volume) {
                 weight *= is_upper ? upper[a] : 1 - upper[a];
             }
             if (axis < 3) {
-                share_[axis][index(c)] += weight;
+                fraction_[axis][index(c)] += weight;
             } else {
                 room_[index(c)] -= weight;
             }

@@ -34,10 +34,10 @@ public:
         return (c[0] - lower_[0] + 1) + size_[0] * ((c[1] - lower_[1] + 1) + size_[1] * (c[2] - lower_[2] + 1));
     }
     /// Share of the control volume of the lower face along `axis`; valid from lower() to upper(), that included.
-    [[nodiscard]] float share(int axis, int cell) const { return share_[axis][cell]; }
+    [[nodiscard]] float fraction(int axis, int cell) const { return fraction_[axis][cell]; }
     /// The same without what is shut because it is thin.
     [[nodiscard]] float filled(int axis, int cell) const {
-        return any_thin_ ? filled_[axis][cell] : share_[axis][cell];
+        return any_thin_ ? filled_[axis][cell] : fraction_[axis][cell];
     }
     [[nodiscard]] float distance(int cell) const { return distance_[cell]; }  ///< cells
     [[nodiscard]] std::uint8_t thin(int cell) const { return thin_[cell]; }   ///< ThinMark
@@ -56,7 +56,7 @@ private:
     std::vector<float> octants_;                // eight a cell
     std::array<std::vector<float>, 2> folded_;  // octants summed along axes
     std::vector<float> room_;
-    std::array<std::vector<float>, 3> share_, filled_;
+    std::array<std::vector<float>, 3> fraction_, filled_;
     std::vector<std::uint8_t> thin_;
     std::vector<std::uint8_t> is_cut_;
     bool any_thin_ = false, any_cut_ = false;

@@ -9,7 +9,7 @@ namespace embody::physics::fluid {
 namespace {
 
 // Faces of which less is open are shut: seams between obstacles that touch do not leak.
-constexpr float least_open = 0.02f;
+constexpr float min_open = 0.02f;
 // A body that was put farther away than this from outside was not moved through the fluid, m.
 constexpr double farthest_put = 0.5;
 
@@ -32,12 +32,12 @@ Vec3 turn_between(Quat from, Quat to) {
 }
 
 // A face that is shut though the obstacle does not fill it.
-void bind_face(MovingObstacle& moving, const FluidGrid& grid, int axis, const Cell& c, float share) {
-    if (share < least_open) return;
+void bind_face(MovingObstacle& moving, const FluidGrid& grid, int axis, const Cell& c, float fraction) {
+    if (fraction < min_open) return;
     const Vec3 n{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
     const Vec3 place = grid.center(c) - n * (grid.cell_size() / 2);
     moving.bound.push_back(
-        {.axis = axis, .cell = grid.index(c), .share = share, .turn = cross(place - moving.center, n)});
+        {.axis = axis, .cell = grid.index(c), .fraction = fraction, .turn = cross(place - moving.center, n)});
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ void FluidObstacles::begin(std::span<FluidObstacle> obstacles, FluidGrid& grid) 
     std::fill(grid.is_static_known.begin(), grid.is_static_known.end(), 0);
 }
 
-double FluidObstacles::surprise() const {
+double FluidObstacles::unexpected_displacement() const {
     double farthest = 0;
     for (const MovingObstacle& moving : moving_) {
         const double reach = length(moving.obstacle->shape->bounds(moving.obstacle->pose).half_extents());
@@ -119,7 +119,7 @@ void FluidObstacles::measure_static_tile(FluidGrid& grid, const Cell& corner, st
     region.finish();
     grid.for_cells(corner, [&](int cell, const Cell& c) {
         const int here = region.index(c);
-        for (int axis = 0; axis < 3; ++axis) grid.static_share[axis][cell] = region.share(axis, here);
+        for (int axis = 0; axis < 3; ++axis) grid.static_fraction[axis][cell] = region.fraction(axis, here);
         grid.static_distance[cell] = region.distance(here);
         grid.static_room[cell] = region.room(here);
         grid.static_thin[cell] = region.thin(here);
@@ -138,10 +138,10 @@ void FluidObstacles::measure_static(FluidGrid& grid, TaskPool& workers) {
     if (unknown.empty()) return;
     // Neighbours cost alike: every worker takes each so many-th.
     const auto number = static_cast<std::size_t>(workers.workers());
-    share_among(workers, number, unknown.size() > 4, [&](int, Share share) {
+    parallel_for(workers, number, unknown.size() > 4, [&](int, IndexRange range) {
         std::vector<ObstacleProbe> probes = fixed_;
         ObstacleRegion region;
-        for (std::size_t first = share.first; first < share.last; ++first) {
+        for (std::size_t first = range.first; first < range.last; ++first) {
             for (std::size_t i = first; i < unknown.size(); i += number) {
                 measure_static_tile(grid, unknown[i], probes, region);
             }
@@ -187,7 +187,7 @@ void FluidObstacles::place_moving(MovingObstacle& moving, int owner, FluidGrid& 
     const ObstacleRegion& region = moving.region;
     const Cell &lower = region.lower(), &upper = region.upper();
     moving.bound.clear();
-    for (auto& share : moving.share) share.assign(static_cast<std::size_t>(region.index(upper)) + 1, 0);
+    for (auto& fraction : moving.fraction) fraction.assign(static_cast<std::size_t>(region.index(upper)) + 1, 0);
     for (int z = lower[2]; z < upper[2]; ++z) {
         for (int y = lower[1]; y < upper[1]; ++y) {
             for (int x = lower[0]; x < upper[0]; ++x) {
@@ -196,11 +196,11 @@ void FluidObstacles::place_moving(MovingObstacle& moving, int owner, FluidGrid& 
                 const int cell = grid.index(c), here = region.index(c);
                 for (int axis = 0; axis < 3; ++axis) {
                     float& open = grid.open[axis][cell];
-                    float share = std::min(region.share(axis, here), open);
-                    if (open - share < least_open) share = open;
-                    moving.share[axis][here] = share;
-                    open -= share;
-                    bind_face(moving, grid, axis, c, share - region.filled(axis, here));
+                    float fraction = std::min(region.fraction(axis, here), open);
+                    if (open - fraction < min_open) fraction = open;
+                    moving.fraction[axis][here] = fraction;
+                    open -= fraction;
+                    bind_face(moving, grid, axis, c, fraction - region.filled(axis, here));
                 }
                 if (region.distance(here) < grid.obstacle[cell]) {
                     grid.obstacle[cell] = region.distance(here);
@@ -220,8 +220,8 @@ std::vector<Bounds> FluidObstacles::in_reach(double dt, double cell_size) const 
         const FluidObstacle& obstacle = *moving.obstacle;
         const Bounds bounds = obstacle.shape->bounds(obstacle.pose);
         const double radius = length(bounds.half_extents()) + length(bounds.center() - obstacle.center);
-        const double way = length(moving.linear_velocity) * dt + length(moving.center - moving.kept_center);
-        boxes.push_back(enlarged(Bounds{moving.center, moving.center}, radius + way + cells * cell_size));
+        const double travel = length(moving.linear_velocity) * dt + length(moving.center - moving.kept_center);
+        boxes.push_back(enlarged(Bounds{moving.center, moving.center}, radius + travel + cells * cell_size));
     }
     return boxes;
 }
@@ -241,8 +241,8 @@ void FluidObstacles::measure(double dt, FluidGrid& grid, TaskPool& workers) {
         grid.for_rows(corner, [&](int first, const Cell&) {
             for (int cell = first; cell < first + FluidGrid::tile[0]; ++cell) {
                 for (int axis = 0; axis < 3; ++axis) {
-                    const float open = 1 - grid.static_share[axis][cell];
-                    grid.open[axis][cell] = open < least_open ? 0 : open;
+                    const float open = 1 - grid.static_fraction[axis][cell];
+                    grid.open[axis][cell] = open < min_open ? 0 : open;
                 }
                 grid.obstacle[cell] = grid.static_distance[cell];
                 grid.room[cell] = grid.static_room[cell];
@@ -256,8 +256,8 @@ void FluidObstacles::measure(double dt, FluidGrid& grid, TaskPool& workers) {
         moving.rotation = turned(moving.rotation, moving.angular_velocity, dt / 2);
     }
     place();
-    share_among(workers, moving_.size(), moving_.size() > 1, [&](int, Share share) {
-        for (std::size_t i = share.first; i < share.last; ++i) measure_moving(moving_[i], grid);
+    parallel_for(workers, moving_.size(), moving_.size() > 1, [&](int, IndexRange range) {
+        for (std::size_t i = range.first; i < range.last; ++i) measure_moving(moving_[i], grid);
     });
     for (std::size_t i = 0; i < moving_.size(); ++i) place_moving(moving_[i], static_cast<int>(i), grid);
 
@@ -298,8 +298,8 @@ void FluidObstacles::list_areas(const FluidGrid& grid) {
                     for (int axis = 0; axis < 3; ++axis) {
                         Cell next = c;
                         ++next[axis];
-                        const double above = next[axis] < high[axis] ? moving.share[axis][region.index(next)] : 0.0f;
-                        area[axis] = (above - moving.share[axis][region.index(c)]) * h * h;
+                        const double above = next[axis] < high[axis] ? moving.fraction[axis][region.index(next)] : 0.0f;
+                        area[axis] = (above - moving.fraction[axis][region.index(c)]) * h * h;
                     }
                     if (area == Vec3{}) continue;
                     moving.areas.push_back({row, area, cross(grid.center(c) - moving.center, area)});

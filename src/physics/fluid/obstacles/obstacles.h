@@ -46,7 +46,7 @@ struct MovingObstacle {
     Quat kept_rotation;
     ObstacleProbe probe;
     ObstacleRegion region;
-    std::array<std::vector<float>, 3> share;  ///< of faces, by the region's index: what other obstacles left
+    std::array<std::vector<float>, 3> fraction;  ///< of faces, by the region's index: what other obstacles left
     std::vector<ObstacleArea> areas;
     std::vector<BoundFace> bound;
     ObstacleResponse response;
@@ -66,7 +66,7 @@ public:
     /// Before the parts of a step.
     void begin(std::span<FluidObstacle> obstacles, FluidGrid& grid);
     /// How far the obstacles are from where the last step left them, m: what they met there was not expected.
-    [[nodiscard]] double surprise() const;
+    [[nodiscard]] double unexpected_displacement() const;
     /// Puts the obstacles where the last step left them, with velocities that bring them where they are in a second;
     /// then back to where and as fast as they are.
     void begin_catching_up();

@@ -31,8 +31,8 @@ double turbulent_stress(double speed, double y, double kinematic_viscosity) {
     return std::max(0.0, all - kinematic_viscosity * speed / y);
 }
 
-void rub_along_walls(FluidGrid& grid, FluidObstacles& obstacles, double density, double viscosity, double particle_mass,
-                     double dt, TaskPool& workers) {
+void apply_wall_friction(FluidGrid& grid, FluidObstacles& obstacles, double density, double viscosity,
+                         double particle_mass, double dt, TaskPool& workers) {
     const auto tiles = grid.tiles();
     const double h = grid.cell_size();
     std::vector<std::vector<SlowedFace>> found(static_cast<std::size_t>(workers.workers()));
@@ -58,9 +58,9 @@ void rub_along_walls(FluidGrid& grid, FluidObstacles& obstacles, double density,
         const double rate = dt * stress / (speed * h * static_cast<double>(grid.open[axis][cell]));
         slowed.push_back({axis, cell, owner, center, -along[axis] * rate / (1 + rate)});
     };
-    share_among(workers, tiles.size(), tiles.size() > 16, [&](int worker, Share share) {
+    parallel_for(workers, tiles.size(), tiles.size() > 16, [&](int worker, IndexRange range) {
         auto& slowed = found[static_cast<std::size_t>(worker)];
-        for (std::size_t i = share.first; i < share.last; ++i) {
+        for (std::size_t i = range.first; i < range.last; ++i) {
             grid.for_cells(tiles[i], [&](int cell, const Cell& c) {
                 if (!(grid.obstacle[cell] < farthest + 0.5f)) return;
                 for (int axis = 0; axis < 3; ++axis) look_at(axis, cell, c, slowed);

@@ -15,7 +15,7 @@ double turbulent_stress(double speed, double y, double kinematic_viscosity);
 
 /// The faces next to obstacles that liquid does not move are slowed by the layer at the wall, which is thinner than a
 /// cell, and pull at them; on small bodies that move freely no such layer comes about. `particle_mass` in kg.
-void rub_along_walls(FluidGrid& grid, FluidObstacles& obstacles, double density, double viscosity, double particle_mass,
-                     double dt, TaskPool& workers);
+void apply_wall_friction(FluidGrid& grid, FluidObstacles& obstacles, double density, double viscosity,
+                         double particle_mass, double dt, TaskPool& workers);
 
 }  // namespace embody::physics::fluid

@@ -12,10 +12,10 @@ namespace embody::physics::fluid {
 
 namespace {
 
-constexpr double least_way = 0.005;  // cells: less does not bring a particle into an obstacle
-constexpr double single_way = 0.25;  // cells: of less the particles are kept out one by one
-constexpr double longest_way = 1.5;  // cells, of a part
-constexpr int most_parts = 16;
+constexpr double min_travel = 0.005;       // cells: less does not bring a particle into an obstacle
+constexpr double single_direction = 0.25;  // cells: of less the particles are kept out one by one
+constexpr double max_displacement = 1.5;   // cells, of a part
+constexpr int max_parts = 16;
 
 }  // namespace
 
@@ -23,14 +23,14 @@ FluidSolver::Followed FluidSolver::follow(std::span<FluidObstacle> obstacles, Ta
     Followed followed;
     if (particles_.empty()) return followed;
     obstacles_.begin(obstacles, grid_);
-    const double way = obstacles_.surprise() / grid_.cell_size();
-    if (way > single_way) {
-        const double parts = std::clamp(std::ceil(way / longest_way), 1.0, static_cast<double>(most_parts));
+    const double travel = obstacles_.unexpected_displacement() / grid_.cell_size();
+    if (travel > single_direction) {
+        const double parts = std::clamp(std::ceil(travel / max_displacement), 1.0, static_cast<double>(max_parts));
         obstacles_.begin_catching_up();
         for (int i = 0; i < static_cast<int>(parts) && !particles_.empty(); ++i) displace(1 / parts, followed, workers);
         obstacles_.end_catching_up();
     }
-    if (way > least_way) keep_out(workers);
+    if (travel > min_travel) keep_out(workers);
     obstacles_.end();
     return followed;
 }
@@ -38,7 +38,7 @@ FluidSolver::Followed FluidSolver::follow(std::span<FluidObstacle> obstacles, Ta
 // Out of thin obstacles by their true shapes; the particles keep their velocities: the next pressure stops them.
 void FluidSolver::keep_out(TaskPool& workers) {
     obstacles_.place();
-    share_among(workers, particles_.size(), particles_.size() > few_particles, [&](int, Share part) {
+    parallel_for(workers, particles_.size(), particles_.size() > few_particles, [&](int, IndexRange part) {
         ParticleCollider collider(grid_, obstacles_, 0);
         for (std::size_t i = part.first; i < part.last; ++i) {
             if (!collider.is_near_thin(particles_[i].position)) continue;
@@ -52,17 +52,17 @@ void FluidSolver::keep_out(TaskPool& workers) {
 
 // The displacement of least Σ |d|² that lets the obstacles through and keeps the liquid's volume: d = −∇q, ∇·d = 0, as
 // the pressure moves liquid at rest.
-void FluidSolver::displace(double share, Followed& followed, TaskPool& workers) {
+void FluidSolver::displace(double fraction, Followed& followed, TaskPool& workers) {
     constexpr double allowed_change = 1e-3;  // of a cell's volume
-    constexpr int most_iterations = 300;
+    constexpr int max_iterations = 300;
     const double h = grid_.cell_size();
     followed.lost += grid_.cover(particles_, workers);
     if (particles_.empty()) return;
-    grid_.sort(particles_, particle_share(), obstacles_.in_reach(share, h), workers);
-    obstacles_.measure(share, grid_, workers);
-    if (grid_.on_grid() == 0) return obstacles_.advance(share);
-    find_places(share, workers);
-    particles_to_grid(grid_, particles_, places_, particle_share(), workers);
+    grid_.sort(particles_, particle_fraction(), obstacles_.in_reach(fraction, h), workers);
+    obstacles_.measure(fraction, grid_, workers);
+    if (grid_.on_grid() == 0) return obstacles_.advance(fraction);
+    find_places(fraction, workers);
+    particles_to_grid(grid_, particles_, places_, particle_fraction(), workers);
     grid_.for_tiles(workers, [&](const Cell& corner) {
         grid_.for_rows(corner, [&](int first, const Cell&) {
             for (auto& field : grid_.velocity) std::fill_n(field.begin() + first, FluidGrid::tile[0], 0.0f);
@@ -74,7 +74,7 @@ void FluidSolver::displace(double share, Followed& followed, TaskPool& workers) 
     for (double& flow : flow_) flow *= -1 / h;
     potential_.assign(system_.size(), 0);
     system_.set_bodies({}, 0);
-    const int iterations = system_.solve(flow_, potential_, allowed_change * h * h / share, most_iterations, workers);
+    const int iterations = system_.solve(flow_, potential_, allowed_change * h * h / fraction, max_iterations, workers);
     subtract_gradient(grid_, potential_, {}, 1 / h, grid_.velocity, workers);
     extrapolate(grid_, grid_.velocity, 1, workers);
     admit_drops(grid_, workers);
@@ -82,20 +82,20 @@ void FluidSolver::displace(double share, Followed& followed, TaskPool& workers) 
     follow_obstacles(grid_, obstacles_, 0, workers);
 
     const std::size_t count = grid_.on_grid();
-    share_among(workers, count, count > few_particles, [&](int, Share part) {
-        ParticleCollider collider(grid_, obstacles_, share);
+    parallel_for(workers, count, count > few_particles, [&](int, IndexRange part) {
+        ParticleCollider collider(grid_, obstacles_, fraction);
         for (std::size_t i = part.first; i < part.last; ++i) {
             FluidParticle moved = particles_[i];
-            float way[3], end[3];
-            sample_value(grid_, grid_.velocity, places_[i].data(), way);
+            float travel[3], end[3];
+            sample_value(grid_, grid_.velocity, places_[i].data(), travel);
             for (int axis = 0; axis < 3; ++axis)
-                end[axis] = moved.position[axis] + static_cast<float>(share) * way[axis];
+                end[axis] = moved.position[axis] + static_cast<float>(fraction) * travel[axis];
             collider.move(moved, end);
             std::copy_n(moved.position, 3, particles_[i].position);
         }
     });
-    obstacles_.advance(share);
-    followed.is_solved = followed.is_solved && iterations <= most_iterations;
+    obstacles_.advance(fraction);
+    followed.is_solved = followed.is_solved && iterations <= max_iterations;
 }
 
 }  // namespace embody::physics::fluid

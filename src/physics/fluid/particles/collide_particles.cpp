@@ -11,7 +11,7 @@ namespace embody::physics::fluid {
 namespace {
 
 // Particles come no nearer to an obstacle than this, in cells.
-constexpr float least_distance = 0.02f;
+constexpr float min_distance = 0.02f;
 // They go no farther in a part of a step than this, in cells.
 constexpr double longest_part = 4;
 
@@ -48,12 +48,12 @@ ParticleCollider::Pose ParticleCollider::Mover::posed(Vec3 center, Quat rotation
     return {center, rotation, obstacle->center, to_matrix(obstacle->rotation * conjugate(rotation))};
 }
 
-ParticleCollider::Pose ParticleCollider::Mover::at(double share) const {
-    if (share == 0) return before;
-    if (share == 1) return end;
+ParticleCollider::Pose ParticleCollider::Mover::at(double fraction) const {
+    if (fraction == 0) return before;
+    if (fraction == 1) return end;
     const Pose middle{obstacle->center, obstacle->rotation, {}, {}};
-    const Pose &from = share < 0.5 ? before : middle, &to = share < 0.5 ? middle : end;
-    const double t = share < 0.5 ? 2 * share : 2 * share - 1;
+    const Pose &from = fraction < 0.5 ? before : middle, &to = fraction < 0.5 ? middle : end;
+    const double t = fraction < 0.5 ? 2 * fraction : 2 * fraction - 1;
     const double other = dot(from.rotation, to.rotation) < 0 ? -t : t;
     const Quat &a = from.rotation, &b = to.rotation;
     const Quat between = normalized({a.x * (1 - t) + b.x * other, a.y * (1 - t) + b.y * other,
@@ -66,10 +66,10 @@ bool ParticleCollider::is_near_thin(const float* position) const {
 }
 
 // Particles come by cells: the probes look at what is around several of them at once.
-void ParticleCollider::look_around(const Bounds& way) {
-    if (contains(seen_, way)) return;
-    const double h = grid_.cell_size(), gap = least_distance * h;
-    seen_ = enlarged(way, h);
+void ParticleCollider::look_around(const Bounds& swept) {
+    if (contains(seen_, swept)) return;
+    const double h = grid_.cell_size(), gap = min_distance * h;
+    seen_ = enlarged(swept, h);
     near_fixed_.clear();
     near_moving_.clear();
     for (std::size_t i = 0; i < fixed_.size(); ++i) {
@@ -156,9 +156,9 @@ void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span
     };
     const Vec3 inside = pose.seen(to_vec(particle.position));
     const float distance = distance_at(inside);
-    if (distance >= least_distance) return;
+    if (distance >= min_distance) return;
     const Vec3 normal = normalized(Vec3{gradient[0], gradient[1], gradient[2]});
-    const Vec3 outside = inside + normal * ((least_distance - distance) * grid_.cell_size());
+    const Vec3 outside = inside + normal * ((min_distance - distance) * grid_.cell_size());
     const Vec3 wall = obstacles_.velocity_at(owner, outside);
     set_position(particle, pose.back(outside));
     stop_at(particle, {normal, wall});
@@ -174,18 +174,18 @@ void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span
 
 // Shortens the way from `from` to `to` where the probe bars it, and slides on along what bars it.
 bool ParticleCollider::bar(const ObstacleProbe& probe, Vec3 from, Vec3& to, Vec3& normal) const {
-    constexpr int most_slides = 3;
-    const double gap = least_distance * grid_.cell_size();
+    constexpr int max_slides = 3;
+    const double gap = min_distance * grid_.cell_size();
     bool is_barred = false;
     Vec3 start = from;
-    for (int slide = 0; slide < most_slides; ++slide) {
+    for (int slide = 0; slide < max_slides; ++slide) {
         const auto hit = probe.crossing(start, to);
         if (!hit) break;
         is_barred = true;
         normal = hit->normal;
-        const Vec3 place = start + (to - start) * hit->share + normal * gap, rest = to - place;
+        const Vec3 place = start + (to - start) * hit->fraction + normal * gap, rest = to - place;
         start = place;
-        to = slide + 1 < most_slides ? place + rest - normal * std::min(0.0, dot(rest, normal)) : place;
+        to = slide + 1 < max_slides ? place + rest - normal * std::min(0.0, dot(rest, normal)) : place;
     }
     // Too near without having gone through, or inside since the start.
     const ObstacleDistance near = probe.nearest(to);
@@ -201,13 +201,13 @@ bool ParticleCollider::bar(const ObstacleProbe& probe, Vec3 from, Vec3& to, Vec3
 
 // By the true shapes; a moving one is seen from the middle of its way.
 void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to, const Span& when) {
-    constexpr int rounds = 2;
-    Bounds way;
-    way.add(from);
-    way.add(to);
-    look_around(way);
+    constexpr int iterations = 2;
+    Bounds swept;
+    swept.add(from);
+    swept.add(to);
+    look_around(swept);
     Vec3 normal;
-    for (int round = 0; round < rounds; ++round) {
+    for (int iteration = 0; iteration < iterations; ++iteration) {
         bool any = false;
         for (const std::size_t i : near_fixed_) {
             if (!bar(fixed_[i], from, to, normal)) continue;
@@ -232,18 +232,18 @@ void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to, const 
 void ParticleCollider::move(FluidParticle& particle, const float* end) {
     // Nothing goes farther than the tiles around the particles' reach, nor two cells at once.
     const auto longest = static_cast<float>(longest_part * grid_.cell_size());
-    float way[3], size = 0;
+    float displacement[3], size = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        way[axis] = std::clamp(end[axis] - particle.position[axis], -longest, longest);
-        if (!std::isfinite(way[axis])) return;  // its velocity tells the solver
-        size = std::max(size, std::fabs(way[axis]));
+        displacement[axis] = std::clamp(end[axis] - particle.position[axis], -longest, longest);
+        if (!std::isfinite(displacement[axis])) return;  // its velocity tells the solver
+        size = std::max(size, std::fabs(displacement[axis]));
     }
     const int strides = 1 + static_cast<int>(size / (1.5f * static_cast<float>(grid_.cell_size())));
     const double piece = 1.0 / strides;
     for (int i = 0; i < strides; ++i) {
         float to[3];
         for (int axis = 0; axis < 3; ++axis) {
-            to[axis] = particle.position[axis] + way[axis] / static_cast<float>(strides);
+            to[axis] = particle.position[axis] + displacement[axis] / static_cast<float>(strides);
         }
         stride(particle, to, {i * piece, i + 1 < strides ? (i + 1) * piece : 1});
     }

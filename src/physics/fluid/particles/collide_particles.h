@@ -37,7 +37,7 @@ private:
     void sweep(FluidParticle& particle, Vec3 from, Vec3 to, const Span& when);
     [[nodiscard]] bool bar(const ObstacleProbe& probe, Vec3 from, Vec3& to, Vec3& normal) const;
     void stop_at(FluidParticle& particle, const Wall& wall) const;
-    void look_around(const Bounds& way);
+    void look_around(const Bounds& swept);
 
     /// Where a moving obstacle is at a time of the part, and places beside it as the middle of the part sees them.
     struct Pose {
@@ -54,7 +54,7 @@ private:
         Pose before, end;
         double shift = 0;  ///< farthest that its centre is from where it is in the middle of the part, m
         double turn = 0;   ///< and a point of it, by its rotation alone, by distance from the centre
-        [[nodiscard]] Pose at(double share) const;
+        [[nodiscard]] Pose at(double fraction) const;
         [[nodiscard]] Pose posed(Vec3 center, Quat rotation) const;
         [[nodiscard]] bool is_met() const { return obstacle->is_in_reach && !obstacle->is_small; }
     };

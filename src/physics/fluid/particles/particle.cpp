@@ -56,9 +56,9 @@ float ParticleReach::farthest() const {
 
 ParticleReach reach_of(std::span<const FluidParticle> particles, TaskPool& workers) {
     std::vector<ParticleReach> found(static_cast<std::size_t>(workers.workers()));
-    share_among(workers, particles.size(), particles.size() > few_particles, [&](int worker, Share share) {
+    parallel_for(workers, particles.size(), particles.size() > few_particles, [&](int worker, IndexRange range) {
         WideReach own;
-        for (std::size_t i = share.first; i < share.last; ++i) own.add(particles[i]);
+        for (std::size_t i = range.first; i < range.last; ++i) own.add(particles[i]);
         found[static_cast<std::size_t>(worker)] = own.result();
     });
     ParticleReach all;
@@ -71,10 +71,10 @@ double usual_speed_of(std::span<const FluidParticle> particles, std::size_t drop
     constexpr int kept_bits = 6, dropped_bits = 23 - kept_bits;
     constexpr std::size_t bins = std::size_t{1} << (8 + kept_bits);
     std::vector<std::vector<std::uint32_t>> counts(static_cast<std::size_t>(workers.workers()));
-    share_among(workers, particles.size(), particles.size() > few_particles, [&](int worker, Share share) {
+    parallel_for(workers, particles.size(), particles.size() > few_particles, [&](int worker, IndexRange range) {
         std::vector<std::uint32_t>& own = counts[static_cast<std::size_t>(worker)];
         own.assign(bins, 0);
-        for (std::size_t i = share.first; i < share.last; ++i) {
+        for (std::size_t i = range.first; i < range.last; ++i) {
             const float* v = particles[i].velocity;
             const float square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
             ++own[(std::bit_cast<std::uint32_t>(square) & 0x7FFFFFFF) >> dropped_bits];

@@ -112,8 +112,8 @@ void particles_to_grid(FluidGrid& grid, const std::vector<FluidParticle>& partic
     // Tiles of one colour reach no common face, so that each face is added to in the same order by any workers.
     for (int color = 0; color < FluidGrid::colors; ++color) {
         const auto list = grid.colored(color);
-        share_among(workers, list.size(), list.size() > 3, [&](int, Share share) {
-            for (std::size_t i = share.first; i < share.last; ++i) {
+        parallel_for(workers, list.size(), list.size() > 3, [&](int, IndexRange range) {
+            for (std::size_t i = range.first; i < range.last; ++i) {
                 grid.for_cells(grid.tiles()[list[i]], [&](int cell, const Cell&) {
                     const std::uint32_t first = grid.first_particle[cell], count = grid.particle_count[cell];
                     for (std::uint32_t p = first; p < first + count; ++p) spread(grid, particles[p], places[p], volume);

@@ -22,7 +22,7 @@ bool offer_pressure(const FluidGrid& grid, int cell, Vec3 to, Vec3 weight, doubl
 
 // Share of a face's control volume below the surface: from the pressure of the cells at the face, or of those beside
 // them where both are shut. `weight`: density times gravity.
-double liquid_share(const FluidGrid& grid, int axis, int cell, Vec3 weight) {
+double liquid_fraction(const FluidGrid& grid, int axis, int cell, Vec3 weight) {
     const double h = grid.cell_size(), most = length(weight) * h;
     if (!(most > 0)) return 1;
     double pressure = -most;
@@ -67,7 +67,7 @@ void bind_liquid(const FluidGrid& grid, double density, Vec3 gravity, MovingObst
     for (BoundFace& face : moving.bound) {
         face.mass = 0;
         if (!grid.known[face.axis][face.cell]) continue;
-        face.mass = density * volume * face.share * liquid_share(grid, face.axis, face.cell, gravity * density);
+        face.mass = density * volume * face.fraction * liquid_fraction(grid, face.axis, face.cell, gravity * density);
         face.speed = grid.velocity[face.axis][face.cell];
         const Vec3 n = along(face.axis);
         masses += outer(n, n) * face.mass;

@@ -16,10 +16,10 @@ struct MovingObstacle;
 /// obstacle.
 struct BoundFace {
     int axis = 0, cell = 0;
-    float share = 0;   ///< of the control volume that is shut but outside the obstacle
-    double mass = 0;   ///< of liquid in it, kg
-    Vec3 turn;         ///< (place − the obstacle's centre of mass) × axis, m
-    double speed = 0;  ///< of that liquid along the axis before it is bound, m/s
+    float fraction = 0;  ///< of the control volume that is shut but outside the obstacle
+    double mass = 0;     ///< of liquid in it, kg
+    Vec3 turn;           ///< (place − the obstacle's centre of mass) × axis, m
+    double speed = 0;    ///< of that liquid along the axis before it is bound, m/s
 };
 
 /// What impulses do to a body's velocities: its inverse mass and inertia, with the liquid that it has bound.

@@ -16,10 +16,10 @@ namespace embody::physics::fluid {
 
 namespace {
 
-constexpr std::size_t rows_of_block = 512, most_blocks = 16;
+constexpr std::size_t rows_of_block = 512, max_blocks = 16;
 
 template <class Vector>
-auto part_of(Vector& all, Share block) {
+auto part_of(Vector& all, IndexRange block) {
     return std::span(all).subspan(block.first, block.last - block.first);
 }
 
@@ -31,7 +31,7 @@ double largest_of(std::span<const double> values) {
 
 }  // namespace
 
-float PressureSystem::gap_share(float inside, float outside) {
+float PressureSystem::gap_fraction(float inside, float outside) {
     constexpr float least = 0.005f;  // nearer surfaces would make the matrix stiff
     return std::clamp(inside / (inside - std::max(outside, 0.0f)), least, 1.0f);
 }
@@ -50,7 +50,7 @@ void PressureSystem::build_row(const FluidGrid& grid, std::size_t row) {
             neighbour = none;
             if (open <= 0) continue;
             if (grid.row[other] < 0) {
-                sum += static_cast<double>(open) / gap_share(grid.surface[cell], grid.surface[other]);
+                sum += static_cast<double>(open) / gap_fraction(grid.surface[cell], grid.surface[other]);
                 continue;
             }
             neighbour = grid.row[other];
@@ -65,16 +65,16 @@ void PressureSystem::build_row(const FluidGrid& grid, std::size_t row) {
 void PressureSystem::build(FluidGrid& grid, TaskPool& workers) {
     mark_liquid(grid, liquid_, workers);
     const std::size_t count = size();
-    blocks_ = std::clamp<std::size_t>(count / rows_of_block, 1, most_blocks);
+    blocks_ = std::clamp<std::size_t>(count / rows_of_block, 1, max_blocks);
     rows_.resize(count + 1);
     const auto none = static_cast<std::int32_t>(count);
     rows_[count] = Row{{none, none, none}, {none, none, none}, {}, {}, {}, {}};
     diagonal_.resize(count);
     scaling_.resize(count);
     for (auto* vector : {&r_, &z_, &p_, &q_, &y_}) vector->assign(count + 1, 0);
-    share_among(workers, blocks_, blocks_ > 1, [&](int, Share share) {
-        for (std::size_t block = share.first; block < share.last; ++block) {
-            const Share rows = block_of(block);
+    parallel_for(workers, blocks_, blocks_ > 1, [&](int, IndexRange range) {
+        for (std::size_t block = range.first; block < range.last; ++block) {
+            const IndexRange rows = block_of(block);
             for (std::size_t row = rows.first; row < rows.last; ++row) build_row(grid, row);
         }
     });
@@ -87,7 +87,7 @@ void PressureSystem::build(FluidGrid& grid, TaskPool& workers) {
 void PressureSystem::make_strips(const FluidGrid& grid, int workers) {
     strips_.assign(static_cast<std::size_t>(workers), {});
     if (workers == 1) {
-        strips_[0].layers = {{Share{0, size()}}};
+        strips_[0].layers = {{IndexRange{0, size()}}};
         return;
     }
     const auto tiles = grid.tiles();
@@ -149,7 +149,7 @@ void PressureSystem::factor() {
     }
 }
 
-void PressureSystem::substitute_forward(Share rows) {
+void PressureSystem::substitute_forward(IndexRange rows) {
     for (std::size_t i = rows.first; i < rows.last; ++i) {
         const Row& row = rows_[i];
         // The row before last: it is what takes time.
@@ -160,7 +160,7 @@ void PressureSystem::substitute_forward(Share rows) {
     }
 }
 
-void PressureSystem::substitute_backward(Share rows) {
+void PressureSystem::substitute_backward(IndexRange rows) {
     for (std::size_t i = rows.last; i-- > rows.first;) {
         const Row& row = rows_[i];
         double t = y_[i];
@@ -172,7 +172,7 @@ void PressureSystem::substitute_backward(Share rows) {
     }
 }
 
-void PressureSystem::multiply(Share block, std::span<const double> x, std::span<double> y) const {
+void PressureSystem::multiply(IndexRange block, std::span<const double> x, std::span<double> y) const {
     for (std::size_t i = block.first; i < block.last; ++i) {
         const Row& row = rows_[i];
         double sum = diagonal_[i] * x[i];
@@ -222,9 +222,9 @@ struct PressureSystem::Run {
     std::span<const double> b;
     std::vector<double>& x;
     Barrier barrier;
-    std::array<double, most_blocks> curvature{};           // by block
-    std::array<GradientResidual, most_blocks> residual{};  // by block
-    std::vector<Progress> progress;                        // by worker
+    std::array<double, max_blocks> curvature{};           // by block
+    std::array<GradientResidual, max_blocks> residual{};  // by block
+    std::vector<Progress> progress;                       // by worker
 };
 
 // z = (L Lᵀ)⁻¹ r. `time`: how often it has been done before.
@@ -235,7 +235,7 @@ void PressureSystem::precondition(Run& run, int worker, std::uint64_t time) {
     for (std::size_t layer = 0; layer < layers.size(); ++layer) {
         ++done;
         if (own > 0) run.progress[own - 1].wait_for(done);
-        for (const Share rows : layers[layer]) substitute_forward(rows);
+        for (const IndexRange rows : layers[layer]) substitute_forward(rows);
         run.progress[own].reach(done);
     }
     for (std::size_t layer = layers.size(); layer-- > 0;) {
@@ -251,23 +251,24 @@ struct PressureSystem::WorkerSystem {
     PressureSystem& of;
     Run& run;
     int worker;
-    Share blocks, bodies;
+    IndexRange blocks, bodies;
     std::uint64_t times = 0;  // that z was found
 
     GradientResidual begin() {
         apply(run.x);
-        for_blocks([&](std::size_t, Share rows) {
+        for_blocks([&](std::size_t, IndexRange rows) {
             for (std::size_t i = rows.first; i < rows.last; ++i) of.r_[i] = run.b[i] - of.q_[i];
         });
         return precondition();
     }
     void turn(double beta) {
-        for_blocks([&](std::size_t, Share rows) { turn_direction(beta, part_of(of.z_, rows), part_of(of.p_, rows)); });
+        for_blocks(
+            [&](std::size_t, IndexRange rows) { turn_direction(beta, part_of(of.z_, rows), part_of(of.p_, rows)); });
         run.barrier.wait();
     }
     double multiply() {
         apply(of.p_);
-        for_blocks([&](std::size_t block, Share rows) {
+        for_blocks([&](std::size_t block, IndexRange rows) {
             run.curvature[block] = dot_product(part_of(of.p_, rows), part_of(of.q_, rows));
         });
         run.barrier.wait();
@@ -276,7 +277,7 @@ struct PressureSystem::WorkerSystem {
         return sum;
     }
     GradientResidual advance(double alpha) {
-        for_blocks([&](std::size_t, Share rows) {
+        for_blocks([&](std::size_t, IndexRange rows) {
             step_along(alpha, part_of(of.p_, rows), part_of(of.q_, rows), part_of(run.x, rows), part_of(of.r_, rows));
         });
         return precondition();
@@ -291,7 +292,7 @@ private:
     void apply(const std::vector<double>& x) {
         for (std::size_t i = bodies.first; i < bodies.last; ++i) of.move_body(i, x);
         if (!of.bodies_.empty()) run.barrier.wait();
-        for_blocks([&](std::size_t block, Share rows) {
+        for_blocks([&](std::size_t block, IndexRange rows) {
             of.multiply(rows, x, of.q_);
             for (std::uint32_t i = of.first_part_[block]; i < of.first_part_[block + 1]; ++i) {
                 const BodyPart& part = of.parts_[i];
@@ -304,7 +305,7 @@ private:
         run.barrier.wait();
         of.precondition(run, worker, times++);
         run.barrier.wait();
-        for_blocks([&](std::size_t block, Share rows) {
+        for_blocks([&](std::size_t block, IndexRange rows) {
             const auto r = part_of(of.r_, rows);
             run.residual[block] = {dot_product(r, part_of(of.z_, rows)), largest_of(r)};
         });
@@ -327,8 +328,8 @@ int PressureSystem::solve(std::span<const double> b, std::vector<double>& x, dou
     std::fill(p_.begin(), p_.end(), 0);
     GradientResult result;
     const auto work = [&](int worker) {
-        WorkerSystem system{*this, run, worker, share_of(blocks_, worker, number),
-                            share_of(bodies_.size(), worker, number)};
+        WorkerSystem system{*this, run, worker, range_of(blocks_, worker, number),
+                            range_of(bodies_.size(), worker, number)};
         const GradientResult own = conjugate_gradient(system, {.iterations = most, .absolute = tolerance});
         if (worker == 0) result = own;
     };

@@ -24,7 +24,7 @@ public:
     /// Cell of a row.
     [[nodiscard]] std::uint32_t cell(std::size_t row) const { return liquid_.cells[row]; }
     /// θ of the face between two cells, one of which is liquid, the other air.
-    [[nodiscard]] static float gap_share(float inside, float outside);
+    [[nodiscard]] static float gap_fraction(float inside, float outside);
 
     /// The bodies that take part: adds `scale` J M⁻¹ Jᵀ. None, as after build(): the liquid alone.
     void set_bodies(std::span<const MovingObstacle> bodies, double scale);
@@ -47,7 +47,7 @@ private:
     /// Rows of tiles that one worker solves, by layers: those of a layer need the same layer of the strip before and
     /// the layer before of their own.
     struct Strip {
-        std::vector<std::vector<Share>> layers;
+        std::vector<std::vector<IndexRange>> layers;
     };
     struct BodyVelocity {
         Vec3 linear, angular;
@@ -57,13 +57,13 @@ private:
     void build_row(const FluidGrid& grid, std::size_t row);
     void factor();
     void make_strips(const FluidGrid& grid, int workers);
-    void substitute_forward(Share rows);
-    void substitute_backward(Share rows);
+    void substitute_forward(IndexRange rows);
+    void substitute_backward(IndexRange rows);
     void precondition(Run& run, int worker, std::uint64_t time);
-    void multiply(Share block, std::span<const double> x, std::span<double> y) const;
+    void multiply(IndexRange block, std::span<const double> x, std::span<double> y) const;
     void move_body(std::size_t body, std::span<const double> x);
-    [[nodiscard]] Share block_of(std::size_t block) const {
-        return share_of(size(), static_cast<int>(block), static_cast<int>(blocks_));
+    [[nodiscard]] IndexRange block_of(std::size_t block) const {
+        return range_of(size(), static_cast<int>(block), static_cast<int>(blocks_));
     }
 
     LiquidCells liquid_;

@@ -15,7 +15,7 @@ namespace {
 // nothing holds them then, and drops fall to pieces within seconds.
 constexpr float side_weight = 1.0f / 6;
 // Where the liquid's share changes by less a cell there is no surface; nothing is more curved than this, in 1/cells.
-constexpr float least_slope = 0.02f, most_curved = 1;
+constexpr float min_slope = 0.02f, max_curved = 1;
 
 // Along an axis over the active tiles; elsewhere `field` stays as it is.
 void smooth(const FluidGrid& grid, int axis, std::vector<float>& field, std::vector<float>& scratch,
@@ -48,11 +48,11 @@ float curvature_at(const FluidGrid& grid, const std::vector<float>& c, int cell)
         }
     }
     const float squared = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
-    if (squared < least_slope * least_slope) return 0;
+    if (squared < min_slope * min_slope) return 0;
     const float along = g[0] * g[0] * second[0][0] + g[1] * g[1] * second[1][1] + g[2] * g[2] * second[2][2] +
                         2 * (g[0] * g[1] * second[1][0] + g[0] * g[2] * second[2][0] + g[1] * g[2] * second[2][1]);
     const float trace = second[0][0] + second[1][1] + second[2][2];
-    return std::clamp((along / squared - trace) / std::sqrt(squared), -most_curved, most_curved);
+    return std::clamp((along / squared - trace) / std::sqrt(squared), -max_curved, max_curved);
 }
 
 }  // namespace
@@ -104,8 +104,8 @@ void SurfacePressure::draw_in(const FluidGrid& grid, const float* place, float* 
     (void)sample_center(grid, filled_, place, slope);
     const float steepness = std::sqrt(slope[0] * slope[0] + slope[1] * slope[1] + slope[2] * slope[2]);
     if (steepness < flattest) return;
-    const float way = rate * (outside - nearest) * static_cast<float>(grid.cell_size()) / steepness;
-    for (int axis = 0; axis < 3; ++axis) shift[axis] += way * slope[axis];
+    const float travel = rate * (outside - nearest) * static_cast<float>(grid.cell_size()) / steepness;
+    for (int axis = 0; axis < 3; ++axis) shift[axis] += travel * slope[axis];
 }
 
 }  // namespace embody::physics::fluid

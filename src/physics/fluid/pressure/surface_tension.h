@@ -27,10 +27,10 @@ public:
     void clear() { impulse_ = 0; }
     [[nodiscard]] bool is_none() const { return impulse_ == 0; }
     /// Pressure times time, Pa s, between a liquid's cell and one in air, at a share of the way to the latter.
-    [[nodiscard]] double at(int liquid, int air, double share) const {
+    [[nodiscard]] double at(int liquid, int air, double fraction) const {
         const auto inside = static_cast<std::size_t>(liquid), outside = static_cast<std::size_t>(air);
         return impulse_ *
-               (curvature_[inside] + share * (static_cast<double>(curvature_[outside]) - curvature_[inside]));
+               (curvature_[inside] + fraction * (static_cast<double>(curvature_[outside]) - curvature_[inside]));
     }
 
     /// Adds to `shift` how far a place outside of the surface is drawn towards it, m: strays, which the cells do not

@@ -14,7 +14,7 @@ namespace embody::physics::fluid {
 namespace {
 
 // Walls that are nearer to a face, in cells, are taken as so far.
-constexpr double least_wall = 0.1;
+constexpr double min_wall = 0.1;
 // Liquid that does not yield is as viscous, in ν dt / h²: more would take too many iterations.
 constexpr double stiffest = 200;
 
@@ -88,9 +88,9 @@ void ViscositySystem::measure_rates(const Viscosity& liquid, double dt, const Fl
     const double h = grid.cell_size(), most = stiffest * liquid.density * h * h / dt;
     for (const Cell& corner : grid.tiles()) {
         grid.for_cells(corner, [&](int cell, const Cell&) {
-            const float share = filled(grid, cell);
+            const float fraction = filled(grid, cell);
             viscosity_[cell] = 0;
-            if (grid.row[cell] < 0 && share < 0.05f) return;
+            if (grid.row[cell] < 0 && fraction < 0.05f) return;
             double viscosity = liquid.viscosity;
             if (liquid.yield_stress > 0) {
                 const auto at_center = [&](int axis, int at) {
@@ -120,18 +120,18 @@ void ViscositySystem::add_edge(const FluidGrid& grid, const FluidObstacles& obst
     const int da = grid.stride(a), db = grid.stride(b);
     const int cells[4] = {cell, cell - da, cell - db, cell - da - db};
     // The harmonic mean: what does not yield beside what does must not hold it.
-    double share = 0, fluidity = 0;
+    double fraction = 0, fluidity = 0;
     int count = 0, liquid = 0;
     for (const int other : cells) {
         if (viscosity_[other] > 0) {
             fluidity += 1 / viscosity_[other];
-            share += filled(grid, other);
+            fraction += filled(grid, other);
             ++liquid;
         }
         count += viscosity_[other] > 0 || grid.obstacle[other] >= 0;
     }
-    if (!(share > 0)) return;
-    const double viscosity = share / count * liquid / fluidity;
+    if (!(fraction > 0)) return;
+    const double viscosity = fraction / count * liquid / fluidity;
 
     // u_a above and below along b, u_b above and below along a. Faces in air carry no stress.
     struct Side {
@@ -158,7 +158,7 @@ void ViscositySystem::add_edge(const FluidGrid& grid, const FluidObstacles& obst
         if (is_free && !(grid.open[side.axis][partner] > 0)) {
             const double distance =
                 0.5 * (grid.obstacle[side.cell] + grid.obstacle[side.cell - grid.stride(side.axis)]);
-            nearest_wall = std::min(nearest_wall, std::max(distance, least_wall));
+            nearest_wall = std::min(nearest_wall, std::max(distance, min_wall));
         }
     }
     if (!any_free) return;

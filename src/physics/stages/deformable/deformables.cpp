@@ -24,10 +24,11 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr double quiet_speed = 0.02;     // m/s: all nodes slower than this may sleep
-constexpr double quiet_way = 1e-3;       // m: or a sheet or rope that only trembles, none of whose nodes goes so far
+constexpr double quiet_speed = 0.02;  // m/s: all nodes slower than this may sleep
+constexpr double quiet_displacement =
+    1e-3;                                // m: or a sheet or rope that only trembles, none of whose nodes goes so far
 constexpr double noticed_change = 0.05;  // of a sleeping body's weight: a push that differs by more wakes it
-constexpr int most_corrections = 3;      // rounds besides the first
+constexpr int max_corrections = 3;       // rounds besides the first
 constexpr double noticed_speed = 0.05;   // m/s: a body as fast as this wakes what it is near
 
 template <class Visit>
@@ -193,7 +194,7 @@ void push_solids(const DeformableAccess& world, MovingDeformables& moving) {
 }
 
 // Several solids each by one worker, a single one by all.
-void share_solids(const DeformableAccess& world, const MovingDeformables& moving, const auto& work) {
+void parallel_for_solids(const DeformableAccess& world, const MovingDeformables& moving, const auto& work) {
     const std::size_t count = moving.solids.size();
     if (count <= 1 || world.workers.workers() == 1) {
         for (std::size_t i = 0; i < count; ++i) work(i, world.workers);
@@ -208,13 +209,13 @@ void share_solids(const DeformableAccess& world, const MovingDeformables& moving
 
 void solve_solids(const DeformableAccess& world, const MovingDeformables& moving) {
     EMBODY_ZONE("solve solids");
-    share_solids(world, moving, [&](std::size_t i, TaskPool& workers) { moving.solids[i]->solve(workers); });
+    parallel_for_solids(world, moving, [&](std::size_t i, TaskPool& workers) { moving.solids[i]->solve(workers); });
 }
 
 // A further round for solids whose moves make energy; returns whether there is any.
 bool correct_solids(const DeformableAccess& world, const MovingDeformables& moving) {
     std::atomic<bool> is_any = false;
-    share_solids(world, moving, [&](std::size_t i, TaskPool& workers) {
+    parallel_for_solids(world, moving, [&](std::size_t i, TaskPool& workers) {
         if (!moving.solids[i]->gains_energy()) return;
         moving.solids[i]->solve(workers);
         is_any = true;
@@ -226,7 +227,7 @@ void run_substeps(const DeformableAccess& world, MovingDeformables& moving) {
     const int substeps = world.settings.deformable_substeps;
     const double h = world.settings.time_step / substeps;
     for (int k = 1; k <= substeps; ++k) {
-        share_solids(world, moving, [&](std::size_t i, TaskPool&) {
+        parallel_for_solids(world, moving, [&](std::size_t i, TaskPool&) {
             moving.solids[i]->begin_substep(h, moving.solid_records[i]->acceleration(world.settings.gravity));
         });
         push_solids(world, moving);
@@ -237,8 +238,8 @@ void run_substeps(const DeformableAccess& world, MovingDeformables& moving) {
         do {
             world.deformables.solid_contacts.solve(moving.contacts, moving.solids, moving.bodies, h, k * h,
                                                    world.workers);
-        } while (corrections++ < most_corrections && correct_solids(world, moving));
-        share_solids(world, moving, [&](std::size_t i, TaskPool&) { moving.solids[i]->finish(); });
+        } while (corrections++ < max_corrections && correct_solids(world, moving));
+        parallel_for_solids(world, moving, [&](std::size_t i, TaskPool&) { moving.solids[i]->finish(); });
         advance_thin_groups(world, moving.groups, moving.thin, moving.bodies, k);
     }
 }
@@ -363,7 +364,7 @@ bool is_quiet(DeformableRecord& record) {
     if (fastest_node(record) < quiet_speed) return true;
     if (record.solid()) return false;
     const std::vector<Vec3>& places = record.nodes().position;
-    const auto has_stayed = [](Vec3 a, Vec3 b) { return length(a - b) < quiet_way; };
+    const auto has_stayed = [](Vec3 a, Vec3 b) { return length(a - b) < quiet_displacement; };
     if (std::ranges::equal(places, record.quiet_places, has_stayed)) return true;
     record.quiet_places = places;
     return false;

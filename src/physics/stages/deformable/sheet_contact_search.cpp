@@ -13,7 +13,7 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr double end_share = 0.02;  // of an edge or triangle: nearer to its end the contacts of that hold
+constexpr double end_fraction = 0.02;  // of an edge or triangle: nearer to its end the contacts of that hold
 
 /// One body beside one sheet.
 class SheetSearch {
@@ -24,7 +24,7 @@ public:
           index_(index),
           time_step_(time_step),
           fall_(length(gravity) * time_step),
-          way_(way_of(body, time_step)),
+          displacement_(displacement_of(body, time_step)),
           bounds_(body.shape->bounds(body.start)),
           thin_(thin),
           workers_(workers),
@@ -47,7 +47,9 @@ private:
     [[nodiscard]] std::span<const NodeContact> planes_of(std::uint32_t node) const {
         return std::span(planes_).subspan(first_plane_[node], first_plane_[node + 1] - first_plane_[node]);
     }
-    [[nodiscard]] double reach(double speed) const { return 2 * radius_ + way_ + (speed + fall_) * time_step_; }
+    [[nodiscard]] double reach(double speed) const {
+        return 2 * radius_ + displacement_ + (speed + fall_) * time_step_;
+    }
     [[nodiscard]] double speed(std::uint32_t node) const { return length(nodes_.mean_velocity[node]); }
     [[nodiscard]] bool is_over_same(std::uint32_t a, std::uint32_t b) const;
     void find_edge(std::uint32_t a, std::uint32_t b, double reach, std::vector<Manifold>& manifolds,
@@ -59,7 +61,7 @@ private:
 
     const TouchedBody& body_;
     std::uint32_t index_;
-    double time_step_, fall_, way_;
+    double time_step_, fall_, displacement_;
     Bounds bounds_;
     ThinDeformable& thin_;
     TaskPool& workers_;
@@ -77,8 +79,8 @@ bool SheetSearch::is_over_same(std::uint32_t a, std::uint32_t b) const {
     constexpr double most = 0.8;  // over the contact radius
     const auto of_a = planes_of(a), of_b = planes_of(b);
     if (of_a.empty() || of_b.empty()) return false;
-    const double way = length(nodes_.position[b] - nodes_.position[a]);
-    const double angle = std::min(0.5, 4 * most * radius_ / std::max(way, radius_));
+    const double displacement = length(nodes_.position[b] - nodes_.position[a]);
+    const double angle = std::min(0.5, 4 * most * radius_ / std::max(displacement, radius_));
     const double cosine = 1 - angle * angle / 2;
     const auto has_twin = [&](const NodeContact& plane, std::span<const NodeContact> others) {
         return std::ranges::any_of(others,
@@ -91,10 +93,10 @@ bool SheetSearch::is_over_same(std::uint32_t a, std::uint32_t b) const {
 // All that find(share, found) finds, in the order of the shares.
 template <class Found, class Find>
 std::vector<Found> SheetSearch::gather(std::size_t count, Find find) const {
-    constexpr std::size_t worth_sharing = 1000;
+    constexpr std::size_t min_parallel_count = 1000;
     std::vector<std::vector<Found>> parts(static_cast<std::size_t>(workers_.workers()));
-    share_among(workers_, count, count >= worth_sharing,
-                [&](int worker, Share share) { find(share, parts[static_cast<std::size_t>(worker)]); });
+    parallel_for(workers_, count, count >= min_parallel_count,
+                 [&](int worker, IndexRange range) { find(range, parts[static_cast<std::size_t>(worker)]); });
     std::vector<Found> all = std::move(parts.front());
     for (std::size_t w = 1; w < parts.size(); ++w) all.insert(all.end(), parts[w].begin(), parts[w].end());
     return all;
@@ -111,7 +113,7 @@ void SheetSearch::find_edge(std::uint32_t a, std::uint32_t b, double reach, std:
         for (int k = 0; k < manifold.count; ++k) {
             const ManifoldPoint& point = manifold.points[static_cast<std::size_t>(k)];
             const double along = dot(point.position - from, edge) / (size * size);
-            if (along < end_share || along > 1 - end_share) continue;
+            if (along < end_fraction || along > 1 - end_fraction) continue;
             const Vec3 normal = -manifold.normal;  // from the body to the sheet
             const Vec3 anchor = from + along * edge - (point.separation + radius_) * normal - body_.start_center;
             found.push_back({{a, b}, {1 - along, along}, 2, {a, b}, {a, index_, anchor, normal, {}}});
@@ -121,9 +123,9 @@ void SheetSearch::find_edge(std::uint32_t a, std::uint32_t b, double reach, std:
 
 void SheetSearch::find_edges() {
     const auto edges = thin_.record->cloth()->edges();
-    const auto found = gather<SheetContact>(edges.size(), [&](Share share, std::vector<SheetContact>& contacts) {
+    const auto found = gather<SheetContact>(edges.size(), [&](IndexRange range, std::vector<SheetContact>& contacts) {
         std::vector<Manifold> manifolds;
-        for (const auto& [a, b] : edges.subspan(share.first, share.last - share.first)) {
+        for (const auto& [a, b] : edges.subspan(range.first, range.last - range.first)) {
             const double far = reach(std::max(speed(a), speed(b)));
             Bounds box;
             box.add(nodes_.position[a]);
@@ -136,8 +138,8 @@ void SheetSearch::find_edges() {
 
 void SheetSearch::gather_triangles() {
     const auto& triangles = std::get<Cloth>(thin_.record->definition.matter).triangles;
-    triangles_ = gather<NearTriangle>(triangles.size(), [&](Share share, std::vector<NearTriangle>& near) {
-        for (std::size_t t = share.first; t < share.last; ++t) {
+    triangles_ = gather<NearTriangle>(triangles.size(), [&](IndexRange range, std::vector<NearTriangle>& near) {
+        for (std::size_t t = range.first; t < range.last; ++t) {
             const auto [a, b, c] = triangles[t];
             Bounds box;
             for (const std::uint32_t node : triangles[t]) box.add(nodes_.position[node]);
@@ -160,7 +162,7 @@ void SheetSearch::find_corner(Vec3 point, Vec3 inside, double radius, std::uint3
         const std::vector<Vec3>& x = nodes_.position;
         const Vec3 a = x[triangle[0]], b = x[triangle[1]], c = x[triangle[2]];
         const auto weight = nearest_weights(point, a, b, c);
-        if (std::ranges::min(weight) < end_share) continue;
+        if (std::ranges::min(weight) < end_fraction) continue;
         const Vec3 from = radius > 0 ? weight[0] * a + weight[1] * b + weight[2] * c : point;
         Vec3 normal = normalized(cross(b - a, c - a));
         if (dot(normal, from - inside) < 0) normal = -normal;
@@ -171,7 +173,7 @@ void SheetSearch::find_corner(Vec3 point, Vec3 inside, double radius, std::uint3
 }
 
 void SheetSearch::find_corners() {
-    constexpr std::uint32_t most_corners = 1u << 16;  // of a piece
+    constexpr std::uint32_t max_corners = 1u << 16;  // of a piece
     gather_triangles();
     if (triangles_.empty()) return;
     std::vector<Bounds> boxes;
@@ -184,7 +186,7 @@ void SheetSearch::find_corners() {
         if (convex.kind == ConvexKind::sphere) {
             // Larger ones meet edges first.
             if (convex.radius < thin_.record->cloth()->edge_length())
-                find_corner(piece.position, piece.position, convex.radius, p * most_corners, [](Vec3) { return true; });
+                find_corner(piece.position, piece.position, convex.radius, p * max_corners, [](Vec3) { return true; });
             continue;
         }
         const Polytope& polytope = convex.polytope;
@@ -192,11 +194,11 @@ void SheetSearch::find_corners() {
             const auto is_outwards = [&](Vec3 normal) {
                 const Vec3 n = piece.direction_to_local(normal);
                 return std::ranges::all_of(polytope.neighbours(v), [&](std::uint32_t other) {
-                    const Vec3 way = polytope.vertices[other] - polytope.vertices[v];
-                    return dot(way, n) <= 0.3 * length(way);
+                    const Vec3 displacement = polytope.vertices[other] - polytope.vertices[v];
+                    return dot(displacement, n) <= 0.3 * length(displacement);
                 });
             };
-            find_corner(piece.to_frame(polytope.vertices[v]), interior_point(piece), 0, p * most_corners + v,
+            find_corner(piece.to_frame(polytope.vertices[v]), interior_point(piece), 0, p * max_corners + v,
                         is_outwards);
         }
     }
@@ -218,7 +220,7 @@ void find_sheet_contacts(std::span<const TouchedBody> bodies, const std::vector<
     for (std::uint32_t b = 0; b < bodies.size(); ++b) {
         // Nodes tell all of a plane.
         if (!may_collide[b] || std::holds_alternative<PlaneShape>(bodies[b].shape->definition())) continue;
-        const double reach = own_reach + way_of(bodies[b], time_step);
+        const double reach = own_reach + displacement_of(bodies[b], time_step);
         if (!overlaps(enlarged(bodies[b].shape->bounds(bodies[b].start), reach), sheet)) continue;
         SheetSearch search(bodies[b], b, time_step, gravity, thin, workers);
         search.find_edges();

@@ -19,8 +19,8 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr double small_body = 1.5;  // reach over the mean side of the surface's triangles
-constexpr double deep_share = 0.5;  // of the mean side: no contact that closed in a step leaves a node so deep
+constexpr double small_body = 1.5;     // reach over the mean side of the surface's triangles
+constexpr double deep_fraction = 0.5;  // of the mean side: no contact that closed in a step leaves a node so deep
 
 std::uint32_t index_of(std::span<const TouchedBody> bodies, std::uint32_t slot) {
     return static_cast<std::uint32_t>(std::ranges::lower_bound(bodies, slot, {}, &TouchedBody::body) - bodies.begin());
@@ -78,22 +78,22 @@ private:
     void add_node_contacts(const TouchedBody& body, std::span<const NodeContact> found,
                            std::vector<SolidContact>& contacts) const {
         const Bounds box = body.shape->bounds(body.start);
-        const std::optional<WayOut> way = find_way_out(body, box, found);
+        const std::optional<ExitDirection> travel = find_exit_direction(body, box, found);
         std::uint32_t last_parted = no_node;
         for (const NodeContact& node : found) {
             SolidContact contact = contact_with(body);
             contact.point = {number_, 1, {node.node}, {1}};
             contact.anchor = node.anchor;
             contact.normal = node.normal;
-            if (way && height(body, node) < 0) {
+            if (travel && height(body, node) < 0) {
                 if (node.node == last_parted) continue;
                 last_parted = node.node;
-                const double end = way->sign > 0 ? box.upper[way->axis] : box.lower[way->axis];
+                const double end = travel->sign > 0 ? box.upper[travel->axis] : box.lower[travel->axis];
                 Vec3 place = record_.nodes().position[node.node];
-                place[way->axis] = end;
+                place[travel->axis] = end;
                 contact.anchor = place - body.start_center;
                 contact.normal = {};
-                contact.normal[way->axis] = way->sign;
+                contact.normal[travel->axis] = travel->sign;
                 contact.parts = true;
             }
             contacts.push_back(contact);
@@ -106,8 +106,8 @@ private:
 
     // Where much of the solid is within a body whose faces push it to different sides, as a scene may begin, these
     // would pull it apart; until none of it is inside it leaves by the shortest way.
-    [[nodiscard]] std::optional<WayOut> find_way_out(const TouchedBody& body, const Bounds& box,
-                                                     std::span<const NodeContact> found) const {
+    [[nodiscard]] std::optional<ExitDirection> find_exit_direction(const TouchedBody& body, const Bounds& box,
+                                                                   std::span<const NodeContact> found) const {
         const SolidDeformable& solid = *record_.solid();
         const bool is_parting = std::ranges::any_of(
             record_.contacts, [&](const SolidContact& c) { return c.parts && c.has_body() && c.partner == body.body; });
@@ -115,22 +115,22 @@ private:
             double inside = 0;
             Vec3 normals;
             for (const NodeContact& node : found) {
-                if (height(body, node) > -deep_share * solid.mean_side()) continue;
+                if (height(body, node) > -deep_fraction * solid.mean_side()) continue;
                 ++inside;
                 normals += node.normal;
             }
             if (inside < much_within * static_cast<double>(solid.nodes().size())) return std::nullopt;
             if (length(normals) > 0.5 * inside) return std::nullopt;
         }
-        return shortest_way(solid.bounds(), box, true);
+        return min_travel(solid.bounds(), box, true);
     }
 
     void add_feature_contacts(const TouchedBody& body, std::optional<PlacedSurface>& surface,
                               std::vector<SolidContact>& contacts) const {
         const double dt = world_.settings.time_step;
-        const double body_way =
+        const double body_displacement =
             (length(body.path_velocity) + length(body.path_spin) * world_.rigid.record(body.body).reach) * dt;
-        const double reach = reach_of(world_, record_) + body_way + radius();
+        const double reach = reach_of(world_, record_) + body_displacement + radius();
         const Bounds bounds = record_.bounds();
         const std::vector<BodyFeature> features = find_features(body.shape->definition());
         for (std::uint32_t f = 0; f < features.size(); ++f) {

@@ -80,9 +80,9 @@ void SolidTies::find_compliance(const DeformableRecord& thin, SolidDeformable& s
     move_.resize(solid.nodes().size());
     const Vec3 down = normalized(world_.settings.gravity, {0, -1, 0});
     for (const Held& at : held) {
-        const Vec3 way = normalized(-thin.tie_pulls[at.tie], down);
+        const Vec3 displacement = normalized(-thin.tie_pulls[at.tie], down);
         for_each_node(thin.definition.ties[at.tie],
-                      [&](std::uint32_t node, double weight) { force_[node] += weight * way; });
+                      [&](std::uint32_t node, double weight) { force_[node] += weight * displacement; });
     }
     solid.find_response(force_, move_, world_.workers);
     for (Held& at : held) {

@@ -13,7 +13,7 @@ namespace {
 // Points of segments between the nodes that may touch: corners and edges of bodies, round ones between two nodes.
 void find_segment_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide, double time_step,
                            Vec3 gravity, ThinDeformable& thin) {
-    constexpr double segment_end_share =
+    constexpr double segment_end_fraction =
         0.05;  // of a segment's length: nearer to its ends the node's own contact holds
     const DeformableRecord& record = *thin.record;
     const Nodes& nodes = record.nodes();
@@ -23,24 +23,24 @@ void find_segment_contacts(std::span<const TouchedBody> bodies, const std::vecto
         if (!may_collide[b]) continue;
         const TouchedBody& body = bodies[b];
         const Bounds bounds = body.shape->bounds(body.start);
-        const double body_way = way_of(body, time_step);
+        const double body_displacement = displacement_of(body, time_step);
         for (std::uint32_t s = 0; s + 1 < nodes.size(); ++s) {
             if (record.rope()->is_broken(s)) continue;
             const Vec3 from = nodes.position[s], edge = nodes.position[s + 1] - from;
             const double speed = std::max(length(nodes.mean_velocity[s]), length(nodes.mean_velocity[s + 1]));
-            const double reach = 2 * radius + body_way + (speed + fall) * time_step;
+            const double reach = 2 * radius + body_displacement + (speed + fall) * time_step;
             Bounds own;
             own.add(from);
             own.add(from + edge);
             if (!overlaps(enlarged(bounds, reach), own)) continue;
             manifolds.clear();
-            const Vec3 way = normalized(edge, {0, 1, 0});
-            const Transform pose{from + edge / 2, from_two_vectors({0, 1, 0}, way)};
+            const Vec3 displacement = normalized(edge, {0, 1, 0});
+            const Transform pose{from + edge / 2, from_two_vectors({0, 1, 0}, displacement)};
             collide(*record.capsules[record.segment_capsule[s]], pose, *body.shape, body.start, reach, manifolds);
             for (const Manifold& manifold : manifolds) {
                 const ManifoldPoint& point = manifold.points[0];
-                const double along = dot(point.position - from, way) / std::max(length(edge), 1e-12);
-                if (along < segment_end_share || along > 1 - segment_end_share) continue;
+                const double along = dot(point.position - from, displacement) / std::max(length(edge), 1e-12);
+                if (along < segment_end_fraction || along > 1 - segment_end_fraction) continue;
                 const Vec3 normal = -manifold.normal;  // from the body to the rope
                 const Vec3 on_axis = from + along * edge;
                 const Vec3 anchor = on_axis - (point.separation + radius) * normal - body.start_center;

@@ -213,32 +213,32 @@ double ThinGroupPart::energy(std::span<const SheetSystem> sheets, std::span<cons
 // Ropes are not linear: from the moves before towards those of the solve as far as the energy falls. Returns how far
 // the fastest node of a rope has gone, over a segment's length.
 double ThinGroupPart::go_as_far_as_it_pays(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias) {
-    constexpr double rounding = 1e-6, least_share = 1e-3;  // sheets are solved in floats
+    constexpr double rounding = 1e-6, min_fraction = 1e-3;  // sheets are solved in floats
     const std::vector<Vec3> full = std::exchange(moves_, from_);
     const std::vector<BodyMove> body_full = std::exchange(body_moves_, body_from_);
     const double before = energy(sheets, inertias), enough = before + rounding * std::fabs(before);
-    for (double share = 1; share > least_share; share /= 2) {
-        for (std::size_t i = 0; i < moves_.size(); ++i) moves_[i] = from_[i] + share * (full[i] - from_[i]);
+    for (double fraction = 1; fraction > min_fraction; fraction /= 2) {
+        for (std::size_t i = 0; i < moves_.size(); ++i) moves_[i] = from_[i] + fraction * (full[i] - from_[i]);
         for (std::size_t b = 0; b < body_moves_.size(); ++b) {
             const BodyMove& from = body_from_[b];
-            body_moves_[b] = {from.shift + share * (body_full[b].shift - from.shift),
-                              from.turn + share * (body_full[b].turn - from.turn)};
+            body_moves_[b] = {from.shift + fraction * (body_full[b].shift - from.shift),
+                              from.turn + fraction * (body_full[b].turn - from.turn)};
         }
         if (energy(sheets, inertias) <= enough) break;
     }
-    double way = 0;
+    double travel = 0;
     for (const Member& member : ropes()) {
-        member.record().rope()->foretell(member.substep, part(from_, member), part(moves_, member));
+        member.record().rope()->predict(member.substep, part(from_, member), part(moves_, member));
         for (std::size_t i = member.first; i < member.first + member.count; ++i)
-            way = std::max(way, length(moves_[i] - from_[i]) / member.record().rope()->segment_length());
+            travel = std::max(travel, length(moves_[i] - from_[i]) / member.record().rope()->segment_length());
     }
-    return way;
+    return travel;
 }
 
 // Ropes about their last moves, as in Newton's method.
 bool ThinGroupPart::solve(std::span<const TouchedBody> bodies) {
     constexpr double small = 1e-3;  // of a segment's length
-    const int most_solves = has_ropes() ? 12 : 4;
+    const int max_solves = has_ropes() ? 12 : 4;
     const std::vector<BodyInertia> inertias = inertias_of(bodies, h_);
     std::vector<SheetSystem> sheets;
     for (std::size_t m = 0; m < sheets_; ++m) sheets.push_back(members_[m].record().cloth()->system());
@@ -249,11 +249,11 @@ bool ThinGroupPart::solve(std::span<const TouchedBody> bodies) {
         gather_springs();
         from_ = moves_;
         body_from_ = body_moves_;
-        const int rounds = world_.deformables.pair_solver.solve(sheets, lines, springs_, inertias, moves_, body_moves_,
-                                                                world_.workers);
-        if (rounds == ClothSolver::not_finite) return false;
-        const double way = has_ropes() ? go_as_far_as_it_pays(sheets, inertias) : 0;
-        if (solves == most_solves || (!choose_again() && way < small)) break;
+        const int iterations = world_.deformables.pair_solver.solve(sheets, lines, springs_, inertias, moves_,
+                                                                    body_moves_, world_.workers);
+        if (iterations == ClothSolver::not_finite) return false;
+        const double travel = has_ropes() ? go_as_far_as_it_pays(sheets, inertias) : 0;
+        if (solves == max_solves || (!choose_again() && travel < small)) break;
     }
     return std::ranges::all_of(moves_, [](Vec3 move) { return is_finite(move); }) &&
            std::ranges::all_of(body_moves_,
@@ -286,7 +286,7 @@ std::vector<TouchSpring> ThinGroupPart::springs_of_others(const Member& member) 
 // A clamped rope goes once more on its own: the solve knew nothing of its twist.
 void ThinGroupPart::end(std::span<TouchedBody> bodies) {
     given_.assign(moves_.size(), {});
-    const std::vector<double> shares = shares_of(springs_, moves_, body_moves_, inertias_of(bodies, h_), h_);
+    const std::vector<double> fractions = fractions_of(springs_, moves_, body_moves_, inertias_of(bodies, h_), h_);
     pairs_.finish(moves_, given_, world_.deformables.thin_contacts);
     ties_.finish(moves_, given_);
     for (Member& member : members_) {
@@ -301,7 +301,7 @@ void ThinGroupPart::end(std::span<TouchedBody> bodies) {
                                    member.thin->attachment_bodies, bodies, springs_of_others(member));
         } else {
             record.rope()->touch() = std::move(member.touch);
-            record.rope()->end(member.substep, moves, body_moves_, given, bodies, shares);
+            record.rope()->end(member.substep, moves, body_moves_, given, bodies, fractions);
         }
         if (record.rope()) note_breaks(world_, record);
     }

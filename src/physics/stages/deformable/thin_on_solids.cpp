@@ -89,10 +89,10 @@ void ThinOnSolids::find_following(SolidDeformable& solid, const Nodes& sheet, do
     }
     solid.find_response(push_, move_, world_.workers);
     for (Held& at : held) {
-        Vec3 way;
-        for (std::size_t k = 0; k < 3; ++k) way += at.place.weight[k] * move_[at.place.triangle[k]];
-        const double give = std::max(0.0, dot(way, at.place.normal));
-        at.following = 1 / (1 + 4 * sheet.mass[at.node] * give / (h * h));
+        Vec3 displacement;
+        for (std::size_t k = 0; k < 3; ++k) displacement += at.place.weight[k] * move_[at.place.triangle[k]];
+        const double compliance = std::max(0.0, dot(displacement, at.place.normal));
+        at.following = 1 / (1 + 4 * sheet.mass[at.node] * compliance / (h * h));
     }
 }
 

@@ -37,11 +37,11 @@ struct Filling {
 };
 
 bool are_too_many(const std::array<double, 3>& counts) {
-    return counts[0] * counts[1] * counts[2] > static_cast<double>(most_fluid_particles);
+    return counts[0] * counts[1] * counts[2] > static_cast<double>(max_fluid_particles);
 }
 
 Error too_many() {
-    return {"cell_size", "makes more than " + std::to_string(most_fluid_particles) + " particles",
+    return {"cell_size", "makes more than " + std::to_string(max_fluid_particles) + " particles",
             "use larger cells or less liquid"};
 }
 
@@ -131,8 +131,8 @@ void read_particles(FluidRecord& record, TaskPool& workers) {
     record.positions.resize(count);
     record.velocities.resize(count);
     record.ids.resize(count);
-    share_among(workers, count, count > few_particles, [&](int, Share share) {
-        for (std::size_t i = share.first; i < share.last; ++i) {
+    parallel_for(workers, count, count > few_particles, [&](int, IndexRange range) {
+        for (std::size_t i = range.first; i < range.last; ++i) {
             const float *x = particles[i].position, *v = particles[i].velocity;
             record.positions[i] = {x[0], x[1], x[2]};
             record.velocities[i] = {v[0], v[1], v[2]};
@@ -153,7 +153,7 @@ Result<FluidIds> add_particles(const ObstacleAccess& world, FluidRecord& fluid, 
     for (std::size_t i = 0; i < places.size(); ++i) {
         if (!is_finite(places[i])) return Error{"places[" + std::to_string(i) + "]", "must be finite"};
     }
-    if (fluid.positions.size() + places.size() > most_fluid_particles) return too_many();
+    if (fluid.positions.size() + places.size() > max_fluid_particles) return too_many();
     std::vector<Vec3> free(places.begin(), places.end());
     leave_out_obstacles(world, fluid.definition.cell_size, free);
     if (free.empty()) return Error{"places", "hold no particle", "place the liquid outside of obstacles"};
@@ -173,7 +173,7 @@ Result<FluidRecord> set_up_fluid(const ObstacleAccess& world, const FluidDefinit
     const double step = definition.cell_size / 2;
     filling.places.insert(filling.places.end(), definition.points.begin(), definition.points.end());
     filling.volume += static_cast<double>(definition.points.size()) * step * step * step;
-    if (filling.places.size() > most_fluid_particles) return too_many();
+    if (filling.places.size() > max_fluid_particles) return too_many();
     const double particle_volume =
         filling.volume / static_cast<double>(std::max<std::size_t>(filling.places.size(), 1));
     leave_out_obstacles(world, definition.cell_size, filling.places);

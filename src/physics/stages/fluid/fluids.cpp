@@ -24,7 +24,7 @@ constexpr double quiet_speed = 0.01;     // m/s: a fluid whose particles are slo
 constexpr double time_to_sleep = 1;      // s
 constexpr double quiet_sinking = 0.02;   // cells a second: a fluid whose middle sinks faster does not sleep
 constexpr double noticed_change = 0.05;  // of a sleeping body's weight: another force by more wakes it
-constexpr double most_support = 1.5;     // of the weight of a body and of its volume of the fluid, or what it carries
+constexpr double max_support = 1.5;      // of the weight of a body and of its volume of the fluid, or what it carries
 constexpr double farthest_jump = 0.5;    // m: a body that was put farther away was not moved through the fluid
 
 Vec3 angular_momentum_of(const FluidAccess& world, std::uint32_t slot, Vec3 angular_velocity) {
@@ -54,7 +54,7 @@ Support support_of(const FluidAccess& world, std::uint32_t slot, double density)
     const Vec3 angular =
         angular_momentum_of(world, slot, state.angular_velocity - touch.angular_velocity) - touch.torque * dt;
     const double gravity = length(world.settings.gravity), volume = record.shape->mass_properties().volume;
-    const double most = most_support * (mass * gravity + std::max(density * volume * gravity, touch.carried)) * dt;
+    const double most = max_support * (mass * gravity + std::max(density * volume * gravity, touch.carried)) * dt;
     return {at_most(linear, most), at_most(angular, most * record.reach)};
 }
 
@@ -81,14 +81,14 @@ FluidObstacle fixed_obstacle(const FluidAccess& world, const FluidRecord& fluid,
     if (seen == fluid.seen.end() || seen->second.version == record.version) return obstacle;
     const Vec3 local_center = world.rigid.constants[slot].local_center;
     const Vec3 last_center = transform_point(seen->second.pose, local_center);
-    const Vec3 way = state.center - last_center,
+    const Vec3 displacement = state.center - last_center,
                turn = turn_between(seen->second.pose.rotation, obstacle.pose.rotation);
-    if (way == Vec3{} && turn == Vec3{}) return obstacle;
-    if (length(way) + length(turn) * record.reach > farthest_jump) return obstacle;
+    if (displacement == Vec3{} && turn == Vec3{}) return obstacle;
+    if (length(displacement) + length(turn) * record.reach > farthest_jump) return obstacle;
     obstacle.is_static = false;
     obstacle.pose = seen->second.pose;
     obstacle.center = last_center;
-    obstacle.linear_velocity = way / dt;
+    obstacle.linear_velocity = displacement / dt;
     obstacle.angular_velocity = turn / dt;
     return obstacle;
 }
@@ -116,9 +116,9 @@ FluidObstacle dynamic_obstacle(const FluidAccess& world, std::uint32_t slot, dou
 // Slots of the bodies that the fluid may meet in this step, ascending.
 std::vector<std::uint32_t> bodies_near(const FluidAccess& world, const FluidRecord& fluid) {
     const double dt = world.settings.time_step, h = fluid.definition.cell_size;
-    const double way = (fluid.fastest + length(world.settings.gravity) * dt) * dt;
+    const double displacement = (fluid.fastest + length(world.settings.gravity) * dt) * dt;
     std::vector<std::uint32_t> slots;
-    world.contacts.broad_phase.query(enlarged(fluid.bounds, 4 * h + way), [&](std::uint32_t slot) {
+    world.contacts.broad_phase.query(enlarged(fluid.bounds, 4 * h + displacement), [&](std::uint32_t slot) {
         if (world.rigid.record(slot).shape && world.rigid.record(slot).definition.enabled) slots.push_back(slot);
     });
     return slots;

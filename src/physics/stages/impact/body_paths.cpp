@@ -172,7 +172,7 @@ void BodyPaths::fill_path(std::uint32_t body) {
 }
 
 void BodyPaths::remember(std::span<const std::uint32_t> bodies) {
-    constexpr std::size_t fewest_shared = 200;
+    constexpr std::size_t min_parallel_count = 200;
     std::vector<std::uint32_t>& remembered = memory_.remembered_bodies;
     remembered.clear();
     for (const std::uint32_t body : bodies) {
@@ -181,9 +181,10 @@ void BodyPaths::remember(std::span<const std::uint32_t> bodies) {
         memory_.path_states.resize(memory_.path_states.size() + states_);
         remembered.push_back(body);
     }
-    share_among(world_.workers, remembered.size(), remembered.size() >= fewest_shared, [&](int, Share share) {
-        for (std::size_t i = share.first; i < share.last; ++i) fill_path(remembered[i]);
-    });
+    parallel_for(world_.workers, remembered.size(), remembered.size() >= min_parallel_count,
+                 [&](int, IndexRange range) {
+                     for (std::size_t i = range.first; i < range.last; ++i) fill_path(remembered[i]);
+                 });
 }
 
 }  // namespace embody::physics::stages

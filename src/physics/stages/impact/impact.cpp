@@ -37,12 +37,12 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr double heap_slack = 0.02;    // of a step: in a heap, impacts this near in time may change places
-constexpr int most_bounces = 3;        // of one contact in a step; later impacts do not bounce (Zeno's ball)
+constexpr double pile_slack = 0.02;    // of a step: in a heap, impacts this near in time may change places
+constexpr int max_bounces = 3;         // of one contact in a step; later impacts do not bounce (Zeno's ball)
 constexpr double same_instant = 1e-6;  // of a step: impacts this near in time are as simultaneous as mirror images
-constexpr std::size_t most_simultaneous_sites = 64;  // what else collides then has events of its own
-constexpr int most_impacts = 5;                      // of one contact in a step; then the contact solver stops it
-constexpr std::size_t nodes_as_bounce = 32;          // of an assembly's bodies and joints: they cost a bounce in a heap
+constexpr std::size_t max_simultaneous_sites = 64;  // what else collides then has events of its own
+constexpr int max_impacts = 5;                      // of one contact in a step; then the contact solver stops it
+constexpr std::size_t nodes_as_bounce = 32;         // of an assembly's bodies and joints: they cost a bounce in a heap
 
 class ImpactStage {
 public:
@@ -53,7 +53,7 @@ public:
           paths_(world, bodies_),
           regions_(world, bodies_, paths_),
           step_(world.settings.time_step),
-          most_assembly_nodes_(nodes_as_bounce * paths_.most_heap_bounces()) {
+          max_assembly_nodes_(nodes_as_bounce * paths_.max_pile_bounces()) {
         memory_.assembly_nodes = 0;
     }
 
@@ -89,7 +89,7 @@ private:
     ImpactPaths paths_;
     ImpactRegions regions_;
     const double step_;
-    const std::size_t most_assembly_nodes_;  // in a step
+    const std::size_t max_assembly_nodes_;  // in a step
 };
 
 void ImpactStage::push(double time, std::uint32_t contact) {
@@ -101,7 +101,7 @@ void ImpactStage::push(double time, std::uint32_t contact) {
 void ImpactStage::predict(std::uint32_t contact) {
     memory_.is_open[contact] = 0;
     memory_.next_time[contact] = ImpactPaths::never;
-    if (memory_.impacts[contact] >= most_impacts) return;
+    if (memory_.impacts[contact] >= max_impacts) return;
     note(contact, paths_.predict(world_.contacts.list[contact]));
 }
 
@@ -114,12 +114,12 @@ void ImpactStage::note(std::uint32_t contact, ImpactPaths::Prediction next) {
 // Contacts are looked at on their own, so all workers can; the events are listed in the order of the contacts.
 void ImpactStage::predict_all() {
     EMBODY_ZONE("predict impacts");
-    constexpr std::size_t fewest_shared = 1000;
+    constexpr std::size_t min_parallel_count = 1000;
     const std::size_t count = world_.contacts.list.size();
     std::vector<ImpactPaths::Prediction>& first = memory_.first;
     first.assign(count, {});
-    share_among(world_.workers, count, count >= fewest_shared, [&](int, Share share) {
-        for (auto i = static_cast<std::uint32_t>(share.first); i < share.last; ++i) {
+    parallel_for(world_.workers, count, count >= min_parallel_count, [&](int, IndexRange range) {
+        for (auto i = static_cast<std::uint32_t>(range.first); i < range.last; ++i) {
             if (paths_.is_surely_slow(world_.contacts.summaries[i])) continue;
             first[i] = paths_.predict_straight(world_.contacts.list[i]);
         }
@@ -136,13 +136,13 @@ void ImpactStage::predict_all() {
         }
     }
     bodies_.remember(memory_.uncertain_bodies);
-    share_among(world_.workers, memory_.uncertain.size(), memory_.uncertain.size() >= fewest_shared / 4,
-                [&](int, Share share) {
-                    for (std::size_t k = share.first; k < share.last; ++k) {
-                        const std::uint32_t i = memory_.uncertain[k];
-                        first[i] = paths_.predict_exactly(world_.contacts.list[i]);
-                    }
-                });
+    parallel_for(world_.workers, memory_.uncertain.size(), memory_.uncertain.size() >= min_parallel_count / 4,
+                 [&](int, IndexRange range) {
+                     for (std::size_t k = range.first; k < range.last; ++k) {
+                         const std::uint32_t i = memory_.uncertain[k];
+                         first[i] = paths_.predict_exactly(world_.contacts.list[i]);
+                     }
+                 });
     for (std::uint32_t i = 0; i < count; ++i) note(i, first[i]);
 }
 
@@ -220,15 +220,15 @@ void ImpactStage::gather(double time) {
 
 // Impacts of large assemblies are as dear as the bounces of a heap, and have as many.
 void ImpactStage::count_assembly() {
-    const bool had_any_left = memory_.assembly_nodes < most_assembly_nodes_;
+    const bool had_any_left = memory_.assembly_nodes < max_assembly_nodes_;
     if (!memory_.jointed.empty()) memory_.assembly_nodes += memory_.jointed.size() + memory_.jointed_joints.size();
-    if (had_any_left && memory_.assembly_nodes >= most_assembly_nodes_) {
-        world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
+    if (had_any_left && memory_.assembly_nodes >= max_assembly_nodes_) {
+        world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_iterations_exhausted);
     }
 }
 
 bool ImpactStage::is_left_to_contacts(const Contact& contact) const {
-    if (memory_.assembly_nodes < most_assembly_nodes_) return false;
+    if (memory_.assembly_nodes < max_assembly_nodes_) return false;
     return has_joints(world_, contact.a) || has_joints(world_, contact.b);
 }
 
@@ -268,7 +268,7 @@ void ImpactStage::solve(double time, SlidePath path) {
     go_to(time);
     const ImpactReport report = solve_impact_group(memory_.sites, world_.rigid.motion, memory_.group, path);
     if (!report.converged) {
-        world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
+        world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_iterations_exhausted);
     }
     if (world_.ledger) world_.ledger->note_impact(memory_.sites, report.energy_change);
     for (std::size_t i = 0; i < memory_.sites.size(); ++i) {
@@ -325,8 +325,8 @@ void ImpactStage::go_back(double time) {
 // Whether the contact may bounce once more.
 bool ImpactStage::count_impact(std::uint32_t contact) {
     std::uint8_t& count = memory_.impacts[contact];
-    const bool may_bounce = count < most_bounces && paths_.bounces(world_.contacts.list[contact]);
-    if (count < most_impacts) ++count;
+    const bool may_bounce = count < max_bounces && paths_.bounces(world_.contacts.list[contact]);
+    if (count < max_impacts) ++count;
     return may_bounce;
 }
 
@@ -366,7 +366,7 @@ void ImpactStage::add_simultaneous(double time) {
     for (std::size_t i = 0; i < memory_.bodies.size(); ++i) {
         const std::uint32_t body = memory_.bodies[i].body;
         for (std::uint32_t k = memory_.first_of_body[body]; k < memory_.first_of_body[body + 1]; ++k) {
-            if (memory_.sites.size() >= most_simultaneous_sites) return;
+            if (memory_.sites.size() >= max_simultaneous_sites) return;
             const std::size_t known = memory_.sites.size();
             if (joins_in(memory_.of_body[k], time)) list_bodies(known);
         }
@@ -379,7 +379,7 @@ void ImpactStage::take(const ImpactEvent& event) {
     if (is_left_to_contacts(contact)) return;
     double time = event.time;
     Manifold manifold;
-    const bool in_heap = paths_.hits_heap(contact), is_rough = in_heap && !paths_.bounces(contact);
+    const bool in_pile = paths_.hits_pile(contact), is_rough = in_pile && !paths_.bounces(contact);
     const bool as_found = is_rough && regions_.is_near(contact, time);
     if (!as_found) {
         if (!regions_.refine(contact, time, manifold)) {
@@ -390,7 +390,7 @@ void ImpactStage::take(const ImpactEvent& event) {
             }
             return;
         }
-        if (!memory_.events.empty() && time > memory_.events.front().time + (in_heap ? heap_slack * step_ : 1e-12)) {
+        if (!memory_.events.empty() && time > memory_.events.front().time + (in_pile ? pile_slack * step_ : 1e-12)) {
             ++memory_.version[event.contact];
             push(time, event.contact);
             return;
@@ -406,7 +406,7 @@ void ImpactStage::take(const ImpactEvent& event) {
     } else if (add_region(event.contact, manifold, time)) {
         add_simultaneous(time);
     }
-    solve(time, in_heap ? SlidePath::estimated : SlidePath::followed);
+    solve(time, in_pile ? SlidePath::estimated : SlidePath::followed);
     predict_again();
 }
 
@@ -437,7 +437,7 @@ void ImpactStage::open_jointed_contacts() {
 }
 
 bool ImpactStage::keeps_apart_when_held(const Contact& contact) const {
-    constexpr double wrong_share = 0.1;
+    constexpr double wrong_fraction = 0.1;
     using HeldAcceleration = ImpactMemory::HeldAcceleration;
     const auto held = [&](std::uint32_t body) {
         const bool is_held = memory_.has_jointed_path[body] && body < memory_.held_accelerations.size();
@@ -451,7 +451,7 @@ bool ImpactStage::keeps_apart_when_held(const Contact& contact) const {
     };
     const HeldAcceleration a = held(contact.a), b = held(contact.b);
     const double closing = dot(contact.normal, Vec3(a.linear) - Vec3(b.linear)) +
-                           wrong_share * (length(Vec3(a.linear)) + length(Vec3(b.linear))) + a.turning + b.turning;
+                           wrong_fraction * (length(Vec3(a.linear)) + length(Vec3(b.linear))) + a.turning + b.turning;
     const double start = paths_.earliest_time(contact), time = step_ - start;
     const ImpactPaths::Gaps first = paths_.gaps_at(contact, start), last = paths_.gaps_at(contact, step_);
     for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
@@ -477,7 +477,7 @@ void ImpactStage::run() {
         memory_.events.pop_back();
         if (event.version != memory_.version[event.contact]) continue;
         if (left-- == 0) {
-            world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
+            world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_iterations_exhausted);
             break;
         }
         memory_.next_time[event.contact] = ImpactPaths::never;

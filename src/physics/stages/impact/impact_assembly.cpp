@@ -15,8 +15,8 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr std::size_t most_flown_bodies = 8;
-constexpr std::size_t most_flights = 16;  // remembered
+constexpr std::size_t max_flown_bodies = 8;
+constexpr std::size_t max_flights = 16;  // remembered
 
 bool is_movable(const ImpactAccess& world, std::uint32_t body) { return world.rigid.motion[body].inverse_mass > 0; }
 
@@ -70,8 +70,8 @@ JointSystem& flight_of_jointed(ImpactMemory& memory) {
         const auto is_older = [](const ImpactMemory::Flight& a, const ImpactMemory::Flight& b) {
             return a.last_use < b.last_use;
         };
-        found = flights.size() < most_flights ? flights.emplace(flights.end())
-                                              : std::min_element(flights.begin(), flights.end(), is_older);
+        found = flights.size() < max_flights ? flights.emplace(flights.end())
+                                             : std::min_element(flights.begin(), flights.end(), is_older);
         found->bodies = memory.jointed;
         found->joints = memory.jointed_joints;
     }
@@ -91,11 +91,11 @@ bool has_joints(const ImpactAccess& world, std::uint32_t body) { return !joints_
 bool can_fly_jointed(const ImpactAccess& world) {
     const ImpactMemory& memory = world.impacts;
     const std::size_t nodes = memory.jointed.size() + memory.jointed_joints.size();
-    if (memory.jointed.size() > most_flown_bodies || nodes >= BlockPattern::most_nodes) return false;
-    const auto has_way_back = [&](std::uint32_t body) {
+    if (memory.jointed.size() > max_flown_bodies || nodes >= BlockPattern::max_nodes) return false;
+    const auto is_reversible = [&](std::uint32_t body) {
         return memory.has_jointed_path[body] && !memory.is_supported[body];
     };
-    return std::all_of(memory.jointed.begin(), memory.jointed.end(), has_way_back);
+    return std::all_of(memory.jointed.begin(), memory.jointed.end(), is_reversible);
 }
 
 void fly_jointed(const ImpactAccess& world, double time) {
@@ -154,13 +154,13 @@ void gather_jointed(const ImpactAccess& world) {
         return std::find(found.begin(), found.end(), body) != found.end();
     };
     for (const ImpactMemory::Moved& moved : memory.bodies) {
-        if (found.size() < most_jointed_bodies && !joints_of(memory, moved.body).empty()) found.push_back(moved.body);
+        if (found.size() < max_jointed_bodies && !joints_of(memory, moved.body).empty()) found.push_back(moved.body);
     }
-    for (std::size_t i = 0; i < found.size() && found.size() < most_jointed_bodies; ++i) {
+    for (std::size_t i = 0; i < found.size() && found.size() < max_jointed_bodies; ++i) {
         for (const std::uint32_t index : joints_of(memory, found[i])) {
             const Joint& joint = world.joints.active[index];
             const std::uint32_t other = joint.b == found[i] && !joint.a_is_world ? joint.a : joint.b;
-            if (is_movable(world, other) && found.size() < most_jointed_bodies && !is_found(other))
+            if (is_movable(world, other) && found.size() < max_jointed_bodies && !is_found(other))
                 found.push_back(other);
         }
     }
@@ -175,8 +175,8 @@ void gather_jointed(const ImpactAccess& world) {
         }
     }
     sort_once(memory.jointed_joints);
-    const std::size_t most_joints = BlockPattern::most_nodes - found.size();
-    if (memory.jointed_joints.size() > most_joints) memory.jointed_joints.resize(most_joints);
+    const std::size_t max_joints = BlockPattern::max_nodes - found.size();
+    if (memory.jointed_joints.size() > max_joints) memory.jointed_joints.resize(max_joints);
     for (const std::uint32_t body : found) {
         const auto is_it = [body](const ImpactMemory::Moved& moved) { return moved.body == body; };
         if (std::none_of(memory.bodies.begin(), memory.bodies.end(), is_it))

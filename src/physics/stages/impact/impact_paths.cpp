@@ -9,7 +9,7 @@
 #include "physics/definitions/world_settings.h"
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/stages/access.h"
-#include "physics/stages/share_awake.h"
+#include "physics/stages/parallel_for_awake.h"
 #include "physics/state/activity_state.h"
 #include "physics/state/contact_state.h"
 #include "physics/state/impact_memory.h"
@@ -23,11 +23,11 @@ ImpactPaths::ImpactPaths(const ImpactAccess& world, const BodyPaths& bodies)
       memory_(world.impacts),
       step_(world.settings.time_step),
       substep_(step_ / world.settings.substeps),
-      most_heap_bounces_(500 + world.activity.awake.size() / 8) {
-    memory_.heap_bounces = 0;
+      max_pile_bounces_(500 + world.activity.awake.size() / 8) {
+    memory_.pile_bounces = 0;
     const std::size_t count = world.rigid.motion.size();
     memory_.last_time.assign(count, 0);
-    memory_.liveliness.assign(count, 1);
+    memory_.remaining_restitution.assign(count, 1);
 
     // What the end of a free path can be faster than its start.
     memory_.speed_gain.assign(count, 0);
@@ -48,22 +48,22 @@ Material ImpactPaths::material_of(const Contact& contact) const {
 }
 
 bool ImpactPaths::bounces(const Contact& contact) const {
-    if (memory_.heap_bounces >= most_heap_bounces_ && hits_heap(contact)) return false;
-    return contact.bounces && memory_.liveliness[contact.a] > least_liveliness &&
-           memory_.liveliness[contact.b] > least_liveliness;
+    if (memory_.pile_bounces >= max_pile_bounces_ && hits_pile(contact)) return false;
+    return contact.bounces && memory_.remaining_restitution[contact.a] > min_remaining_restitution &&
+           memory_.remaining_restitution[contact.b] > min_remaining_restitution;
 }
 
 void ImpactPaths::note_bounce(const Contact& contact) {
-    if (hits_heap(contact) && ++memory_.heap_bounces == most_heap_bounces_) {
-        world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
+    if (hits_pile(contact) && ++memory_.pile_bounces == max_pile_bounces_) {
+        world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_iterations_exhausted);
     }
     const double restitution = material_of(contact).restitution;
     for (const std::uint32_t body : {contact.a, contact.b}) {
-        if (world_.rigid.motion[body].inverse_mass > 0) memory_.liveliness[body] *= restitution;
+        if (world_.rigid.motion[body].inverse_mass > 0) memory_.remaining_restitution[body] *= restitution;
     }
 }
 
-bool ImpactPaths::hits_heap(const Contact& contact) const {
+bool ImpactPaths::hits_pile(const Contact& contact) const {
     const auto is_carried = [&](std::uint32_t body) {
         return memory_.is_supported[body] && world_.rigid.motion[body].inverse_mass > 0;
     };
@@ -113,18 +113,19 @@ namespace {
 
 // Way and velocity of the surface point at `arm`.
 template <class Motion>
-void move_point(const Motion& motion, Vec3 arm, bool is_round, Vec3& way, Vec3& velocity) {
+void move_point(const Motion& motion, Vec3 arm, bool is_round, Vec3& displacement, Vec3& velocity) {
     const Vec3 turned = is_round ? arm : rotate(motion.turn, arm);
-    way = motion.shift + (is_round ? cross(motion.tilt, arm) : turned - arm);
+    displacement = motion.shift + (is_round ? cross(motion.tilt, arm) : turned - arm);
     velocity = motion.velocity + cross(motion.spin, turned);
 }
 
 template <class Motion>
 ImpactPaths::Gap gap_between(const Contact& contact, const ContactPoint& point, const Motion& a, const Motion& b) {
-    Vec3 way_a, way_b, velocity_a, velocity_b;
-    move_point(a, point.arm_a, contact.a_is_round, way_a, velocity_a);
-    move_point(b, point.arm_b, contact.b_is_round, way_b, velocity_b);
-    return {point.separation + dot(contact.normal, way_b - way_a), dot(contact.normal, velocity_b - velocity_a)};
+    Vec3 displacement_a, displacement_b, velocity_a, velocity_b;
+    move_point(a, point.arm_a, contact.a_is_round, displacement_a, velocity_a);
+    move_point(b, point.arm_b, contact.b_is_round, displacement_b, velocity_b);
+    return {point.separation + dot(contact.normal, displacement_b - displacement_a),
+            dot(contact.normal, velocity_b - velocity_a)};
 }
 
 // Whether the point closes as fast as an impact now and is still apart at the end of the step: the next step's impact.
@@ -199,7 +200,7 @@ ImpactPaths::Prediction ImpactPaths::predict_straight(Contact& contact) {
         mark_open(point, now.rate < -slowest && now.size > 0 && end > 0, step_);
         if (now.rate < -slowest && end <= 0) first.time = std::min(first.time, std::max(start, now.size / -now.rate));
     }
-    const bool is_enough = hits_heap(contact) && !bounces(contact);
+    const bool is_enough = hits_pile(contact) && !bounces(contact);
     if (first.is_certain && !is_enough) first.time = never;
     first.is_certain = first.is_certain || is_enough;
     return first;

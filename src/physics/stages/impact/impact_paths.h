@@ -22,7 +22,7 @@ public:
     static constexpr double widest_followed_turn =
         0.25;                                       ///< rad in a step: farther, other corners than known may touch
     static constexpr double slowest_impact = 0.02;  ///< m/s: slower contacts rest
-    static constexpr double least_liveliness = 0.05;
+    static constexpr double min_remaining_restitution = 0.05;
 
     ImpactPaths(const ImpactAccess& world, const BodyPaths& bodies);
 
@@ -42,9 +42,9 @@ public:
     /// left of the first one (Zeno's ball).
     [[nodiscard]] bool bounces(const Contact& contact) const;
     void note_bounce(const Contact& contact);
-    [[nodiscard]] std::size_t most_heap_bounces() const { return most_heap_bounces_; }
+    [[nodiscard]] std::size_t max_pile_bounces() const { return max_pile_bounces_; }
     /// Whether it hits what others carry: one of many contacts that stop it together.
-    [[nodiscard]] bool hits_heap(const Contact& contact) const;
+    [[nodiscard]] bool hits_pile(const Contact& contact) const;
     /// Whether no point can close as fast as an impact does: most contacts of a heap at rest, told by what the touch
     /// stage noted of them. Holds for bodies that had no impact in this step.
     [[nodiscard]] bool is_surely_slow(const ContactSummary& summary) const;
@@ -84,7 +84,7 @@ private:
     const BodyPaths& bodies_;
     ImpactMemory& memory_;
     const double step_, substep_;
-    const std::size_t most_heap_bounces_;  ///< in a step; the collapse of a large heap of bouncing bodies has no end
+    const std::size_t max_pile_bounces_;  ///< in a step; the collapse of a large heap of bouncing bodies has no end
 };
 
 }  // namespace embody::physics::stages

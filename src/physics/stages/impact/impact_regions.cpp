@@ -14,8 +14,8 @@ namespace embody::physics::stages {
 namespace {
 
 constexpr double patch_gap = ImpactPaths::patch_gap;
-constexpr double near_share = 0.05;  // of a body's size
-constexpr double elastic = 0.7;      // restitution from which on at least half of the energy comes back
+constexpr double near_fraction = 0.05;  // of a body's size
+constexpr double elastic = 0.7;         // restitution from which on at least half of the energy comes back
 
 ImpactCoefficients coefficients_of(const Material& material, double restitution) {
     return {material.friction_dynamic, material.friction_static, restitution};
@@ -37,7 +37,7 @@ void ImpactRegions::collide_at(const Contact& contact, double time) {
             memory_.manifolds);
 }
 
-double ImpactRegions::least_separation(const Manifold& manifold) {
+double ImpactRegions::min_separation(const Manifold& manifold) {
     double least = ImpactPaths::never;
     for (int i = 0; i < manifold.count; ++i) {
         least = std::min(least, manifold.points[static_cast<std::size_t>(i)].separation);
@@ -49,7 +49,7 @@ bool ImpactRegions::is_beside(const Manifold& first, double nearest, const Manif
                               double time) {
     const bool is_first = other.piece_a == first.piece_a && other.piece_b == first.piece_b && other.part == first.part;
     if (is_first || other.count == 0) return false;
-    const double gap = least_separation(other);
+    const double gap = min_separation(other);
     return gap <= nearest + patch_gap && closing_speed(contact, other, time, gap) >= ImpactPaths::slowest_impact;
 }
 
@@ -78,13 +78,13 @@ double ImpactRegions::closing_speed(const Contact& contact, const Manifold& mani
 bool ImpactRegions::is_near(const Contact& contact, double time) const {
     const BodyState &a = world_.rigid.motion[contact.a], &b = world_.rigid.motion[contact.b];
     const double reach_a = world_.rigid.record(contact.a).reach, reach_b = world_.rigid.record(contact.b).reach;
-    const double way = time * (length(b.linear_velocity - a.linear_velocity) + length(a.angular_velocity) * reach_a +
-                               length(b.angular_velocity) * reach_b);
+    const double travel = time * (length(b.linear_velocity - a.linear_velocity) + length(a.angular_velocity) * reach_a +
+                                  length(b.angular_velocity) * reach_b);
     double size = ImpactPaths::never;
     for (const double reach : {reach_a, reach_b}) {
         if (reach > 0) size = std::min(size, reach);
     }
-    return way < near_share * size;
+    return travel < near_fraction * size;
 }
 
 const Manifold* ImpactRegions::find_region(const Contact& contact) const {
@@ -102,7 +102,7 @@ double ImpactRegions::first_touch(const Contact& contact) {
         if (k > 0 && time <= start) continue;
         collide_at(contact, time);
         const Manifold* region = find_region(contact);
-        const double gap = region != nullptr ? least_separation(*region) : ImpactPaths::never;
+        const double gap = region != nullptr ? min_separation(*region) : ImpactPaths::never;
         const bool was_seen = last_gap < ImpactPaths::never;
         if (gap <= 0 && last_gap > 0) {
             return was_seen ? last_time + (time - last_time) * last_gap / (last_gap - gap) : time;
@@ -115,20 +115,20 @@ double ImpactRegions::first_touch(const Contact& contact) {
 
 // Follows the closing surfaces (secant) for a few rounds.
 bool ImpactRegions::refine(const Contact& contact, double& time, Manifold& manifold) {
-    const bool is_rough = paths_.hits_heap(contact) && !paths_.bounces(contact);
-    const int most_rounds = is_rough ? 4 : 8;
+    const bool is_rough = paths_.hits_pile(contact) && !paths_.bounces(contact);
+    const int max_iterations = is_rough ? 4 : 8;
     const double start = paths_.earliest_time(contact);
     const double tolerance = is_rough ? patch_gap : ImpactPaths::touch_gap;
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int iteration = 0; iteration < max_iterations; ++iteration) {
         collide_at(contact, time);
         const Manifold* found = find_region(contact);
         if (found == nullptr) return false;
         manifold = *found;
 
-        const double gap = least_separation(manifold), speed = closing_speed(contact, manifold, time, gap);
+        const double gap = min_separation(manifold), speed = closing_speed(contact, manifold, time, gap);
         if (speed < ImpactPaths::slowest_impact) return false;
         const bool is_touching = std::fabs(gap) <= tolerance || (gap < 0 && time <= start);
-        if (is_touching || (round + 1 == most_rounds && gap < (is_rough ? 2 : 10) * patch_gap)) return true;
+        if (is_touching || (iteration + 1 == max_iterations && gap < (is_rough ? 2 : 10) * patch_gap)) return true;
         time = std::max(start, time + gap / speed);
         if (time > step_) return false;
     }
@@ -138,7 +138,7 @@ bool ImpactRegions::refine(const Contact& contact, double& time, Manifold& manif
 bool ImpactRegions::is_open_at_end(const Contact& contact) {
     collide_at(contact, step_);
     return std::all_of(memory_.manifolds.begin(), memory_.manifolds.end(),
-                       [](const Manifold& manifold) { return least_separation(manifold) > 0; });
+                       [](const Manifold& manifold) { return min_separation(manifold) > 0; });
 }
 
 void ImpactRegions::add_site(const Contact& contact, const SitePlace& place, double time, bool may_bounce) {
@@ -152,7 +152,7 @@ void ImpactRegions::add_site(const Contact& contact, const SitePlace& place, dou
 
 // A flat region collides as one patch at its middle and, where it tilts, at its corners.
 void ImpactRegions::add_manifold_sites(const Contact& contact, const Manifold& manifold, double time, bool may_bounce) {
-    const double nearest = least_separation(manifold);
+    const double nearest = min_separation(manifold);
     const Vec3 center_a = bodies_.kept_state_at(contact.a, time).center;
     const Vec3 center_b = bodies_.kept_state_at(contact.b, time).center;
     const auto add = [&](Vec3 position) {

@@ -38,7 +38,7 @@ public:
     /// the impact. A contact collides with a bounce if `may_bounce(contact)`.
     template <class MayBounce>
     void add_sites_beside(std::uint32_t contact, const Manifold& first, double time, const MayBounce& may_bounce) {
-        const double nearest = least_separation(first);
+        const double nearest = min_separation(first);
         for (const Manifold& other : memory_.manifolds) {
             if (!is_beside(first, nearest, other, world_.contacts.list[contact], time)) continue;
             const auto found = find_contact(contact, other);
@@ -53,7 +53,7 @@ public:
 private:
     /// Of those that collide_at() found, the contact's; nullptr if it has none.
     [[nodiscard]] const Manifold* find_region(const Contact& contact) const;
-    static double least_separation(const Manifold& manifold);
+    static double min_separation(const Manifold& manifold);
     bool is_beside(const Manifold& first, double nearest, const Manifold& other, const Contact& contact, double time);
     /// Of the same two bodies, the contact of this region.
     [[nodiscard]] std::optional<std::uint32_t> find_contact(std::uint32_t beside, const Manifold& manifold) const;

@@ -24,9 +24,9 @@ namespace {
 constexpr double touch_gap = 1e-6;  // of the smaller radius: nearer balls touch
 constexpr double deepest = 0.5;     // of the smaller radius: deeper, the contact solver takes balls out of each other
 constexpr double deepest_rest = 0.01;  // the same of balls that stay together
-constexpr int most_collisions = 64;    // of a pair in a step
+constexpr int max_collisions = 64;     // of a pair in a step
 constexpr int parts_of_budget = 4;     // for each part and each pair, in a step
-constexpr double least_share = 1e-6;   // of a part: a shorter rest is none
+constexpr double min_fraction = 1e-6;  // of a part: a shorter rest is none
 
 class BallCluster {
 public:
@@ -137,7 +137,7 @@ bool BallCluster::collide(Pair& pair) {
     const std::optional<Vec3> impulse = collide_balls({a.at.motion, a.path->mass(), a.at.touch.normal},
                                                       {b.at.motion, b.path->mass(), b.at.touch.normal}, direction,
                                                       restitution, material.friction_dynamic);
-    is_exhausted_ = ++collisions_ > most_collisions * pairs_.size();
+    is_exhausted_ = ++collisions_ > max_collisions * pairs_.size();
     if (!impulse || is_exhausted_) return false;
     a.at.rolls = b.at.rolls = false;
     a.at.centripetal = b.at.centripetal = 0;
@@ -176,22 +176,22 @@ bool BallCluster::end() {
 bool BallCluster::roll() {
     if (!begin()) return false;
     const int parts = count_parts();
-    if (parts > BallPath::most_parts) return false;
+    if (parts > BallPath::max_parts) return false;
     const double part = world_.settings.time_step / parts;
     for (const std::uint32_t index : members_) {
         if (!ball(index).path->see_curvature(ball(index).at, part)) return false;
     }
     int left_parts = parts_of_budget * (parts + static_cast<int>(pairs_.size()));
-    for (double left = world_.settings.time_step; left > least_share * part;) {
+    for (double left = world_.settings.time_step; left > min_fraction * part;) {
         is_exhausted_ = left_parts-- == 0;
         if (is_exhausted_) return false;
         const double time = std::min(part, left);
         if (!advance(time)) return false;
-        double share = 1;
-        for (const Pair& pair : pairs_) share = std::min(share, meeting(pair));
-        if (share < 1 && !advance(std::max(share, least_share) * time)) return false;
+        double fraction = 1;
+        for (const Pair& pair : pairs_) fraction = std::min(fraction, meeting(pair));
+        if (fraction < 1 && !advance(std::max(fraction, min_fraction) * time)) return false;
         for (const std::uint32_t index : members_) ball(index).at = ball(index).next;
-        left -= std::max(share, least_share) * time;
+        left -= std::max(fraction, min_fraction) * time;
         if (!collide_all()) return false;
     }
     return end();
@@ -203,7 +203,7 @@ bool roll_cluster(const RollAccess& world, std::span<const std::uint32_t> member
     BallCluster cluster(world, world.balls, members, pairs);
     const bool has_rolled = cluster.roll();
     if (cluster.is_exhausted()) {
-        world.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_rounds_exhausted);
+        world.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_iterations_exhausted);
     }
     return has_rolled;
 }

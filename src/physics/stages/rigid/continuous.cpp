@@ -10,8 +10,8 @@
 #include "foundation/task_pool.h"
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/stages/access.h"
+#include "physics/stages/parallel_for_awake.h"
 #include "physics/stages/rigid/roll_balls.h"
-#include "physics/stages/share_awake.h"
 #include "physics/stages/stages.h"
 #include "physics/state/activity_state.h"
 #include "physics/state/contact_state.h"
@@ -28,7 +28,7 @@ constexpr double stop_gap = 1e-3;
 /// A body on its way through the step, and how much of the way it may go.
 struct FastBody {
     std::uint32_t body = 0;
-    double share = 1;
+    double fraction = 1;
 };
 
 /// Two fast bodies that meet on their ways.
@@ -45,9 +45,9 @@ double thickness_of(const BodyRecord& record) {
 // Whether a body turns so far that points outside of its inner ball sweep its thickness; by less than a quarter of a
 // radian the contacts themselves follow it.
 bool turns_fast(const BodyRecord& record, const BodyState& state) {
-    constexpr double least_half_sine = 0.125;
+    constexpr double min_half_sine = 0.125;
     const double half_sine = length(Vec3{state.turn.x, state.turn.y, state.turn.z});
-    return half_sine > least_half_sine && 2 * half_sine * (record.reach - record.inner_radius) > thickness_of(record);
+    return half_sine > min_half_sine && 2 * half_sine * (record.reach - record.inner_radius) > thickness_of(record);
 }
 
 bool may_tunnel(const ContinuousAccess& world, std::uint32_t body) {
@@ -62,9 +62,9 @@ bool may_tunnel(const ContinuousAccess& world, std::uint32_t body) {
 bool may_pass(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b) {
     const BodyRecord &ra = world.rigid.record(a), &rb = world.rigid.record(b);
     const BodyState &sa = world.rigid.motion[a], &sb = world.rigid.motion[b];
-    const Vec3 way = (sa.center - sa.start_center) - (sb.center - sb.start_center);
+    const Vec3 displacement = (sa.center - sa.start_center) - (sb.center - sb.start_center);
     const double thickness = std::min(thickness_of(ra), thickness_of(rb));
-    return length_squared(way) > thickness * thickness || turns_fast(ra, sa) || turns_fast(rb, sb);
+    return length_squared(displacement) > thickness * thickness || turns_fast(ra, sa) || turns_fast(rb, sb);
 }
 
 bool may_meet(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b) {
@@ -117,19 +117,19 @@ Vec3 velocity_before(Vec3 velocity, Vec3 acceleration, Vec3 back) {
 
 // Puts a body back to a share of its way. The spin stays as the body's axes see it: in the world's, the inertia that
 // turns back would take or give energy.
-void put_back(const ContinuousAccess& world, std::uint32_t body, double share) {
-    if (share >= 1) return;
+void put_back(const ContinuousAccess& world, std::uint32_t body, double fraction) {
+    if (fraction >= 1) return;
     BodyState& state = world.rigid.motion[body];
     const Vec3 spin = rotate_inverse(state.rotation, state.angular_velocity);
-    const Vec3 back = (state.start_center - state.center) * (1 - share);
+    const Vec3 back = (state.start_center - state.center) * (1 - fraction);
     state.linear_velocity = velocity_before(state.linear_velocity, world.rigid.constants[body].acceleration, back);
     state.center += back;
     const Quat end = dot(state.rotation, state.start_rotation) < 0
                          ? Quat{-state.rotation.x, -state.rotation.y, -state.rotation.z, -state.rotation.w}
                          : state.rotation;
     const Quat& begin = state.start_rotation;
-    state.rotation = normalized(Quat{begin.x + share * (end.x - begin.x), begin.y + share * (end.y - begin.y),
-                                     begin.z + share * (end.z - begin.z), begin.w + share * (end.w - begin.w)});
+    state.rotation = normalized(Quat{begin.x + fraction * (end.x - begin.x), begin.y + fraction * (end.y - begin.y),
+                                     begin.z + fraction * (end.z - begin.z), begin.w + fraction * (end.w - begin.w)});
     state.angular_velocity = rotate(state.rotation, spin);
     refresh_inertia(state, world.rigid.constants[body]);
 }
@@ -154,8 +154,8 @@ std::vector<FastBody> list_fast(const ContinuousAccess& world) {
     std::vector<std::vector<FastBody>>& found = kept;  // of this thread, for all workers
     found.resize(static_cast<std::size_t>(world.workers.workers()));
     for (std::vector<FastBody>& of_worker : found) of_worker.clear();
-    share_awake(world, [&](int worker, Share share) {
-        for (std::size_t i = share.first; i < share.last; ++i) {
+    parallel_for_awake(world, [&](int worker, IndexRange range) {
+        for (std::size_t i = range.first; i < range.last; ++i) {
             const std::uint32_t body = world.activity.awake[i];
             if (may_tunnel(world, body)) found[static_cast<std::size_t>(worker)].push_back({body});
         }
@@ -183,10 +183,10 @@ void stop_at_meetings(const ContinuousAccess& world, std::vector<FastBody>& fast
                      [](const Meeting& m, const Meeting& n) { return m.time < n.time; });
     for (const Meeting& meeting : meetings) {
         FastBody &first = fast[meeting.first], &second = fast[meeting.second];
-        if (first.share < 1 || second.share < 1) continue;
-        first.share = second.share = meeting.time;
+        if (first.fraction < 1 || second.fraction < 1) continue;
+        first.fraction = second.fraction = meeting.time;
     }
-    for (const FastBody& each : fast) put_back(world, each.body, each.share);
+    for (const FastBody& each : fast) put_back(world, each.body, each.fraction);
 }
 
 // The share of what is left of its way after which a body first touches something that is not fast itself.

@@ -132,8 +132,8 @@ void note_load(const WorldSettings& settings, std::span<const std::uint32_t> con
 }
 
 bool roll_alone(const SubstepAccess& world, const Island& island) {
-    constexpr std::uint32_t most_contacts = 8;  // what rolls on still faces has two rims on two neighbouring triangles
-    if (island.body_count != 1 || island.joint_count > 0 || island.contact_count > most_contacts) return false;
+    constexpr std::uint32_t max_contacts = 8;  // what rolls on still faces has two rims on two neighbouring triangles
+    if (island.body_count != 1 || island.joint_count > 0 || island.contact_count > max_contacts) return false;
     const std::uint32_t body = world.islands.bodies[island.first_body];
     const BodyConstants& constants = world.rigid.constants[body];
     if (constants.torque != Vec3{} || constants.linear_damping > 0 || constants.angular_damping > 0) return false;

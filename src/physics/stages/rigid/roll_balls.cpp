@@ -9,10 +9,10 @@
 #include "physics/definitions/world_settings.h"
 #include "physics/optimization/islands.h"
 #include "physics/stages/access.h"
+#include "physics/stages/parallel_for_awake.h"
 #include "physics/stages/rigid/ball_cluster.h"
 #include "physics/stages/rigid/ball_ground.h"
 #include "physics/stages/rigid/roll.h"
-#include "physics/stages/share_awake.h"
 #include "physics/state/activity_state.h"
 #include "physics/state/ball_memory.h"
 #include "physics/state/contact_state.h"
@@ -101,12 +101,12 @@ bool is_followed(const BallMemory::Candidate& candidate) { return candidate.is_f
 
 // Those that no other ball is near.
 void roll_single_balls(const RollAccess& world, BallMemory& memory) {
-    constexpr std::size_t fewest_shared = 64;  // balls: below, waking the workers costs more
+    constexpr std::size_t min_parallel_count = 64;  // balls: below, waking the workers costs more
     for (const BallMemory::Pair& pair : memory.pairs) {
         memory.candidates[pair.a].has_company = memory.candidates[pair.b].has_company = true;
     }
-    share_among(world.workers, memory.count, memory.count >= fewest_shared, [&](int, Share share) {
-        for (std::size_t i = share.first; i < share.last; ++i) {
+    parallel_for(world.workers, memory.count, memory.count >= min_parallel_count, [&](int, IndexRange range) {
+        for (std::size_t i = range.first; i < range.last; ++i) {
             BallMemory::Candidate& candidate = memory.candidates[i];
             if (candidate.has_company || !is_followed(candidate)) continue;
             candidate.rolled.candidate = static_cast<std::uint32_t>(i);
@@ -129,7 +129,7 @@ void note_collision(const RollAccess& world, const BallMemory::Pair& pair) {
 }
 
 void roll_clusters(const RollAccess& world, BallMemory& memory) {
-    constexpr std::size_t most_members = 32;  // balls: the time of one worker grows with the square of their number
+    constexpr std::size_t max_members = 32;  // balls: the time of one worker grows with the square of their number
     for (BallMemory::Pair& pair : memory.pairs) pair.root = root_of(memory, pair.a);
     std::sort(memory.pairs.begin(), memory.pairs.end(), [](const BallMemory::Pair& p, const BallMemory::Pair& q) {
         return p.root != q.root ? p.root < q.root : p.contact < q.contact;
@@ -145,7 +145,7 @@ void roll_clusters(const RollAccess& world, BallMemory& memory) {
         std::sort(members.begin(), members.end());
         members.erase(std::unique(members.begin(), members.end()), members.end());
         const auto can_be_followed = [&](std::uint32_t index) { return is_followed(memory.candidates[index]); };
-        if (members.size() > most_members || !std::all_of(members.begin(), members.end(), can_be_followed)) continue;
+        if (members.size() > max_members || !std::all_of(members.begin(), members.end(), can_be_followed)) continue;
         if (!roll_cluster(world, members, pairs)) continue;
         for (const std::uint32_t index : members) memory.candidates[index].has_rolled = true;
         for (const BallMemory::Pair& pair : pairs) {

@@ -5,7 +5,7 @@
 #include "physics/optimization/island_sleep.h"
 #include "physics/optimization/islands.h"
 #include "physics/stages/access.h"
-#include "physics/stages/share_awake.h"
+#include "physics/stages/parallel_for_awake.h"
 #include "physics/stages/stages.h"
 #include "physics/state/activity_state.h"
 #include "physics/state/contact_state.h"

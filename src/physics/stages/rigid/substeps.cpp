@@ -14,9 +14,9 @@
 #include "physics/optimization/shock_propagation.h"
 #include "physics/optimization/solve_schedule.h"
 #include "physics/stages/access.h"
+#include "physics/stages/parallel_for_awake.h"
 #include "physics/stages/rigid/roll.h"
 #include "physics/stages/rigid/roll_balls.h"
-#include "physics/stages/share_awake.h"
 #include "physics/stages/stages.h"
 #include "physics/state/activity_state.h"
 #include "physics/state/contact_state.h"
@@ -85,16 +85,16 @@ bool spins(const SubstepAccess& world, const Island& island) {
 }
 
 // Solves all given islands, of contacts only, through the step.
-void solve_wide(const SubstepAccess& world, const IslandsBySolver::Wide& way) {
+void solve_wide(const SubstepAccess& world, const IslandsBySolver::Wide& group) {
     EMBODY_ZONE("solve wide");
-    if (way.islands.empty()) return;
+    if (group.islands.empty()) return;
     std::vector<std::uint32_t>&order = world.substeps.wide_contacts, &bodies = world.substeps.wide_bodies;
     std::vector<WideContactSolver::Group>& groups = world.substeps.wide_groups;
     order.clear();
     bodies.clear();
     groups.clear();
     list_carriers(world, world.substeps.wide_carriers);
-    for (const Island& island : way.islands) {
+    for (const Island& island : group.islands) {
         groups.push_back({island.body_count, spins(world, island) && !is_pushed(world, island)});
         const auto contacts = contacts_of(world, island);
         order.insert(order.end(), contacts.begin(), contacts.end());
@@ -103,8 +103,8 @@ void solve_wide(const SubstepAccess& world, const IslandsBySolver::Wide& way) {
     }
     WideContactSolver& solver = world.substeps.wide_solver;
     build_schedule(order, world.contacts.summaries, world.rigid.motion, solver.lanes(), world.substeps.schedule);
-    const ContactSoftness softness = way.plan.softness(world.settings.time_step);
-    solver.begin({bodies, world.substeps.wide_carriers, groups}, softness.substep, way.plan.substeps);
+    const ContactSoftness softness = group.plan.softness(world.settings.time_step);
+    solver.begin({bodies, world.substeps.wide_carriers, groups}, softness.substep, group.plan.substeps);
     for (const SolveSchedule::Stage& stage : world.substeps.schedule.stages) {
         solver.begin_stage();
         for (std::uint32_t i = 0; i < stage.batch_count; ++i) {
@@ -113,10 +113,10 @@ void solve_wide(const SubstepAccess& world, const IslandsBySolver::Wide& way) {
                              batch.points);
         }
     }
-    solver.solve(way.plan.passes, softness, world.rigid.motion, world.rigid.constants, world.contacts.list,
+    solver.solve(group.plan.passes, softness, world.rigid.motion, world.rigid.constants, world.contacts.list,
                  world.contacts.summaries, world.workers);
     if (!world.ledger) return;
-    for (const std::uint32_t body : bodies) world.ledger->note_kept_share(body, solver.kept_share(body));
+    for (const std::uint32_t body : bodies) world.ledger->note_kept_fraction(body, solver.kept_fraction(body));
 }
 
 // What the report asks of each contact; the wide solver notes its own.
@@ -202,8 +202,8 @@ void solve_jointed(const SubstepAccess& world, const std::vector<Island>& island
 // Solves what is solved directly, and tells how the others have to be.
 const IslandsBySolver& sort_islands(const SubstepAccess& world) {
     EMBODY_ZONE("choose solvers");
-    IslandsBySolver& ways = world.substeps.islands;
-    ways.clear();
+    IslandsBySolver& sorted = world.substeps.islands;
+    sorted.clear();
     set_up_joint_systems(world);
     world.substeps.held.resize(world.rigid.bodies.slot_count());
     world.substeps.direct_solver.begin(world.settings.time_step, world.settings.substeps);
@@ -214,19 +214,19 @@ const IslandsBySolver& sort_islands(const SubstepAccess& world) {
                 if (world.ledger) world.ledger->note_rolled(body);
             }
         } else if (island.contact_count == 0 && island.joint_count == 0) {
-            ways.free.push_back(world.islands.bodies[island.first_body]);
+            sorted.free.push_back(world.islands.bodies[island.first_body]);
         } else if (island.contact_count == 0 && joint_system(world, island)) {
-            ways.jointed.push_back(island);
+            sorted.jointed.push_back(island);
         } else if (island.joint_count > 0) {
-            ways.one_by_one.push_back(island);
+            sorted.one_by_one.push_back(island);
         } else if (roll_alone(world, island)) {
             note_outcomes(world, island);
             if (world.ledger) world.ledger->note_rolled(world.islands.bodies[island.first_body]);
         } else if (!solve_directly(world, island)) {
-            ways.add(island, contact_plan(island.contact_count, world.settings.substeps));
+            sorted.add(island, contact_plan(island.contact_count, world.settings.substeps));
         }
     }
-    return ways;
+    return sorted;
 }
 
 void solve_islands(const SubstepAccess& world, const std::vector<Island>& islands, SolvePhase phase, double h,
@@ -375,32 +375,32 @@ public:
         for (const Island& island : islands) {
             const JointSystem* system = island.contact_count > 0 ? joint_system(world, island) : nullptr;
             if (!system || is_pushed(world, island)) continue;
-            bounds_.push_back({island, system, 0, system->mass(view_) * mending_speed * mending_speed / 2});
+            bounds_.push_back({island, system, 0, system->mass(view_) * correction_speed * correction_speed / 2});
         }
     }
     void note() {
         for (Bound& bound : bounds_) bound.energy = bound.system->kinetic_energy(view_);
     }
     void keep_before_drift() const {
-        for (const Bound& bound : bounds_) keep(bound, bound.energy + bound.mending);
+        for (const Bound& bound : bounds_) keep(bound, bound.energy + bound.correction);
     }
     void keep() const {
         for (const Bound& bound : bounds_) keep(bound, bound.energy);
     }
 
 private:
-    static constexpr double mending_speed = 3;  // m/s
-    static constexpr double far_off = 0.7;      // impulses that gave so much too much are no guess for the next ones
+    static constexpr double correction_speed = 3;  // m/s
+    static constexpr double far_off = 0.7;         // impulses that gave so much too much are no guess for the next ones
 
     using Bound = SubstepMemory::EnergyBound;
     void keep(const Bound& bound, double most) const {
-        const double share = bound.system->bound_energy(most, view_);
-        if (world_.ledger && share < 1) {
+        const double fraction = bound.system->bound_energy(most, view_);
+        if (world_.ledger && fraction < 1) {
             for (const std::uint32_t body : bodies_of(world_, bound.island)) {
-                world_.ledger->note_scaled(body, share);
+                world_.ledger->note_scaled(body, fraction);
             }
         }
-        if (share > far_off) return;
+        if (fraction > far_off) return;
         for (const std::uint32_t index : contacts_of(world_, bound.island)) {
             Contact& contact = world_.contacts.list[index];
             for (ContactPoint& point : contact.points) point.impulse = 0;
@@ -417,9 +417,9 @@ private:
 // Through the whole step: half of the forces before the drift and half after it.
 void solve_free(const SubstepAccess& world, const std::vector<std::uint32_t>& bodies, double h) {
     EMBODY_ZONE("move free bodies");
-    constexpr std::size_t fewest_shared = 200;
-    share_among(world.workers, bodies.size(), bodies.size() >= fewest_shared, [&](int, Share share) {
-        for (std::size_t i = share.first; i < share.last; ++i) {
+    constexpr std::size_t min_parallel_count = 200;
+    parallel_for(world.workers, bodies.size(), bodies.size() >= min_parallel_count, [&](int, IndexRange range) {
+        for (std::size_t i = range.first; i < range.last; ++i) {
             BodyState& state = world.rigid.motion[bodies[i]];
             const BodyConstants& constants = world.rigid.constants[bodies[i]];
             for (int k = 0; k < world.settings.substeps; ++k) fly(state, constants, h);
@@ -488,20 +488,20 @@ void note_held_accelerations(const SubstepAccess& world) {
     }
 }
 
-void propagate_shocks(const SubstepAccess& world, const IslandsBySolver& ways) {
+void propagate_shocks(const SubstepAccess& world, const IslandsBySolver& sorted) {
     EMBODY_ZONE("propagate shocks");
     const auto propagate = [&](const Island& island, const ContactPlan& plan) {
         propagate_shock(island, world.islands, world.contacts.list, plan.softness(world.settings.time_step),
                         world.rigid.motion);
     };
     const auto is_sunk = [&](std::uint32_t contact) { return world.contacts.summaries[contact].is_sunk; };
-    for (const IslandsBySolver::Wide& way : ways.wide) {
-        for (const Island& island : way.islands) {
+    for (const IslandsBySolver::Wide& group : sorted.wide) {
+        for (const Island& island : group.islands) {
             const auto contacts = contacts_of(world, island);
-            if (std::any_of(contacts.begin(), contacts.end(), is_sunk)) propagate(island, way.plan);
+            if (std::any_of(contacts.begin(), contacts.end(), is_sunk)) propagate(island, group.plan);
         }
     }
-    for (const Island& island : ways.one_by_one) {
+    for (const Island& island : sorted.one_by_one) {
         propagate(island, jointed_contact_plan(island.contact_count, world.settings.substeps));
     }
 }
@@ -511,14 +511,14 @@ void propagate_shocks(const SubstepAccess& world, const IslandsBySolver& ways) {
 void run_substeps(const SubstepAccess& world) {
     const double h = world.settings.time_step / world.settings.substeps;
     note_held_starts(world);
-    const IslandsBySolver& ways = sort_islands(world);
+    const IslandsBySolver& sorted = sort_islands(world);
 
     // The last one moves the kinematic bodies, which the others take from where the step found them.
-    for (const IslandsBySolver::Wide& way : ways.wide) solve_wide(world, way);
-    solve_jointed(world, ways.jointed, h);
-    solve_free(world, ways.free, h);
-    solve_one_by_one(world, ways.one_by_one, h);
-    if (world.settings.shock_propagation) propagate_shocks(world, ways);
+    for (const IslandsBySolver::Wide& group : sorted.wide) solve_wide(world, group);
+    solve_jointed(world, sorted.jointed, h);
+    solve_free(world, sorted.free, h);
+    solve_one_by_one(world, sorted.one_by_one, h);
+    if (world.settings.shock_propagation) propagate_shocks(world, sorted);
     note_held_accelerations(world);
     if (world.ledger) world.ledger->close_substeps();
     limit_speeds({world.settings, world.activity, world.workers, world.report, world.rigid});

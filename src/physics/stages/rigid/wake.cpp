@@ -7,7 +7,7 @@
 #include "physics/definitions/step_report.h"
 #include "physics/definitions/world_settings.h"
 #include "physics/stages/access.h"
-#include "physics/stages/share_awake.h"
+#include "physics/stages/parallel_for_awake.h"
 #include "physics/stages/stages.h"
 #include "physics/state/activity_state.h"
 #include "physics/state/contact_state.h"

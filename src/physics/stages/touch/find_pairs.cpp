@@ -4,7 +4,7 @@
 #include "physics/definitions/world_settings.h"
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/stages/access.h"
-#include "physics/stages/share_awake.h"
+#include "physics/stages/parallel_for_awake.h"
 #include "physics/stages/stages.h"
 #include "physics/state/activity_state.h"
 #include "physics/state/contact_state.h"
@@ -46,9 +46,9 @@ Bounds close_turned_bounds(const PairsAccess& world, std::uint32_t body, const B
 }
 
 // Lists which of a share of the awake bodies have left their bounds, and the bounds they want.
-void list_leaving(const PairsAccess& world, Share share, std::vector<LeavingBody>& leaving) {
+void list_leaving(const PairsAccess& world, IndexRange range, std::vector<LeavingBody>& leaving) {
     const double dt = world.settings.time_step;
-    for (std::size_t i = share.first; i < share.last; ++i) {
+    for (std::size_t i = range.first; i < range.last; ++i) {
         const std::uint32_t body = world.activity.awake[i];
         TouchBody& touch = world.contacts.touch.bodies[body];
         touch.stands = stands(world, body);
@@ -81,8 +81,8 @@ void find_pairs(const PairsAccess& world) {
     // Bounds of what moves, and how far it will.
     world.contacts.leaving.resize(static_cast<std::size_t>(world.workers.workers()));
     for (std::vector<LeavingBody>& leaving : world.contacts.leaving) leaving.clear();
-    share_awake(world, [&](int worker, Share share) {
-        list_leaving(world, share, world.contacts.leaving[static_cast<std::size_t>(worker)]);
+    parallel_for_awake(world, [&](int worker, IndexRange range) {
+        list_leaving(world, range, world.contacts.leaving[static_cast<std::size_t>(worker)]);
     });
 
     // In the order of the bodies, whoever looked at them.

@@ -15,7 +15,7 @@ namespace embody::physics::stages {
 namespace {
 
 // A body put into a slot counts as one that went so far, m; so no pair is left alone for longer.
-constexpr double longest_way = 1;
+constexpr double max_displacement = 1;
 
 // Where free fall takes dynamic bodies relative to immovable ones in the step, m; it is in no body's own bound.
 double common_fall(const TouchAccess& world) {
@@ -71,7 +71,7 @@ void count_contacts(const TouchAccess& world) {
         for (; next < contacts.size() && pair_of_next() == watch.pair; ++next, ++kept, ++watch.count) {
             if (kept != next) contacts[kept] = contacts[next];
         }
-        if (watch.count > 0) watch.look_again = 0;
+        if (watch.count > 0) watch.next_check_travel = 0;
     });
     contacts.resize(kept);
 }
@@ -110,7 +110,7 @@ void introduce_body(const RigidState& rigid, std::uint32_t body, TouchMemory& me
     memory.bodies.resize(rigid.bodies.slot_count());
     memory.path_bounds.resize(rigid.bodies.slot_count());
     const BodyRecord& record = rigid.record(body);
-    const double path = memory.bodies[body].path + longest_way;
+    const double path = memory.bodies[body].path + max_displacement;
     memory.path_bounds[body] = path;
     const bool is_surface = record.reach == 0 && record.definition.kind == BodyKind::static_body;
     memory.bodies[body] = {.size = is_surface ? 1e300 : record.reach,
@@ -154,15 +154,17 @@ void list_near_pairs(const TouchAccess& world) {
     const double fall = common_fall(world);
     std::uint32_t first = 0;
     for_each_live_pair(world, [&](const PairWatch& watch, std::uint32_t place) {
-        if (memory.path_bounds[watch.pair.a] + memory.path_bounds[watch.pair.b] + fall < watch.look_again) return;
+        if (memory.path_bounds[watch.pair.a] + memory.path_bounds[watch.pair.b] + fall < watch.next_check_travel)
+            return;
         memory.pairs.push_back({.watch = place, .first = first, .count = watch.count});
         first += watch.count;
     });
 }
 
-void leave_alone(const TouchAccess& world, PairWatch& watch, double way) {
+void leave_alone(const TouchAccess& world, PairWatch& watch, double travel) {
     const std::vector<TouchBody>& bodies = world.contacts.touch.bodies;
-    watch.look_again = bodies[watch.pair.a].path + bodies[watch.pair.b].path + std::min(way, longest_way);
+    watch.next_check_travel =
+        bodies[watch.pair.a].path + bodies[watch.pair.b].path + std::min(travel, max_displacement);
 }
 
 }  // namespace embody::physics::stages

@@ -31,7 +31,7 @@ void start_motion(const TouchAccess& world);
 void list_near_pairs(const TouchAccess& world);
 
 /// Leaves a pair without contacts alone until its bodies have gone `way` (m, of both together).
-void leave_alone(const TouchAccess& world, PairWatch& watch, double way);
+void leave_alone(const TouchAccess& world, PairWatch& watch, double travel);
 
 /// Calls visit(watch, its place) for each live pair, in their order.
 template <class Visit>

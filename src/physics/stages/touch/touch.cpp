@@ -115,7 +115,7 @@ void wake_touched(const TouchAccess& world, std::vector<Manifold>& manifolds) {
 
 // Contacts follow their bodies for as long as the pair has moved less than this since it was compared, m. Every corner
 // that was within the margin then is among the contacts: whatever else comes near had been farther away by this.
-constexpr double follow_window = Manifold::whole_way;
+constexpr double follow_window = Manifold::whole_travel;
 // Where corners had to be left out (a foot of a chair whose four points lie on the three others) they sink unseen, so
 // the pair is compared again before that matters.
 constexpr double short_follow_window = 1e-3;
@@ -383,7 +383,7 @@ void touch_pair(const TouchAccess& world, PairTouch& touch, std::uint8_t finder,
     compare_pair(world, record, now, worker);
     touch.next_count = static_cast<std::uint32_t>(worker.found.size()) - touch.found_first;
     if (touch.next_count == touch.count) replace_contacts(world, touch, worker);
-    watch.look_again = 0;
+    watch.next_check_travel = 0;
     if (touch.next_count == 0) leave_alone(world, watch, record.margin - base_margin_of(world, watch.pair));
 }
 
@@ -440,12 +440,12 @@ void lay_out(const TouchAccess& world) {
 // pairs take a hundred times as long as others, so each worker takes the next few when it is done: first of its own
 // part, whose contacts it had in the last step, then of the others'.
 template <class Work>
-void share_pairs(const TouchAccess& world, Work work) {
+void parallel_for_pairs(const TouchAccess& world, Work work) {
     EMBODY_ZONE("compare near pairs");
-    constexpr std::size_t fewest_shared = 200, pairs_in_share = 32;
+    constexpr std::size_t min_parallel_count = 200, pairs_in_range = 32;
     const std::size_t count = world.contacts.touch.pairs.size();
     const int workers = world.workers.workers();
-    if (count < fewest_shared || workers == 1) return work(0, Share{0, count});
+    if (count < min_parallel_count || workers == 1) return work(0, IndexRange{0, count});
     struct alignas(64) Part {
         std::atomic<std::size_t> next{0};
     };
@@ -453,12 +453,12 @@ void share_pairs(const TouchAccess& world, Work work) {
     world.workers.run([&](int worker) {
         for (int turn = 0; turn < workers; ++turn) {
             const int owner = (worker + turn) % workers;
-            const Share part = share_of(count, owner, workers);
+            const IndexRange part = range_of(count, owner, workers);
             std::atomic<std::size_t>& next = parts[static_cast<std::size_t>(owner)].next;
             while (true) {
-                const std::size_t first = part.first + next.fetch_add(pairs_in_share, std::memory_order_relaxed);
+                const std::size_t first = part.first + next.fetch_add(pairs_in_range, std::memory_order_relaxed);
                 if (first >= part.last) break;
-                work(worker, Share{first, std::min(first + pairs_in_share, part.last)});
+                work(worker, IndexRange{first, std::min(first + pairs_in_range, part.last)});
             }
         }
     });
@@ -485,10 +485,10 @@ void find_contacts(const TouchAccess& world) {
     list_near_pairs(world);
     world.contacts.summaries.resize(world.contacts.list.size());
     for (TouchMemory::Worker& worker : memory.workers) worker.found.clear();
-    share_pairs(world, [&](int worker, Share share) {
+    parallel_for_pairs(world, [&](int worker, IndexRange range) {
         TouchMemory::Worker& own = memory.workers[static_cast<std::size_t>(worker)];
-        for (std::size_t i = share.first; i < share.last; ++i) {
-            if (i + fetched_ahead < share.last) fetch(memory, memory.pairs[i + fetched_ahead]);
+        for (std::size_t i = range.first; i < range.last; ++i) {
+            if (i + fetched_ahead < range.last) fetch(memory, memory.pairs[i + fetched_ahead]);
             touch_pair(world, memory.pairs[i], static_cast<std::uint8_t>(worker), own);
         }
     });

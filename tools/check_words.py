@@ -1,0 +1,55 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Fails where a name in src/physics has a word that docs/glossary.md replaces by the field's.
+
+Usage: check_words.py [ROOT]   (default: the folder above this file)
+"""
+import pathlib
+import re
+import sys
+
+
+def banned_words(glossary: pathlib.Path) -> tuple[set[str], set[str]]:
+    """Words in backticks of the table's last column; those that end in `_…` are banned as the start of a name."""
+    words, starts = set(), set()
+    for line in glossary.read_text().splitlines():
+        cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
+        if not line.startswith("|") or len(cells) != 4 or cells[0] == "word":
+            continue
+        for cell in re.findall(r"`([^`]+)`(?!\s+of)", cells[3]):
+            (starts.add(cell[:-2]) if cell.endswith("_…") else words.add(cell))
+    return words, starts
+
+
+def names_in(text: str) -> list[tuple[int, str]]:
+    """Identifiers with their lines; comments, strings and includes left out."""
+    def blank(match: re.Match) -> str:
+        return re.sub(r"[^\n]", " ", match[0])
+    code = re.sub(r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\"|#include[^\n]*", blank, text, flags=re.DOTALL)
+    return [(number, name) for number, line in enumerate(code.splitlines(), 1) for name in re.findall(r"[A-Za-z_]\w*", line)]
+
+
+def words_of(name: str) -> set[str]:
+    return {word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", name)}
+
+
+def main() -> int:
+    root = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent
+    words, starts = banned_words(root / "docs" / "glossary.md")
+    single = {word for word in words if "_" not in word}
+    files = [p for p in sorted((root / "src" / "physics").rglob("*")) if p.suffix in (".h", ".cpp")]
+    wrong, checked = [], 0
+    for path in files:
+        for number, name in names_in(path.read_text()):
+            checked += 1
+            start = name.split("_", 1)[0] if "_" in name.rstrip("_") else ""
+            if name in words or words_of(name) & single or start in starts:
+                wrong.append(f"{path.relative_to(root)}:{number}: {name}: see docs/glossary.md")
+    for line in wrong:
+        print(line)
+    print(f"{len(files)} files, {checked} names, {len(words) + len(starts)} words, {len(wrong)} wrong")
+    return 1 if wrong or checked == 0 or not words else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
