@@ -35,8 +35,9 @@ inline constexpr double penetration_slop = 1e-4;
 /// Whether the bodies resist rolling on each other.
 inline bool resists_rolling(const Contact& contact) { return contact.friction_rolling > 0; }
 
-/// How finely a list of contacts is solved: small steps and one pass, rather than long steps and many (M. Macklin et
-/// al. 2019). The shorter the list the smaller its steps, since they cost it little (docs/physics/contact-solver.md).
+/// How finely a list of contacts is solved. Long lists take twice the world's substeps with one pass each: small steps
+/// rather than many iterations (M. Macklin et al., "Small Steps in Physics Simulation", 2019). Short lists converge
+/// with the world's substeps and a second pass (docs/physics/contact-solver.md).
 struct ContactPlan {
     int substeps = 4;
     int passes = 1;          ///< sweeps of each phase
