@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
+#include <ostream>
 
 #include "foundation/random.h"
 #include "physics/definitions/deformable_primitives.h"
@@ -26,6 +28,8 @@ SurfacePairs pair_table() {
 struct Thing {
     const char* name;
     std::function<std::function<Vec3()>(World&, const Material&)> put;  ///< returns where its centre of mass is
+
+    friend std::ostream& operator<<(std::ostream& out, const Thing& thing) { return out << thing.name; }
 };
 
 std::function<Vec3()> put_deformable(World& world, DeformableDefinition definition, const Material& material) {
