@@ -364,7 +364,7 @@ TEST(FluidObstacles, KnowHowFarTheyAreFromWhereTheyWereLeft) {
     obstacles.advance(0.02);
     obstacles.end();
 
-    // It is where it was left: no surprise. 5 cm aside: so much. It catches up by what makes it so in a second.
+    // Where it was left: not displaced. 5 cm aside: by that much. It catches up by what makes it so in a second.
     box.center = obstacles.moving()[0].center;
     box.pose = {box.center, obstacles.moving()[0].rotation};
     obstacles.begin(std::span(&box, 1), water.grid);

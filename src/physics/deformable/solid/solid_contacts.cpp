@@ -10,7 +10,7 @@ namespace embody::physics::deformable {
 
 namespace {
 
-constexpr int max_iterations = 5, sweeps_a_round = 2, max_leaning_sweeps = 10;
+constexpr int max_iterations = 5, sweeps_per_iteration = 2, max_leaning_sweeps = 10;
 constexpr double close_enough = 2e-6;  // m: no contact moves by more in the last sweep
 constexpr double small_fraction =
     0.05;                               // or by this of what the first sweeps did: forces are kept for the next substep
@@ -137,7 +137,7 @@ void SolidContacts::find_groups(std::size_t solids, std::span<const TouchedBody>
 void SolidContacts::find_forces(const Group& group, double h, TaskPool& workers) {
     const auto sweeps = [&] {
         double moved = 0;
-        for (int k = 0; k < sweeps_a_round && (k == 0 || moved > close_enough); ++k)
+        for (int k = 0; k < sweeps_per_iteration && (k == 0 || moved > close_enough); ++k)
             moved = sweep(group, h, k % 2 == 0);
         return moved;
     };
