@@ -7,13 +7,14 @@
 #include <string>
 
 #include "attributes/resolver.h"
+#include "folders.h"
 
 namespace embody::attributes {
 
 /// The taxonomy that ships.
 inline const Taxonomy& shipped_taxonomy() {
     static const std::unique_ptr<Taxonomy> taxonomy = [] {
-        auto loaded = Taxonomy::load(EMBODY_SOURCE_DIR "/data/taxonomy");
+        auto loaded = Taxonomy::load(source_folder() / "data/taxonomy");
         EXPECT_TRUE(loaded.ok()) << loaded.error().message();
         return std::move(*loaded);
     }();

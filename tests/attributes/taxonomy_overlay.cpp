@@ -6,6 +6,7 @@
 
 #include "attributes/resolver.h"
 #include "attributes/taxonomy_data.h"
+#include "folders.h"
 
 namespace embody::attributes {
 namespace {
@@ -23,7 +24,7 @@ protected:
         std::ofstream(folder_ / file) << R"({"categories": [)" << categories << "]}";
     }
     [[nodiscard]] Result<std::unique_ptr<Taxonomy>> load() const {
-        return Taxonomy::load(EMBODY_SOURCE_DIR "/data/taxonomy", folder_);
+        return Taxonomy::load(source_folder() / "data/taxonomy", folder_);
     }
     [[nodiscard]] std::string error_of(const std::string& categories) const {
         write(categories);
@@ -40,7 +41,7 @@ protected:
 };
 
 TEST_F(TaxonomyOverlayTest, RefusesByFileEntryAndField) {
-    EXPECT_FALSE(Taxonomy::load(EMBODY_SOURCE_DIR "/data/taxonomy", "/nowhere"));
+    EXPECT_FALSE(Taxonomy::load(source_folder() / "data/taxonomy", "/nowhere"));
     for (const auto& [categories, told] : std::vector<std::pair<std::string, std::string>>{
              {"3", "mine.json: categories[0]"},
              {R"({"words": ["x"]})", "mine.json: categories[0].name"},
@@ -67,7 +68,7 @@ TEST_F(TaxonomyOverlayTest, AFolderNamedLikeAFileIsNamed) {
 TEST_F(TaxonomyOverlayTest, ChangesOnlyTheGivenFieldsAndSaysWhoseTheyAre) {
     write(R"({"name": "chair", "words": ["zorbseat"], "mass": [20, 30, 40], "material": "steel",
               "source": "weighed in my shop"})");
-    const auto ours = Taxonomy::load(EMBODY_SOURCE_DIR "/data/taxonomy");
+    const auto ours = Taxonomy::load(source_folder() / "data/taxonomy");
     const auto mine = load();
     ASSERT_TRUE(mine) << mine.error().message();
     const CategoryData& before = *(*ours)->data().category("chair");
@@ -88,7 +89,7 @@ TEST_F(TaxonomyOverlayTest, ChangesOnlyTheGivenFieldsAndSaysWhoseTheyAre) {
 }
 
 TEST_F(TaxonomyOverlayTest, ANewEntryTakesItsWordsFromOurs) {
-    const auto ours = Taxonomy::load(EMBODY_SOURCE_DIR "/data/taxonomy");
+    const auto ours = Taxonomy::load(source_folder() / "data/taxonomy");
     ASSERT_EQ(of(**ours, "chair").word("category", ""), "chair");
     write(R"({"name": "throne of mine", "words": ["chair", "zorb throne"], "kind": "rigid", "placement": "floor",
               "movable": true, "material": "stone", "mass": [100, 200, 300], "at_size": [1, 2, 1],

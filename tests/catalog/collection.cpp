@@ -7,13 +7,14 @@
 #include "attributes/resolver.h"
 #include "attributes/taxonomy_data.h"
 #include "catalog/import_fixture.h"
+#include "folders.h"
 
 namespace embody::catalog {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path collections = fs::path(EMBODY_SOURCE_DIR) / "data" / "collections";
+const fs::path collections = source_folder() / "data" / "collections";
 
 TEST(Collection, AnUnknownNameIsToldWithThoseThatAreKnown) {
     for (const char* name : {"missing", "../taxonomy/materials", ""}) {

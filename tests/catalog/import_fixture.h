@@ -9,12 +9,13 @@
 #include "catalog/import/importer.h"
 #include "database/model_schema.h"
 #include "database/temporary_folder.h"
+#include "folders.h"
 #include "foundation/state_hash.h"
 #include "interchange/compact/compact_geometry.h"
 
 namespace embody::catalog {
 
-inline const std::filesystem::path taxonomy_folder = EMBODY_SOURCE_DIR "/data/taxonomy";
+inline const std::filesystem::path taxonomy_folder = source_folder() / "data/taxonomy";
 
 inline void write_file(const std::filesystem::path& file, const std::string& text) {
     std::filesystem::create_directories(file.parent_path());

@@ -7,6 +7,7 @@
 
 #include "attributes/physical_kind.h"
 #include "evaluation/table_reader.h"
+#include "folders.h"
 
 namespace embody::evaluation {
 namespace {
@@ -32,7 +33,7 @@ TEST(LabelledWords, RefuseWhatIsNoKind) {
 }
 
 TEST(KindEvaluation, CountsWhatIsRightAndNamesWhatIsNot) {
-    const auto taxonomy = attributes::Taxonomy::load(EMBODY_SOURCE_DIR "/data/taxonomy");
+    const auto taxonomy = attributes::Taxonomy::load(source_folder() / "data/taxonomy");
     ASSERT_TRUE(taxonomy.ok()) << taxonomy.error().message();
     const auto words = read("words,kinds\nhoney,fluid\nchair,rigid;static\nsand,granular\nanvil,fluid\n");
     const KindEvaluation evaluation = evaluate_kinds(**taxonomy, *words);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "evaluation/mass_evaluation.h"
+#include "folders.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +20,7 @@ std::filesystem::path written(const std::string& text) {
 constexpr const char* header = "id,name,category,dim_x_m,dim_y_m,dim_z_m,mass_kg,mesh_volume_m3,note\n";
 
 std::unique_ptr<attributes::Taxonomy> taxonomy() {
-    auto loaded = attributes::Taxonomy::load(EMBODY_SOURCE_DIR "/data/taxonomy");
+    auto loaded = attributes::Taxonomy::load(source_folder() / "data/taxonomy");
     EXPECT_TRUE(loaded.ok()) << loaded.error().message();
     return std::move(*loaded);
 }

@@ -6,6 +6,7 @@
 
 #include "attributes/physical_kind.h"
 #include "catalog/catalog.h"
+#include "folders.h"
 #include "physics/definitions/mass_properties.h"
 #include "scene/live_scene.h"
 #include "scene/sample_documents.h"
@@ -67,7 +68,7 @@ TEST(PanelMass, IsTheSolversForEveryShapeWhateverAPersonSets) {
 TEST(PanelMass, IsTheSolversForRealModels) {
     const char* database = std::getenv("EMBODY_TEST_DATABASE");
     if (database == nullptr) GTEST_SKIP() << "EMBODY_TEST_DATABASE names no database of models";
-    auto catalog = catalog::Catalog::open(database, EMBODY_SOURCE_DIR "/data/taxonomy", {}, {});
+    auto catalog = catalog::Catalog::open(database, source_folder() / "data/taxonomy", {}, {});
     ASSERT_TRUE(catalog.ok()) << catalog.error().message();
     constexpr std::int64_t step = 7;
     int compared = 0;

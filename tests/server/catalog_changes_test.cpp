@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "catalog/import_fixture.h"
+#include "folders.h"
 #include "server/scene_thread_fixture.h"
 
 namespace embody::server {
@@ -49,8 +50,7 @@ protected:
     }
     static std::string key(int chair) { return "test:chair " + std::to_string(chair); }
     [[nodiscard]] std::unique_ptr<catalog::Catalog> open() const {
-        auto catalog = catalog::Catalog::open(folder_ / "models.sqlite",
-                                              std::filesystem::path(EMBODY_SOURCE_DIR) / "data" / "taxonomy");
+        auto catalog = catalog::Catalog::open(folder_ / "models.sqlite", source_folder() / "data" / "taxonomy");
         return catalog ? std::move(*catalog) : nullptr;
     }
     json change(const json& models, const char* name, const json& value, ClientId client = 1, bool dry_run = false) {

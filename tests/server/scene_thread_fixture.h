@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "folders.h"
 #include "server/scene_thread.h"
 
 namespace embody::server {
@@ -25,7 +26,7 @@ protected:
         folder_ = mkdtemp(name.data());
         SceneThreadOptions options;
         options.database = folder_ / "models.sqlite";
-        options.taxonomy_folder = std::filesystem::path(EMBODY_SOURCE_DIR) / "data" / "taxonomy";
+        options.taxonomy_folder = source_folder() / "data" / "taxonomy";
         options.session.saved_scenes = folder_ / "saved";
         options.session.demo_scenes = folder_ / "demo";
         SceneThreadListener listener;

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "foundation/random.h"
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics {
@@ -46,7 +47,7 @@ class FurnitureComesToRest : public ::testing::TestWithParam<double> {};
 TEST_P(FurnitureComesToRest, WhenDroppedOnAPlane) {
     for (const double height : {0.001, 0.1, 0.5}) {
         for (const double tilt : {0.0, 0.02, 0.2}) {
-            auto world = std::move(*World::create());
+            auto world = make_world();
             BodyDefinition floor;
             floor.kind = BodyKind::static_body;
             floor.shape = *world->create_shape(PlaneShape{});
@@ -106,7 +107,7 @@ TEST(RichHullOnABox, LiesStillAndDoesNotSink) {
     for (const HullShape& hull : {rough_slab(0.28, 0.024, 0.18, 250), cup(0.06, 0.068, 120)}) {
         WorldSettings settings;
         settings.sleeping = false;
-        auto world = std::move(*World::create(settings));
+        auto world = make_world(settings);
         BodyDefinition floor;
         floor.kind = BodyKind::static_body;
         floor.shape = *world->create_shape(BoxShape{{15, 0.25, 15}});

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "folders.h"
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics {
@@ -13,7 +15,7 @@ namespace embody::physics {
 /// The case of that id in reference-cases.json: setup, expected values, tolerance.
 inline nlohmann::json reference_case(const std::string& id) {
     static const nlohmann::json file =
-        nlohmann::json::parse(std::ifstream(EMBODY_SOURCE_DIR "/tests/validation/reference-cases.json"));
+        nlohmann::json::parse(std::ifstream(source_folder() / "tests/validation/reference-cases.json"));
     for (const auto& reference : file.at("cases")) {
         if (reference.at("id") == id) return reference;
     }
@@ -23,10 +25,6 @@ inline nlohmann::json reference_case(const std::string& id) {
 
 inline Vec3 to_vec3(const nlohmann::json& numbers) {
     return {numbers.at(0).get<double>(), numbers.at(1).get<double>(), numbers.at(2).get<double>()};
-}
-
-inline std::unique_ptr<World> make_world(const WorldSettings& settings) {
-    return std::move(World::create(settings)).value();
 }
 
 /// A plane through the origin, tilted by `angle` (rad) about Z: it falls towards +X.

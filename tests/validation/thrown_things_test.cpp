@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "foundation/random.h"
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics {
@@ -22,7 +23,7 @@ struct Thrown {
 /// heap.
 Thrown throw_things(int count, double spacing, double speed, double spin) {
     Thrown made;
-    made.world = std::move(*World::create());
+    made.world = make_world();
     World& world = *made.world;
     BodyDefinition ground;
     ground.kind = BodyKind::static_body;
@@ -74,7 +75,7 @@ TEST(NothingPassesThroughTheGround, WhenFallingInAHeap) {
 }
 
 TEST(NothingPassesThroughTheGround, WhenABallOfTenTonsHitsAPyramid) {
-    auto world = std::move(*World::create());
+    auto world = make_world();
     BodyDefinition ground;
     ground.kind = BodyKind::static_body;
     ground.shape = *world->create_shape(BoxShape{{100, 1, 100}});

@@ -10,13 +10,17 @@ namespace embody::physics {
 
 namespace {
 
-// A ball that spins on the spot stops within this lever arm, in diameters.
+// Lever arm of the friction that stops a ball that spins on the spot, in diameters. Without any, single grains spin for
+// ever and the heap never sleeps: docs/physics/grains.md, "The law".
 constexpr double torsion = 0.1;
+// Lever arms of a material, m: rolling and torsional friction may not have longer ones (material.cpp).
+constexpr double max_rolling = 0.05, max_torsion = 0.1;
 
 /// Slope (degrees) that a sliding friction and a rolling resistance (in diameters) were measured to give.
 struct Heap {
     double angle, sliding, rolling;
 };
+// Source: docs/physics/grains.md, "How the slope is measured"; the last stands for all that is steeper.
 constexpr std::array<Heap, 15> heaps = {{{6.5, 0.1, 0.005},
                                          {13.1, 0.2, 0.005},
                                          {17.5, 0.3, 0.005},
@@ -48,19 +52,19 @@ Material grain_material(double friction_angle, double diameter) {
     const Heap heap = heap_of(std::clamp(friction_angle, 0.0, heaps.back().angle));
     Material material;
     material.friction_static = material.friction_dynamic = heap.sliding;
-    material.friction_rolling = std::min(0.05, heap.rolling * diameter);
-    material.friction_torsional = std::min(0.1, torsion * diameter);
+    material.friction_rolling = std::min(max_rolling, heap.rolling * diameter);
+    material.friction_torsional = std::min(max_torsion, torsion * diameter);
     return material;
 }
 
 int substeps_for_grains(double diameter, const WorldSettings& settings) {
     // A part of a step against the time in which a grain falls its own diameter; large islands are solved in twice as
     // many parts as the settings say.
-    constexpr double longest_part = 0.047;
-    constexpr int most = 16;
-    const double gravity = std::max(length(settings.gravity), 0.1);
-    const double parts = settings.time_step * std::sqrt(gravity / diameter) / (2 * longest_part);
-    return std::max(settings.substeps, std::min(most, static_cast<int>(std::ceil(parts))));
+    constexpr double min_gravity = 0.1;  // m/s²: only not zero
+    const GrainSettings& grains = settings.solver.fluid.grains;
+    const double gravity = std::max(length(settings.gravity), min_gravity);
+    const double parts = settings.time_step * std::sqrt(gravity / diameter) / (2 * grains.max_part);
+    return std::max(settings.substeps, std::min(grains.max_substeps, static_cast<int>(std::ceil(parts))));
 }
 
 }  // namespace embody::physics

@@ -74,7 +74,7 @@ Result<void> check(const PlaneShape& s) {
 }
 
 Result<void> check(const HeightfieldShape& s) {
-    constexpr int max_samples = 1 << 15;
+    constexpr int max_samples = 1 << 15;  // along a side
     if (s.columns < 2 || s.columns > max_samples) {
         return Error{"columns", "must be 2 to 32768, got " + std::to_string(s.columns)};
     }

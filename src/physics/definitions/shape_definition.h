@@ -36,7 +36,7 @@ struct ConeShape {
 struct HullShape {
     std::vector<Vec3> points;
 };
-inline constexpr int max_hull_vertices = 256;
+inline constexpr int max_hull_vertices = 256;  ///< more are simplified
 
 /// The half space below dot(normal, p) = offset. Static bodies only.
 struct PlaneShape {

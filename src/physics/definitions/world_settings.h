@@ -3,6 +3,7 @@
 
 #include "foundation/result.h"
 #include "math/vec3.h"
+#include "physics/definitions/settings/solver_settings.h"
 
 namespace embody::physics {
 
@@ -23,6 +24,7 @@ struct WorldSettings {
     int workers = 1;  ///< threads that a step may use, 1 … 64; 0: as many as pay on this machine (TaskPool); small
                       ///< worlds use one whatever is set. Same result.
     int lanes = 0;    ///< contacts solved by one instruction: 4, 8 or 16; 0: as many as the processor can. Same result.
+    SolverSettings solver;  ///< the numbers that steer the algorithms
 };
 
 /// The error's `where` is the field.

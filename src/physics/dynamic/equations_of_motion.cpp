@@ -43,7 +43,7 @@ namespace {
 
 // Solves L_m = L₀ + h/2 L_m × I⁻¹L_m for ω_m = I⁻¹L_m by Newton's method: f(ω) = I ω − L₀ + h/2 ω × I ω.
 Vec3 solve_midpoint(const Mat3& inertia, Vec3 start_momentum, Vec3 guess, double time) {
-    constexpr int max_iterations = 8;
+    constexpr int max_iterations = 8;    // of Newton's method
     constexpr double tolerance = 1e-12;  // of the momentum: a day of substeps changes it by 1e-5
     const double half = time / 2;
     Vec3 omega = guess;

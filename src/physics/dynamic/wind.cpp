@@ -12,7 +12,7 @@ namespace embody::physics::dynamic {
 
 namespace {
 
-constexpr int octaves = 3;
+constexpr int octaves = 3;                      // gusts of a half and a quarter of the length are in it
 constexpr double across = 0.8, upwards = 0.52;  // of the changes along the wind
 constexpr double width = 0.3;                   // of a gust, over its length
 
@@ -37,7 +37,7 @@ Place place(double x) {
 // Of root mean square 1: a level has the variance 1/3, and between two of them, mixed by s = 3u² - 2u³, the mean of
 // (1-s)² + s² is 26/35, in each of three directions.
 double noise(std::uint64_t component, Vec3 at) {
-    constexpr double mixed = 26.0 / 35, of_octave = mixed * mixed * mixed / 3;
+    constexpr double mixed = 26.0 / 35, of_octave = mixed * mixed * mixed / 3;  // variances, see above
     double sum = 0, variance = 0, height = 1;
     for (int octave = 0; octave < octaves; ++octave) {
         const Place x = place(at.x), y = place(at.y), z = place(at.z);

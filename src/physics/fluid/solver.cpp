@@ -16,12 +16,6 @@ namespace embody::physics::fluid {
 
 namespace {
 
-// A part of a step is so short that nothing moves farther than this, in cells, and they are so many at most.
-constexpr double max_displacement = 1.5;
-constexpr int max_parts = 16;
-// One in so many particles may be faster than that.
-constexpr std::size_t drops_by_particle = 200;
-
 // A gradient, 1/s, made no steeper than that: what is steeper no step of this length resolves.
 void set_gradient(const float* gradient, float steepest, float* affine) {
     const float squared = gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2];
@@ -88,16 +82,16 @@ void FluidSolver::change_particles(FluidIds ids, const FluidChange& change) {
 }
 
 double FluidSolver::usual_speed(TaskPool& workers) const {
-    return usual_speed_of(particles_, drops_by_particle, workers);
+    return usual_speed_of(particles_, settings_.parts.particles_per_outlier, workers);
 }
 
 void FluidSolver::prepare(std::span<FluidObstacle> obstacles, TaskPool& workers) {
     // A copy: whoever made them still knows them by their order.
     std::vector<FluidParticle> particles = particles_;
-    grid_.cover(particles, workers);
+    grid_.cover(particles, settings_.cells, workers);
     if (particles.empty()) return;
-    obstacles_.begin(obstacles, grid_);
-    grid_.sort(particles, particle_fraction(), obstacles_.in_reach(0, grid_.cell_size()), workers);
+    obstacles_.begin(obstacles, settings_.obstacles, grid_);
+    grid_.sort(particles, particle_fraction(), obstacles_.in_reach(0, grid_.cell_size()), settings_.cells, workers);
     obstacles_.measure(0, grid_, workers);
 }
 
@@ -106,13 +100,15 @@ FluidOutcome FluidSolver::advance(double dt, Vec3 gravity, std::span<FluidObstac
     for (FluidObstacle& obstacle : obstacles) obstacle.impulse = obstacle.angular_impulse = {};
     if (particles_.empty()) return outcome;
     speed_ = usual_speed(workers);
-    const double h = grid_.cell_size(), cells = (speed_ + length(gravity) * dt) * dt / (max_displacement * h);
+    const int max_parts = settings_.parts.max_parts;
+    const double h = grid_.cell_size();
+    const double cells = (speed_ + length(gravity) * dt) * dt / (settings_.parts.max_displacement * h);
     const double tension = properties_.surface_tension, density = properties_.density;
-    is_tense_ = is_tense(tension, density, length(gravity), h);
+    is_tense_ = is_tense(settings_.tension, tension, density, length(gravity), h);
     const double parts = std::max(cells, is_tense_ ? std::sqrt(tension / steady_tension(density, h, dt)) : 0.0);
     outcome.parts = static_cast<int>(std::clamp(std::ceil(parts), 1.0, static_cast<double>(max_parts)));
     outcome.is_slowed = cells > max_parts;
-    obstacles_.begin(obstacles, grid_);
+    obstacles_.begin(obstacles, settings_.obstacles, grid_);
     const double part = dt / outcome.parts;
     for (int i = 0; i < outcome.parts && !particles_.empty(); ++i) advance_part(part, gravity, outcome, workers);
     obstacles_.end();
@@ -162,9 +158,9 @@ float FluidSolver::particle_fraction() const {
 }
 
 void FluidSolver::advance_part(double dt, Vec3 gravity, FluidOutcome& outcome, TaskPool& workers) {
-    outcome.lost += grid_.cover(particles_, workers);
+    outcome.lost += grid_.cover(particles_, settings_.cells, workers);
     if (particles_.empty()) return;
-    grid_.sort(particles_, particle_fraction(), obstacles_.in_reach(dt, grid_.cell_size()), workers);
+    grid_.sort(particles_, particle_fraction(), obstacles_.in_reach(dt, grid_.cell_size()), settings_.cells, workers);
     obstacles_.measure(dt, grid_, workers);
     obstacles_.accelerate(dt);
     const bool has_liquid = grid_.on_grid() > 0;
@@ -184,11 +180,11 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     accelerate(gravity * dt, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
 
-    system_.build(grid_, workers);
-    components_.begin(grid_, system_, obstacles_, particles_, is_tense_);
+    system_.build(grid_, settings_, workers);
+    components_.begin(grid_, system_, obstacles_, particles_, {is_tense_, settings_.components});
     obstacles_.list_areas(grid_);
     const Viscosity liquid{properties_.density, properties_.viscosity, properties_.yield_stress};
-    if (is_viscous(liquid, h, dt)) shear(liquid, dt, outcome);
+    if (is_viscous(liquid, settings_.viscosity, h, dt)) shear(liquid, dt, outcome);
     apply_wall_friction(grid_, obstacles_, properties_.density, properties_.viscosity,
                         properties_.density * properties_.particle_volume, dt, workers);
     for (MovingObstacle& moving : obstacles_.moving()) {
@@ -201,7 +197,7 @@ void FluidSolver::advance_grid(double dt, Vec3 gravity, FluidOutcome& outcome, T
     extrapolate(grid_, grid_.velocity, 1, workers);
     admit_drops(grid_, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
-    follow_obstacles(grid_, obstacles_, sticking_of(liquid, h, speed_), workers);
+    follow_obstacles(grid_, obstacles_, sticking_of(liquid, settings_.viscosity, h, speed_), workers);
     spread_out(workers);
 }
 
@@ -209,7 +205,7 @@ void FluidSolver::find_places(double dt, TaskPool& workers) {
     const std::size_t count = grid_.on_grid();
     places_.resize(count);
     parallel_for(workers, count, count > few_particles, [&](int, IndexRange range) {
-        ParticleCollider collider(grid_, obstacles_, dt);
+        ParticleCollider collider(grid_, obstacles_, settings_.collision, dt);
         for (std::size_t i = range.first; i < range.last; ++i) places_[i] = collider.place_of(particles_[i]);
     });
 }
@@ -227,17 +223,15 @@ void FluidSolver::accelerate(Vec3 change, TaskPool& workers) {
 
 void FluidSolver::shear(const Viscosity& liquid, double dt, FluidOutcome& outcome) {
     EMBODY_ZONE("solve viscosity");
-    constexpr int max_iterations = 300;
-    const int iterations = viscosity_.solve(liquid, dt, max_iterations, grid_, obstacles_);
+    const int iterations = viscosity_.solve(liquid, dt, settings_.viscosity, grid_, obstacles_);
     outcome.viscosity_iterations += iterations;
-    outcome.is_solved = outcome.is_solved && iterations <= max_iterations;
+    outcome.is_solved = outcome.is_solved && iterations <= settings_.viscosity.max_iterations;
 }
 
 // The impulse density P = p dt that makes the velocity free of divergence (docs/physics/fluids.md, "Pressure").
 void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
     EMBODY_ZONE("solve pressure");
-    constexpr double allowed_change = 1e-4;  // of a cell's volume in a part of a step
-    constexpr int max_iterations = 300;
+    const int max_iterations = settings_.pressure.max_iterations;
     const double h = grid_.cell_size(), rho = properties_.density;
     outflow(grid_, obstacles_, system_, flow_, workers);
     impulse_.resize(system_.size());
@@ -248,12 +242,12 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
     surface_.clear();
     if (is_tense_) apply_surface_tension(dt, workers);
     system_.set_bodies(obstacles_.moving(), rho / h);
-    const double tolerance = allowed_change * rho * h * h / dt;
+    const double tolerance = settings_.pressure.tolerance * rho * h * h / dt;
     const int iterations = system_.solve(flow_, impulse_, tolerance, max_iterations, workers);
     outcome.pressure_iterations += iterations;
     outcome.is_solved = outcome.is_solved && iterations <= max_iterations;
 
-    subtract_gradient(grid_, impulse_, surface_, 1 / (rho * h), grid_.velocity, workers);
+    subtract_gradient(grid_, {system_, impulse_, surface_, 1 / (rho * h)}, grid_.velocity, workers);
     push_obstacles(impulse_);
     grid_.for_tiles(workers, [&](const Cell& corner) {
         grid_.for_cells(corner, [&](int cell, const Cell&) {
@@ -266,7 +260,7 @@ void FluidSolver::project(double dt, FluidOutcome& outcome, TaskPool& workers) {
 // The pressure at the surface by its curvature. Where the parts of a step are too few, as much tension as they bear.
 void FluidSolver::apply_surface_tension(double dt, TaskPool& workers) {
     const double most = steady_tension(properties_.density, grid_.cell_size(), dt);
-    surface_.measure(std::min(properties_.surface_tension, most) * dt, grid_, workers);
+    surface_.measure(std::min(properties_.surface_tension, most) * dt, settings_.tension, grid_, workers);
     add_surface_pressure(grid_, system_, surface_, flow_, workers);
 }
 
@@ -290,8 +284,8 @@ void FluidSolver::push_obstacles(std::span<const double> impulse) {
 // "Volume"; after T. Kugelstadt and others, "Implicit density projection for volume conserving liquids", 2019).
 void FluidSolver::spread_out(TaskPool& workers) {
     EMBODY_ZONE("solve volume");
-    constexpr double fraction = 0.5, most = 0.5, allowed_error = 0.02;
-    constexpr int max_iterations = 40;
+    const double fraction = settings_.volume.correction_fraction, most = settings_.volume.max_error;
+    const double tolerance = fraction * settings_.volume.tolerance;
     potential_.assign(system_.size(), 0);
     flow_.resize(system_.size());
     for (std::size_t row = 0; row < system_.size(); ++row) {
@@ -306,21 +300,22 @@ void FluidSolver::spread_out(TaskPool& workers) {
         flow_[row] = fraction * error;
     }
     system_.set_bodies({}, 0);
-    system_.solve(flow_, potential_, fraction * allowed_error, max_iterations, workers);
+    system_.solve(flow_, potential_, tolerance, settings_.volume.max_iterations, workers);
     grid_.for_tiles(workers, [&](const Cell& corner) {
         grid_.for_rows(corner, [&](int first, const Cell&) {
             for (auto& field : grid_.shift) std::fill_n(field.begin() + first, FluidGrid::tile[0], 0.0f);
         });
     });
-    subtract_gradient(grid_, potential_, {}, grid_.cell_size(), grid_.shift, workers);
+    subtract_gradient(grid_, {system_, potential_, {}, grid_.cell_size()}, grid_.shift, workers);
 }
 
 void FluidSolver::move_particles(double dt, TaskPool& workers) {
     EMBODY_ZONE("move particles");
     const auto time = static_cast<float>(dt);
+    const DropSurroundings around{grid_, obstacles_, properties_, settings_.drops, dt};
     const std::size_t count = grid_.on_grid();
     parallel_for(workers, count, count > few_particles, [&](int, IndexRange range) {
-        ParticleCollider collider(grid_, obstacles_, dt);
+        ParticleCollider collider(grid_, obstacles_, settings_.collision, dt);
         for (std::size_t i = range.first; i < range.last; ++i) {
             FluidParticle& particle = particles_[i];
             FieldSample sample = sample_field(grid_, grid_.velocity, places_[i].data());
@@ -330,7 +325,7 @@ void FluidSolver::move_particles(double dt, TaskPool& workers) {
             // A drop reads back what it wrote: a gradient that it took along would stay for ever.
             const bool is_single = is_drop(grid_, places_[i].data());
             const float steepest = is_single ? 0 : 1 / time;
-            if (is_single) slow_at_wall(grid_, obstacles_, properties_, dt, places_[i].data(), sample.value);
+            if (is_single) slow_at_wall(around, places_[i].data(), sample.value);
             for (int a = 0; a < 3; ++a) {
                 particle.velocity[a] = sample.value[a];
                 set_gradient(sample.gradient[a], steepest, particle.affine[a]);
@@ -349,14 +344,15 @@ void FluidSolver::move_particles(double dt, TaskPool& workers) {
 // Drops away from all liquid, by themselves: only walls that do not move are near.
 void FluidSolver::fly(double dt, Vec3 change, TaskPool& workers) {
     const std::size_t first = grid_.on_grid(), count = particles_.size() - first;
+    const DropSurroundings around{grid_, obstacles_, properties_, settings_.drops, dt};
     parallel_for(workers, count, count > few_particles, [&](int, IndexRange range) {
-        ParticleCollider collider(grid_, obstacles_, dt);
+        ParticleCollider collider(grid_, obstacles_, settings_.collision, dt);
         for (std::size_t i = first + range.first; i < first + range.last; ++i) {
             FluidParticle& particle = particles_[i];
             float* velocity = particle.velocity;
             float end[3];
             for (int axis = 0; axis < 3; ++axis) velocity[axis] += static_cast<float>(change[axis]);
-            slow_at_wall(grid_, obstacles_, properties_, dt, particle.position, velocity);
+            slow_at_wall(around, particle.position, velocity);
             for (int axis = 0; axis < 3; ++axis) {
                 std::fill_n(particle.affine[axis], 3, 0.0f);
                 end[axis] = particle.position[axis] + static_cast<float>(dt) * velocity[axis];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "physics/definitions/fluid_definition.h"
+#include "physics/definitions/settings/fluid_settings.h"
 #include "physics/definitions/step_report.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
@@ -42,6 +43,8 @@ public:
     FluidSolver(Vec3 origin, double cell_size, const FluidProperties& properties, std::span<const Vec3f> positions,
                 Vec3 velocity);
 
+    /// The numbers that steer what follows; whoever calls it sets them in each step.
+    void set_settings(const FluidSettings& settings) { settings_ = settings; }
     /// Gets the grid and the static obstacles on it ready for the first step.
     void prepare(std::span<FluidObstacle> obstacles, TaskPool& workers);
     /// Advances by dt; the obstacles' impulses are set.
@@ -101,6 +104,7 @@ private:
     void push_obstacles(std::span<const double> impulse);
 
     Vec3 origin_;
+    FluidSettings settings_;  // of this step
     FluidProperties properties_;
     FluidGrid grid_;
     FluidObstacles obstacles_;

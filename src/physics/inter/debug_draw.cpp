@@ -142,7 +142,7 @@ void draw_masses(const WorldState& world, DebugCanvas& canvas) {
 
 // A hinge's limits as a sector about X, in which Y of the second frame is; a slider's as a line along X.
 void draw_limit(const JointDefinition& joint, const Transform& frame, DebugCanvas& canvas) {
-    constexpr int arc_lines = 12;
+    constexpr int arc_lines = 12;  // of a whole range of angles
     const double radius = canvas.options.mark_length;
     if (const auto* hinge = std::get_if<HingeJoint>(&joint.joint); hinge && hinge->limit) {
         const double range = std::min(hinge->limit->upper - hinge->limit->lower, 2 * std::numbers::pi);

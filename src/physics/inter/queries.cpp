@@ -47,8 +47,8 @@ namespace {
 
 // Conservative advancement straight down: the gap to the other body bounds how far the body can go.
 std::optional<double> drop_onto(const WorldState& world, std::uint32_t body, std::uint32_t other, double limit) {
-    constexpr double touch = 1e-6;
-    constexpr int max_iterations = 256;
+    constexpr double touch = 1e-6;       // m
+    constexpr int max_iterations = 256;  // of conservative advancement; the body stays above the ground then
     const CollisionShape& shape = *world.rigid.record(body).shape;
     const CollisionShape& ground = *world.rigid.record(other).shape;
     Transform pose = world.rigid.pose(body);

@@ -12,7 +12,7 @@ using physics::linear::block_stride;
 using physics::linear::BlockFactors;
 using physics::linear::column_stride;
 
-constexpr double stuck_pivot = 1e100;
+constexpr double stuck_pivot = 1e100;  // in the place of a pivot of 0: its row does not move; no other is as large
 
 /// A column of a block.
 using Column = double __attribute__((vector_size(column_stride * sizeof(double))));

@@ -10,7 +10,7 @@ namespace embody::physics::linear {
 
 namespace {
 
-constexpr double stuck_pivot = 1e100;
+constexpr double stuck_pivot = 1e100;  // in the place of a pivot of 0: its row does not move; no other is as large
 
 // Gauss and Jordan, in place.
 void invert(Block6& matrix) {

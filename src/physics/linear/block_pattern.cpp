@@ -32,7 +32,7 @@ void BlockPattern::find_order(std::size_t nodes, std::span<const Edge> edges, st
         return count;
     };
 
-    constexpr std::uint16_t waiting = 0xFFFF;
+    constexpr std::uint16_t waiting = 0xFFFF;  // no place yet
     position_.assign(nodes, waiting);
     node_at_.resize(nodes);
     std::vector<std::uint16_t> height(nodes, 0);

@@ -17,7 +17,8 @@ namespace embody::physics::linear {
 /// systems", 1981 (least degree).
 class BlockPattern {
 public:
-    static constexpr std::size_t max_nodes = 512;
+    static constexpr std::size_t max_nodes =
+        512;  ///< a set of neighbours has a bit for each, the scratch a number for each pair
     using Edge = std::array<std::uint16_t, 2>;
 
     /// Edges may repeat; both ends differ. The last `multipliers` of the nodes have (nearly) no diagonal of their own:

@@ -78,7 +78,7 @@ void dot_blocks(const float* a, std::size_t a_stride, const float* b, std::size_
 
 void subtract_scaled(double* a, const double* column, double factor, std::size_t count) {
     using Doubles = double __attribute__((vector_size(4 * EMBODY_LANES)));
-    constexpr std::size_t at_once = EMBODY_LANES / 2;
+    constexpr std::size_t at_once = EMBODY_LANES / 2;  // doubles of a register
     std::size_t i = 0;
     for (; i + at_once <= count; i += at_once) {
         Doubles to, from;

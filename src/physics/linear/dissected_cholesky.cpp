@@ -21,7 +21,7 @@ std::size_t first_row(std::size_t column) { return column / column_multiple * co
 
 // Right-looking elimination of the first `own` of `size` columns (lower triangle, column by column).
 void eliminate(std::vector<double>& a, std::size_t size, std::size_t own) {
-    constexpr double huge = 1e30;  // a pivot of what must not move
+    constexpr double huge = 1e30;  // a pivot of what must not move: far above any, its square is still a double
     const auto subtract_scaled = widest_kernels<ColumnKernels>().subtract_scaled;
     for (std::size_t j = 0; j < own; ++j) {
         double* column = &a[j * size];
@@ -241,7 +241,7 @@ void DissectedCholesky::find_parallel_subtrees(int workers) {
 }
 
 void DissectedCholesky::solve(std::span<Vec3f> x, TaskPool& workers) {
-    constexpr std::size_t min_parallel_count = 100000;  // numbers
+    constexpr std::size_t min_parallel_count = 100000;  // numbers: below, waking the workers costs more
     const int count = value_.size() < min_parallel_count ? 1 : workers.workers();
     find_parallel_subtrees(count);
     for (std::size_t place = 0; place < x_.size(); ++place) x_[place] = x[order_.node[place]];

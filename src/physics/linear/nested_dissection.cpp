@@ -8,7 +8,7 @@ namespace embody::physics::linear {
 
 namespace {
 
-constexpr std::size_t largest_leaf = 12;  // nodes
+constexpr std::size_t largest_leaf = 12;  // nodes: as one dense front they cost less than another cut
 
 class Dissector {
 public:

@@ -11,12 +11,6 @@ namespace embody::physics::optimization {
 
 namespace {
 
-constexpr std::uint32_t min_levels = 4;         // lower ones come to rest in the sweeps
-constexpr std::size_t max_products_high = 300;  // of 6×6 blocks: chains, few bodies a level
-constexpr double min_mass_ratio = 20;           // of what lies above to what is below
-constexpr std::size_t max_products_bad = 4000;  // where they could not
-constexpr double min_load_ratio = 2;            // of all that lies above to a body of a tree below
-
 /// Bodies of a level, and the extremes of their masses.
 struct Level {
     std::size_t bodies = 0;
@@ -92,7 +86,7 @@ bool is_moving_kinematic(const BodyState& body) {
 }  // namespace
 
 DirectUse direct_use_of(const Island& island, const Islands& islands, std::span<const Contact> contacts,
-                        std::span<const BodyState> bodies) {
+                        std::span<const BodyState> bodies, const OptimizationSettings& settings) {
     if (island.joint_count > 0 || island.contact_count == 0) return DirectUse::never;
     if (island.body_count > DirectContactSolver::max_bodies) return DirectUse::never;
     for (std::uint32_t k = 0; k < island.contact_count; ++k) {
@@ -101,9 +95,12 @@ DirectUse direct_use_of(const Island& island, const Islands& islands, std::span<
     }
     const Levels levels = count_levels(island, islands, bodies);
     const std::size_t products = block_products(levels);
-    const bool is_bad = mass_ratio(levels) > min_mass_ratio, is_high = island.deepest_level >= min_levels;
-    if (load_ratio(levels) > min_load_ratio && is_tree(island, islands, contacts, bodies)) return DirectUse::always;
-    if (products <= (is_bad ? max_products_bad : is_high ? max_products_high : 0)) return DirectUse::always;
+    const bool is_heavy_on_light = mass_ratio(levels) > settings.direct_min_mass_ratio;
+    const bool is_high = island.deepest_level >= settings.direct_min_levels;
+    if (load_ratio(levels) > settings.direct_min_load_ratio && is_tree(island, islands, contacts, bodies))
+        return DirectUse::always;
+    if (is_heavy_on_light && products <= settings.direct_max_products_heavy) return DirectUse::always;
+    if (is_high && products <= settings.direct_max_products_high) return DirectUse::always;
     return DirectUse::while_slow;
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "physics/constraint/contact/contact.h"
+#include "physics/definitions/settings/optimization_settings.h"
 #include "physics/optimization/islands.h"
 #include "physics/optimization/namespace.h"
 
@@ -16,6 +17,6 @@ enum class DirectUse {
     always,      ///< tall and thin, or heavy on light: sweeps would tremble or fail
 };
 DirectUse direct_use_of(const Island& island, const Islands& islands, std::span<const Contact> contacts,
-                        std::span<const BodyState> bodies);
+                        std::span<const BodyState> bodies, const OptimizationSettings& settings);
 
 }  // namespace embody::physics::optimization

@@ -31,11 +31,10 @@ bool has_moved_on(const SleepRecord& record, const BodyState& state, double reac
 
 void track_quietness(SleepRecord& record, const BodyState& state, const BodyConstants& constants, double reach,
                      const QuietRules& rules) {
-    constexpr double travel_fraction = 1.0 / 60;  // see above; validation.SleepOnlyInBalance fails without it
     const double energy_per_mass = kinetic_energy(state, constants) / constants.mass;
     const bool is_quiet = record.allowed && energy_per_mass <= record.threshold;
     record.state = is_quiet ? SleepState::wants_to_sleep : SleepState::active;
-    const double travel = travel_fraction * std::sqrt(2 * record.threshold) * rules.time_to_sleep;
+    const double travel = rules.travel_fraction * std::sqrt(2 * record.threshold) * rules.time_to_sleep;
     if (!is_quiet) {
         record.quiet_time = 0;
     } else if (record.quiet_time == 0 || (!rules.may_move_on && has_moved_on(record, state, reach, travel))) {

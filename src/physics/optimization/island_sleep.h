@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "physics/definitions/body_definition.h"
+#include "physics/definitions/settings/optimization_settings.h"
 #include "physics/dynamic/body_state.h"
 #include "physics/optimization/islands.h"
 #include "physics/optimization/namespace.h"
@@ -26,6 +27,7 @@ struct SleepRecord {
 struct QuietRules {
     double time_step = 0;      ///< s
     double time_to_sleep = 0;  ///< s
+    double travel_fraction = OptimizationSettings{}.sleep_travel_fraction;
     bool may_move_on = false;  ///< slow is enough: for what lies on soft things, whose contacts creep
 };
 

@@ -14,9 +14,6 @@ namespace embody::physics::optimization {
 
 namespace {
 
-constexpr std::uint32_t deep = 4;  // levels from which the solver's own correction is too slow
-constexpr double fraction = 0.2;   // of the rest taken out in one step
-
 // What a unit impulse at the point does to its normal speed, 1/kg.
 double response_of(const Contact& contact, const ContactPoint& point, std::span<const BodyState> bodies) {
     const Vec3 n = contact.normal;
@@ -26,8 +23,8 @@ double response_of(const Contact& contact, const ContactPoint& point, std::span<
 }  // namespace
 
 void propagate_shock(const Island& island, const Islands& islands, std::span<const Contact> contacts,
-                     const ContactSoftness& softness, std::span<BodyState> bodies) {
-    if (island.deepest_level < deep) return;
+                     const ShockRules& rules, std::span<BodyState> bodies) {
+    if (island.deepest_level < rules.settings.shock_min_levels) return;
     for (std::uint32_t k = 0; k < island.contact_count; ++k) {
         const Contact& contact = contacts[islands.contacts[island.first_contact + k]];
         const std::uint32_t level_a = islands.level[contact.a], level_b = islands.level[contact.b];
@@ -37,12 +34,12 @@ void propagate_shock(const Island& island, const Islands& islands, std::span<con
         double depth = 0;
         for (int i = 0; i < contact.count; ++i) {
             const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
-            const double beyond = -current_separation(contact, point, bodies) - penetration_slop;
+            const double beyond = -current_separation(contact, point, bodies) - rules.softness.penetration_slop;
             if (beyond <= depth) continue;
-            depth = std::max(depth, beyond - softness.sag(response_of(contact, point, bodies), point.impulse));
+            depth = std::max(depth, beyond - rules.softness.sag(response_of(contact, point, bodies), point.impulse));
         }
         if (depth <= 0) continue;
-        const Vec3 shift = contact.normal * (fraction * depth);
+        const Vec3 shift = contact.normal * (rules.settings.shock_fraction * depth);
         if (level_b > level_a) {
             bodies[contact.b].center += shift;
         } else {

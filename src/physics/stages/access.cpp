@@ -17,7 +17,7 @@ WakeAccess::WakeAccess(WorldState& world)
       events(world.events) {}
 
 ObstacleAccess::ObstacleAccess(WorldState& world)
-    : rigid(world.rigid), contacts(world.contacts), workers(*world.workers) {}
+    : settings(world.settings), rigid(world.rigid), contacts(world.contacts), workers(*world.workers) {}
 
 FluidAccess::FluidAccess(WorldState& world) : WakeAccess(world), fluids(world.fluids) {}
 
@@ -76,7 +76,8 @@ SubstepAccess::SubstepAccess(WorldState& world)
       substeps(world.substeps) {}
 
 ContinuousAccess::ContinuousAccess(WorldState& world)
-    : joints(world.joints),
+    : settings(world.settings),
+      joints(world.joints),
       contacts(world.contacts),
       activity(world.activity),
       balls(world.balls),

@@ -62,6 +62,7 @@ struct WakeAccess {
 /// Filling a vessel: a new fluid's particles are where no obstacle is.
 struct ObstacleAccess {
     explicit ObstacleAccess(WorldState& world);
+    const WorldSettings& settings;
     const RigidState& rigid;
     const ContactState& contacts;
     TaskPool& workers;
@@ -144,6 +145,7 @@ struct SubstepAccess {
 /// Continuous collision.
 struct ContinuousAccess {
     explicit ContinuousAccess(WorldState& world);
+    const WorldSettings& settings;
     const JointState& joints;
     const ContactState& contacts;
     const ActivityState& activity;

@@ -11,7 +11,7 @@ namespace embody::physics::stages {
 /// not depend on who does what.
 template <class Access, class Work>
 void parallel_for_awake(const Access& world, Work work) {
-    constexpr std::size_t min_parallel_count = 500;
+    constexpr std::size_t min_parallel_count = 500;  // bodies: below, waking the workers costs more
     const std::size_t count = world.activity.awake.size();
     parallel_for(world.workers, count, count >= min_parallel_count, work);
 }

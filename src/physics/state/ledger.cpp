@@ -272,8 +272,10 @@ void Ledger::add_push(const Push& push, StepCause cause) {
 // The impulses of the substeps, each at its own place. Of rolling resistance a contact knows the last part's.
 template <class Visit>
 void Ledger::for_each_push(const Island& island, Visit visit) const {
-    const int parts =
-        island.joint_count > 0 ? 1 : contact_plan(island.contact_count, world_.settings.substeps).substeps;
+    const int parts = island.joint_count > 0 ? 1
+                                             : contact_plan(island.contact_count, world_.settings.substeps,
+                                                            world_.settings.solver.constraint.contact)
+                                                   .substeps;
     for (std::uint32_t k = 0; k < island.contact_count; ++k) {
         const std::uint32_t index = world_.islands.contacts[island.first_contact + k];
         const Contact& contact = world_.contacts.list[index];

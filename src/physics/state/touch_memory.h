@@ -55,7 +55,7 @@ struct PairTouch {
     std::uint32_t next_first = 0, next_count = 0;  ///< and as this step will have them
     std::uint32_t found_first = 0;                 ///< in its finder's
     std::uint8_t finder = keeps;                   ///< worker that found others than were there
-    static constexpr std::uint8_t keeps = 255;
+    static constexpr std::uint8_t keeps = 255;     // no worker: it has the contacts of the step before
 };
 
 /// Memory of the touch stage.

@@ -18,7 +18,7 @@ std::string element(const char* list, std::size_t index, const char* field = "")
 bool is_finite(const Mat3& m) { return embody::is_finite(m.x) && embody::is_finite(m.y) && embody::is_finite(m.z); }
 
 bool is_unit(Quat q) {
-    constexpr double tolerance = 1e-6;
+    constexpr double tolerance = 1e-6;  // of a length that has to be 1
     return std::fabs(dot(q, q) - 1) < tolerance;
 }
 

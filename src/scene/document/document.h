@@ -141,6 +141,7 @@ inline constexpr auto fields_of<physics::WorldSettings> = std::tuple{
     always_saved("max_angular_speed", &physics::WorldSettings::max_angular_speed),
     never_saved("workers", &physics::WorldSettings::workers),
     never_saved("lanes", &physics::WorldSettings::lanes),
+    never_saved("solver", &physics::WorldSettings::solver),
 };
 static_assert(lists_all_members<physics::WorldSettings>(), "a setting is in no list, or one is there twice");
 

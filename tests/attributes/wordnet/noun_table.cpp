@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "attributes/wordnet/noun_table.h"
+#include "folders.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,7 +12,7 @@
 namespace embody::attributes::wordnet {
 namespace {
 
-const std::filesystem::path built_table = EMBODY_BINARY_DIR "/data/wordnet-nouns.table";
+const std::filesystem::path built_table = build_folder() / "data/wordnet-nouns.table";
 
 const NounTable& nouns() {
     static const NounTable table = [] {

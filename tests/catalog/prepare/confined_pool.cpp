@@ -7,6 +7,7 @@
 #include <map>
 
 #include "catalog/prepare/worker_protocol.h"
+#include "folders.h"
 #include "interchange/compact/compact_geometry.h"
 #include "interchange/scratch_files.h"
 
@@ -16,7 +17,7 @@ namespace {
 using test::cube_obj;
 using test::ScratchFolder;
 
-const std::filesystem::path real_worker = std::filesystem::path(EMBODY_BINARY_DIR) / "src/embody-import-worker";
+const std::filesystem::path real_worker = build_folder() / "src/embody-import-worker";
 
 /// What came of each item; fails the test where one is told twice or not at all.
 std::map<std::size_t, Result<PreparedModel>> prepare_all(const std::vector<ImportItem>& items,

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include "catalog/prepare/confined_pool.h"
+#include "folders.h"
 #include "interchange/read_model.h"
 #include "interchange/scratch_files.h"
 
@@ -12,7 +13,7 @@ namespace {
 
 using test::ScratchFolder;
 
-const std::filesystem::path real_worker = std::filesystem::path(EMBODY_BINARY_DIR) / "src/embody-import-worker";
+const std::filesystem::path real_worker = build_folder() / "src/embody-import-worker";
 const std::string box = "Shape { geometry Box { size 1 1 1 } }\n";
 
 std::string vrml(const std::string& body) { return "#VRML V2.0 utf8\n" + body + box; }

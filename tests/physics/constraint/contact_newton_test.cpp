@@ -37,7 +37,7 @@ struct FloatingColumn {
                 patch.points[k].s = k & 1 ? 0.5 : -0.5;
                 patch.points[k].t = k & 2 ? 0.5 : -0.5;
             }
-            begin_substep(patch, 1, 1);
+            begin_substep(patch, {1, 1}, {});
             patches.push_back(patch);
         }
     }
@@ -75,7 +75,7 @@ TEST(ContactNewton, KeepsMomentumAndTheLawsOfContact) {
     int solved = 0;
     for (int iteration = 0; iteration < 300; ++iteration) {
         FloatingColumn column(2 + iteration % 5, random);
-        newton.begin_step();
+        newton.begin_step({});
         newton.begin(0, column.bodies, column.patches);
         if (!newton.find_velocities(column.free, column.velocity, column.patches)) continue;
         ++solved;
@@ -106,11 +106,11 @@ TEST(ContactNewton, RestKeepsMomentumAndLiesInTheCone) {
     int solved = 0;
     for (int iteration = 0; iteration < 300; ++iteration) {
         FloatingColumn column(2 + iteration % 5, random);
-        newton.begin_step();
+        newton.begin_step({});
         newton.begin(0, column.bodies, column.patches);
         for (DirectPatch& patch : column.patches) {
             for (DirectPatch::Point& point : patch.points) point.guess = random.between(-1, 1) > 0 ? 0.2 : 0;
-            begin_substep(patch, 1, 1);
+            begin_substep(patch, {1, 1}, {});
         }
         if (!newton.find_rest(column.free, column.velocity, column.patches)) continue;
         ++solved;
@@ -143,8 +143,8 @@ TEST(ContactNewton, RestOfAColumnUnderItsWeightIsExactAfterAFewSteps) {
     ContactNewton newton;
     double worst = 0;
     for (int step = 0; step < 10; ++step) {
-        for (DirectPatch& patch : column.patches) begin_substep(patch, 1, 1);
-        newton.begin_step();
+        for (DirectPatch& patch : column.patches) begin_substep(patch, {1, 1}, {});
+        newton.begin_step({});
         newton.begin(0, column.bodies, column.patches);
         ASSERT_TRUE(newton.find_rest(column.free, column.velocity, column.patches));
         newton.note_rest();
@@ -164,7 +164,7 @@ TEST(ContactNewton, SingleLoadedPointHasNoLever) {
     patch.points[0].guess = 1;
     patch.points[1].guess = 1e-9;
     patch.friction_guess = {0.1, 0, 1e-4};
-    begin_substep(patch, 1, 1);
+    begin_substep(patch, {1, 1}, {});
     EXPECT_EQ(patch.spin_arm, 0);
 }
 
@@ -181,8 +181,8 @@ TEST(ContactNewton, GuessOfTheLastSubstepIsExactTheSecondTime) {
     ContactNewton newton;
     double speed[2] = {};
     for (double& worst : speed) {
-        for (DirectPatch& patch : column.patches) begin_substep(patch, 1, 1);
-        newton.begin_step();
+        for (DirectPatch& patch : column.patches) begin_substep(patch, {1, 1}, {});
+        newton.begin_step({});
         newton.begin(0, column.bodies, column.patches);
         ASSERT_TRUE(newton.find_velocities(column.free, column.velocity, column.patches));
         for (const Vec6& v : column.velocity) worst = std::max(worst, length(v.linear()));

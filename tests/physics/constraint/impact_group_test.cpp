@@ -52,7 +52,7 @@ TEST(ImpactGroup, FlatBoxBouncesWithoutTurning) {
         site.coefficients = {0.5, 0.5, 0.8};
         sites.push_back(site);
     }
-    const ImpactReport report = solve_impact_group(sites, bodies, memory);
+    const ImpactReport report = solve_impact_group(sites, bodies, memory, {});
     EXPECT_TRUE(report.converged);
     EXPECT_NEAR(bodies[1].linear_velocity.y, 1.6, 1e-9);
     EXPECT_LT(length(bodies[1].angular_velocity), 1e-9);
@@ -79,8 +79,9 @@ TEST(ImpactGroup, EstimatedSlidesEndAsFollowedOnesAndAddNoEnergy) {
         std::vector<BodyState> followed = start, estimated = start;
         ImpactSite followed_site = site, estimated_site = site;
         ImpactGroupMemory memory;
-        solve_impact_group({&followed_site, 1}, followed, memory);
-        const ImpactReport report = solve_impact_group({&estimated_site, 1}, estimated, memory, SlidePath::estimated);
+        solve_impact_group({&followed_site, 1}, followed, memory, {});
+        const ImpactReport report =
+            solve_impact_group({&estimated_site, 1}, estimated, memory, {}, SlidePath::estimated);
         ASSERT_LE(report.energy_change, 1e-12) << i;
         const Vec3 end = velocity_at(followed[1], arm), estimated_end = velocity_at(estimated[1], arm);
         const bool sticks = length(end) < 1e-3 * approach;
@@ -105,7 +106,7 @@ TEST(ImpactGroup, ConservesMomentumOfTwoFreeBodies) {
     bodies[1].linear_velocity = {-2, 0, 0.1};
     const Vec3 before = bodies[0].linear_velocity + 2 * bodies[1].linear_velocity;
     ImpactSite site{0, 1, {0.1, 0.05, 0}, {-0.1, 0, 0.02}, {1, 0, 0}, {0.4, 0.4, 0.6}, {}};
-    solve_impact_group({&site, 1}, bodies, memory);
+    solve_impact_group({&site, 1}, bodies, memory, {});
     EXPECT_LT(length(bodies[0].linear_velocity + 2 * bodies[1].linear_velocity - before), 1e-12);
     EXPECT_GT(dot(site.impulse, site.normal), 0);
 }

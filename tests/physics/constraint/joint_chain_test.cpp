@@ -2,6 +2,7 @@
 // Chains whose passes come to no end in a substep must not swing up from one to the next.
 #include <gtest/gtest.h>
 
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics::constraint {
@@ -9,7 +10,7 @@ namespace {
 
 // Five rods hung on each other; each has a velocity that the joints forbid at least in part.
 double greatest_energy_gain(const decltype(JointDefinition::joint)& kind, int count) {
-    const auto world = std::move(World::create({.gravity = {}})).value();
+    const auto world = make_world({.gravity = {}});
     const auto rod = world->create_shape(CapsuleShape{0.1, 0.3}).value();
     BodyHandle last;
     for (int i = 0; i < count; ++i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics::constraint {
@@ -8,7 +9,7 @@ namespace {
 
 // A hinge pressed against its limit, then let go and pushed off: the limit must not push after it.
 TEST(JointLimit, LetsGoOfWhatLeavesIt) {
-    const auto world = std::move(World::create({.gravity = {}})).value();
+    const auto world = make_world({.gravity = {}});
     const auto door = world->create_body({.mass = {.mass = 1, .inertia = Mat3::diagonal({1, 1, 1})}}).value();
     ASSERT_TRUE(world->create_joint({.joint = HingeJoint{.limit = JointLimit{0, 3}}, .body_b = door}));
     ASSERT_TRUE(world->set_force(door, {}, {-5, 0, 0}));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What shapes weigh, beside counts of points inside them, and beside what the solver makes of them.
 #include "physics/definitions/mass_properties.h"
+#include "make_world.h"
 
 #include <gtest/gtest.h>
 
@@ -165,7 +166,7 @@ TEST(ShapeMass, AndBoundsAreThoseOfTheSolverToTheLastBit) {
     for (int i = 0; i < 20; ++i) {
         for (const ShapeDefinition& shape : random_shapes(random)) {
             SCOPED_TRACE(shape_name(shape));
-            auto world = World::create().value();
+            auto world = make_world();
             const auto handle = world->create_shape(shape);
             ASSERT_TRUE(handle.ok()) << handle.error().message();
             MassDefinition asked{.density = random.between(1, 20000)};

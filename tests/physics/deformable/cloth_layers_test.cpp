@@ -37,7 +37,7 @@ TEST(ClothLayers, FindWhatASearchOfAllFinds) {
     ClothLayers layers(triangles, definition.nodes);
     TaskPool alone(1), two(2);
     const std::vector<Vec3> still(x.size());
-    const auto near = layers.near(nodes, 0.75 * gap, still, alone);
+    const auto near = layers.near(nodes, 0.75 * gap, still, {}, alone);
     std::set<std::pair<std::uint32_t, std::uint32_t>> found;
     for (const ThinCandidate& candidate : near) {
         if (candidate.kind == ThinFeature::node_on_triangle) found.emplace(candidate.first, candidate.second);
@@ -56,7 +56,7 @@ TEST(ClothLayers, FindWhatASearchOfAllFinds) {
         }
     }
     EXPECT_GT(expected, 500);
-    const auto shared = layers.near(nodes, 0.75 * gap, still, two);
+    const auto shared = layers.near(nodes, 0.75 * gap, still, {}, two);
     ASSERT_EQ(shared.size(), near.size());
     for (std::size_t k = 0; k < near.size(); ++k) {
         EXPECT_EQ(shared[k].first, near[k].first);
@@ -76,7 +76,7 @@ TEST(ClothLayers, OfAFlatSheetNothingIsNear) {
         for (std::size_t i = 0; i < nodes.size(); ++i)
             nodes.position[i] = rotate(from_axis_angle(axis, 1.1), definition.nodes[i]);
         const std::vector<Vec3> still(nodes.size());
-        for (const double reach : {1e-3, 0.03}) EXPECT_TRUE(layers.near(nodes, reach, still, alone).empty());
+        for (const double reach : {1e-3, 0.03}) EXPECT_TRUE(layers.near(nodes, reach, still, {}, alone).empty());
     }
 }
 

@@ -333,7 +333,8 @@ TEST(SurfacePairs, TwoBricksMeetWhereTheyFaceEachOther) {
     definition.pose.position = {0.02, 0.205, 0.01};
     const SolidDeformable above(definition);
     std::vector<SolidContact> contacts;
-    find_surface_contacts(above, 3, below, 7, 0.01, 1e-3, {0.5, 0.4}, false, contacts);
+    const SurfaceSearch search{.reach = 0.01, .radius = 1e-3, .friction = {0.5, 0.4}};
+    find_surface_contacts({above, 3}, {below, 7}, search, contacts);
     EXPECT_GE(contacts.size(), 6u);
     for (const SolidContact& contact : contacts) {
         EXPECT_FALSE(contact.has_body());
@@ -347,7 +348,7 @@ TEST(SurfacePairs, TwoBricksMeetWhereTheyFaceEachOther) {
     // Far apart there is none.
     definition.pose.position.y = 0.5;
     contacts.clear();
-    find_surface_contacts(SolidDeformable(definition), 3, below, 7, 0.01, 1e-3, {0.5, 0.4}, false, contacts);
+    find_surface_contacts({SolidDeformable(definition), 3}, {below, 7}, search, contacts);
     EXPECT_TRUE(contacts.empty());
 }
 
@@ -380,7 +381,7 @@ TEST(SolidContacts, CarryTheWeight) {
         solid.begin_substep(h, gravity);
         SolidContacts::begin(contacts, solids, bodies, h, h);
         solid.solve(workers);
-        solver.solve(contacts, solids, bodies, h, h, workers);
+        solver.solve(contacts, solids, bodies, {h, h}, workers);
         solid.finish();
         carried = {};
         for (const SolidContact& contact : contacts) {

@@ -114,7 +114,7 @@ TEST(FreeMotion, KeepsWhatTheWholeHadAndWasGiven) {
             wanted_linear += p;
             wanted_angular += cross(nodes.position[i], p);
         }
-        keep_momenta(nodes, given, h, moves);
+        keep_momenta(nodes, given, h, {}, moves);
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             linear += nodes.mass[i] * moves[i] / h;
             angular += cross(nodes.position[i], nodes.mass[i] * moves[i] / h);
@@ -290,8 +290,8 @@ TEST(TouchSprings, UnitMovesAreThoseOfARigidBody) {
     EXPECT_NEAR(inertias[0].mass, 2 / 0.01, 1e-9);
     EXPECT_FALSE(inertias[1].moves);
     EXPECT_NEAR(energy_of(inertias[0], {{0.1, 0, 0}, {}}), 0.5 * 200 * 0.01, 1e-9);
-    EXPECT_GT(contact_stiffness(1, 0, 0.01, 9.81), 0);
-    EXPECT_GE(contact_stiffness(1, 100, 0.01, 9.81), contact_stiffness(1, 0, 0.01, 9.81));
+    EXPECT_GT(contact_stiffness(1, 0, 0.01, 9.81, {}), 0);
+    EXPECT_GE(contact_stiffness(1, 100, 0.01, 9.81, {}), contact_stiffness(1, 0, 0.01, 9.81, {}));
 }
 
 // A spring's energy falls by its force, whatever its nodes do.
@@ -335,7 +335,7 @@ TEST(TieSprings, PullEquallyAndTogether) {
     Vec3 pull;
     const PlacedTie placed{&own, &other, 0, 1, &tie, &pull};
     TieSprings springs;
-    springs.begin(std::span(&placed, 1), 0.01, 9.81);
+    springs.begin(std::span(&placed, 1), 0.01, 9.81, {});
     ASSERT_EQ(springs.springs().size(), 1u);
     double sum = 0;
     for (const double weight : springs.springs()[0].weight) sum += weight;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "physics/dynamic/wind.h"
+#include "make_world.h"
 
 #include <gtest/gtest.h>
 
@@ -53,7 +54,7 @@ TEST(Wind, GustsAreSmoothInTimeAndPlaceAndCarriedAlong) {
 // A strip that hangs in a wind leans so that the air's push and its weight have no moment about the rod.
 TEST(Wind, BlowsAHangingSheetAsideAndAnotherWindWakesIt) {
     WorldSettings settings;
-    const auto world = World::create(settings).value();
+    const auto world = make_world(settings);
     DeformableDefinition sheet = cloth_rectangle(0.4, 0.1, 0.05, {.area_density = 0.3, .rayleigh_damping = 0.05});
     // Upright: its X is the world's -Y.
     sheet.pose = {{0, 0, 0}, from_axis_angle({0, 0, 1}, -std::acos(-1.0) / 2)};

@@ -118,7 +118,7 @@ TEST(FluidFaces, DropsTellFacesThatTheyReach) {
 TEST(FluidFaces, OutflowOfALinearFieldIsItsDivergence) {
     LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {8, 8, 8}));
     PressureSystem system;
-    system.build(block.grid, block.workers);
+    system.build(block.grid, {}, block.workers);
     ASSERT_GT(system.size(), 400u);
     block.set_velocity([](Vec3 p) { return Vec3{1 + 2 * p.x + p.y, 3 * p.y - p.z, 4 * p.x - 1.5 * p.z}; });
     std::vector<double> flow;
@@ -131,7 +131,7 @@ TEST(FluidFaces, GradientsOfALinearPressureAreExact) {
     LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {8, 8, 8}));
     FluidGrid& grid = block.grid;
     PressureSystem system;
-    system.build(grid, block.workers);
+    system.build(grid, {}, block.workers);
     const Vec3 slope{3, -2, 5};
     std::vector<double> x(system.size());
     for (const Cell& corner : grid.tiles()) {
@@ -141,7 +141,7 @@ TEST(FluidFaces, GradientsOfALinearPressureAreExact) {
     }
     block.set_velocity([](Vec3) { return Vec3{1, 1, 1}; });
     constexpr double scale = 0.7;
-    subtract_gradient(grid, x, {}, scale, grid.velocity, block.workers);
+    subtract_gradient(grid, {system, x, {}, scale}, grid.velocity, block.workers);
     std::size_t inner = 0, outer = 0;
     for (const Cell& corner : grid.tiles()) {
         grid.for_cells(corner, [&](int cell, const Cell&) {
@@ -155,7 +155,7 @@ TEST(FluidFaces, GradientsOfALinearPressureAreExact) {
                 } else if (upper >= 0 || lower >= 0) {
                     // Nothing at the surface, so far away.
                     const int liquid = upper >= 0 ? cell : below, air = upper >= 0 ? below : cell;
-                    const double travel = PressureSystem::gap_fraction(grid.surface[liquid], grid.surface[air]);
+                    const double travel = system.gap_fraction(grid.surface[liquid], grid.surface[air]);
                     const double rise = x[grid.row[liquid]] / travel * (upper >= 0 ? 1 : -1);
                     EXPECT_NEAR(grid.velocity[axis][cell], 1 - scale * rise, 1e-4 * (1 + std::fabs(rise)));
                     ++outer;
@@ -189,16 +189,16 @@ TEST(FluidFaces, ShutFacesMoveWithTheirObstacle) {
 TEST(FluidFaces, WithoutTensionTheSurfaceAddsNoPressure) {
     LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {8, 8, 8}));
     PressureSystem system;
-    system.build(block.grid, block.workers);
+    system.build(block.grid, {}, block.workers);
     SurfacePressure surface;
-    surface.measure(2, block.grid, block.workers);
+    surface.measure(2, {}, block.grid, block.workers);
     std::vector<double> b(system.size(), 1);
     add_surface_pressure(block.grid, system, surface, b, block.workers);
     EXPECT_TRUE(std::ranges::any_of(b, [](double value) { return value != 1; }));
     surface.clear();
     EXPECT_TRUE(surface.is_none());
     b.assign(system.size(), 1);
-    surface.measure(0, block.grid, block.workers);
+    surface.measure(0, {}, block.grid, block.workers);
     add_surface_pressure(block.grid, system, surface, b, block.workers);
     for (const double value : b) EXPECT_EQ(value, 1);
 }

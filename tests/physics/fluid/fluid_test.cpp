@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "make_world.h"
 #include "physics/collision/shapes/collision_shape.h"
 #include "physics/inter/world.h"
 #include "physics/stages/fluid/fluids.h"
@@ -16,10 +17,6 @@ namespace {
 
 using namespace state;
 using namespace stages;
-
-std::unique_ptr<World> make_world(const WorldSettings& settings = {}) {
-    return std::move(World::create(settings)).value();
-}
 
 BodyHandle add_box(World& world, Vec3 half_extents, BodyDefinition definition) {
     definition.shape = world.create_shape(BoxShape{half_extents}).value();

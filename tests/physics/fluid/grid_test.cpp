@@ -32,7 +32,7 @@ TEST(FluidGrid, CoversNothingWhereThereAreNoParticles) {
     TaskPool workers(1);
     FluidGrid grid(h);
     std::vector<FluidParticle> none;
-    EXPECT_EQ(grid.cover(none, workers), 0u);
+    EXPECT_EQ(grid.cover(none, {}, workers), 0u);
     EXPECT_TRUE(grid.tiles().empty());
 }
 
@@ -41,11 +41,11 @@ TEST(FluidGrid, GivesUpPlacesThatAreNoneOrCannotBeCounted) {
     FluidGrid grid(h);
     std::vector<FluidParticle> particles{at(0, nan, 0), at(0.5f, 0.5f, 0.5f), at(infinite, 0, 0), at(0, 0, -3e30f)};
     particles[1].id = 7;
-    EXPECT_EQ(grid.cover(particles, workers), 3u);
+    EXPECT_EQ(grid.cover(particles, {}, workers), 3u);
     ASSERT_EQ(particles.size(), 1u);
     EXPECT_EQ(particles[0].id, 7u);
     std::vector<FluidParticle> lost{at(nan, nan, nan)};
-    EXPECT_EQ(grid.cover(lost, workers), 1u);
+    EXPECT_EQ(grid.cover(lost, {}, workers), 1u);
     EXPECT_TRUE(lost.empty());
 }
 
@@ -55,18 +55,18 @@ TEST(FluidGrid, GivesUpStraysThatWouldNeedTooLargeABox) {
     std::vector<FluidParticle> particles = fill_cells(h, {0, 0, 0}, {6, 6, 6});
     const std::size_t count = particles.size();
     particles.push_back(at(1e5f, 1e5f, 1e5f));
-    EXPECT_EQ(grid.cover(particles, workers), 1u);
+    EXPECT_EQ(grid.cover(particles, {}, workers), 1u);
     EXPECT_EQ(particles.size(), count);
     double cells = 1;
     for (const int size : grid.size()) cells *= size;
-    EXPECT_LE(cells, static_cast<double>(FluidGrid::fewest_cells));
+    EXPECT_LE(cells, static_cast<double>(FluidCellSettings{}.min_box_cells));
 }
 
 TEST(FluidGrid, BoxHoldsOneParticleWithTilesAround) {
     TaskPool workers(1);
     FluidGrid grid(h);
     std::vector<FluidParticle> particles{at(-0.01f, 12.34f, -7.7f)};
-    EXPECT_EQ(grid.cover(particles, workers), 0u);
+    EXPECT_EQ(grid.cover(particles, {}, workers), 0u);
     for (int a = 0; a < 3; ++a) {
         const float cells = grid.in_cells(particles[0].position[a], a);
         EXPECT_GE(cells, static_cast<float>(FluidGrid::tile[a]));
@@ -142,12 +142,12 @@ TEST(FluidGrid, DropsByThemselvesAreLeftOut) {
     for (int i = 0; i < 4; ++i) particles.push_back(at(4.0f + 3.0f * static_cast<float>(i), 0.5f, 0.5f));
     LiquidBlock block(h, particles);
     // Where the static obstacles are not known yet all meet the grid; then they are known.
-    block.grid.sort(block.particles, LiquidBlock::particle_fraction, {}, block.workers);
+    block.grid.sort(block.particles, LiquidBlock::particle_fraction, {}, {}, block.workers);
     EXPECT_EQ(block.grid.on_grid(), count);
     for (std::size_t i = 0; i < count; ++i) EXPECT_LT(block.particles[i].position[0], 1);
     // But for what a moving obstacle may meet.
     const Bounds near{{3.9, 0.4, 0.4}, {4.1, 0.6, 0.6}};
-    block.grid.sort(block.particles, LiquidBlock::particle_fraction, std::span(&near, 1), block.workers);
+    block.grid.sort(block.particles, LiquidBlock::particle_fraction, std::span(&near, 1), {}, block.workers);
     EXPECT_EQ(block.grid.on_grid(), count + 1);
 }
 
@@ -155,7 +155,7 @@ TEST(FluidGrid, WhatIsKnownOfStaticObstaclesMovesWithTheBox) {
     TaskPool workers(1);
     FluidGrid grid(h);
     std::vector<FluidParticle> particles = fill_cells(h, {0, 0, 0}, {4, 4, 4});
-    grid.cover(particles, workers);
+    grid.cover(particles, {}, workers);
     const Cell before = grid.lower();
     const auto place = [&](int x, int y, int z) {
         return grid.index({x - grid.lower()[0], y - grid.lower()[1], z - grid.lower()[2]});
@@ -163,7 +163,7 @@ TEST(FluidGrid, WhatIsKnownOfStaticObstaclesMovesWithTheBox) {
     grid.static_distance[place(1, 2, 3)] = -1.25f;
     grid.static_fraction[1][place(3, 0, 2)] = 0.75f;
     particles.push_back(at(-3, -2, 2.5f));
-    EXPECT_EQ(grid.cover(particles, workers), 0u);
+    EXPECT_EQ(grid.cover(particles, {}, workers), 0u);
     ASSERT_NE(grid.lower(), before);
     EXPECT_EQ(grid.static_distance[place(1, 2, 3)], -1.25f);
     EXPECT_EQ(grid.static_fraction[1][place(3, 0, 2)], 0.75f);
@@ -254,7 +254,7 @@ TEST(FluidParticles, UsualSpeedLeavesOutOneInSoMany) {
 TEST(LiquidCells, SurfaceOfAFilledBlockLiesWhereItsParticlesEnd) {
     LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {8, 8, 8}));
     LiquidCells liquid;
-    mark_liquid(block.grid, liquid, block.workers);
+    mark_liquid(block.grid, {}, liquid, block.workers);
     // Far from edges and corners: half a cell below and above the surface, exactly.
     const auto surface_at = [&](double y) { return block.grid.surface[block.index_at({0.45, y, 0.45})]; };
     EXPECT_NEAR(surface_at(0.75), -0.5, 1e-5);
@@ -289,7 +289,7 @@ TEST(LiquidCells, SurfaceOfAFilledBlockLiesWhereItsParticlesEnd) {
 TEST(LiquidCells, OneParticleMakesNone) {
     LiquidBlock block(h, {at(0.5f, 0.5f, 0.5f)});
     LiquidCells liquid;
-    mark_liquid(block.grid, liquid, block.workers);
+    mark_liquid(block.grid, {}, liquid, block.workers);
     EXPECT_TRUE(liquid.cells.empty());
 }
 

@@ -55,9 +55,9 @@ struct LiquidBlock {
 
     LiquidBlock(double h, std::vector<FluidParticle> matter, std::span<FluidObstacle> met = {})
         : grid(h), obstacles(Vec3{}), particles(std::move(matter)) {
-        grid.cover(particles, workers);
-        obstacles.begin(met, grid);
-        grid.sort(particles, particle_fraction, obstacles.in_reach(0, h), workers);
+        grid.cover(particles, {}, workers);
+        obstacles.begin(met, {}, grid);
+        grid.sort(particles, particle_fraction, obstacles.in_reach(0, h), {}, workers);
         obstacles.measure(0, grid, workers);
         transfer();
     }

@@ -51,7 +51,7 @@ double distance_of_box(Vec3 half, Vec3 p) {
 
 TEST(ObstacleProbe, OutOfReachThereIsNothing) {
     const auto shape = CollisionShape::create(SphereShape{0.3}).value();
-    ObstacleProbe probe(*shape, {{10, 0, 0}, {}});
+    ObstacleProbe probe(*shape, {{10, 0, 0}, {}}, {});
     EXPECT_FALSE(probe.look_at({{-1, -1, -1}, {1, 1, 1}}, 0.5));
     EXPECT_EQ(probe.nearest({0, 0, 0}).distance, 0.5);
     EXPECT_FALSE(probe.crossing({0, 0, 0}, {0, 0, 0}));
@@ -68,7 +68,7 @@ TEST(ObstacleProbe, BallsAndCapsulesAreAsFarAsTheirFormulaSays) {
         const Transform pose = any_pose(random);
         const Vec3 p = any_point(random, 1);
         const Vec3 local = transform_point(inverse(pose), p);
-        ObstacleProbe near_ball(*ball, pose), near_capsule(*capsule, pose);
+        ObstacleProbe near_ball(*ball, pose, {}), near_capsule(*capsule, pose, {});
         ASSERT_TRUE(near_ball.look_at(everywhere, 9) && near_capsule.look_at(everywhere, 9));
         const ObstacleDistance from_ball = near_ball.nearest(p), from_capsule = near_capsule.nearest(p);
         EXPECT_NEAR(from_ball.distance, length(local) - 0.3, 1e-9);
@@ -85,7 +85,7 @@ TEST(ObstacleProbe, BoxesAreExactInsideAndNeverTooFarOutside) {
     for (int trial = 0; trial < 500; ++trial) {
         const Transform pose = any_pose(random);
         const Vec3 p = any_point(random, 1), local = transform_point(inverse(pose), p);
-        ObstacleProbe probe(*box, pose);
+        ObstacleProbe probe(*box, pose, {});
         ASSERT_TRUE(probe.look_at(everywhere, 9));
         const double exact = distance_of_box(half, local), found = probe.nearest(p).distance;
         const Vec3 out = abs(local) - half;
@@ -105,7 +105,7 @@ TEST(ObstacleProbe, AClosedMeshIsTheSolidThatItEncloses) {
     const auto box = CollisionShape::create(BoxShape{half}).value();
     for (int trial = 0; trial < 300; ++trial) {
         const Transform pose = any_pose(random);
-        ObstacleProbe probe(*mesh, pose), solid(*box, pose);
+        ObstacleProbe probe(*mesh, pose, {}), solid(*box, pose, {});
         ASSERT_TRUE(probe.look_at(everywhere, 9) && solid.look_at(everywhere, 9));
         EXPECT_TRUE(probe.is_surface());
         EXPECT_FALSE(solid.is_surface());
@@ -125,7 +125,7 @@ TEST(ObstacleProbe, AClosedMeshIsTheSolidThatItEncloses) {
 TEST(ObstacleProbe, APlaneIsAHalfSpace) {
     Random random(4);
     const auto plane = CollisionShape::create(PlaneShape{{0, 2, 0}, 0.1}).value();
-    ObstacleProbe probe(*plane, {});
+    ObstacleProbe probe(*plane, {}, {});
     ASSERT_TRUE(probe.look_at(everywhere, 9));
     EXPECT_NEAR(probe.nearest({3, -0.4, 1}).distance, -0.5, 1e-12);
     EXPECT_NEAR(probe.nearest({3, 0.4, 1}).distance, 0.3, 1e-12);
@@ -141,7 +141,7 @@ TEST(ObstacleProbe, KnowsHowThinItIs) {
     for (const auto& shape : {CollisionShape::create(BoxShape{{1, 0.05, 1}}).value().release(),
                               CollisionShape::create(mesh_of_box({1, 0.05, 1})).value().release()}) {
         const std::unique_ptr<CollisionShape> owned(shape);
-        ObstacleProbe probe(*owned, {});
+        ObstacleProbe probe(*owned, {}, {});
         ASSERT_TRUE(probe.look_at(everywhere, 9));
         EXPECT_TRUE(probe.is_thinner({0, 0.03, 0}, {0, 1, 0}, 0.09));
         EXPECT_FALSE(probe.is_thinner({0, 0.03, 0}, {0, 1, 0}, 0.07));
@@ -153,7 +153,7 @@ TEST(ObstacleProbe, OctantsOfABoxAlongTheAxesAreExact) {
     for (int trial = 0; trial < 200; ++trial) {
         const Vec3 half{random.between(0.2, 0.4), random.between(0.2, 0.4), random.between(0.2, 0.4)};
         const auto box = CollisionShape::create(BoxShape{half}).value();
-        ObstacleProbe probe(*box, {});
+        ObstacleProbe probe(*box, {}, {});
         ASSERT_TRUE(probe.look_at(everywhere, 9));
         // Cubes at a face or an edge of it: at most two sides cut.
         Vec3 p = any_point(random, 0.1);
@@ -176,7 +176,7 @@ TEST(ObstacleProbe, OctantsSumToTheVolume) {
     Random random(6);
     const auto volume_of = [&](const ShapeDefinition& definition) {
         const auto shape = CollisionShape::create(definition).value();
-        ObstacleProbe probe(*shape, any_pose(random));
+        ObstacleProbe probe(*shape, any_pose(random), {});
         EXPECT_TRUE(probe.look_at(everywhere, 9));
         constexpr double edge = 0.05;
         double sum = 0;
@@ -209,7 +209,7 @@ TEST(ObstacleRegion, SharesOfEachDirectionSumToTheVolume) {
         Transform pose = any_pose(random);
         pose.position = {0.6 + random.between(-h, h), 0.6 + random.between(-h, h), 0.6 + random.between(-h, h)};
         const auto shape = CollisionShape::create(BoxShape{{0.27, 0.31, 0.23}}).value();
-        ObstacleProbe probe(*shape, pose);
+        ObstacleProbe probe(*shape, pose, {});
         ObstacleRegion region;
         const Cell lower = water.cell_at({-0.25, -0.25, -0.25}), upper = water.cell_at({1.45, 1.45, 1.45});
         region.begin(water.grid, lower, upper);
@@ -238,7 +238,7 @@ TEST(ObstacleRegion, SharesOfEachDirectionSumToTheVolume) {
 TEST(ObstacleRegion, OutOfReachNothingIsAdded) {
     Water water;
     const auto shape = CollisionShape::create(SphereShape{0.1}).value();
-    ObstacleProbe probe(*shape, {{50, 0, 0}, {}});
+    ObstacleProbe probe(*shape, {{50, 0, 0}, {}}, {});
     ObstacleRegion region;
     region.begin(water.grid, water.cell_at({0.1, 0.1, 0.1}), water.cell_at({0.9, 0.9, 0.9}));
     EXPECT_FALSE(region.add(probe));
@@ -251,7 +251,7 @@ TEST(ObstacleRegion, AWallThinnerThanACellShutsItsFaces) {
     Water water;
     for (const double y : {0.6, 0.63, 0.65}) {
         const auto shape = CollisionShape::create(BoxShape{{2, 0.005, 2}}).value();
-        ObstacleProbe probe(*shape, {{0.6, y, 0.6}, {}});
+        ObstacleProbe probe(*shape, {{0.6, y, 0.6}, {}}, {});
         ObstacleRegion region;
         region.begin(water.grid, water.cell_at({0.15, 0.15, 0.15}), water.cell_at({1.05, 1.05, 1.05}));
         ASSERT_TRUE(region.add(probe));
@@ -367,11 +367,11 @@ TEST(FluidObstacles, KnowHowFarTheyAreFromWhereTheyWereLeft) {
     // Where it was left: not displaced. 5 cm aside: by that much. It catches up by what makes it so in a second.
     box.center = obstacles.moving()[0].center;
     box.pose = {box.center, obstacles.moving()[0].rotation};
-    obstacles.begin(std::span(&box, 1), water.grid);
+    obstacles.begin(std::span(&box, 1), {}, water.grid);
     EXPECT_NEAR(obstacles.unexpected_displacement(), 0, 1e-12);
     box.center.z += 0.05;
     box.pose.position.z += 0.05;
-    obstacles.begin(std::span(&box, 1), water.grid);
+    obstacles.begin(std::span(&box, 1), {}, water.grid);
     EXPECT_NEAR(obstacles.unexpected_displacement(), 0.05, 1e-9);
     obstacles.begin_catching_up();
     EXPECT_NEAR(obstacles.moving()[0].linear_velocity.z, 0.05, 1e-9);
@@ -381,7 +381,7 @@ TEST(FluidObstacles, KnowHowFarTheyAreFromWhereTheyWereLeft) {
     box.version = 1;
     box.center.z += 3;
     box.pose.position.z += 3;
-    obstacles.begin(std::span(&box, 1), water.grid);
+    obstacles.begin(std::span(&box, 1), {}, water.grid);
     EXPECT_EQ(obstacles.unexpected_displacement(), 0);
     for (const Bounds& reach : obstacles.in_reach(0.02, h)) {
         EXPECT_TRUE(contains(reach, enlarged(shape->bounds(box.pose), 6 * h)));
@@ -445,7 +445,7 @@ TEST(WallFriction, SlowsTheLayerAtAWallAndPullsAtIt) {
         floor.linear_velocity = {speed, 0, 0};
         Water water(std::span(&floor, 1));
         PressureSystem system;
-        system.build(water.grid, water.workers);
+        system.build(water.grid, {}, water.workers);
         water.set_velocity([](Vec3) { return Vec3{2, 0, 0}; });
         const double before = water.face_momenta().linear.x;
         constexpr double particle_mass = 1000 * h * h * h / 8;

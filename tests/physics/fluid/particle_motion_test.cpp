@@ -40,7 +40,7 @@ void move(ParticleCollider& collider, FluidParticle& particle, Vec3 to) {
 TEST(ParticleCollider, WithoutObstaclesAllGoWhereTheyWant) {
     Random random(1);
     const LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {12, 12, 12}));
-    ParticleCollider collider(block.grid, block.obstacles, dt);
+    ParticleCollider collider(block.grid, block.obstacles, {}, dt);
     for (int trial = 0; trial < 100; ++trial) {
         const Vec3 from = any_point(random, 0.3, 0.9), to = from + any_point(random, -0.2, 0.2);
         FluidParticle particle = at(from, {1, 2, 3});
@@ -62,8 +62,8 @@ TEST(ParticleCollider, NothingEntersASolid) {
             FluidObstacle solid{.shape = shape, .is_static = is_static, .pose = {{0.6, 0.6, 0.6}, {}}};
             solid.center = solid.pose.position;
             const LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {12, 12, 12}), std::span(&solid, 1));
-            ParticleCollider collider(block.grid, block.obstacles, dt);
-            ObstacleProbe probe(*shape, solid.pose);
+            ParticleCollider collider(block.grid, block.obstacles, {}, dt);
+            ObstacleProbe probe(*shape, solid.pose, {});
             probe.look_at({{-2, -2, -2}, {2, 2, 2}}, 5);
             int stopped = 0;
             for (int trial = 0; trial < 600; ++trial) {
@@ -88,7 +88,7 @@ TEST(ParticleCollider, NothingPassesAWallThinnerThanACell) {
         FluidObstacle wall{.shape = shape.get(), .is_static = is_static};
         wall.pose.position = wall.center = {0.6, 0.63, 0.6};
         const LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {12, 12, 12}), std::span(&wall, 1));
-        ParticleCollider collider(block.grid, block.obstacles, dt);
+        ParticleCollider collider(block.grid, block.obstacles, {}, dt);
         for (int trial = 0; trial < 400; ++trial) {
             const Vec3 from = any_point(random, 0.45, 0.8);
             const double side = from.y - 0.63;
@@ -113,7 +113,7 @@ TEST(Drops, AreWhatNoLiquidCellIsBeside) {
     auto particles = fill_cells(h, {0, 0, 0}, {8, 8, 8});
     LiquidBlock block(h, particles);
     PressureSystem system;
-    system.build(block.grid, block.workers);
+    system.build(block.grid, {}, block.workers);
     const float inside[3] = {0.45f, 0.45f, 0.45f}, beside[3] = {0.45f, 0.85f, 0.45f}, away[3] = {0.45f, 0.95f, 0.45f};
     EXPECT_FALSE(is_drop(block.grid, inside));
     EXPECT_FALSE(is_drop(block.grid, beside));
@@ -127,7 +127,7 @@ struct Floor {
     FluidProperties liquid{.density = 1000, .viscosity = 0, .particle_volume = h * h * h / 8};
     Vec3 slowed(Vec3 place, Vec3 velocity) const {
         FluidParticle drop = at(place, velocity);
-        slow_at_wall(block.grid, block.obstacles, liquid, dt, drop.position, drop.velocity);
+        slow_at_wall({block.grid, block.obstacles, liquid, {}, dt}, drop.position, drop.velocity);
         return velocity_of(drop);
     }
 };
@@ -173,9 +173,9 @@ TEST(FreeComponents, KeepTheirMomentumAndAngularMomentum) {
     }
     LiquidBlock block(h, particles);
     PressureSystem system;
-    system.build(block.grid, block.workers);
+    system.build(block.grid, {}, block.workers);
     FreeComponents components;
-    components.begin(block.grid, system, block.obstacles, block.particles, true);
+    components.begin(block.grid, system, block.obstacles, block.particles, {.all = true});
     const auto momenta = [&](bool is_first) {
         Vec3 place, linear, angular;
         double count = 0;
@@ -210,9 +210,9 @@ TEST(FreeComponents, KeepTheirMomentumAndAngularMomentum) {
 TEST(FreeComponents, WhatStandsOnTheGroundIsNotFree) {
     Floor floor;
     PressureSystem system;
-    system.build(floor.block.grid, floor.block.workers);
+    system.build(floor.block.grid, {}, floor.block.workers);
     FreeComponents components;
-    components.begin(floor.block.grid, system, floor.block.obstacles, floor.block.particles, true);
+    components.begin(floor.block.grid, system, floor.block.obstacles, floor.block.particles, {.all = true});
     for (FluidParticle& p : floor.block.particles) p.velocity[0] = 3;
     components.end({}, floor.block.obstacles, 1, floor.block.particles);
     for (const FluidParticle& p : floor.block.particles) EXPECT_EQ(p.velocity[0], 3);

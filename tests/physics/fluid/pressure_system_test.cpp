@@ -30,7 +30,7 @@ std::vector<double> multiply(const FluidGrid& grid, const PressureSystem& system
                 if (grid.row[other] >= 0) {
                     y[row] += open * (x[row] - x[grid.row[other]]);
                 } else {
-                    y[row] += open / PressureSystem::gap_fraction(grid.surface[cell], grid.surface[other]) * x[row];
+                    y[row] += open / system.gap_fraction(grid.surface[cell], grid.surface[other]) * x[row];
                 }
             }
         }
@@ -39,17 +39,18 @@ std::vector<double> multiply(const FluidGrid& grid, const PressureSystem& system
 }
 
 TEST(PressureSystem, GapIsTheShareOfTheWayToTheSurface) {
-    EXPECT_FLOAT_EQ(PressureSystem::gap_fraction(-0.25f, 0.75f), 0.25f);
-    EXPECT_FLOAT_EQ(PressureSystem::gap_fraction(-0.5f, 0.5f), 0.5f);
-    EXPECT_FLOAT_EQ(PressureSystem::gap_fraction(-0.5f, -0.5f), 1);  // no surface on the way
-    EXPECT_GT(PressureSystem::gap_fraction(-1e-9f, 1), 0);
-    EXPECT_LT(PressureSystem::gap_fraction(-1e-9f, 1), 0.01f);
+    const PressureSystem system;
+    EXPECT_FLOAT_EQ(system.gap_fraction(-0.25f, 0.75f), 0.25f);
+    EXPECT_FLOAT_EQ(system.gap_fraction(-0.5f, 0.5f), 0.5f);
+    EXPECT_FLOAT_EQ(system.gap_fraction(-0.5f, -0.5f), 1);  // no surface on the way
+    EXPECT_GT(system.gap_fraction(-1e-9f, 1), 0);
+    EXPECT_LT(system.gap_fraction(-1e-9f, 1), 0.01f);
 }
 
 TEST(PressureSystem, OfNoLiquidHasNoRows) {
     LiquidBlock block(h, {FluidParticle{.position = {0.5f, 0.5f, 0.5f}}});
     PressureSystem system;
-    system.build(block.grid, block.workers);
+    system.build(block.grid, {}, block.workers);
     EXPECT_EQ(system.size(), 0u);
     std::vector<double> x;
     EXPECT_LE(system.solve({}, x, 1e-6, most, block.workers), most);
@@ -65,7 +66,7 @@ TEST(PressureSystem, SolvesWhatTheMatrixSays) {
                 for (float& fraction : open) fraction = random.unit() < 0.1 ? 0.0f : static_cast<float>(random.unit());
             }
             PressureSystem system;
-            system.build(block.grid, pool);
+            system.build(block.grid, {}, pool);
             ASSERT_GT(system.size(), 900u);
             std::vector<double> known(system.size());
             for (double& value : known) value = random.between(-1, 1);
@@ -82,7 +83,7 @@ TEST(PressureSystem, SolvesWhatTheMatrixSays) {
 TEST(PressureSystem, SaysWhereTheIterationsDidNotSuffice) {
     LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {14, 9, 11}));
     PressureSystem system;
-    system.build(block.grid, block.workers);
+    system.build(block.grid, {}, block.workers);
     std::vector<double> b(system.size(), 1), x(system.size(), 0);
     EXPECT_EQ(system.solve(b, x, 1e-12, 2, block.workers), 3);
     // From the solution on there is nothing to do.
@@ -96,14 +97,14 @@ TEST(PressureSystem, AnyVelocityBecomesFreeOfDivergence) {
     Random random(2);
     LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {12, 8, 10}));
     PressureSystem system;
-    system.build(block.grid, block.workers);
+    system.build(block.grid, {}, block.workers);
     block.set_velocity([&](Vec3) { return Vec3{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)}; });
     std::vector<double> flow, x(system.size(), 0);
     outflow(block.grid, block.obstacles, system, flow, block.workers);
     const double largest = *std::ranges::max_element(flow);
     for (double& value : flow) value *= -1 / (h * h);
     EXPECT_LE(system.solve(flow, x, 1e-8, most, block.workers), most);
-    subtract_gradient(block.grid, x, {}, 1, block.grid.velocity, block.workers);
+    subtract_gradient(block.grid, {system, x, {}, 1}, block.grid.velocity, block.workers);
     outflow(block.grid, block.obstacles, system, flow, block.workers);
     for (const double value : flow) EXPECT_NEAR(value, 0, 1e-5 * largest);
 }
@@ -132,7 +133,7 @@ TEST(PressureSystem, StandingWaterHasThePressureOfItsDepth) {
     Basin basin;
     LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {8, 6, 8}), basin.walls);
     PressureSystem system;
-    system.build(block.grid, block.workers);
+    system.build(block.grid, {}, block.workers);
     EXPECT_GE(system.size(), 8u * 6 * 8);  // and what of the walls' cells has open faces
     // A step of gravity: u* = g dt at all faces.
     constexpr double g = -9.81, dt = 0.01;
@@ -147,7 +148,7 @@ TEST(PressureSystem, StandingWaterHasThePressureOfItsDepth) {
         const double y = (block.grid.lower()[1] + cell % layer / block.grid.stride(1) + 0.5) * h;
         EXPECT_NEAR(x[row], -g * dt * (0.6 - y), 1e-5);  // P/ρ
     }
-    subtract_gradient(block.grid, x, {}, 1 / h, block.grid.velocity, block.workers);
+    subtract_gradient(block.grid, {system, x, {}, 1 / h}, block.grid.velocity, block.workers);
     for (const std::uint32_t cell : {system.cell(0), system.cell(system.size() / 2), system.cell(system.size() - 1)}) {
         for (int axis = 0; axis < 3; ++axis) {
             const bool is_open = block.grid.open[axis][cell] > 0;
@@ -170,7 +171,7 @@ TEST(PressureSystem, ABodyThatItMovesTakesItsShare) {
     });
     LiquidBlock block(h, particles, std::span(&box, 1));
     PressureSystem system;
-    system.build(block.grid, block.workers);
+    system.build(block.grid, {}, block.workers);
     block.obstacles.list_areas(block.grid);
     MovingObstacle& moving = block.obstacles.moving().front();
     ASSERT_TRUE(moving.is_in_reach);
@@ -193,7 +194,7 @@ TEST(PressureSystem, ABodyThatItMovesTakesItsShare) {
     for (double& value : flow) value *= -density / h;
     system.set_bodies(block.obstacles.moving(), density / h);
     EXPECT_LE(system.solve(flow, x, 1e-7, most, block.workers), most);
-    subtract_gradient(block.grid, x, {}, 1 / (density * h), block.grid.velocity, block.workers);
+    subtract_gradient(block.grid, {system, x, {}, 1 / (density * h)}, block.grid.velocity, block.workers);
     Vec3 impulse, moment;
     for (const ObstacleArea& part : moving.areas) {
         impulse += part.area * x[static_cast<std::size_t>(part.row)];

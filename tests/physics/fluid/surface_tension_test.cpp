@@ -21,10 +21,10 @@ constexpr double h = 0.01;
 TEST(SurfaceTension, MattersOnCellsFinerThanTwiceTheCapillaryLength) {
     constexpr double sigma = 0.072, density = 998, g = 9.81;
     const double length = std::sqrt(sigma / (density * g));
-    EXPECT_TRUE(is_tense(sigma, density, g, 1.99 * length));
-    EXPECT_FALSE(is_tense(sigma, density, g, 2.01 * length));
-    EXPECT_FALSE(is_tense(0, density, g, 1e-6));
-    EXPECT_TRUE(is_tense(sigma, density, 0, 1));  // nothing flattens it
+    EXPECT_TRUE(is_tense({}, sigma, density, g, 1.99 * length));
+    EXPECT_FALSE(is_tense({}, sigma, density, g, 2.01 * length));
+    EXPECT_FALSE(is_tense({}, 0, density, g, 1e-6));
+    EXPECT_TRUE(is_tense({}, sigma, density, 0, 1));  // nothing flattens it
 }
 
 TEST(SurfaceTension, TheShortestWavesBoundIt) {
@@ -38,10 +38,10 @@ TEST(SurfaceTension, TheShortestWavesBoundIt) {
 TEST(SurfaceTension, APlaneHasNone) {
     LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {16, 8, 16}));
     PressureSystem system;
-    system.build(block.grid, block.workers);
+    system.build(block.grid, {}, block.workers);
     SurfacePressure surface;
     EXPECT_TRUE(surface.is_none());
-    surface.measure(1, block.grid, block.workers);
+    surface.measure(1, {}, block.grid, block.workers);
     EXPECT_FALSE(surface.is_none());
     const int liquid = block.index_at({0.085, 0.075, 0.085});
     EXPECT_NEAR(surface.at(liquid, liquid + block.grid.stride(1), 0.5), 0, 1e-2);
@@ -57,9 +57,9 @@ TEST(SurfaceTension, ABallHasTwiceItsTensionByItsRadius) {
     });
     LiquidBlock block(h, particles);
     PressureSystem system;
-    system.build(block.grid, block.workers);
+    system.build(block.grid, {}, block.workers);
     SurfacePressure surface;
-    surface.measure(impulse, block.grid, block.workers);
+    surface.measure(impulse, {}, block.grid, block.workers);
     double sum = 0;
     int count = 0;
     for (std::size_t row = 0; row < system.size(); ++row) {
@@ -67,8 +67,7 @@ TEST(SurfaceTension, ABallHasTwiceItsTensionByItsRadius) {
         for (int axis = 0; axis < 3; ++axis) {
             for (const int other : {cell - block.grid.stride(axis), cell + block.grid.stride(axis)}) {
                 if (block.grid.row[other] >= 0) continue;
-                const float fraction =
-                    PressureSystem::gap_fraction(block.grid.surface[cell], block.grid.surface[other]);
+                const float fraction = system.gap_fraction(block.grid.surface[cell], block.grid.surface[other]);
                 sum += surface.at(cell, other, fraction);
                 ++count;
             }
@@ -102,14 +101,14 @@ TEST(BoundLiquid, SharesItsMomentumWithTheBody) {
     for (int trial = 0; trial < 20; ++trial) {
         LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {12, 12, 12}));
         PressureSystem system;
-        system.build(block.grid, block.workers);
+        system.build(block.grid, {}, block.workers);
         block.set_velocity([&](Vec3) {
             return Vec3{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
         });
         FluidObstacle plate{.shape = shape.get()};
         plate.inverse_mass = 1 / mass;
         plate.inverse_inertia = inverse_or_zero(inertia);
-        MovingObstacle moving{.obstacle = &plate, .probe = ObstacleProbe(*shape, {{0.06, 0.06, 0.06}, {}})};
+        MovingObstacle moving{.obstacle = &plate, .probe = ObstacleProbe(*shape, {{0.06, 0.06, 0.06}, {}}, {})};
         moving.center = {0.06, 0.06, 0.06};
         moving.linear_velocity = {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
         moving.angular_velocity = {random.between(-9, 9), random.between(-9, 9), random.between(-9, 9)};
@@ -155,10 +154,10 @@ TEST(BoundLiquid, AFixedBodyTakesItsMomentumAndStays) {
     const auto shape = CollisionShape::create(BoxShape{{0.05, 0.005, 0.05}}).value();
     LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {12, 12, 12}));
     PressureSystem system;
-    system.build(block.grid, block.workers);
+    system.build(block.grid, {}, block.workers);
     block.set_velocity([](Vec3) { return Vec3{0, -2, 0}; });
     FluidObstacle plate{.shape = shape.get()};
-    MovingObstacle moving{.obstacle = &plate, .probe = ObstacleProbe(*shape, {{0.06, 0.06, 0.06}, {}})};
+    MovingObstacle moving{.obstacle = &plate, .probe = ObstacleProbe(*shape, {{0.06, 0.06, 0.06}, {}}, {})};
     moving.is_in_reach = true;
     moving.bound.push_back({.axis = 1, .cell = block.index_at({0.065, 0.065, 0.065}), .fraction = 0.5f});
     bind_liquid(block.grid, 1000, {}, moving);

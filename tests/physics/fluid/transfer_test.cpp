@@ -39,7 +39,7 @@ struct LinearField {
 TEST(FluidTransfer, NoParticlesMakeNoFaceKnown) {
     LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {4, 4, 4}));
     block.particles.clear();
-    block.grid.sort(block.particles, LiquidBlock::particle_fraction, {}, block.workers);
+    block.grid.sort(block.particles, LiquidBlock::particle_fraction, {}, {}, block.workers);
     block.transfer();
     EXPECT_TRUE(block.grid.tiles().empty());
 }

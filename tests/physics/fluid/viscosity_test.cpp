@@ -17,22 +17,23 @@ namespace {
 
 constexpr double h = 0.1;
 constexpr int most = 600;
+constexpr FluidViscositySettings settings{.max_iterations = most};
 
 TEST(Viscosity, IsLeftOutWhereItIsRoundingOnly) {
-    EXPECT_FALSE(is_viscous({1000, 0, 0}, h, 0.01));
-    EXPECT_FALSE(is_viscous({1000, 0.001, 0}, h, 0.01));  // water: ν dt/h² = 1e-6
-    EXPECT_TRUE(is_viscous({1000, 10, 0}, h, 0.01));
-    EXPECT_TRUE(is_viscous({1000, 0, 5}, h, 0.01));
+    EXPECT_FALSE(is_viscous({1000, 0, 0}, {}, h, 0.01));
+    EXPECT_FALSE(is_viscous({1000, 0.001, 0}, {}, h, 0.01));  // water: ν dt/h² = 1e-6
+    EXPECT_TRUE(is_viscous({1000, 10, 0}, {}, h, 0.01));
+    EXPECT_TRUE(is_viscous({1000, 0, 5}, {}, h, 0.01));
 }
 
 TEST(Viscosity, ThickLayersStickAndThinOnesSlide) {
-    EXPECT_LT(sticking_of({1000, 0.001, 0}, h, 1), 1e-6);
-    EXPECT_GT(sticking_of({1000, 1e4, 0}, h, 1), 0.999);
-    EXPECT_NEAR(sticking_of({1000, 25, 0}, h, 1), 0.5, 1e-9);  // a cell's Reynolds number of 4
-    EXPECT_GT(sticking_of({1000, 0.001, 1e5}, h, 1), 0.99);    // what yields that late
+    EXPECT_LT(sticking_of({1000, 0.001, 0}, {}, h, 1), 1e-6);
+    EXPECT_GT(sticking_of({1000, 1e4, 0}, {}, h, 1), 0.999);
+    EXPECT_NEAR(sticking_of({1000, 25, 0}, {}, h, 1), 0.5, 1e-9);  // a cell's Reynolds number of 4
+    EXPECT_GT(sticking_of({1000, 0.001, 1e5}, {}, h, 1), 0.99);    // what yields that late
     double last = 1;
     for (const double speed : {0.01, 0.1, 1.0, 10.0}) {
-        const double now = sticking_of({1000, 25, 0}, h, speed);
+        const double now = sticking_of({1000, 25, 0}, {}, h, speed);
         EXPECT_LT(now, last);
         last = now;
     }
@@ -40,7 +41,7 @@ TEST(Viscosity, ThickLayersStickAndThinOnesSlide) {
 
 // A free block whose faces are known, as liquid cells are.
 struct FreeBlock : LiquidBlock {
-    explicit FreeBlock(Cell size) : LiquidBlock(h, fill_cells(h, {0, 0, 0}, size)) { system.build(grid, workers); }
+    explicit FreeBlock(Cell size) : LiquidBlock(h, fill_cells(h, {0, 0, 0}, size)) { system.build(grid, {}, workers); }
     PressureSystem system;
 };
 
@@ -49,7 +50,7 @@ TEST(Viscosity, RigidMotionsStayAsTheyAre) {
     const auto motion = [](Vec3 p) { return Vec3{1, -2, 3} + cross(Vec3{2, 1, -1}, p); };
     block.set_velocity(motion);
     ViscositySystem viscosity;
-    EXPECT_LE(viscosity.solve({1000, 500, 0}, 0.01, most, block.grid, block.obstacles), most);
+    EXPECT_LE(viscosity.solve({1000, 500, 0}, 0.01, settings, block.grid, block.obstacles), most);
     for (const Cell& corner : block.grid.tiles()) {
         block.grid.for_cells(corner, [&](int cell, const Cell& c) {
             for (int axis = 0; axis < 3; ++axis) {
@@ -88,7 +89,7 @@ TEST(Viscosity, TakesEnergyButNoMomentum) {
         };
         const auto before = sums();
         ViscositySystem viscosity;
-        EXPECT_LE(viscosity.solve({1000, 100, yield_stress}, 0.01, most, block.grid, block.obstacles), most);
+        EXPECT_LE(viscosity.solve({1000, 100, yield_stress}, 0.01, settings, block.grid, block.obstacles), most);
         const auto after = sums();
         for (int a = 0; a < 3; ++a) EXPECT_NEAR(after.first[a], before.first[a], 0.02);
         EXPECT_LT(after.second, 0.8 * before.second);
@@ -109,13 +110,13 @@ TEST(Viscosity, ShearBetweenPlatesIsDampedAsTheEquationSays) {
     }
     LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {24, cells, 24}), plates);
     PressureSystem system;
-    system.build(block.grid, block.workers);
+    system.build(block.grid, {}, block.workers);
     ASSERT_GE(system.size(), 24u * cells * 24);
     constexpr double pi = std::numbers::pi, density = 1000, viscosity = 200, dt = 0.02;
     const auto profile = [](double y) { return std::sin(pi * y / (cells * h)); };
     block.set_velocity([&](Vec3 p) { return Vec3{profile(p.y), 0, 0}; });
     ViscositySystem equation;
-    EXPECT_LE(equation.solve({density, viscosity, 0}, dt, most, block.grid, block.obstacles), most);
+    EXPECT_LE(equation.solve({density, viscosity, 0}, dt, settings, block.grid, block.obstacles), most);
     const double damped = 1 / (1 + viscosity / density * dt * 2 * (1 - std::cos(pi / cells)) / (h * h));
     EXPECT_LT(damped, 0.95);
     for (int i = 0; i < cells; ++i) {
@@ -133,10 +134,10 @@ TEST(Viscosity, AMovingPlateDragsAndIsDraggedBackAlike) {
     box.linear_velocity = {1, 0, 0};
     LiquidBlock block(h, fill_cells(h, {0, 0, 0}, {16, 8, 16}), std::span(&box, 1));
     PressureSystem system;
-    system.build(block.grid, block.workers);
+    system.build(block.grid, {}, block.workers);
     block.set_velocity([](Vec3) { return Vec3{}; });
     ViscositySystem equation;
-    EXPECT_LE(equation.solve({density, 200, 0}, 0.01, most, block.grid, block.obstacles), most);
+    EXPECT_LE(equation.solve({density, 200, 0}, 0.01, settings, block.grid, block.obstacles), most);
     const MovingObstacle& moving = block.obstacles.moving().front();
     EXPECT_LT(moving.linear_velocity.x, 1);
     EXPECT_GT(moving.linear_velocity.x, 0);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "foundation/state_hash.h"
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics {
@@ -18,7 +19,7 @@ constexpr double bad_numbers[] = {nan, inf, -inf, 1e38, -1e38, 1e-310, -5e-324};
 
 /// Two balls above a plane, one hung on a joint, one asleep group; all that setters can reach.
 struct Scene {
-    std::unique_ptr<World> world = std::move(World::create({})).value();
+    std::unique_ptr<World> world = make_world();
     ShapeHandle ball = world->create_shape(SphereShape{0.5}).value();
     ShapeHandle plane = world->create_shape(PlaneShape{}).value();
     BodyHandle ground = world->create_body({.kind = BodyKind::static_body, .shape = plane}).value();

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "foundation/random.h"
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics {
@@ -12,7 +13,7 @@ namespace {
 class Meddler {
 public:
     explicit Meddler(std::uint64_t seed, int workers) : random_(seed) {
-        world_ = std::move(World::create({.workers = workers})).value();
+        world_ = make_world({.workers = workers});
         const auto plane = world_->create_shape(PlaneShape{}).value();
         ground_ = world_->create_body({.kind = BodyKind::static_body, .shape = plane}).value();
         for (const ShapeDefinition& definition : definitions())

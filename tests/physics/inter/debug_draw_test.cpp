@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "physics/inter/debug_draw.h"
+#include "make_world.h"
 
 #include <gtest/gtest.h>
 
@@ -50,7 +51,7 @@ Drawn drawn(const World& world, std::initializer_list<DebugDrawFlag> flags, Debu
     return result;
 }
 
-std::unique_ptr<World> empty_world() { return std::move(World::create({})).value(); }
+std::unique_ptr<World> empty_world() { return make_world(); }
 
 BodyHandle add_static(World& world, const ShapeDefinition& shape, const Transform& pose = {}) {
     return world

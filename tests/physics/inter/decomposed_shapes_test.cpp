@@ -7,6 +7,7 @@
 
 #include "geometry/decomposition/decomposition.h"
 #include "geometry/furniture_meshes.h"
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics {
@@ -21,7 +22,7 @@ CompoundShape parts_of(const geometry::TriangleMesh& mesh, int max_hulls = 16) {
 }
 
 struct Room {
-    std::unique_ptr<World> world = std::move(World::create()).value();
+    std::unique_ptr<World> world = make_world();
 
     Room() {
         const auto plane = world->create_shape(PlaneShape{}).value();

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "make_world.h"
 #include "physics/definitions/deformable_primitives.h"
 #include "physics/inter/world.h"
 
@@ -28,7 +29,7 @@ double distance(Quat a, Quat b) {
 
 class DeformableChanges : public testing::Test {
 protected:
-    std::unique_ptr<World> world_ = World::create().value();
+    std::unique_ptr<World> world_ = make_world();
     DeformableHandle add(const DeformableDefinition& definition) {
         auto handle = world_->create_deformable(definition);
         EXPECT_TRUE(handle) << handle.error().message();

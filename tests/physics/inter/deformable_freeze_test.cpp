@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "make_world.h"
 #include "physics/definitions/deformable_primitives.h"
 #include "physics/inter/world.h"
 
@@ -24,7 +25,7 @@ DeformableDefinition make(Matter matter, Vec3 position) {
 
 /// A floor, a box that falls on where the broken one lies, and one of each matter apart, with a box each.
 struct Scene {
-    std::unique_ptr<World> world = std::move(World::create({})).value();
+    std::unique_ptr<World> world = make_world();
     std::vector<DeformableHandle> healthy;
     std::vector<BodyHandle> boxes;
     Scene() {

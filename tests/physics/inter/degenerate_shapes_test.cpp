@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "foundation/random.h"
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics {
@@ -34,7 +35,7 @@ TEST(DegenerateShapes, WithoutVolumeAreRefused) {
         box_corners({1, 1e-8, 1}),
         box_corners({1e-8, 1, 1e-8}),
     };
-    const auto world = std::move(World::create({})).value();
+    const auto world = make_world();
     for (const HullShape& hull : hulls) {
         const auto shape = world->create_shape(hull);
         ASSERT_FALSE(shape.ok()) << hull.points.size() << " points";
@@ -45,7 +46,7 @@ TEST(DegenerateShapes, WithoutVolumeAreRefused) {
 
 // Falls on a plane for two seconds; returns its lowest point, m.
 double lowest_after_fall(const ShapeDefinition& definition) {
-    const auto world = std::move(World::create({})).value();
+    const auto world = make_world();
     const auto plane = world->create_shape(PlaneShape{}).value();
     EXPECT_TRUE(world->create_body({.kind = BodyKind::static_body, .shape = plane}));
     const auto shape = world->create_shape(definition);
@@ -97,7 +98,7 @@ TEST(DegenerateShapes, OfMeshesNeitherCrashNorCatchWrongly) {
     // Doubled, flat and inverted triangles beside a sound floor.
     MeshShape mesh{{{-5, 0, -5}, {5, 0, -5}, {5, 0, 5}, {-5, 0, 5}, {0, 0, 0}, {1, 0, 0}, {2, 0, 0}},
                    {{0, 2, 1}, {0, 3, 2}, {0, 2, 1}, {4, 5, 6}, {4, 4, 4}, {0, 1, 2}}};
-    const auto world = std::move(World::create({})).value();
+    const auto world = make_world();
     const auto floor = world->create_shape(mesh).value();
     ASSERT_TRUE(world->create_body({.kind = BodyKind::static_body, .shape = floor}));
     const ShapeDefinition shapes[] = {SphereShape{0.3}, BoxShape{{0.3, 0.3, 0.3}}, CapsuleShape{0.2, 0.3}};

@@ -3,13 +3,14 @@
 
 #include <cmath>
 
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics {
 namespace {
 
 struct Floor {
-    std::unique_ptr<World> world = std::move(World::create({})).value();
+    std::unique_ptr<World> world = make_world();
     ShapeHandle plane = world->create_shape(PlaneShape{}).value();
     ShapeHandle box = world->create_shape(BoxShape{}).value();
     ShapeHandle ball = world->create_shape(SphereShape{0.5}).value();

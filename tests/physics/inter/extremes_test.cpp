@@ -2,13 +2,14 @@
 // The ends of what bodies may be: heavy and light, small and large, fast, thousands in one place.
 #include <gtest/gtest.h>
 
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics {
 namespace {
 
 struct Floor {
-    std::unique_ptr<World> world = std::move(World::create({})).value();
+    std::unique_ptr<World> world = make_world();
     Floor() {
         const auto plane = world->create_shape(PlaneShape{}).value();
         EXPECT_TRUE(world->create_body({.kind = BodyKind::static_body, .shape = plane}));

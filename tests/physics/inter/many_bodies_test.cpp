@@ -4,13 +4,14 @@
 
 #include <algorithm>
 
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics {
 namespace {
 
 struct Pile {
-    std::unique_ptr<World> world = std::move(World::create()).value();
+    std::unique_ptr<World> world = make_world();
     std::vector<BodyHandle> balls;
     Pile() {
         BodyDefinition floor{.kind = BodyKind::static_body, .shape = world->create_shape(PlaneShape{}).value()};

@@ -2,6 +2,7 @@
 // What the world tells of a rope: tensions, and that it broke.
 #include <gtest/gtest.h>
 
+#include "make_world.h"
 #include "physics/definitions/deformable_primitives.h"
 #include "physics/inter/world.h"
 
@@ -19,7 +20,7 @@ DeformableDefinition hanging_rope(double break_tension = 1e9) {
 }
 
 TEST(RopeBreaks, TensionIsTheWeightBelow) {
-    const auto world = World::create({.sleeping = false}).value();
+    const auto world = make_world({.sleeping = false});
     const auto rope = world->create_deformable(hanging_rope());
     ASSERT_TRUE(rope);
     for (int i = 0; i < 300; ++i) world->step();
@@ -32,7 +33,7 @@ TEST(RopeBreaks, TensionIsTheWeightBelow) {
 }
 
 TEST(RopeBreaks, AreToldOnceWithPlaceAndTension) {
-    const auto world = World::create().value();
+    const auto world = make_world();
     const auto rope = world->create_deformable(hanging_rope(9));
     ASSERT_TRUE(rope);
     std::vector<RopeBreakEvent> told;

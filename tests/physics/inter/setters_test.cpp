@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics {
@@ -12,7 +13,7 @@ constexpr double bad_numbers[] = {std::numeric_limits<double>::quiet_NaN(), std:
                                   -std::numeric_limits<double>::infinity(), 1e38, 1e-310};
 
 struct Scene {
-    std::unique_ptr<World> world = std::move(World::create({})).value();
+    std::unique_ptr<World> world = make_world();
     ShapeHandle ball = world->create_shape(SphereShape{0.5}).value();
     BodyHandle body = world->create_body({.shape = ball, .position = {0, 3, 0}}).value();
     BodyHandle other = world->create_body({.shape = ball, .position = {5, 3, 0}}).value();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Friction and restitution by pair of surfaces.
 #include "physics/definitions/surface_pairs.h"
+#include "make_world.h"
 
 #include <gtest/gtest.h>
 
@@ -85,7 +86,7 @@ TEST(SurfacePairs, TheTableSpeaksWhereBothLeaveItToIt) {
 
 // A box that slides on a floor stops after v² / (2 μ g), with the μ of the pair.
 TEST(SurfacePairs, ASlidingBoxStopsWhereThePairSays) {
-    auto world = std::move(*World::create());
+    auto world = make_world();
     ASSERT_TRUE(world->set_surface_pairs(sample_pairs()).ok());
     const auto plane = world->create_shape(PlaneShape{{0, 1, 0}, 0});
     const auto box = world->create_shape(BoxShape{{0.2, 0.1, 0.2}});

@@ -42,7 +42,7 @@ TEST(Sleep, ThresholdScalesWithTheMassAndIsTrackedOverTime) {
     slow.linear_velocity = {0.02, 0, 0};
     SleepRecord a, b;
     a.threshold = b.threshold = 0.5 * 0.03 * 0.03;
-    const QuietRules rules{1.0 / 60, 0.5};
+    const QuietRules rules{.time_step = 1.0 / 60, .time_to_sleep = 0.5};
     for (int i = 0; i < 40; ++i) {
         track_quietness(a, slow, light, 0.1, rules);
         track_quietness(b, slow, heavy, 0.1, rules);
@@ -68,7 +68,7 @@ TEST(Sleep, WhatMovesOnSlowlyIsNotQuietForLong) {
     record.threshold = 0.5 * 0.03 * 0.03;
     for (int i = 0; i < 40; ++i) {
         state.center.x += 0.02 / 60;
-        track_quietness(record, state, constants, 0.1, {1.0 / 60, 0.5});
+        track_quietness(record, state, constants, 0.1, {.time_step = 1.0 / 60, .time_to_sleep = 0.5});
     }
     EXPECT_EQ(record.state, SleepState::wants_to_sleep);
     EXPECT_LT(record.quiet_time, 0.1);

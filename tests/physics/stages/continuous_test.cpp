@@ -6,12 +6,13 @@
 #include <memory>
 #include <string>
 
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics::stages {
 namespace {
 
-std::unique_ptr<World> make_world(Vec3 gravity) { return std::move(World::create({.gravity = gravity})).value(); }
+std::unique_ptr<World> world_of_gravity(Vec3 gravity) { return make_world({.gravity = gravity}); }
 
 BodyHandle add(World& world, const ShapeDefinition& shape, BodyDefinition body) {
     body.shape = world.create_shape(shape).value();
@@ -26,7 +27,7 @@ const ShapeDefinition thin_plate = BoxShape{{0.0005, 0.25, 0.25}};
 TEST(Continuous, a_ball_of_1_cm_at_300_m_s_does_not_pass_a_plate_of_1_mm) {
     for (int i = 0; i < 40; ++i) {
         SCOPED_TRACE("start " + std::to_string(i));
-        auto world = make_world({});
+        auto world = world_of_gravity({});
         add(*world, thin_plate, {.kind = BodyKind::static_body});
         const auto ball =
             add(*world, small_ball, {.position = {-7 + 0.13 * i, 0.01, 0.02}, .linear_velocity = {300, 0, 0}});
@@ -41,7 +42,7 @@ TEST(Continuous, a_ball_of_1_cm_at_300_m_s_does_not_pass_a_plate_of_1_mm) {
 TEST(Continuous, a_ball_at_300_m_s_pushes_a_loose_plate_and_keeps_the_momentum) {
     for (int i = 0; i < 20; ++i) {
         SCOPED_TRACE("start " + std::to_string(i));
-        auto world = make_world({});
+        auto world = world_of_gravity({});
         const auto plate = add(*world, thin_plate, {.mass = {.density = 7800}, .material = smooth});
         const auto ball = add(*world, small_ball,
                               {.position = {-7 + 0.27 * i, 0, 0},
@@ -64,7 +65,7 @@ TEST(Continuous, a_ball_at_300_m_s_pushes_a_loose_plate_and_keeps_the_momentum) 
 TEST(Continuous, two_bullets_toward_each_other_meet) {
     for (int i = 0; i < 40; ++i) {
         SCOPED_TRACE("start " + std::to_string(i));
-        auto world = make_world({});
+        auto world = world_of_gravity({});
         const auto left = add(*world, small_ball, {.position = {-6 + 0.1 * i, 0, 0}, .linear_velocity = {300, 0, 0}});
         const auto right = add(*world, small_ball, {.position = {6, 0, 0}, .linear_velocity = {-200, 0, 0}});
         const double momentum = world->conserved().linear_momentum.x;
@@ -80,7 +81,7 @@ TEST(Continuous, two_bullets_toward_each_other_meet) {
 
 // Bullets that fly behind each other or cross at different times do not disturb each other.
 TEST(Continuous, bullets_that_do_not_meet_fly_on) {
-    auto world = make_world({});
+    auto world = world_of_gravity({});
     const auto first = add(*world, small_ball, {.position = {0, 0, 0}, .linear_velocity = {300, 0, 0}});
     const auto behind = add(*world, small_ball, {.position = {-0.1, 0, 0}, .linear_velocity = {300, 0, 0}});
     const auto across = add(*world, small_ball, {.position = {2, -1, 0}, .linear_velocity = {0, 300, 0}});
@@ -94,7 +95,7 @@ TEST(Continuous, bullets_that_do_not_meet_fly_on) {
 TEST(Continuous, a_spinning_rod_does_not_pass_a_thin_wall) {
     for (int i = 0; i < 20; ++i) {
         SCOPED_TRACE("start " + std::to_string(i));
-        auto world = make_world({});
+        auto world = world_of_gravity({});
         const Vec3 at{0.7, 0, 0};
         add(*world, BoxShape{{0.2, 0.0005, 0.3}}, {.kind = BodyKind::static_body, .position = at});
         const auto rod = add(*world, BoxShape{{1, 0.01, 0.01}},
@@ -138,7 +139,7 @@ MeshShape floor_with_wall(bool has_wall) {
 
 TEST(Continuous, a_fast_slide_over_triangles_is_not_held_up_and_ends_at_a_wall_of_the_same_mesh) {
     for (const bool has_wall : {false, true}) {
-        auto world = make_world({0, -9.81, 0});
+        auto world = world_of_gravity({0, -9.81, 0});
         add(*world, floor_with_wall(has_wall), {.kind = BodyKind::static_body, .material = smooth});
         const auto box = add(*world, BoxShape{{0.1, 0.1, 0.1}},
                              {.position = {2, 0.1, 0.13}, .linear_velocity = {60, 0, 0}, .material = smooth});
@@ -155,7 +156,7 @@ TEST(Continuous, a_fast_slide_over_triangles_is_not_held_up_and_ends_at_a_wall_o
 }
 
 TEST(Continuous, a_wheel_rolls_on_over_triangles) {
-    auto world = make_world({0, -9.81, 0});
+    auto world = world_of_gravity({0, -9.81, 0});
     add(*world, floor_with_wall(false), {.kind = BodyKind::static_body});
     // Its axis lies along Z; without slip.
     const auto wheel = add(*world, CylinderShape{0.3, 0.05},

@@ -5,14 +5,13 @@
 #include <cmath>
 #include <memory>
 
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics::stages {
 namespace {
 
 constexpr Material smooth{.friction_static = 0, .friction_dynamic = 0};
-
-std::unique_ptr<World> make_world() { return std::move(World::create({})).value(); }
 
 BodyHandle add(World& world, const ShapeDefinition& shape, BodyDefinition body) {
     body.shape = world.create_shape(shape).value();

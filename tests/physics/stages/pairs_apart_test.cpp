@@ -3,6 +3,7 @@
 // gap must be noticed.
 #include <gtest/gtest.h>
 
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics::stages {
@@ -10,7 +11,7 @@ namespace {
 
 // Without gravity and sleep, a ball of 0.1 m at rest in the origin.
 struct Room {
-    std::unique_ptr<World> world = std::move(World::create({.gravity = {}, .sleeping = false})).value();
+    std::unique_ptr<World> world = make_world({.gravity = {}, .sleeping = false});
     BodyHandle ball = world->create_body({.shape = world->create_shape(SphereShape{0.1}).value()}).value();
 
     void run(int steps) {

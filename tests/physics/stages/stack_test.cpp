@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics::stages {
@@ -15,7 +16,7 @@ struct Column {
     double side;
 
     Column(int count, double cube_side, double gap, double restitution = 0, const WorldSettings& settings = {})
-        : world(std::move(World::create(settings)).value()), side(cube_side) {
+        : world(make_world(settings)), side(cube_side) {
         const auto plane = world->create_shape(PlaneShape{}).value();
         const auto box = world->create_shape(BoxShape{Vec3{side, side, side} * 0.5}).value();
         EXPECT_TRUE(world->create_body({.kind = BodyKind::static_body, .shape = plane}));

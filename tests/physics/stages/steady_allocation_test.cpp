@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace {
@@ -30,8 +31,6 @@ void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); 
 
 namespace embody::physics::stages {
 namespace {
-
-std::unique_ptr<World> make_world(const WorldSettings& settings) { return std::move(World::create(settings)).value(); }
 
 // Of `steps`, after others that fill the memory.
 std::size_t count_allocations(World& world, int others, int steps, std::size_t* impacts = nullptr) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "make_world.h"
 #include "physics/inter/world.h"
 
 namespace embody::physics::state {
@@ -11,11 +12,11 @@ namespace {
 
 constexpr double g = 9.81;
 
-std::unique_ptr<World> make_world(Vec3 gravity) {
+std::unique_ptr<World> world_of_gravity(Vec3 gravity) {
     WorldSettings settings;
     settings.gravity = gravity;
     settings.air_density = 0;
-    auto world = std::move(World::create(settings)).value();
+    auto world = make_world(settings);
     world->keep_account(true);
     return world;
 }
@@ -55,14 +56,14 @@ Sums run(World& world, int steps) {
 }
 
 TEST(StepAccount, IsThereOnlyWhenAskedFor) {
-    const auto world = make_world({0, -g, 0});
+    const auto world = world_of_gravity({0, -g, 0});
     EXPECT_TRUE(world->step().account);
     world->keep_account(false);
     EXPECT_FALSE(world->step().account);
 }
 
 TEST(StepAccount, OfFreeFallIsGravitys) {
-    const auto world = make_world({0, -g, 0});
+    const auto world = world_of_gravity({0, -g, 0});
     add_box(*world, {.position = {3, 5, 0}, .angular_velocity = {3, 2, 1}, .mass = {.mass = 2.0}});
     const StepAccount& account = *world->step().account;
     const double dt = world->settings().time_step;
@@ -78,7 +79,7 @@ TEST(StepAccount, OfFreeFallIsGravitys) {
 
 /// A block slides: friction does −µ m g d, and its impulse is the ground's.
 TEST(StepAccount, OfASlidingBlockIsFrictions) {
-    const auto world = make_world({0, -g, 0});
+    const auto world = world_of_gravity({0, -g, 0});
     add_floor(*world, friction(0.3));
     const BodyHandle block =
         add_box(*world, {.position = {0, 0.5, 0}, .mass = {.mass = 2.0}, .material = friction(0.3)});
@@ -96,7 +97,7 @@ TEST(StepAccount, OfASlidingBlockIsFrictions) {
 
 /// A conveyor belt brings a block to its speed v: it gives m v², and half of that becomes heat.
 TEST(StepAccount, OfAMovingGroundIsItsOwnEntry) {
-    const auto world = make_world({0, -g, 0});
+    const auto world = world_of_gravity({0, -g, 0});
     add_floor(*world, friction(0.5), {2, 0, 0});
     add_box(*world, {.position = {0, 0.5, 0}, .mass = {.mass = 3.0}, .material = friction(0.5)});
     const Sums sums = run(*world, 60);
@@ -106,7 +107,7 @@ TEST(StepAccount, OfAMovingGroundIsItsOwnEntry) {
 }
 
 TEST(StepAccount, OfAnImpactIsItsLoss) {
-    const auto world = make_world({});
+    const auto world = world_of_gravity({});
     const Material half{.friction_static = 0, .friction_dynamic = 0, .restitution = 0.5};
     add_floor(*world, half);
     add_box(*world, {.position = {0, 1, 0}, .linear_velocity = {0, -4, 0}, .mass = {.mass = 2.0}, .material = half});
@@ -116,7 +117,7 @@ TEST(StepAccount, OfAnImpactIsItsLoss) {
 }
 
 TEST(StepAccount, OfForcesAndDampingAreTheirWork) {
-    const auto world = make_world({});
+    const auto world = world_of_gravity({});
     const BodyHandle box = add_box(*world, {.linear_velocity = {1, 0, 0}, .mass = {.mass = 2.0}});
     ASSERT_TRUE(world->set_force(box, {6, 0, 0}, {0, 0.1, 0}));
     const double start = world->center_of_mass(box).x;
@@ -137,7 +138,7 @@ TEST(StepAccount, OfForcesAndDampingAreTheirWork) {
 
 /// A pendulum's joint does no work; its pull is what gravity does not explain of the momentum.
 TEST(StepAccount, OfAPendulumsJointIsNothing) {
-    const auto world = make_world({0, -g, 0});
+    const auto world = world_of_gravity({0, -g, 0});
     const BodyHandle bob = add_box(*world, {.position = {2, 0, 0}, .mass = {.mass = 2.0}});
     JointDefinition joint{.joint = BallJoint{}, .body_b = bob};
     joint.frame_b.position = {-2, 0, 0};
@@ -151,7 +152,7 @@ TEST(StepAccount, OfAPendulumsJointIsNothing) {
 }
 
 TEST(StepAccount, OfAMotorIsItsTorqueTimesTheTurn) {
-    const auto world = make_world({});
+    const auto world = world_of_gravity({});
     const BodyHandle wheel = add_box(*world, {.mass = {.mass = 2.0}});
     HingeJoint hinge;
     hinge.motor = JointMotor{100, 0.5};
@@ -164,7 +165,7 @@ TEST(StepAccount, OfAMotorIsItsTorqueTimesTheTurn) {
 
 // A ball strikes a box on a hinge off its middle: the hinge leads the blow on to what holds it.
 StepAccount account_of_blow(const HingeJoint& hinge, Vec3 carrier_velocity) {
-    const auto world = make_world({});
+    const auto world = world_of_gravity({});
     const Material bouncy{
         .friction_static = 0, .friction_dynamic = 0, .restitution = 0.5, .restitution_combine = CombineRule::maximum};
     const BodyHandle carrier =
@@ -216,7 +217,7 @@ TEST(StepAccount, NamesWhatWasCutAndWhatFellAsleep) {
     WorldSettings settings;
     settings.gravity = {};
     settings.max_linear_speed = 10;
-    auto world = std::move(World::create(settings)).value();
+    auto world = make_world(settings);
     world->keep_account(true);
     const BodyHandle box = add_box(*world, {.linear_velocity = {20, 0, 0}, .mass = {.mass = 2.0}});
     EXPECT_NEAR(world->step().account->of(StepCause::limits).work, 2 * (100 - 400) / 2.0, 1e-9);
@@ -228,7 +229,7 @@ TEST(StepAccount, NamesWhatWasCutAndWhatFellAsleep) {
 
 TEST(StepAccount, ChangesNoBit) {
     const auto hash_after = [](bool is_wanted) {
-        const auto world = make_world({0, -g, 0});
+        const auto world = world_of_gravity({0, -g, 0});
         world->keep_account(is_wanted);
         add_floor(*world, friction(0.5));
         for (int i = 0; i < 20; ++i) {

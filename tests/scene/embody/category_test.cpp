@@ -7,6 +7,7 @@
 #include "attributes/physical_kind.h"
 #include "catalog/catalog.h"
 #include "database/temporary_folder.h"
+#include "folders.h"
 #include "scene/sample_documents.h"
 #include "scene/simulation/simulation.h"
 
@@ -20,7 +21,7 @@ using physics::ShapeDefinition;
 class PrimitiveOfCategory : public testing::Test {
 protected:
     PrimitiveOfCategory() {
-        auto opened = catalog::Catalog::open(folder_ / "models.sqlite", EMBODY_SOURCE_DIR "/data/taxonomy");
+        auto opened = catalog::Catalog::open(folder_ / "models.sqlite", source_folder() / "data/taxonomy");
         if (!opened.ok()) ADD_FAILURE() << opened.error().message();
         catalog_ = std::move(opened).value();
         document_ = samples::floor_and_box(1);

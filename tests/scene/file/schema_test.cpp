@@ -13,6 +13,7 @@
 #include <valijson/validator.hpp>
 
 #include "attributes/registry.h"
+#include "folders.h"
 #include "scene/file/scene_file.h"
 #include "scene/sample_documents.h"
 
@@ -22,7 +23,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-const fs::path data = fs::path(EMBODY_SOURCE_DIR) / "data";
+const fs::path data = source_folder() / "data";
 
 json read_json(const fs::path& file) {
     std::ifstream in(file);
@@ -86,7 +87,7 @@ TEST_F(SceneSchema, NamesTheFieldsOfTheLists) {
     EXPECT_EQ(names_of_properties(text_), of_scene);
 
     // And the description of the format has them all.
-    std::ifstream in(fs::path(EMBODY_SOURCE_DIR) / "docs" / "scene-format.md");
+    std::ifstream in(source_folder() / "docs" / "scene-format.md");
     const std::string format(std::istreambuf_iterator<char>(in), {});
     for (const std::set<std::string>& names : {of_entity, of_settings, of_scene})
         for (const std::string& name : names)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene/simulation/recording.h"
+#include "folders.h"
 
 #include <gtest/gtest.h>
 
@@ -88,7 +89,7 @@ TEST_F(Recording, SaysContactsAndEnergyOnRequest) {
 }
 
 TEST(DemoScenes, OfPrimitivesRunAndComeToRest) {
-    const fs::path demos = fs::path(EMBODY_SOURCE_DIR) / "data" / "scenes";
+    const fs::path demos = source_folder() / "data" / "scenes";
     for (const char* name : {"stack_of_boxes", "dominoes"}) {
         const Result<Document> document = load_document(demos / (std::string(name) + ".json"));
         ASSERT_TRUE(document.ok()) << document.error().message();

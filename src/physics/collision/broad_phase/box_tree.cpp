@@ -69,7 +69,7 @@ private:
 // By key, equal ones in their old order; digits of 11 bits, those that all share are left out.
 template <class Entry>
 void sort_by_key(std::vector<Entry>& entries, std::vector<Entry>& scratch) {
-    constexpr int bits = 11;
+    constexpr int bits = 11;  // 2048 counters stay in the first cache
     scratch.resize(entries.size());
     for (int shift = 0; shift < 64; shift += bits) {
         std::array<std::uint32_t, 1u << bits> first{};

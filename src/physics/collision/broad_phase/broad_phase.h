@@ -41,7 +41,7 @@ public:
     /// Whether more bodies lie in each other than pairs may be: then each movable body keeps pairs with `max_partners`
     /// movable and `max_immovable_partners` immovable ones, those of the lowest indices above its own.
     [[nodiscard]] bool has_too_many_pairs() const;
-    static constexpr std::size_t max_partners = 32, max_immovable_partners = 256;
+    static constexpr std::size_t max_partners = 32, max_immovable_partners = 256;  // of a body
 
     /// Another number after each change of the pairs.
     [[nodiscard]] std::uint64_t pairs_version() const;

@@ -115,7 +115,7 @@ struct FaceCorner {
     double x, y, height;
     std::uint32_t edge_in, edge_out;
 };
-constexpr std::size_t max_corners = 8;
+constexpr std::size_t max_corners = 8;  // of a rectangle cut by a rectangle
 struct ClipPolygon {
     std::array<FaceCorner, max_corners + 1> corners;
     int count = 0;

@@ -10,7 +10,7 @@ namespace embody::physics::collision {
 
 namespace {
 
-constexpr double unfit = -std::numeric_limits<double>::infinity();
+constexpr double unfit = -std::numeric_limits<double>::infinity();  // the score of a point that adds nothing
 
 /// A line of the plane through two points: `beside` is the distance from it, positive on the left.
 struct Line {
@@ -58,7 +58,7 @@ struct Choice {
     // Depth counts before area: of two points side by side the lower one carries, and a hull of many vertices has
     // higher ones a little farther out everywhere. `slope`: metres of extent given up for a metre of depth.
     [[nodiscard]] double reach(double length, const FlatPoint& p) const {
-        constexpr double slope = 10;
+        constexpr double slope = 10;  // m/m
         return length > no_length ? length - slope * (p.separation - lowest) : unfit;
     }
     [[nodiscard]] const FlatPoint& kept(int k) const { return points[chosen.index[static_cast<std::size_t>(k)]]; }

@@ -147,7 +147,7 @@ void clip_to_region(const ContactFeature& reference, const ContactFeature& incid
 
 void add_near_corners(const ContactFeature& reference, const PlacedConvex& incident, bool reference_is_a, double margin,
                       ContactRegion& region) {
-    constexpr std::size_t corners_of_a_box = 8;
+    constexpr std::size_t corners_of_a_box = 8;  // what has no more is no rounded thing
     const std::vector<Vec3>& vertices = incident.shape->polytope.vertices;
     if (vertices.size() <= corners_of_a_box) return;
     const std::size_t sides = reference.points.size();
@@ -246,7 +246,7 @@ void drop_chosen(ContactRegion& region, const ChosenPoints& chosen) {
 }  // namespace
 
 void append_manifolds(ContactRegion& region, const Mat3& turn, Vec3 origin, std::vector<Manifold>& manifolds) {
-    constexpr std::uint32_t max_parts = 2;
+    constexpr std::uint32_t max_parts = 2;  // manifolds of one region, four points each
     const std::size_t first = manifolds.size();
     if (region.is_proper) {
         const auto count = static_cast<int>(region.points.size());

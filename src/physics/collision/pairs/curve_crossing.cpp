@@ -139,7 +139,7 @@ bool get_curve(const PlacedConvex& convex, Vec3 direction, Curve& curve) {
 
 // Newton's method on half the squared distance of two points on the curves; false where it does not converge.
 bool approach(Curve& p, Curve& q) {
-    constexpr int max_steps = 12;
+    constexpr int max_steps = 12;  // of Newton's method; what needs more has no one crossing
     const double size = 1e-300 + p.radius + q.radius + length(q.point - p.point);
     for (int step = 0; step < max_steps; ++step) {
         const Vec3 gap = q.point - p.point;

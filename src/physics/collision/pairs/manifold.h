@@ -19,8 +19,8 @@ struct ManifoldPoint {
 /// The contact region of two convex pieces: up to four points kept of the polygon, chosen for area. What stands on more
 /// corners than these tell, since they lie in no plane (a chair with uneven feet), has a second one with others.
 struct Manifold {
-    static constexpr int max_points = 4;
-    static constexpr double whole_travel = 0.0025;  // m
+    static constexpr int max_points = 4;            ///< three carry a body, a fourth keeps a face from tipping
+    static constexpr double whole_travel = 0.0025;  ///< m, see is_whole
     Vec3 normal;                                    ///< world, unit, from shape a to shape b
     std::uint32_t piece_a = 0, piece_b = 0;         ///< child of a compound, triangle of a mesh; 0 otherwise
     std::uint32_t part = 0;                         ///< 0 holds the deepest point; 1: the second four

@@ -91,7 +91,7 @@ void gather_own_normals(AxisSearch& s, Vec3 normal, bool all_faces) {
 // Unit vectors n with dot(n, u) = p and dot(n, v) = q: a u + b v + c u x v, where the square of the length gives c. Of
 // the two the one nearer to `wanted`; false where there is none or the lines are parallel.
 bool solve_normal(const SlopedLine& first, const SlopedLine& second, Vec3 wanted, Vec3& n) {
-    constexpr double min_square_sine = 1e-8;
+    constexpr double min_square_sine = 1e-8;  // of the angle between lines: 1e-4 rad count as parallel
     const Vec3 u = first.direction, v = second.direction, across = cross(u, v);
     const double p = first.cosine, q = second.cosine, uv = dot(u, v), square_sine = length_squared(across);
     if (!(square_sine > min_square_sine)) return false;
@@ -258,14 +258,14 @@ bool take_surface_normal(AxisSearch& s) {
 }
 
 bool is_face_normal(const AxisSearch& s) {
-    constexpr double equal = 1 - 1e-15;
+    constexpr double equal = 1 - 1e-15;  // cosine: the same but for rounding
     return has_aligned_face(s.a, s.axis.normal, equal) || has_aligned_face(s.b, -s.axis.normal, equal);
 }
 
 // From a normal to what is deepest along it, from there to the surface over it, whose normal is the next one. True
 // where a normal is certain or the pair is apart: mostly after two rounds. The one found does not depend on the start.
 bool search_by_surfaces(AxisSearch& s, Vec3 start) {
-    constexpr int max_iterations = 4;
+    constexpr int max_iterations = 4;  // the longer search takes what needs more
     Vec3 normal = start;
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
         s.axis = {true, normal, s.touch_along(normal), false, {}, {}};

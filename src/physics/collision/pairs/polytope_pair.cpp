@@ -147,7 +147,7 @@ void measure_edge_pair(const EdgeArc& a, const EdgeArc& b, PolytopeSearch& s, Ed
 
 // False where far too many edges are left to pair them all: deep inside each other.
 bool best_edge_axis(double least, Vec3 witness_of_b, Vec3 witness_of_a, PolytopeSearch& s, EdgeAxis& best) {
-    constexpr std::size_t max_pairs = 40000;
+    constexpr std::size_t max_pairs = 40000;  // of edges
     best.separation = least;
     const double depth = std::max(0.0, -least);
     gather_edges(*s.a, witness_of_b, depth, s);
@@ -191,7 +191,7 @@ bool has_other_corners(const Polytope& polytope, Vec3 direction, double level, s
 // to lie on the next one of its many small faces before it has moved far.
 bool has_corners_beside(const PlacedConvex& owner, std::uint32_t face, const ContactFeature& facing, double margin,
                         std::vector<std::uint32_t>& low) {
-    constexpr std::size_t corners_of_a_box = 8;
+    constexpr std::size_t corners_of_a_box = 8;  // what has no more is no rounded thing
     const Polytope& polytope = owner.shape->polytope;
     if (polytope.vertices.size() <= corners_of_a_box) return false;
     const double level = dot(facing.normal, facing.points[0] - owner.position) + margin;

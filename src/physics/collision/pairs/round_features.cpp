@@ -184,7 +184,7 @@ void get_facing(const PlacedConvex& convex, Vec3 direction, ContactFeature& feat
 }
 
 Vec3 facing_point(const PlacedConvex& convex, Vec3 direction, Vec3 point) {
-    constexpr double across = 0.05;
+    constexpr double across = 0.05;  // cosine to the axis: 3 degrees off a right angle
     const Convex& shape = *convex.shape;
     const Vec3 d = convex.direction_to_local(direction), p = convex.to_local(point);
     // To one end, or, where both are as far along the direction, as near to the point as can be.
@@ -227,7 +227,7 @@ void add_own_normals(const PlacedConvex& convex, Vec3 direction, bool all_faces,
 }
 
 void add_sloped_lines(const PlacedConvex& convex, Vec3 direction, std::vector<SlopedLine>& lines) {
-    constexpr std::size_t few = 6;
+    constexpr std::size_t few = 6;  // directions of edges that are all tried; of more, those across the direction
     const Convex& shape = *convex.shape;
     const Vec3 d = convex.direction_to_local(direction);
     switch (shape.kind) {

@@ -125,7 +125,7 @@ void lean_over_edge(TriangleSearch& s, std::size_t edge) {
 // Whether the depth along the triangle's normal is a neighbour's: where a thing stands across the edge of a step, the
 // step's side cuts deep into it, yet a face of the thing, which is not this triangle's business, hardly overlaps.
 bool is_deep_in_neighbour(const TriangleSearch& s) {
-    constexpr double believed = 0.1;
+    constexpr double believed = 0.1;  // of the smallest side: a depth less than this is the triangle's own
     const Vec3 size = s.convex.bounds.size();
     const double depth = -s.best.separation;
     if (s.best.kind != TriangleAxis::Kind::own || depth < believed * std::min({size.x, size.y, size.z})) return false;
@@ -180,10 +180,10 @@ void clip_by_prism_side(const PrismSide& side, std::uint32_t name, TriangleScrat
 // fast body is: returns how far along the normal they may lie.
 double add_low_corners(const TriangleSearch& s, const PrismSide (&sides)[3], double level, TriangleScratch& scratch,
                        ContactRegion& region) {
-    constexpr std::size_t corners_of_a_box = 8;
+    constexpr std::size_t corners_of_a_box = 8;  // what has no more is no rounded thing
     const std::vector<Vec3>& vertices = s.polytope.vertices;
     if (vertices.size() <= corners_of_a_box) return -1e300;
-    constexpr double low_fraction = 0.1;
+    constexpr double low_fraction = 0.1;  // of the reach
     const Vec3 normal = s.triangle.normal;
     const double highest = level + std::min(s.margin, s.triangle.height + low_fraction * s.convex.reach);
     scratch.low.resize(s.polytope.vertex_lanes.size());
@@ -243,7 +243,7 @@ void add_before_face(const TriangleSearch& s, ContactRegion& region) {
 
 // Where an edge of the polytope crosses an edge of the triangle; nothing where they pass each other beyond an end.
 void add_crossing(const TriangleSearch& s, ContactRegion& region) {
-    constexpr double slack = 1e-6;
+    constexpr double slack = 1e-6;  // of an edge: rounding at its ends
     const std::size_t edge = s.best.edge_of_triangle;
     const Vec3 p = s.polytope.vertices[s.best.from], u = s.polytope.vertices[s.best.to] - p;
     const Vec3 q = s.triangle.corners[edge], v = s.triangle.along(edge);

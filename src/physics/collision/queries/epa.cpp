@@ -127,8 +127,8 @@ bool widen_to_tetrahedron(const Core& a, const Core& b, std::vector<Vec3>& point
 }  // namespace
 
 bool penetration_normal(const Core& a, const Core& b, const CoreDistance& overlap, Vec3& normal) {
-    constexpr int max_iterations = 96;
-    constexpr double converged = 1e-6;
+    constexpr int max_iterations = 96;  // new faces; the best normal so far serves then
+    constexpr double converged = 1e-6;  // of the depth: a new face is no farther out
     thread_local Expansion expansion;
     expansion.clear();
     for (int i = 0; i < overlap.simplex_size; ++i) {

@@ -132,7 +132,7 @@ DifferencePoint difference_support(const Core& a, const Core& b, Vec3 direction)
 }
 
 CoreDistance core_distance(const Core& a, const Core& b, double enough, Vec3 start, double converged) {
-    constexpr int max_iterations = 100;
+    constexpr int max_iterations = 100;  // supports; the nearest simplex so far serves then
     // Relative to the size of the coordinates: what rounding leaves of a distance of zero.
     constexpr double zero = 1e-14;
 

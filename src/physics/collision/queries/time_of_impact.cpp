@@ -198,7 +198,7 @@ double separation(const CollisionShape& a, const Transform& pose_a, const Collis
 std::optional<double> time_of_impact(const CollisionShape& a, const Sweep& path_a, const CollisionShape& b,
                                      const Sweep& path_b, const ImpactSearch& search) {
     EMBODY_ASSERT(!is_static_only(a.definition()));
-    constexpr int max_iterations = 128;
+    constexpr int max_iterations = 128;  // of conservative advancement; the time so far, which is early, serves then
     constexpr double harmless_step = 0.125;  // after which a harmless touch is looked at again
     Advancement advance{a, b, Motion(path_a), Motion(path_b), search};
     advance.pass_over_touching();

@@ -218,7 +218,7 @@ Vec3 Core::support(Vec3 d) const {
 }
 
 double shrinkable(const Convex& convex) {
-    constexpr double fraction = 0.1;
+    constexpr double fraction = 0.1;  // of the inner radius
     switch (convex.kind) {
         case ConvexKind::sphere:
         case ConvexKind::capsule:

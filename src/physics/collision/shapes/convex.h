@@ -14,7 +14,7 @@ namespace embody::physics::collision {
 /// Vectors by components, in lanes: filled up to a multiple of the widest register with copies of the first, so that
 /// loops over them need no rest and a maximum stays one of the originals.
 struct Lanes {
-    static constexpr std::size_t multiple = 8;
+    static constexpr std::size_t multiple = 8;  // doubles of 512 bits
     std::vector<double> x, y, z;
 
     void assign(const std::vector<Vec3>& vectors);
@@ -23,7 +23,7 @@ struct Lanes {
 
 /// The same in single precision.
 struct RoughLanes {
-    static constexpr std::size_t multiple = 16;
+    static constexpr std::size_t multiple = 16;  // floats of 512 bits
     std::vector<float> x, y, z;
 
     void assign(const std::vector<Vec3>& vectors);

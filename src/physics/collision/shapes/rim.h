@@ -16,7 +16,7 @@ struct RimStart {
 /// Starts at the rim's point farthest along `direction` (local, unit), or, where the rim lies flat to it and the
 /// farthest point would be noise, at a fixed one.
 inline RimStart rim_start(Vec3 direction) {
-    constexpr double flat = 1e-4;
+    constexpr double flat = 1e-4;  // sine of the angle between rim and direction
     const double radial = std::sqrt(direction.x * direction.x + direction.z * direction.z);
     const Vec3 along = radial > flat ? Vec3{direction.x / radial, 0, direction.z / radial} : Vec3{1, 0, 0};
     return {along, cross(along, {0, 1, 0})};

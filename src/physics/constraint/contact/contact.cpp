@@ -7,8 +7,6 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr float deep_penetration = 0.05F;  // m
-
 // Arms to the middle between the surface points, and how fast they approach.
 void set_arms(Contact& contact, ContactPoint& point, Vec3 arm_a, Vec3 arm_b, std::span<const BodyState> bodies) {
     point.arm_a = to_vec3f(arm_a);
@@ -62,7 +60,7 @@ void set_material(Contact& contact, const Material& material) {
     contact.bounces = material.restitution > 0;
 }
 
-ContactSummary summary_of(const Contact& contact) {
+ContactSummary summary_of(const Contact& contact, float deep_penetration) {
     ContactSummary summary{.a = contact.a,
                            .b = contact.b,
                            .approach_speed = contact.approach_speed,
@@ -87,19 +85,21 @@ Anchor anchor_of(const Contact& contact) {
     return {sum.arm_a * fraction, sum.arm_b * fraction};
 }
 
-void match_points(const Contact& old_contact, Contact& new_contact) {
+void match_points(const Contact& old_contact, Contact& new_contact, const ContactSettings& settings) {
     // Features tell the same point; where they changed, the nearest old point within reach stands in for it.
-    constexpr double reach = 0.02;
+    const double squared_reach = settings.match_reach * settings.match_reach;
+    const double squared_ratio = settings.match_feature_ratio * settings.match_feature_ratio;
     std::array<bool, Manifold::max_points> taken{};
     for (int i = 0; i < new_contact.count; ++i) {
         ContactPoint& point = new_contact.points[static_cast<std::size_t>(i)];
         int best = -1;
-        double best_distance = reach * reach;
+        double best_distance = squared_reach;
         for (int j = 0; j < old_contact.count; ++j) {
             const ContactPoint& old_point = old_contact.points[static_cast<std::size_t>(j)];
             if (taken[static_cast<std::size_t>(j)]) continue;
             const double squared = length_squared(Vec3(old_point.place) - point.place);
-            if (old_point.feature == point.feature && squared < 25 * reach * reach) {
+            if (old_point.feature == point.feature &&
+                squared < squared_ratio * settings.match_reach * settings.match_reach) {
                 best = j;
                 break;
             }
@@ -154,13 +154,15 @@ Four3 in_axes(const std::array<Vec3f, 3>& axes, const Four3& v) {
 
 // The tangent turns as little as it can, so that friction keeps its world direction.
 void turn_frame(Contact& contact, Vec3f normal) {
+    constexpr double nearly_one = 0.999;  // squared length: one step of Newton's is then right to 4e-7
+    constexpr double min_across = 0.01;   // squared length: below, the tangent's direction has no meaning left
     const Vec3 n = normal, tangent = contact.tangent_1, across = tangent - dot(tangent, n) * n;
     const double squared = length_squared(across);
     contact.normal = normal;
-    if (squared > 0.999) {
+    if (squared > nearly_one) {
         contact.tangent_1 = to_vec3f(across * (1.5 - 0.5 * squared));  // a step of Newton's for 1/√
     } else {
-        contact.tangent_1 = to_vec3f(squared > 0.01 ? normalized(across) : any_perpendicular(n));
+        contact.tangent_1 = to_vec3f(squared > min_across ? normalized(across) : any_perpendicular(n));
     }
 }
 

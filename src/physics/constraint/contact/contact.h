@@ -8,6 +8,7 @@
 #include "physics/collision/pairs/manifold.h"
 #include "physics/constraint/namespace.h"
 #include "physics/definitions/material.h"
+#include "physics/definitions/settings/contact_settings.h"
 #include "physics/dynamic/body_state.h"
 
 namespace embody::physics::constraint {
@@ -89,8 +90,8 @@ struct ContactSummary {
 };
 static_assert(sizeof(ContactSummary) == 16);
 
-/// Before the contact was solved.
-ContactSummary summary_of(const Contact& contact);
+/// Before the contact was solved. Deep: from `deep_penetration`, m, on.
+ContactSummary summary_of(const Contact& contact, float deep_penetration);
 
 /// Arms to the middle of the region's points, where its friction acts.
 struct Anchor {
@@ -139,7 +140,7 @@ void begin_step(Contact& contact);
 void follow_bodies(Contact& contact, const FollowedPair& pair);
 
 /// Hands the last step's impulses to the new points that lie where an old one did (warm start; paper, contact caching).
-void match_points(const Contact& old_contact, Contact& new_contact);
+void match_points(const Contact& old_contact, Contact& new_contact, const ContactSettings& settings);
 
 /// Velocity of b's matter relative to a's at the point.
 inline Vec3 relative_velocity(const Contact& contact, const ContactPoint& point, std::span<const BodyState> bodies) {

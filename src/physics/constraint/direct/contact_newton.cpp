@@ -11,19 +11,7 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr double stiffness_fraction = 1e5;  // k over the heaviest mass,
-constexpr double rest_stiffness = 1e-2;     // of that where the sweeps' loads are the guess for what rests,
-constexpr double settling_stiffness = 0.1;  // and where those of a step before are, which found it at rest
-constexpr int undamped_iterations = 4;      // of Newton's method with whole steps; then
-constexpr int lagged_iterations = 8;        // with steps as far as f falls
-constexpr int rest_iterations = 16;         // of such for what rests
-constexpr double slope_tolerance = 0.1;     // of the slope along a step, where its length is searched
-constexpr int max_searches = 12;
-constexpr std::uint64_t min_idle = 15, max_idle = 960;  // steps to the next attempt after a vain one
-constexpr std::uint64_t max_rests = 60;   // steps in a row: what is not held by its last impulses then never will be
-constexpr std::uint64_t steps_kept = 60;  // what was found about a graph is kept for, unused
-constexpr double force_tolerance = 1e-7;  // of the largest load: a step that misses the impulses by less is the last
-constexpr std::uint32_t no_edge = 0xFFFFFFFFu;
+constexpr std::uint32_t no_edge = 0xFFFFFFFFu;  // of a patch with one movable body
 
 Mat3 symmetric_outer(Vec3 a, Vec3 b) { return outer(a, b) + outer(b, a); }
 
@@ -81,7 +69,7 @@ void ContactNewton::begin(std::uint32_t key, std::span<const NewtonBody> bodies,
     bodies_ = bodies;
     double heaviest = 0;
     for (const NewtonBody& body : bodies) heaviest = std::max(heaviest, body.mass);
-    full_stiffness_ = stiffness_fraction * heaviest;
+    full_stiffness_ = settings_.stiffness_per_mass * heaviest;
     has_factors_ = false;
     direction_.resize(bodies.size());
     right_side_.resize(bodies.size());
@@ -96,7 +84,8 @@ bool ContactNewton::has_given_up(std::uint32_t key) const {
 
 void ContactNewton::abandon() {
     structure_->rests = 0;
-    structure_->idle = std::clamp(2 * structure_->idle, min_idle, max_idle);
+    const std::uint64_t least = settings_.min_idle_steps;
+    structure_->idle = std::clamp(2 * structure_->idle, least, std::max(least, settings_.max_idle_steps));
     structure_->idle_until = step_ + structure_->idle;
 }
 
@@ -104,7 +93,7 @@ void ContactNewton::note_rest() {
     if (structure_->last_rest + 1 != step_) structure_->rests = 0;
     structure_->last_rest = step_;
     ++structure_->rests;
-    if (structure_->rests < max_rests) {
+    if (structure_->rests < settings_.max_rest_steps) {
         structure_->idle = 0;
     } else {
         abandon();
@@ -116,7 +105,9 @@ ContactNewton::Structure& ContactNewton::structure_of(std::uint32_t key) {
     if (key >= structure_of_key_.size()) structure_of_key_.resize(key + 1, 0);
     std::uint32_t& index = structure_of_key_[key];
     if (index < structures_.size() && structures_[index].key == key) return structures_[index];
-    const auto is_old = [&](const Structure& structure) { return structure.last_step + steps_kept < step_; };
+    const auto is_old = [&](const Structure& structure) {
+        return structure.last_step + settings_.memory_steps < step_;
+    };
     const auto place = std::find_if(structures_.begin(), structures_.end(), is_old);
     index = static_cast<std::uint32_t>(place - structures_.begin());
     if (place == structures_.end()) structures_.emplace_back();
@@ -203,29 +194,30 @@ bool ContactNewton::find_velocities(std::span<const Vec6> free, std::span<Vec6> 
     stiffness_ = full_stiffness_;
     begin_from(free, velocity, patches);
     bound_ = FrictionBound::undamped;
-    if (iterate(free, undamped_iterations, velocity, patches)) return true;
+    if (iterate(free, settings_.undamped_iterations, velocity, patches)) return true;
     bound_ = FrictionBound::lagged;
-    return iterate(free, lagged_iterations, velocity, patches);
+    return iterate(free, settings_.lagged_iterations, velocity, patches);
 }
 
 bool ContactNewton::find_rest(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches) {
     const bool is_settling = structure_->rests > 0 && structure_->last_rest + 1 == step_;
-    stiffness_ = full_stiffness_ * (is_settling ? settling_stiffness : rest_stiffness);
+    stiffness_ =
+        full_stiffness_ * (is_settling ? settings_.settling_stiffness_fraction : settings_.rest_stiffness_fraction);
     bound_ = FrictionBound::coupled;
     std::fill(velocity.begin(), velocity.end(), Vec6{});
     set_patch_velocities(velocity, patches);
     for (DirectPatch& patch : patches) {
-        begin_coupled(patch);
-        evaluate(patch, stiffness_, bound_);
+        begin_coupled(patch, settings_);
+        evaluate(patch, stiffness_, bound_, settings_);
     }
-    return iterate(free, rest_iterations, velocity, patches);
+    return iterate(free, settings_.rest_iterations, velocity, patches);
 }
 
 // The first step goes where all that was loaded and stuck stays so.
 void ContactNewton::begin_from(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches) {
     std::copy(free.begin(), free.end(), velocity.begin());
     set_patch_velocities(velocity, patches);
-    for (DirectPatch& patch : patches) evaluate_as_before(patch, stiffness_);
+    for (DirectPatch& patch : patches) evaluate_as_before(patch, stiffness_, settings_);
 }
 
 // Rounds until the impulses are right for this stiffness.
@@ -238,7 +230,7 @@ bool ContactNewton::iterate(std::span<const Vec6> free, int iterations, std::spa
         bool is_wrong = false;
         for (DirectPatch& patch : patches) is_wrong = breaks_away(patch) || is_wrong;
         if (!is_wrong) return true;
-        for (DirectPatch& patch : patches) evaluate(patch, stiffness_, bound_);
+        for (DirectPatch& patch : patches) evaluate(patch, stiffness_, bound_, settings_);
     }
     return false;
 }
@@ -283,10 +275,10 @@ double ContactNewton::slope_at(double fraction, std::span<const DirectPatch> pat
 // Where f stops falling along the step, by the regula falsi (Illinois); the whole step where it falls that far.
 double ContactNewton::find_fraction(std::span<const DirectPatch> patches) const {
     double low = 0, high = 1, at_low = slope_at(0, patches), at_high = slope_at(1, patches);
-    const double enough = slope_tolerance * std::fabs(at_low);
+    const double enough = settings_.line_search_tolerance * std::fabs(at_low);
     if (!(at_low < 0) || !(at_high > enough)) return 1;
     double fraction = 1;
-    for (int i = 0; i < max_searches; ++i) {
+    for (int i = 0; i < settings_.line_search_iterations; ++i) {
         fraction = (low * at_high - high * at_low) / (at_high - at_low);
         const double slope = slope_at(fraction, patches);
         if (std::fabs(slope) <= enough) break;
@@ -309,12 +301,12 @@ bool ContactNewton::evaluate_after(double fraction, std::span<DirectPatch> patch
                                         transpose(patch.coupling_slope) * change.normal_part;
         predict_loads(patch, stiffness_);
         patch.velocity = patch.velocity + patch.change;
-        evaluate(patch, stiffness_, bound_);
+        evaluate(patch, stiffness_, bound_, settings_);
         largest = std::max(largest, std::fabs(patch.impulse.normal_part.x));
         error = std::max(error, length_squared(patch.impulse.normal_part - predicted_normal));
         error = std::max(error, length_squared(patch.impulse.friction_part - predicted_friction));
     }
-    return std::sqrt(error) <= force_tolerance * std::max(largest, std::sqrt(error));
+    return std::sqrt(error) <= settings_.force_tolerance * std::max(largest, std::sqrt(error));
 }
 
 void ContactNewton::drop_friction(std::span<DirectPatch> patches) {

@@ -7,6 +7,7 @@
 
 #include "physics/constraint/direct/direct_patch.h"
 #include "physics/constraint/namespace.h"
+#include "physics/definitions/settings/direct_settings.h"
 #include "physics/linear/block_cholesky.h"
 
 namespace embody::physics::constraint {
@@ -21,8 +22,9 @@ struct NewtonBody {
 /// (docs/physics/direct-solver.md). Keeps its memory, and what it found about the graphs it met, from step to step.
 class ContactNewton {
 public:
-    /// Starts a step.
-    void begin_step() {
+    /// Starts a step, with its settings.
+    void begin_step(const DirectSettings& settings) {
+        settings_ = settings;
         ++step_;
         work_ = 0;
     }
@@ -77,6 +79,7 @@ private:
     double slope_at(double fraction, std::span<const DirectPatch> patches) const;
     double find_fraction(std::span<const DirectPatch> patches) const;
 
+    DirectSettings settings_;  // of this step
     std::span<const NewtonBody> bodies_;
     double full_stiffness_ = 0;
     double stiffness_ = 0;                              // k, kg

@@ -12,17 +12,7 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr double slow = 0.02;            // m/s: an island of slower points is solved once a step, if they stay slower
-constexpr double rest_speed = 1e-6;      // m/s, rad/s: changes that rounding may leave
-constexpr double rest_gap = 2e-5;        // m: what resting points may be apart or overlap
-constexpr double rest_correction = 0.5;  // of a gap or an overlap closed in the one solve of a step at rest,
-constexpr double slow_correction =
-    0.005;                               // and in a substep of what moves: lifting is work that a rocking column keeps
-constexpr double rest_shift = 2e-3;      // m: of a body in a step at rest, at most
-constexpr double correction_speed = 3;   // m/s, at most
-constexpr double correction_gap = 1e-7;  // m: in motion smaller ones are let be
-// Products of 6×6 blocks, of a round and of all lists of a step, where the sweeps would do as well.
-constexpr std::size_t max_products_slow = 16000, max_products_step = 60000;
+constexpr double cone_rounding = 1e-6;  // share by which friction may leave its cone: stored in floats it does by 1e-7
 
 // How the point moved with the body in this step; on a round body only the tilt counts (contact.cpp).
 Vec3 motion_at(Vec3 displacement, const Quat& turn, Vec3 arm, bool is_round) {
@@ -33,10 +23,12 @@ Vec3 motion_at(Vec3 displacement, const Quat& turn, Vec3 arm, bool is_round) {
 
 }  // namespace
 
-void DirectContactSolver::begin(double time_step, int substeps) {
+void DirectContactSolver::begin(double time_step, int substeps, const ConstraintSettings& settings) {
+    settings_ = settings.direct;
+    correction_speed_ = settings.contact.max_correction_speed;
     time_step_ = time_step;
     moving_substeps_ = substeps;
-    newton_.begin_step();
+    newton_.begin_step(settings_);
 }
 
 DirectContactSolver::Outcome DirectContactSolver::solve(const List& list, Effort effort, std::span<BodyState> bodies,
@@ -47,15 +39,16 @@ DirectContactSolver::Outcome DirectContactSolver::solve(const List& list, Effort
     number_bodies(list.bodies, bodies.size());
     if (stays_at_rest(list, bodies, constants, contacts)) return Outcome::held;
     const bool only_slow = effort == Effort::while_slow;
+    const double slow = settings_.slow_speed;
     const auto is_fast = [&](std::uint32_t body) { return length_squared(bodies[body].linear_velocity) > slow * slow; };
     if (only_slow && std::any_of(list.bodies.begin(), list.bodies.end(), is_fast)) return Outcome::unsolved;
 
-    const bool may_wait = newton_.has_given_up(list.bodies.front()) || newton_.work() > max_products_step;
+    const bool may_wait = newton_.has_given_up(list.bodies.front()) || newton_.work() > settings_.max_products_step;
     if (only_slow && may_wait) return Outcome::unsolved;
 
     // Slow bodies in one go; should they turn out to move, from the beginning again.
     gather(list, bodies, constants, contacts, 1);
-    if (only_slow && newton_.block_products() > max_products_slow) return Outcome::unsolved;
+    if (only_slow && newton_.block_products() > settings_.max_products_slow) return Outcome::unsolved;
     if (is_slow(slow)) {
         if (rest(only_slow, contacts) && is_slow(slow)) {
             newton_.note_rest();
@@ -93,7 +86,7 @@ std::int32_t DirectContactSolver::number_of(std::uint32_t slot) const {
 bool DirectContactSolver::stays_at_rest(const List& list, std::span<BodyState> bodies,
                                         std::span<const BodyConstants> constants, std::span<Contact> contacts) {
     std::vector<Vec6>& momentum = shift_;
-    const double most = rest_speed * rest_speed;
+    const double most = settings_.held_speed_tolerance * settings_.held_speed_tolerance;
     for (std::size_t i = 0; i < motion_.size(); ++i) {
         const BodyState& state = bodies[motion_[i].slot];
         const BodyConstants& c = constants[motion_[i].slot];
@@ -133,6 +126,7 @@ void DirectContactSolver::hold(const List& list, std::span<Contact> contacts) {
 
 // Adds a contact's last impulses to the bodies' momentum; false where they cannot be the next ones.
 bool DirectContactSolver::holds_at_rest(const Contact& contact) {
+    const double rest_gap = settings_.rest_gap_tolerance;
     const Anchor anchor = anchor_of(contact);
     const Vec3 friction = friction_force(contact, contact.friction);
     const Vec3 moment = contact.normal * static_cast<double>(contact.friction.twist) + contact.rolling;
@@ -151,7 +145,7 @@ bool DirectContactSolver::holds_at_rest(const Contact& contact) {
         normal += point.impulse;
     }
     const double bound = contact.friction_dynamic * normal;
-    if (length_squared(friction) > bound * bound * (1 + 1e-6)) return false;
+    if (length_squared(friction) > bound * bound * (1 + cone_rounding)) return false;
 
     std::vector<Vec6>& momentum = shift_;
     const auto add = [&](std::int32_t body, Vec3 linear, Vec3 angular, double sign) {
@@ -232,16 +226,16 @@ bool DirectContactSolver::is_slow(double most) const {
 // One solve for the whole step. What is solved directly in motion too mostly goes on as it was, which takes one round.
 bool DirectContactSolver::rest(bool only_slow, std::span<const Contact> contacts) {
     measure_gaps(contacts);
-    for (DirectPatch& patch : patches_) begin_substep(patch, h_, h_, rest_gap);
+    for (DirectPatch& patch : patches_) begin_substep(patch, {h_, h_, settings_.rest_gap_tolerance}, settings_);
     kick();
     const bool goes_on = !only_slow && newton_.find_velocities(free_velocity_, velocity_, patches_);
     if (!goes_on && !newton_.find_rest(free_velocity_, velocity_, patches_)) return false;
     drift();
     measure_gaps(contacts);
-    if (worst_gap() > rest_gap) {
+    if (worst_gap() > settings_.rest_gap_tolerance) {
         // What sticks would hold on to its overlaps, or open other contacts while they close.
         newton_.drop_friction(patches_);
-        correct_positions(rest_correction, rest_shift, contacts);
+        correct_positions(settings_.rest_correction_fraction, settings_.max_rest_shift, contacts);
     }
     for (DirectPatch& patch : patches_) end_substep(patch);
     return true;
@@ -251,14 +245,15 @@ bool DirectContactSolver::move(int substeps, std::span<const Contact> contacts) 
     measure_gaps(contacts);
     for (int substep = 1; substep <= substeps; ++substep) {
         // Forces and what answers them.
-        for (DirectPatch& patch : patches_) begin_substep(patch, substep * h_, h_);
+        for (DirectPatch& patch : patches_) begin_substep(patch, {substep * h_, h_}, settings_);
         kick();
         if (!newton_.find_velocities(free_velocity_, velocity_, patches_)) return false;
 
         // Motion.
         drift();
         measure_gaps(contacts);
-        if (worst_gap() > correction_gap) correct_positions(slow_correction, correction_speed * h_, contacts);
+        if (worst_gap() > settings_.moving_gap_tolerance)
+            correct_positions(settings_.moving_correction_fraction, correction_speed_ * h_, contacts);
         for (DirectPatch& patch : patches_) end_substep(patch);
     }
     return true;
@@ -314,7 +309,7 @@ double DirectContactSolver::worst_gap() const {
 }
 
 void DirectContactSolver::correct_positions(double fraction, double most, std::span<const Contact> contacts) {
-    newton_.find_shifts(patches_, fraction, correction_speed * h_, shift_);
+    newton_.find_shifts(patches_, fraction, correction_speed_ * h_, shift_);
     double longest = 0;
     for (const Vec6& shift : shift_) longest = std::max(longest, length(shift.linear()));
     const double scale = longest > most ? most / longest : 1;

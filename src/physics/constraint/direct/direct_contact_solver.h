@@ -7,6 +7,7 @@
 
 #include "physics/constraint/direct/contact_newton.h"
 #include "physics/constraint/namespace.h"
+#include "physics/definitions/settings/constraint_settings.h"
 #include "physics/dynamic/body_state.h"
 
 namespace embody::physics::constraint {
@@ -15,7 +16,7 @@ namespace embody::physics::constraint {
 /// no island: it is given lists. Keeps its memory from step to step.
 class DirectContactSolver {
 public:
-    static constexpr std::size_t max_bodies = 256;
+    static constexpr std::size_t max_bodies = 256;  ///< of a list: half of what BlockPattern takes
 
     /// Slots of movable bodies, and indices of all the contacts that they have with each other and with bodies that
     /// stand still.
@@ -36,8 +37,8 @@ public:
         held,  ///< the last impulses hold everything where it is
     };
 
-    /// Starts a step of `time_step` s, in `substeps` parts for what moves.
-    void begin(double time_step, int substeps);
+    /// Starts a step of `time_step` s, in `substeps` parts for what moves, with its settings.
+    void begin(double time_step, int substeps, const ConstraintSettings& settings);
     /// Solves one list through the step: moves its bodies and hands the impulses to its contacts.
     [[nodiscard]] Outcome solve(const List& list, Effort effort, std::span<BodyState> bodies,
                                 std::span<const BodyConstants> constants, std::span<Contact> contacts);
@@ -75,7 +76,9 @@ private:
     [[nodiscard]] double worst_gap() const;
     void correct_positions(double fraction, double most, std::span<const Contact> contacts);
 
-    double time_step_ = 0;  // s
+    DirectSettings settings_;      // of this step
+    double correction_speed_ = 0;  // m/s, of this step: ContactSettings::max_correction_speed
+    double time_step_ = 0;         // s
     int moving_substeps_ = 0;
     double substep_ = 0;  // s, of the parts that the list's impulses belong to
     int substeps_ = 0;

@@ -8,9 +8,7 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr double lag_tolerance = 0.02;  // share of its size by which the metric of friction may be wrong
-constexpr double near = 1e-3;           // m/s: new points that part no faster are taken as loaded first
-constexpr double min_spin_arm = 1e-3;   // of the patch's extent: less is what rounding left of a single loaded point
+constexpr double below_any_load = -1e300;  // N s: what an inactive point wants
 
 double wanted_load(const DirectPatch::Point& point, Vec3 normal_part, double stiffness) {
     return point.guess - stiffness * (dot(row_of(point), normal_part) + point.limit);
@@ -126,7 +124,7 @@ void write_patch(const DirectPatch& patch, double substep_fraction, Contact& con
 namespace {
 
 // Normal load, centre of pressure and lever arm of the spin.
-void lag_loads(DirectPatch& patch, bool from_guess) {
+void lag_loads(DirectPatch& patch, bool from_guess, const DirectSettings& settings) {
     double sum = 0, s = 0, t = 0;
     const auto points = std::span(patch.points).first(static_cast<std::size_t>(patch.count));
     const auto load_of = [&](const DirectPatch::Point& point) {
@@ -150,13 +148,13 @@ void lag_loads(DirectPatch& patch, bool from_guess) {
         extent = std::max(extent, distance);
     }
     arm = sum > 0 ? arm / sum : 0;
-    if (arm < min_spin_arm * extent) arm = 0;
+    if (arm < settings.min_spin_arm_fraction * extent) arm = 0;
     if (patch.friction_dynamic > 0) arm += patch.torsion_arm / patch.friction_dynamic;
 
     // A centre that hardly moved stays, so that the factors serve again.
     const double change =
         std::fabs(s - patch.center_s) + std::fabs(t - patch.center_t) + std::fabs(arm - patch.spin_arm);
-    if (change <= lag_tolerance * patch.spin_arm) return;
+    if (change <= settings.metric_tolerance * patch.spin_arm) return;
     patch.center_s = s;
     patch.center_t = t;
     patch.spin_arm = arm;
@@ -172,9 +170,9 @@ double predicted_load(const DirectPatch& patch) {
 
 // The loads that the last step predicted bound the friction: those at a velocity that is not yet the right one may be
 // anything. What sticks keeps its metric, so that the factors serve again.
-void lag_predicted_loads(DirectPatch& patch) {
+void lag_predicted_loads(DirectPatch& patch, const DirectSettings& settings) {
     if (patch.is_new || patch.is_sliding || patch.is_rolling) {
-        lag_loads(patch, false);
+        lag_loads(patch, false, settings);
     } else {
         patch.lagged_load = predicted_load(patch);
     }
@@ -182,21 +180,21 @@ void lag_predicted_loads(DirectPatch& patch) {
 
 }  // namespace
 
-void begin_substep(DirectPatch& patch, double time, double duration, double slack) {
+void begin_substep(DirectPatch& patch, const PatchSubstep& substep, const DirectSettings& settings) {
     for (int i = 0; i < patch.count; ++i) {
         DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
-        point.is_active = time > point.inactive_until;
+        point.is_active = substep.time > point.inactive_until;
         if (!point.is_active) point.guess = 0;
-        const bool touches = point.guess > 0 && point.gap <= slack;
-        point.limit = touches ? 0 : std::max(point.gap, 0.0) / duration;
+        const bool touches = point.guess > 0 && point.gap <= substep.slack;
+        point.limit = touches ? 0 : std::max(point.gap, 0.0) / substep.duration;
     }
-    lag_loads(patch, true);
+    lag_loads(patch, true, settings);
     patch.is_new = patch.lagged_load == 0;
 }
 
-void begin_coupled(DirectPatch& patch) {
+void begin_coupled(DirectPatch& patch, const DirectSettings& settings) {
     patch.is_sliding = !patch.sticks;
-    lag_loads(patch, true);
+    lag_loads(patch, true, settings);
 }
 
 void end_substep(DirectPatch& patch) {
@@ -248,7 +246,7 @@ InCone nearest_in_cone(const DirectPatch& patch, const PatchTwist& velocity, dou
     const auto points = std::span(patch.points).first(static_cast<std::size_t>(patch.count));
     double sum = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        wanted[i] = points[i].is_active ? wanted_load(points[i], velocity.normal_part, stiffness) : -1e300;
+        wanted[i] = points[i].is_active ? wanted_load(points[i], velocity.normal_part, stiffness) : below_any_load;
         sum += std::max(wanted[i], 0.0);
     }
     cone.friction = wanted_friction(patch, velocity.friction_part, stiffness);
@@ -327,14 +325,14 @@ void evaluate_coupled(DirectPatch& patch, double stiffness) {
 
 // Friction under the lagged load. In haste what has just met sticks, and where the sliding turned round within the step
 // it stops, rather than slide to and fro for ever.
-void evaluate_lagged(DirectPatch& patch, double stiffness, bool is_undamped) {
+void evaluate_lagged(DirectPatch& patch, double stiffness, bool is_undamped, const DirectSettings& settings) {
     const PatchTwist& velocity = patch.velocity;
     const Vec3 normal_part = note_loads(patch, stiffness, [&](std::size_t i) {
                                  const DirectPatch::Point& point = patch.points[i];
                                  if (!point.is_active) return 0.0;
                                  return std::max(wanted_load(point, velocity.normal_part, stiffness), 0.0);
                              }).first;
-    lag_predicted_loads(patch);
+    lag_predicted_loads(patch, settings);
     const bool is_new = patch.lagged_load == 0 && normal_part.x > 0;
     const Vec3 wanted = wanted_friction(patch, velocity.friction_part, stiffness);
     const bool turned_round = patch.is_sliding && dot(wanted, patch.slide_direction) < 0;
@@ -351,9 +349,9 @@ void evaluate_lagged(DirectPatch& patch, double stiffness, bool is_undamped) {
 
 }  // namespace
 
-void evaluate(DirectPatch& patch, double stiffness, FrictionBound bound) {
+void evaluate(DirectPatch& patch, double stiffness, FrictionBound bound, const DirectSettings& settings) {
     if (bound == FrictionBound::coupled) return evaluate_coupled(patch, stiffness);
-    evaluate_lagged(patch, stiffness, bound == FrictionBound::undamped);
+    evaluate_lagged(patch, stiffness, bound == FrictionBound::undamped, settings);
 }
 
 PatchTwist impulse_at(const DirectPatch& patch, const PatchTwist& velocity, double stiffness, FrictionBound bound) {
@@ -388,7 +386,9 @@ void drop_friction(DirectPatch& patch, double stiffness) {
     }
 }
 
-void evaluate_as_before(DirectPatch& patch, double stiffness) {
+void evaluate_as_before(DirectPatch& patch, double stiffness, const DirectSettings& settings) {
+    const double parting_load = -settings.new_contact_speed * stiffness;
+
     // A new patch has no memory: what does not part is loaded, and sticks.
     const PatchTwist& velocity = patch.velocity;
     Vec3 normal_part;
@@ -396,7 +396,7 @@ void evaluate_as_before(DirectPatch& patch, double stiffness) {
     for (int i = 0; i < patch.count; ++i) {
         DirectPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
         const double wanted = wanted_load(point, velocity.normal_part, stiffness);
-        point.is_loaded = point.is_active && (point.guess > 0 || (patch.is_new && wanted > -near * stiffness));
+        point.is_loaded = point.is_active && (point.guess > 0 || (patch.is_new && wanted > parting_load));
         point.load = point.is_loaded ? wanted : 0;
         if (!point.is_loaded) continue;
         const Vec3 row = row_of(point);

@@ -7,6 +7,7 @@
 
 #include "physics/constraint/contact/contact.h"
 #include "physics/constraint/namespace.h"
+#include "physics/definitions/settings/direct_settings.h"
 #include "physics/linear/block_cholesky.h"
 
 namespace embody::physics::constraint {
@@ -36,7 +37,7 @@ enum class FrictionBound {
 /// A contact region as the direct solver sees it (docs/physics/direct-solver.md): a law that gives the impulse for a
 /// relative velocity. Impulses are a substep's.
 struct DirectPatch {
-    static constexpr std::int32_t immovable = -1;
+    static constexpr std::int32_t immovable = -1;  ///< no number: the body answers nothing
 
     struct Point {
         double s = 0, t = 0;        ///< from the anchor along t1, t2, m
@@ -91,11 +92,15 @@ void write_patch(const DirectPatch& patch, double substep_fraction, Contact& con
 /// How the normal part of a velocity becomes a point's speed of parting.
 inline Vec3 row_of(const DirectPatch::Point& point) { return {1, point.t, -point.s}; }
 
-/// Begins a substep of `duration` that ends `time` s after the step began. What was loaded and is apart by `slack` m or
-/// less counts as touching.
-void begin_substep(DirectPatch& patch, double time, double duration, double slack = 0);
+/// A substep of the direct solver.
+struct PatchSubstep {
+    double time = 0;      ///< of its end, s since the step began
+    double duration = 0;  ///< s
+    double slack = 0;     ///< m: what was loaded and is apart by no more counts as touching
+};
+void begin_substep(DirectPatch& patch, const PatchSubstep& substep, const DirectSettings& settings);
 /// Before the first round with coupled bounds: what the guess tells of the friction's metric.
-void begin_coupled(DirectPatch& patch);
+void begin_coupled(DirectPatch& patch, const DirectSettings& settings);
 /// The impulses become the next guess and part of the step's totals.
 void end_substep(DirectPatch& patch);
 /// The points' loads after the patch's change of velocity, were the same ones loaded.
@@ -104,13 +109,13 @@ void predict_loads(DirectPatch& patch, double stiffness);
 bool breaks_away(DirectPatch& patch);
 
 /// Writes down the impulse for the patch's velocity, and how it changes with it. `stiffness` is k, kg.
-void evaluate(DirectPatch& patch, double stiffness, FrictionBound bound);
+void evaluate(DirectPatch& patch, double stiffness, FrictionBound bound, const DirectSettings& settings);
 /// The impulse for another velocity under the same bounds; writes nothing down.
 PatchTwist impulse_at(const DirectPatch& patch, const PatchTwist& velocity, double stiffness, FrictionBound bound);
 /// Leaves the slopes of the loaded points alone.
 void drop_friction(DirectPatch& patch, double stiffness);
 /// The same, were the loaded points and the sticking as they were in the last substep.
-void evaluate_as_before(DirectPatch& patch, double stiffness);
+void evaluate_as_before(DirectPatch& patch, double stiffness, const DirectSettings& settings);
 /// Relative velocity (or small motion) of the bodies at the anchor.
 PatchTwist relative_twist(const DirectPatch& patch, std::span<const Vec6> bodies);
 /// Adds the impulse on b, and its opposite on a, to the bodies' right sides.

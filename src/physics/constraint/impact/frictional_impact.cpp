@@ -33,16 +33,21 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// A sliding speed below this share of the start velocity counts as zero.
-constexpr double stop_fraction = 1e-9;
-// A slide that would miss its straight path by less than this share of its start velocity is taken as straight.
-constexpr double straight_fraction = 1e-8;
+// Numbers of the integration, which follows eq. (3) to about the last digits that ImpactPrecision asks for; callers
+// choose those (ImpactSolverSettings).
+constexpr double stop_fraction = 1e-9;  // of the start velocity: slower sliding is none, rounding leaves 1e-16 a step
+constexpr double straight_fraction = 1e-8;  // of the start velocity, by which a slide taken as straight misses its path
+constexpr double above_zero = 1e-300;       // m/s: a stop speed where nothing moves
+constexpr double straight_rounding = 1e-13;  // sine of the turn of a slide that rounding makes
 // Most collisions end within the first short steps. Where A is ill-conditioned u_t decays slowly, and steps may grow;
 // they may from the start where less than the last digits is asked for.
-constexpr double exact_step_fraction = 0.1;
-constexpr int short_steps = 400;
-constexpr double max_fraction = 1.5;
-constexpr int max_steps = 20000;
+constexpr double exact_step_fraction = 0.1;  // ImpactPrecision::step_fraction up to which they may not
+constexpr int short_steps = 400;             // of 0.1: a decay to e⁻⁴⁰
+constexpr double max_fraction = 1.5;     // of the fastest decay, of a step: Runge-Kutta of order 4 is stable up to 2.78
+constexpr int max_steps = 20000;         // bounds the loop where A is so ill-conditioned that no step ends it
+constexpr int end_searches = 60;         // bisection ends with the last bit of a double
+constexpr int direction_searches = 200;  // bounds the loop where the direction does not settle
+constexpr double direction_rounding = 1e-28;  // squared turn of the direction: 1e-14 rad
 
 enum class Phase { compression, restitution };
 
@@ -121,7 +126,7 @@ ImpactState step_to_end(const Collision& k, double tau) {
     double low = 0, high = tau;
     double at_low = overshoot(k, k.s), at_high = overshoot(k, runge_kutta_step(k, k.s, tau));
     ImpactState best = runge_kutta_step(k, k.s, tau);
-    for (int i = 0; i < 60 && high - low > k.precision.end_fraction * tau; ++i) {
+    for (int i = 0; i < end_searches && high - low > k.precision.end_fraction * tau; ++i) {
         const double guess = at_high > at_low ? high - at_high * (high - low) / (at_high - at_low) : (low + high) / 2;
         const double middle = std::clamp(guess, low, high);
         best = runge_kutta_step(k, k.s, middle);
@@ -195,9 +200,9 @@ Vec3 diverging_direction(const Collision& k) {
     // The sliding velocity's own flow turns towards that direction, so follow it: d ← normalised acceleration + push.
     const double push = k.c.friction_slide * (k.a.x.x + k.a.y.y);
     Vec3 d = normalized(a_tn, {1, 0, 0});
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < direction_searches; ++i) {
         const Vec3 next = normalized(acceleration(d) + push * d, d);
-        const bool settled = length_squared(next - d) < 1e-28;
+        const bool settled = length_squared(next - d) < direction_rounding;
         d = next;
         if (settled) break;
     }
@@ -218,7 +223,7 @@ void run_phase(const Collision& k) {
     if (speed > k.precision.stop_speed) {
         const Vec3 d = slip / speed;
         const Vec3 rate = tangential(k.a * Vec3{-k.c.friction_slide * d.x, -k.c.friction_slide * d.y, 1});
-        const bool is_straight = std::fabs(d.x * rate.y - d.y * rate.x) <= 1e-13 * length(rate);
+        const bool is_straight = std::fabs(d.x * rate.y - d.y * rate.x) <= straight_rounding * length(rate);
         if (is_straight ? slide_straight(k, d) : slide_curved(k)) return;
     }
     k.s.velocity.x = k.s.velocity.y = 0;
@@ -238,7 +243,7 @@ void run_phase(const Collision& k) {
 
 ImpactPrecision at_least_relative(const ImpactPrecision& precision, const ImpactState& state) {
     return {precision.step_fraction, precision.end_fraction,
-            std::max(precision.stop_speed, stop_fraction * length(state.velocity) + 1e-300)};
+            std::max(precision.stop_speed, stop_fraction * length(state.velocity) + above_zero)};
 }
 
 }  // namespace

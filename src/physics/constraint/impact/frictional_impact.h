@@ -3,6 +3,7 @@
 
 #include "math/mat3.h"
 #include "physics/constraint/namespace.h"
+#include "physics/definitions/settings/impact_solver_settings.h"
 
 namespace embody::physics::constraint {
 
@@ -16,9 +17,11 @@ struct ImpactCoefficients {
 
 /// How finely eq. (3) is integrated.
 struct ImpactPrecision {
-    double step_fraction = 0.1;   ///< share of the fastest decay of the sliding that one step spans, 0.01 … 0.5
-    double end_fraction = 1e-13;  ///< share of a step within which the end of a phase is found
-    double stop_speed = 0;        ///< m/s of sliding that counts as none; 1e-9 of the start speed is the least
+    /// Share of the fastest decay of the sliding that one step spans, 0.01 … 0.5.
+    double step_fraction = ImpactSolverSettings{}.expansion_step_fraction;
+    /// Share of a step within which the end of a phase is found.
+    double end_fraction = ImpactSolverSettings{}.expansion_end_fraction;
+    double stop_speed = 0;  ///< m/s of sliding that counts as none; 1e-9 of the start speed is the least
 };
 
 /// Where a micro-collision stands: what eq. (3) integrates over the normal impulse.

@@ -22,7 +22,8 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr double slide_rounding = 1e-5;  // of the approach: what a followed slide may be wrong by at its end
+constexpr double symmetric_rounding = 1e-9;  // of the fastest approach: sites as fast as each other differ by 1e-15
+constexpr double speed_rounding = 1e-12;     // m/s: approaches that rounding leaves where nothing moves
 
 Vec3 velocity_of(const ImpactSite& s, std::span<const BodyState> bodies) {
     return velocity_at(bodies[s.b], s.arm_b) - velocity_at(bodies[s.a], s.arm_a);
@@ -166,6 +167,7 @@ void find_fastest(std::vector<ImpactWork>& works, std::span<const BodyState> bod
 
 /// How the compression of a group is followed.
 struct CompressionRules {
+    const ImpactSolverSettings& settings;
     SlidePath path;
     double tolerance;  // m/s of approach that may be left
     double fastest;    // of the approaches at the start, m/s
@@ -179,19 +181,22 @@ void compress_alone(ImpactWork& work, std::span<const BodyState> bodies, const C
     const ImpactCoefficients& coefficients = work.site->coefficients;
     work.state.velocity = site_velocity(work, bodies);
     const double approach = -work.state.velocity.z;
+    const ImpactSolverSettings& settings = rules.settings;
+    const double min_cosine = iteration == 0 ? settings.straight_cosine : settings.straight_cosine_later;
     if (may_estimate(work, rules.path, iteration) &&
-        estimate_compression(work.inverse_mass, coefficients, iteration == 0 ? 0.9 : 0.5, work.state)) {
+        estimate_compression(work.inverse_mass, coefficients, min_cosine, work.state)) {
         // Along a straight path.
         work.state.normal_work = -0.5 * approach * (work.state.impulse.z - before.z);
         return;
     }
-    const double stop_speed = rules.fastest;
     const bool is_fine = iteration == 0 && rules.path == SlidePath::followed;
-    compress(
-        work.inverse_mass, coefficients, work.state,
-        is_fine
-            ? ImpactPrecision{.step_fraction = 0.25, .end_fraction = 1e-6, .stop_speed = slide_rounding * stop_speed}
-            : ImpactPrecision{.step_fraction = 0.5, .end_fraction = 1e-3, .stop_speed = 1e-3 * stop_speed});
+    compress(work.inverse_mass, coefficients, work.state,
+             is_fine ? ImpactPrecision{.step_fraction = settings.step_fraction,
+                                       .end_fraction = settings.end_fraction,
+                                       .stop_speed = settings.slide_tolerance * rules.fastest}
+                     : ImpactPrecision{.step_fraction = settings.rough_step_fraction,
+                                       .end_fraction = settings.rough_end_fraction,
+                                       .stop_speed = settings.rough_slide_tolerance * rules.fastest});
 }
 
 // Compresses these sites at once: each as if it were alone, then all by the same share, so far that the first of them
@@ -224,18 +229,20 @@ void compress_together(std::span<ImpactWork* const> sites, std::span<BodyState> 
 }
 
 // Compresses until no site approaches. Returns how many sites took part, or -1 where the rounds were not enough.
-int compress_all(ImpactGroupMemory& memory, std::span<BodyState> bodies, SlidePath path) {
+int compress_all(ImpactGroupMemory& memory, std::span<BodyState> bodies, const ImpactSolverSettings& settings,
+                 SlidePath path) {
     std::vector<ImpactWork>& works = memory.works;
     double fastest = 0;
     for (const ImpactWork& work : works) {
         fastest = std::max(fastest, -dot(work.velocity_before, work.site->normal));
     }
     // Many sites need not come to the last digit: the substeps hold what is left.
-    const bool is_rough = works.size() > 8 || path == SlidePath::estimated;
-    const CompressionRules rules{path, (is_rough ? 1e-2 : 1e-4) * fastest + 1e-12, fastest};
-    const std::size_t max_iterations = 64 + 64 * works.size();
+    const bool is_rough = works.size() > settings.rough_sites || path == SlidePath::estimated;
+    const double tolerance = is_rough ? settings.rough_approach_tolerance : settings.approach_tolerance;
+    const CompressionRules rules{settings, path, tolerance * fastest + speed_rounding, fastest};
+    const std::size_t max_iterations = settings.base_iterations + settings.iterations_per_site * works.size();
     for (std::size_t iteration = 0; iteration < max_iterations; ++iteration) {
-        find_fastest(works, bodies, rules.tolerance, 1e-9 * fastest, memory.fastest);
+        find_fastest(works, bodies, rules.tolerance, symmetric_rounding * fastest, memory.fastest);
         if (memory.fastest.empty()) {
             return static_cast<int>(std::count_if(works.begin(), works.end(),
                                                   [](const ImpactWork& work) { return work.state.impulse.z > 0; }));
@@ -254,11 +261,14 @@ int compress_all(ImpactGroupMemory& memory, std::span<BodyState> bodies, SlidePa
 }
 
 // Stronge's expansion of a site that collided alone.
-void expand_alone(ImpactWork& work, std::span<BodyState> bodies, SlidePath path) {
-    ImpactPrecision precision =
-        path == SlidePath::estimated ? ImpactPrecision{.step_fraction = 0.5, .end_fraction = 1e-3} : ImpactPrecision{};
+void expand_alone(ImpactWork& work, std::span<BodyState> bodies, const ImpactSolverSettings& settings, SlidePath path) {
+    ImpactPrecision precision{.step_fraction = settings.expansion_step_fraction,
+                              .end_fraction = settings.expansion_end_fraction};
+    if (path == SlidePath::estimated) {
+        precision = {.step_fraction = settings.rough_step_fraction, .end_fraction = settings.rough_end_fraction};
+    }
     // A slide that stopped with the compression has left no direction to slide on along, but its rounding.
-    precision.stop_speed = slide_rounding * length(work.velocity_before);
+    precision.stop_speed = settings.slide_tolerance * length(work.velocity_before);
     const double e = work.site->coefficients.restitution;
     const Vec3 before = work.state.impulse;
     work.state.velocity = site_velocity(work, bodies);
@@ -374,7 +384,8 @@ void limit_expansion(std::vector<ImpactWork>& works, std::span<BodyState> bodies
 }
 
 // Restitution of all sites. Returns whether there was any.
-bool expand(std::vector<ImpactWork>& works, std::span<BodyState> bodies, int taking_part, SlidePath path) {
+bool expand(std::vector<ImpactWork>& works, std::span<BodyState> bodies, int taking_part,
+            const ImpactSolverSettings& settings, SlidePath path) {
     bool any = false;
     for (ImpactWork& work : works) {
         work.compression = work.state.impulse;
@@ -383,7 +394,7 @@ bool expand(std::vector<ImpactWork>& works, std::span<BodyState> bodies, int tak
     if (!any) return false;
     if (taking_part == 1) {
         for (ImpactWork& work : works) {
-            if (work.compression_work > 0) expand_alone(work, bodies, path);
+            if (work.compression_work > 0) expand_alone(work, bodies, settings, path);
         }
     } else {
         expand_together(works, bodies);
@@ -409,7 +420,7 @@ void list_responses(std::vector<ImpactWork>& works, ImpactGroupMemory& memory) {
 }  // namespace
 
 ImpactReport solve_impact_group(std::span<ImpactSite> sites, std::span<BodyState> bodies, ImpactGroupMemory& memory,
-                                SlidePath path) {
+                                const ImpactSolverSettings& settings, SlidePath path) {
     std::vector<ImpactWork>& works = memory.works;
     works.resize(sites.size());
     for (std::size_t i = 0; i < sites.size(); ++i) begin(sites[i], bodies, works[i]);
@@ -417,10 +428,11 @@ ImpactReport solve_impact_group(std::span<ImpactSite> sites, std::span<BodyState
 
     // Compression and expansion; what that drives together again is stopped without a bounce.
     ImpactReport report;
-    const int taking_part = compress_all(memory, bodies, path);
+    const int taking_part = compress_all(memory, bodies, settings, path);
     report.converged = taking_part >= 0;
-    const bool expanded = expand(works, bodies, taking_part, path);
-    if (expanded && works.size() > 1 && report.converged) report.converged = compress_all(memory, bodies, path) >= 0;
+    const bool expanded = expand(works, bodies, taking_part, settings, path);
+    if (expanded && works.size() > 1 && report.converged)
+        report.converged = compress_all(memory, bodies, settings, path) >= 0;
 
     for (ImpactWork& work : works) {
         if (work.is_ready) work.site->impulse = work.frame * work.state.impulse;

@@ -8,6 +8,7 @@
 #include "physics/constraint/impact/frictional_impact.h"
 #include "physics/constraint/impact/impact_joints.h"
 #include "physics/constraint/namespace.h"
+#include "physics/definitions/settings/impact_solver_settings.h"
 #include "physics/dynamic/body_state.h"
 
 namespace embody::physics::constraint {
@@ -62,6 +63,6 @@ struct ImpactGroupMemory {
 /// Solves the collision of all sites together and changes the velocities of their bodies, and of those that joints
 /// connect with them (memory.joints).
 ImpactReport solve_impact_group(std::span<ImpactSite> sites, std::span<BodyState> bodies, ImpactGroupMemory& memory,
-                                SlidePath path = SlidePath::followed);
+                                const ImpactSolverSettings& settings, SlidePath path = SlidePath::followed);
 
 }  // namespace embody::physics::constraint

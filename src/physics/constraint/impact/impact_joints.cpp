@@ -8,12 +8,6 @@
 
 namespace embody::physics::constraint {
 
-namespace {
-
-constexpr double regularisation = 1e-10;  // of a row, over its own J M⁻¹ Jᵀ: rows of a loop may say the same thing
-
-}  // namespace
-
 void ImpactJoints::clear() {
     bodies_.clear();
     places_.clear();
@@ -95,7 +89,7 @@ void ImpactJoints::put_joint(std::size_t number, const View& view) {
     for (int row = 0; row < max_joint_rows; ++row) own.column[row][row] = -1;
     for (int row = 0; row < place.rows.count; ++row) {
         const JointRow& j = place.rows.rows[static_cast<std::size_t>(row)];
-        own.column[row][row] = -regularisation * row_response(joint, j, view.bodies);
+        own.column[row][row] = -view.settings.regularisation * row_response(joint, j, view.bodies);
         const auto put = [&](std::int32_t body, std::uint32_t edge, const Vec6& numbers) {
             if (body < 0) return;
             const bool joint_has_rows = matrix().row_end(edge) == 0;

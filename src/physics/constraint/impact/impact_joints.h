@@ -45,7 +45,7 @@ public:
     /// Adds the joints' answer to the pushes to their totals of the step.
     void add_to_totals(std::span<const Push> pushes, const View& view);
 
-    /// How many structures of assemblies are remembered.
+    /// Structures of assemblies that are remembered; what is analysed again is the same.
     static constexpr std::size_t max_analysed = 16;
 
 private:

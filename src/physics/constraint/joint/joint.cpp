@@ -91,9 +91,6 @@ double coordinate_of(const Joint& joint, const Frames& frames) {
     return 2 * (q.w < 0 ? arc_tangent(-q.x, -q.w) : arc_tangent(q.x, q.w));
 }
 
-// Joints are mended no faster than this: bodies that a user joined far apart come together instead of bursting.
-constexpr double max_correction_speed = 5;  // m/s or rad/s
-
 Vec3 angular_effect(const BodyState& body, Vec3 row) { return body.inverse_inertia * row; }
 
 double row_product(const JointRow& i, const JointRow& j, const BodyState& a, const BodyState& b) {
@@ -163,32 +160,34 @@ void change_free_impulse(Joint& joint, double& impulse, double value, double sig
     if (change != 0) apply_row(joint, joint.free_row, sign * change, bodies);
 }
 
-void solve_motor(Joint& joint, SolvePhase phase, double substep, std::span<BodyState> bodies) {
+void solve_motor(Joint& joint, const JointPhase& phase, std::span<BodyState> bodies) {
     const auto* motor = motor_of(joint);
     if (!motor || !*motor) return;
-    double& impulse = impulses_of(joint, phase).motor;
-    const double largest = (*motor)->max_force * substep / 2;
+    double& impulse = impulses_of(joint, phase.phase).motor;
+    const double largest = (*motor)->max_force * phase.substep / 2;
     const double missing = (*motor)->speed - row_speed(joint, joint.free_row, bodies);
     change_free_impulse(joint, impulse, std::clamp(impulse + joint.free_mass * missing, -largest, largest), 1, bodies);
 }
 
 // Whether a body turns so far in a substep that its pose after the drift tells nothing: the passes would run away. The
 // speed of the rows then stands for the way.
-bool turns_too_far(const Joint& joint, double substep, std::span<const BodyState> bodies) {
+bool turns_too_far(const Joint& joint, const JointPhase& phase, std::span<const BodyState> bodies) {
     const double fastest = std::max(length_squared(body_a(joint, bodies).angular_velocity),
                                     length_squared(bodies[joint.b].angular_velocity));
-    return fastest * substep * substep > 1;
+    const double max_turn = phase.settings.max_drift_turn;
+    return fastest * phase.substep * phase.substep > max_turn * max_turn;
 }
 
 // How fast each row's error grows beyond what may be left of it.
-std::array<double, max_joint_rows> position_excess(const Joint& joint, double substep,
+std::array<double, max_joint_rows> position_excess(const Joint& joint, const JointPhase& phase,
                                                    std::span<const BodyState> bodies) {
+    const double substep = phase.substep, max_correction = phase.max_correction();
     std::array<double, max_joint_rows> excess{};
-    const bool is_linear = turns_too_far(joint, substep, bodies);
+    const bool is_linear = turns_too_far(joint, phase, bodies);
     if (!is_linear) excess = constraint_errors(joint, frames_after_drift(joint, substep, bodies));
     for (std::size_t i = 0; i < max_joint_rows; ++i) {
         if (is_linear) excess[i] = joint.errors[i] + substep * row_speed(joint, joint.rows[i], bodies);
-        excess[i] = (excess[i] - rest_of_error(joint.errors[i], substep)) / substep;
+        excess[i] = (excess[i] - rest_of_error(joint.errors[i], max_correction)) / substep;
     }
     return excess;
 }
@@ -211,38 +210,38 @@ double earlier_impulse(Joint& joint, SolvePhase phase, const Bound& bound) {
 }
 
 // How fast the coordinate leaves the allowed range: by where the drift would take it, or by its speed.
-double leaving_speed(const Joint& joint, SolvePhase phase, double substep, const Bound& bound,
+double leaving_speed(const Joint& joint, const JointPhase& phase, const Bound& bound,
                      std::span<const BodyState> bodies) {
-    const double speed = -bound.sign * row_speed(joint, joint.free_row, bodies);
-    if (phase == SolvePhase::velocity) return speed;
+    const double speed = -bound.sign * row_speed(joint, joint.free_row, bodies), substep = phase.substep;
+    if (phase.phase == SolvePhase::velocity) return speed;
     const auto beyond = [&](const Frames& frames) {
         return -bound.sign * (coordinate_of(joint, frames) - bound.value);
     };
     const double now = beyond(frames_now(joint, bodies));
-    const double after = turns_too_far(joint, substep, bodies) ? now + substep * speed
-                                                               : beyond(frames_after_drift(joint, substep, bodies));
-    return (after - rest_of_error(std::max(now, 0.0), substep)) / substep;
+    const double after = turns_too_far(joint, phase, bodies) ? now + substep * speed
+                                                             : beyond(frames_after_drift(joint, substep, bodies));
+    return (after - rest_of_error(std::max(now, 0.0), phase.max_correction())) / substep;
 }
 
-void solve_bound(Joint& joint, SolvePhase phase, double substep, const Bound& bound, std::span<BodyState> bodies) {
-    const double earlier = earlier_impulse(joint, phase, bound);
-    double& impulse = impulse_of(impulses_of(joint, phase), bound);
+void solve_bound(Joint& joint, const JointPhase& phase, const Bound& bound, std::span<BodyState> bodies) {
+    const double earlier = earlier_impulse(joint, phase.phase, bound);
+    double& impulse = impulse_of(impulses_of(joint, phase.phase), bound);
 
     // What the warm start gave to a bound that holds no more is taken back.
-    if (phase == SolvePhase::velocity && !(earlier > 0)) {
+    if (phase.phase == SolvePhase::velocity && !(earlier > 0)) {
         change_free_impulse(joint, impulse, 0, bound.sign, bodies);
         return;
     }
-    const double leaving = leaving_speed(joint, phase, substep, bound, bodies);
+    const double leaving = leaving_speed(joint, phase, bound, bodies);
     change_free_impulse(joint, impulse, std::max(impulse + joint.free_mass * leaving, -earlier), bound.sign, bodies);
 }
 
-void solve_free_row(Joint& joint, SolvePhase phase, double substep, std::span<BodyState> bodies) {
+void solve_free_row(Joint& joint, const JointPhase& phase, std::span<BodyState> bodies) {
     if (joint.free_mass == 0) return;
-    solve_motor(joint, phase, substep, bodies);
+    solve_motor(joint, phase, bodies);
     const auto* limit = limit_of(joint);
     if (!limit || !*limit) return;
-    for (const Bound& bound : bounds_of(**limit)) solve_bound(joint, phase, substep, bound, bodies);
+    for (const Bound& bound : bounds_of(**limit)) solve_bound(joint, phase, bound, bodies);
 }
 
 }  // namespace
@@ -314,9 +313,8 @@ double row_speed(const Joint& joint, const JointRow& row, std::span<const BodySt
            dot(row.angular_a, a.angular_velocity);
 }
 
-double rest_of_error(double error, double substep) {
-    const double most = max_correction_speed * substep;
-    return error - std::clamp(error, -most, most);
+double rest_of_error(double error, double max_correction) {
+    return error - std::clamp(error, -max_correction, max_correction);
 }
 
 void prepare_joint(Joint& joint, std::span<const BodyState> bodies) {
@@ -341,18 +339,18 @@ void warm_start_joint(Joint& joint, SolvePhase phase, std::span<BodyState> bodie
     apply_row(joint, joint.free_row, impulses.motor + impulses.lower - impulses.upper, bodies);
 }
 
-double solve_joint(Joint& joint, SolvePhase phase, double substep, std::span<BodyState> bodies) {
-    solve_free_row(joint, phase, substep, bodies);
+double solve_joint(Joint& joint, const JointPhase& phase, std::span<BodyState> bodies) {
+    solve_free_row(joint, phase, bodies);
 
     // What each row's speed is too much.
     std::array<double, max_joint_rows> excess{};
-    if (phase == SolvePhase::position) {
-        excess = position_excess(joint, substep, bodies);
+    if (phase.phase == SolvePhase::position) {
+        excess = position_excess(joint, phase, bodies);
     } else {
         for (std::size_t i = 0; i < max_joint_rows; ++i) excess[i] = row_speed(joint, joint.rows[i], bodies);
     }
     const std::array<double, max_joint_rows> change = solve_block(joint, excess);
-    JointImpulses& impulses = impulses_of(joint, phase);
+    JointImpulses& impulses = impulses_of(joint, phase.phase);
     double largest = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(joint.row_count); ++i) {
         impulses.rows[i] -= change[i];
@@ -365,8 +363,8 @@ double solve_joint(Joint& joint, SolvePhase phase, double substep, std::span<Bod
 // Primal-dual active set: M. Hintermüller, K. Ito, K. Kunisch, "The primal-dual active set strategy as a semismooth
 // Newton method", 2003. A bound holds where its impulse and what the free row alone would add for the speed at which it
 // is left have a positive sum; a motor drives where that sum is within its force.
-double choose_free_hold(Joint& joint, SolvePhase phase, double substep, bool is_first, std::span<BodyState> bodies) {
-    JointImpulses& impulses = impulses_of(joint, phase);
+double choose_free_hold(Joint& joint, const JointPhase& phase, bool is_first, std::span<BodyState> bodies) {
+    JointImpulses& impulses = impulses_of(joint, phase.phase);
     const FreeHold last = impulses.hold;
     impulses.hold = FreeHold::nothing;
     if (joint.free_mass == 0) return 0;
@@ -378,9 +376,10 @@ double choose_free_hold(Joint& joint, SolvePhase phase, double substep, bool is_
         for (const Bound& bound : bounds_of(**limit)) {
             const FreeHold side = bound.sign > 0 ? FreeHold::lower : FreeHold::upper;
             double& impulse = impulse_of(impulses, bound);
-            const double earlier = earlier_impulse(joint, phase, bound);
-            const bool may_hold = impulses.hold == FreeHold::nothing && (phase == SolvePhase::position || earlier > 0);
-            const double leaving = may_hold ? leaving_speed(joint, phase, substep, bound, bodies) : 0;
+            const double earlier = earlier_impulse(joint, phase.phase, bound);
+            const bool is_bound = phase.phase == SolvePhase::position || earlier > 0;
+            const bool may_hold = impulses.hold == FreeHold::nothing && is_bound;
+            const double leaving = may_hold ? leaving_speed(joint, phase, bound, bodies) : 0;
             const bool goes_on = is_first && last == side;
             if (may_hold && (goes_on || impulse + joint.free_mass * leaving > -earlier)) {
                 impulses.hold = side;
@@ -394,7 +393,7 @@ double choose_free_hold(Joint& joint, SolvePhase phase, double substep, bool is_
     // Motor. What a bound holds it only pushes.
     const auto* motor = motor_of(joint);
     if (!motor || !*motor) return excess;
-    const double largest = (*motor)->max_force * substep / 2;
+    const double largest = (*motor)->max_force * phase.substep / 2;
     const double too_fast = row_speed(joint, joint.free_row, bodies) - (*motor)->speed;
     const double wanted = impulses.motor - joint.free_mass * too_fast;
     const bool drives = std::fabs(wanted) < largest || (is_first && last == FreeHold::motor);

@@ -8,6 +8,7 @@
 #include "physics/constraint/namespace.h"
 #include "physics/constraint/sweeps/contact_solver.h"
 #include "physics/definitions/joint_definition.h"
+#include "physics/definitions/settings/joint_settings.h"
 
 namespace embody::physics::constraint {
 
@@ -16,7 +17,7 @@ struct JointRow {
     Vec3 linear, angular_a, angular_b;
 };
 
-inline constexpr int max_joint_rows = 6;
+inline constexpr int max_joint_rows = 6;  ///< of a rigid body's motion
 
 struct JointRows {
     int count = 0;
@@ -57,6 +58,16 @@ struct Joint {
 
 JointImpulses& impulses_of(Joint& joint, SolvePhase phase);
 
+/// One phase of a substep in which joints are solved. A view for as long as that lasts.
+struct JointPhase {
+    SolvePhase phase = SolvePhase::position;
+    double substep = 0;  ///< s
+    const JointSettings& settings;
+
+    /// What an error may be mended by in the substep, m or rad.
+    [[nodiscard]] double max_correction() const { return settings.max_correction_speed * substep; }
+};
+
 /// What a joint's rows are made of, world axes: for one pose of its bodies, or the mean of two.
 struct JointGeometry {
     Vec3 arm_a, arm_b;  ///< from the centres of mass to the joint frames
@@ -81,7 +92,7 @@ void factor_joint(Joint& joint, std::span<const BodyState> bodies);
 void warm_start_joint(Joint& joint, SolvePhase phase, std::span<BodyState> bodies);
 
 /// One pass. Returns the largest speed that it still had to correct, m/s or rad/s.
-double solve_joint(Joint& joint, SolvePhase phase, double substep, std::span<BodyState> bodies);
+double solve_joint(Joint& joint, const JointPhase& phase, std::span<BodyState> bodies);
 
 // For a direct solve.
 
@@ -94,13 +105,13 @@ bool has_motor(const Joint& joint);
 bool has_limit(const Joint& joint);
 /// Speed along the row, m/s or rad/s.
 double row_speed(const Joint& joint, const JointRow& row, std::span<const BodyState> bodies);
-/// What may be left of an error after a substep: joints are mended at no more than a few m/s.
-double rest_of_error(double error, double substep);
+/// What may be left of an error, of which `max_correction` is mended at most, m or rad.
+double rest_of_error(double error, double max_correction);
 
 /// What holds the free coordinate in the next round of a direct solve, written to the phase's impulses; returns the
 /// speed that is too much along the free row, m/s or rad/s: to be taken away by the row where something holds, else
 /// changed here already. In the `first` round what held goes on holding.
-double choose_free_hold(Joint& joint, SolvePhase phase, double substep, bool is_first, std::span<BodyState> bodies);
+double choose_free_hold(Joint& joint, const JointPhase& phase, bool is_first, std::span<BodyState> bodies);
 /// Notes what a direct solve found for the free row.
 void add_free_impulse(Joint& joint, SolvePhase phase, double change);
 

@@ -21,16 +21,6 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr double tolerance = 1e-10;        // m/s, rad/s: what may be left of a speed
-constexpr double good_enough = 1e-6;       // the same where rounding allows no less
-constexpr double hopeless = 1e6;           // the same from where no round leads back
-constexpr double fast_enough = 0.1;        // a round that leaves less of the error needs no new factors
-constexpr int max_iterations = 20;         // of Newton's method
-constexpr int line_search_iterations = 4;  // in which the error may rise
-constexpr int max_halvings = 4;            // of a substep
-constexpr double energy_tolerance = 1e-9;  // share by which joints may seem to do work
-constexpr double regularisation = 1e-10;   // E over the row's own J M⁻¹ Jᵀ
-
 // What a rotation by the Cayley transform of h (ω + δω) is more than that of h ω, as a row for δω: with a = h ω / 2,
 // φ = h (δω + a × δω) / (1 + a²).
 Vec3 row_of_turning(Vec3 row, Vec3 half_turn) {
@@ -83,7 +73,7 @@ void JointSystem::set(const JointedList& list, const View& view) {
     }
     std::sort(carriers_.begin(), carriers_.end());
     carriers_.erase(std::unique(carriers_.begin(), carriers_.end()), carriers_.end());
-    starts_.resize(max_halvings + 1);
+    starts_.resize(static_cast<std::size_t>(view.settings.max_halvings) + 1);
     find_spin_axes(view);
     if (is_known) return;
     analysed_bodies_ = bodies_.size();
@@ -160,13 +150,14 @@ void JointSystem::absorb_changes(const View& view) {
 
 // What holds the free coordinates; the largest speed that is wrong there.
 double JointSystem::choose_holds(const View& view) {
+    const JointPhase phase{phase_, substep_, view.settings};
     double largest = 0;
     for (std::size_t i = 0; i < places_.size(); ++i) {
         Place& place = places_[i];
         Joint& joint = view.joints[place.joint];
         Vec6& right_side = unknowns_[bodies_.size() + i];
         right_side = {};
-        const double excess = choose_free_hold(joint, phase_, substep_, is_first_, view.bodies);
+        const double excess = choose_free_hold(joint, phase, is_first_, view.bodies);
         const bool is_held = impulses_of(joint, phase_).hold != FreeHold::nothing;
         if (is_held != place.is_held) has_factors_ = false;
         place.is_held = is_held;
@@ -182,6 +173,7 @@ double JointSystem::choose_holds(const View& view) {
 double JointSystem::find_excess(const View& view) {
     double largest = 0;
     const bool has_drift = phase_ == SolvePhase::position;
+    const double max_correction = JointPhase{phase_, substep_, view.settings}.max_correction();
     for (Body& body : bodies_) {
         const BodyState& state = view.bodies[body.slot];
         if (!has_drift) break;
@@ -208,7 +200,7 @@ double JointSystem::find_excess(const View& view) {
             right_side[row] = has_drift && !is_linear_ ? 0 : row_speed(joint, joint.rows[row], view.bodies);
             if (has_drift) {
                 const double error = place.before.errors[row];
-                const double rest = errors_ == Errors::kept ? error : rest_of_error(error, substep_);
+                const double rest = errors_ == Errors::kept ? error : rest_of_error(error, max_correction);
                 right_side[row] += (place.after.errors[row] - rest) / substep_;
             }
             largest = std::max(largest, std::fabs(right_side[row]));
@@ -321,7 +313,7 @@ void JointSystem::add_joint_blocks(std::size_t number, const View& view) {
     const JointRows after =
         has_drift ? make_rows(joint, place.after.geometry) : JointRows{joint.row_count, joint.rows, joint.free_row};
     const auto put_row = [&](int row, const JointRow& mean, const JointRow& end) {
-        own.column[row][row] = -regularisation * row_response(joint, mean, view.bodies);
+        own.column[row][row] = -view.settings.regularisation * row_response(joint, mean, view.bodies);
         const auto put = [&](std::int32_t body, std::uint32_t edge, Vec3 linear, Vec3 mean_angular, Vec3 end_linear,
                              Vec3 end_angular) {
             if (body < 0) return;
@@ -384,10 +376,11 @@ double JointSystem::round(const View& view) {
     error = std::max(error, find_excess(view));
     if (phase_ == SolvePhase::position) sum_impulses(view, true);
     error = std::max(error, find_residuals(view));
-    if (!is_first_ && error > fast_enough * last_error_ && phase_ == SolvePhase::position) has_factors_ = false;
+    const bool is_slow = !is_first_ && error > view.settings.refactor_ratio * last_error_;
+    if (is_slow && phase_ == SolvePhase::position) has_factors_ = false;
     is_first_ = false;
     last_error_ = error;
-    if (error <= tolerance) return error;
+    if (error <= view.settings.speed_tolerance) return error;
     if (!has_factors_) factor(view);
     matrix_.solve(unknowns_);
     apply_solution(view);
@@ -396,20 +389,23 @@ double JointSystem::round(const View& view) {
 
 // Newton's method; whether it came to an end.
 bool JointSystem::iterate(const View& view) {
+    const JointSettings& settings = view.settings;
     double last = 0, error = 0;
-    for (int count = 0; count < max_iterations; ++count) {
+    for (int count = 0; count < settings.max_iterations; ++count) {
         error = round(view);
-        if (error <= tolerance || (error <= good_enough && count > 1 && error > last / 4)) return true;
-        if (!(error < hopeless) || (count >= line_search_iterations && error > last / 2)) return false;
+        const bool stagnates = count > 1 && error > settings.stagnation_ratio * last;
+        if (error <= settings.speed_tolerance || (error <= settings.rounding_tolerance && stagnates)) return true;
+        const bool rises = count >= settings.nonmonotone_iterations && error > settings.max_error_ratio * last;
+        if (!(error < settings.divergence_speed) || rises) return false;
         last = error;
     }
-    return error <= good_enough;
+    return error <= settings.rounding_tolerance;
 }
 
 void JointSystem::advance(double time, const View& view, Errors errors) {
     errors_ = errors;
     prepare_all(view);
-    advance(time, max_halvings, view);
+    advance(time, view.settings.max_halvings, view);
     errors_ = Errors::corrected;
 }
 
@@ -517,7 +513,7 @@ double JointSystem::bound_energy(double most, const View& view) const {
     };
     if (has_motor_ || std::any_of(carriers_.begin(), carriers_.end(), moves)) return 1;
     const double energy = kinetic_energy(view);
-    if (!(energy > most * (1 + energy_tolerance))) return 1;
+    if (!(energy > most * (1 + view.settings.energy_tolerance))) return 1;
     const double fraction = std::sqrt(most / energy);
     for (const Body& body : bodies_) {
         view.bodies[body.slot].linear_velocity *= fraction;

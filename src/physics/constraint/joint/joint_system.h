@@ -23,11 +23,12 @@ struct JointedList {
 /// to step: it remembers the order of elimination.
 class JointSystem {
 public:
-    /// The arrays that slots and indices lead into.
+    /// The arrays that slots and indices lead into, and the step's settings.
     struct View {
         std::span<BodyState> bodies;
         std::span<const BodyConstants> constants;
         std::span<Joint> joints;
+        const JointSettings& settings;
     };
 
     /// Whether a list is small enough.

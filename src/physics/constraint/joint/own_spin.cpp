@@ -9,7 +9,9 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr double aligned = 1e-6;  // share by which inertia and anchors may miss the axis
+// Share by which inertia and anchors may miss the axis: what definitions round is below 1e-7 of it, what is built
+// beside it is above 1e-4.
+constexpr double aligned = 1e-6;
 
 // A turn by `angle` (rad, the length), of many Cayley turns: the library's sine differs by system. Right to 1e-3 at 4
 // rad.

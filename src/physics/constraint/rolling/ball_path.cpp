@@ -18,19 +18,11 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr double same_normal = 1 - 1e-9;  // cosine
-constexpr double part_turn = 0.06;        // rad of the normal, or of a swing's phase, in a part
-constexpr double partial_travel = 0.5;    // of the radius, in a part
-constexpr int max_halvings = 6;           // of a part
-constexpr double slow = 2e-3;             // m/s: slower by itself and by a step's gravity, it comes to rest
-constexpr double slow_resisted = 0.05;    // m/s: the same of what the ground resists to roll
-constexpr double min_travel = 1e-9;       // of the radius, in a part: less is standing still
-constexpr double max_gap = 2e-4;          // m: farther from the ground it does not touch
-constexpr double soft_sag = 1e-5;         // m: so deep the contact solver carries it (validation.SleepOnlyInBalance)
-constexpr double deepest = 0.1;           // of the radius: deeper, the contact solver takes it out
-constexpr double max_parting = 1e-3;      // m/s, and
-constexpr double max_parting_fraction = 0.02;  // of the speed: faster, it leaves the ground
-constexpr double max_fall = 0.05;              // m/s: faster, what did not touch before has an impact
+constexpr double same_normal = 1 - 1e-9;   // cosine: 4e-5 rad, what floats of a mesh leave of a flat face is 1e-7
+constexpr double min_travel = 1e-9;        // of the radius, in a part: less is standing still
+constexpr double level_sine = 1e-6;        // of the slope: what rounding leaves of level ground is 1e-15
+constexpr double beside_gap = 1e-6;        // of the radius: a place as near as that touches, rounding leaves 1e-15
+constexpr double max_counted_parts = 1e6;  // no integer takes more than 2e9; max_parts is far below
 
 const double smooth_cosine = std::cos(smooth_edge_angle);
 
@@ -38,6 +30,8 @@ const double smooth_cosine = std::cos(smooth_edge_angle);
 
 BallPath::BallPath(const BallInStep& ball, BallSurroundings& surroundings)
     : ball_(ball),
+      limits_(ball.settings),
+      settings_(ball.settings.ball),
       state_(ball.state),
       step_(ball.step),
       radius_(ball.radius),
@@ -65,13 +59,12 @@ void BallPath::find(Vec3 center, double margin) {
 
 // Puts the ball onto the ground near by: the surfaces there count as planes. The touch is the last one that moved it.
 bool BallPath::settle(BallPlace& at, const Vec3* last_normal, double margin) {
-    constexpr int iterations = 8;       // planes that it is put onto in turn
-    constexpr double rounding = 1e-12;  // m
+    constexpr double rounding = 1e-12;  // m; a centre metres away is known to 1e-15
     find(at.center, margin);
     if (touches_.empty()) return false;
     Vec3 displacement;
     std::size_t chosen = 0;
-    for (int iteration = 0; iteration < iterations; ++iteration) {
+    for (int iteration = 0; iteration < settings_.settle_iterations; ++iteration) {
         double least = 1e300;
         std::size_t nearest = 0;
         for (std::size_t i = 0; i < touches_.size(); ++i) {
@@ -84,14 +77,14 @@ bool BallPath::settle(BallPlace& at, const Vec3* last_normal, double margin) {
         chosen = nearest;
         displacement -= touches_[nearest].normal * least;
     }
-    if (!(length(displacement) < partial_travel * radius_)) return false;
+    if (!(length(displacement) < settings_.part_travel_fraction * radius_)) return false;
     at.center += displacement;
     at.touch = touches_[chosen];
     at.ground = ground_of_[chosen];
 
     // What it comes to beside another place is hit.
     const auto is_beside = [&](const BallTouch& touch) {
-        return touch.gap + dot(displacement, touch.normal) < rounding + 1e-6 * radius_ &&
+        return touch.gap + dot(displacement, touch.normal) < rounding + beside_gap * radius_ &&
                dot(touch.normal, at.touch.normal) < smooth_cosine && dot(touch.normal, at.motion.velocity) <= 0;
     };
     return std::none_of(touches_.begin(), touches_.end(), is_beside) ||
@@ -120,9 +113,9 @@ bool BallPath::is_flat(const BallPlace& at) const {
 // Flat as far as it gets, and level or resisting: the contact solver loses nothing there. Triangles beyond a hollow
 // edge are not seen from before it: where the ball gets to is looked at too.
 bool BallPath::is_plain(const BallPlace& at) {
-    const bool is_level = length(cross(acceleration_, at.touch.normal)) <= 1e-6 * length(acceleration_);
+    const bool is_level = length(cross(acceleration_, at.touch.normal)) <= level_sine * length(acceleration_);
     if (!(is_level || resists_) || !is_flat(at)) return false;
-    find(at.center + at.motion.velocity * step_, max_gap);
+    find(at.center + at.motion.velocity * step_, limits_.touch_gap);
     return is_flat(at);
 }
 
@@ -134,57 +127,62 @@ bool BallPath::begin(BallPlace& at, bool has_company) {
     at.motion = {state_.linear_velocity, state_.angular_velocity, radius_, inertia};
     const double speed = length(at.motion.velocity);
     const double reach = speed * step_ + length(acceleration_) * step_ * step_ / 2;
-    if (!settle(at, nullptr, std::min(reach, radius_) + max_gap)) return false;
+    if (!settle(at, nullptr, std::min(reach, radius_) + limits_.touch_gap)) return false;
     const Vec3 n = at.touch.normal;
     const double gap = at.touch.gap, closing = -dot(at.motion.velocity, n);
     const bool is_on_face = is_flat(at);
-    if (gap > std::min(max_gap, deepest * radius_) || gap < -deepest * radius_ || is_plain(at)) return false;
-    if (-closing > max_parting + (bounces_ ? 0 : max_parting_fraction * speed)) return false;
-    if (closing > (was_touching_ && !bounces_ ? max_fall + smooth_edge_angle * speed : max_fall)) return false;
+    const double max_depth = settings_.max_depth_fraction * radius_;
+    if (gap > std::min(limits_.touch_gap, max_depth) || gap < -max_depth || is_plain(at)) return false;
+    const double max_parting = limits_.max_parting_speed + (bounces_ ? 0 : settings_.max_parting_fraction * speed);
+    if (-closing > max_parting) return false;
+    const double slowest_impact = limits_.max_approach_speed;
+    if (closing > (was_touching_ && !bounces_ ? slowest_impact + smooth_edge_angle * speed : slowest_impact))
+        return false;
 
     // What is left of the motion into the ground goes; the way out of it is taken from the motion.
     at.motion.velocity += n * closing;
     const Vec3 along = acceleration_ - n * dot(acceleration_, n);
-    const double least = resists_ ? slow_resisted : is_on_face ? 0 : slow;
+    const double least = resists_ ? settings_.slow_resisted_speed : is_on_face ? 0 : settings_.slow_speed;
     if (!has_company && length(at.motion.velocity) + length(along) * step_ < least) return false;
     const BallFriction& friction = grounds_[at.ground].friction;
-    at.rolls = friction.at_rest > 0 && length(at.motion.slip(n)) <= 1e-3 * speed;
+    at.rolls = friction.at_rest > 0 && length(at.motion.slip(n)) <= settings_.roll_slip_fraction * speed;
     const double start = at.motion.energy(), given = dot(acceleration_, at.center - state_.center);
-    return std::fabs(gap) < soft_sag || set_energy(at.motion, n, start + given, at.rolls);
+    return std::fabs(gap) < settings_.min_sag || set_energy(at.motion, n, start + given, at.rolls);
 }
 
 int BallPath::count_parts(const BallPlace& at) const {
     const double speed = length(at.motion.velocity) + length(acceleration_) * step_ / 2;
+    const double max_closeness = 1 - settings_.min_hollow_fraction;
     double curvature = 0;
     for (const BallTouch& touch : touches_) {
         const double own =
             std::max({length(touch.shape_operator.x), length(touch.shape_operator.y), length(touch.shape_operator.z)});
-        curvature = std::max(curvature, touch.knows_curvature ? own / (1 - std::min(0.8, own * radius_))
+        curvature = std::max(curvature, touch.knows_curvature ? own / (1 - std::min(max_closeness, own * radius_))
                                         : touch.is_flat       ? 0
                                                               : 1 / radius_);
     }
     const double rate = std::max(speed * curvature, std::sqrt(length(acceleration_) * curvature));
-    const double parts = std::max(
-        {rate * step_ / part_turn, speed * step_ / (partial_travel * radius_), static_cast<double>(ball_.substeps)});
-    return static_cast<int>(std::ceil(std::min(parts, 1e6)));
+    const double parts =
+        std::max({rate * step_ / settings_.part_turn, speed * step_ / (settings_.part_travel_fraction * radius_),
+                  static_cast<double>(ball_.substeps)});
+    return static_cast<int>(std::ceil(std::min(parts, max_counted_parts)));
 }
 
 // How hard the ground must press, m/s². Of a smooth mesh its curvature tells, that of the centre's path being κ/(1 + κ
 // r); else the last part does.
 double BallPath::load(const BallPlace& at) const {
-    constexpr double least = 0.2;  // of 1 + κ r: a hollow that is hardly wider than the ball
     double centripetal = at.centripetal;
     const double squared = length_squared(at.motion.velocity);
     if (at.touch.knows_curvature && squared > 0) {
         const double curvature = dot(at.motion.velocity, at.touch.shape_operator * at.motion.velocity) / squared;
-        centripetal = squared * curvature / std::max(least, 1 + curvature * radius_);
+        centripetal = squared * curvature / std::max(settings_.min_hollow_fraction, 1 + curvature * radius_);
     }
     return -dot(acceleration_, at.touch.normal) - centripetal;
 }
 
 // Whether free flight takes it off the ground within a step's time.
 bool BallPath::leaves(const BallPlace& at) {
-    constexpr double clear = 1e-11;  // m
+    constexpr double clear = 1e-11;  // m: a gap is known to 1e-15
     find(at.center + (at.motion.velocity + acceleration_ * (step_ / 2)) * step_, clear);
     return touches_.empty();
 }
@@ -227,7 +225,8 @@ bool BallPath::advance(BallPlace& at, double time, int halvings) {
     const double friction_work = move_along_plane(at, next, std::max(0.0, pressing), time);
     const Vec3 last_normal = at.touch.normal;
     const double moved = length(next.center - at.center);
-    if (!settle(next, &last_normal, smooth_edge_angle * moved + 1e-3 * radius_)) return in_halves();
+    if (!settle(next, &last_normal, smooth_edge_angle * moved + settings_.settle_margin_fraction * radius_))
+        return in_halves();
 
     // With the energy that this leaves.
     const std::optional<double> lost = turn_or_hit(next, last_normal, time);
@@ -261,7 +260,7 @@ bool BallPath::write(const BallPlace& at, Vec3 received, RolledBall& rolled) con
     return true;
 }
 
-bool BallPath::advance(BallPlace& at, double time) { return advance(at, time, max_halvings); }
+bool BallPath::advance(BallPlace& at, double time) { return advance(at, time, settings_.max_halvings); }
 
 bool BallPath::see_curvature(BallPlace& at, double part) {
     if (at.touch.knows_curvature || at.touch.is_flat) return true;
@@ -275,7 +274,7 @@ bool BallPath::roll(RolledBall& rolled) {
     BallPlace start;
     if (!begin(start, false)) return false;
     int parts = count_parts(start);
-    if (parts > max_parts) return false;
+    if (parts > settings_.max_parts) return false;
     if (!see_curvature(start, step_ / parts)) return false;
     BallPlace at = start;
     for (int i = 0; i < parts; ++i) {

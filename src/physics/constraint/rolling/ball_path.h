@@ -10,6 +10,7 @@
 #include "physics/constraint/contact/contact.h"
 #include "physics/constraint/namespace.h"
 #include "physics/constraint/rolling/rolling_ball.h"
+#include "physics/definitions/settings/rolling_settings.h"
 #include "physics/dynamic/body_state.h"
 
 namespace embody::physics::constraint {
@@ -58,14 +59,13 @@ struct BallInStep {
     std::span<const std::uint32_t> own;     ///< which of them it has with still ground
     double step = 0;                        ///< s
     int substeps = 1;
+    const RollingSettings& settings;
 };
 
 /// A ball that rolls or slides along still ground. The surroundings are memory of the caller, who lists the grounds.
 class BallPath {
 public:
     BallPath(const BallInStep& ball, BallSurroundings& surroundings);
-
-    static constexpr int max_parts = 256;  ///< of a step
 
     /// Alone through the whole step. False, and nothing told, where it lifts off, hits something, has come to rest or
     /// moves on level ground.
@@ -96,6 +96,8 @@ private:
     bool advance(BallPlace& at, double time, int halvings);
 
     const BallInStep ball_;
+    const RollingSettings& limits_;
+    const BallPathSettings& settings_;
     const BodyState& state_;
     const double step_, radius_;
     const Vec3 acceleration_;

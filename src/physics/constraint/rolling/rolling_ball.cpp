@@ -66,9 +66,10 @@ BallPush push_along(BallMotion& ball, Vec3 normal, Vec3 acceleration, double loa
 }
 
 void turn_with_normal(BallMotion& ball, Vec3 from, Vec3 to, bool rolls) {
+    constexpr double min_sine = 1e-15;  // rounding: below, the axis of the turn has no direction
     const Vec3 turning = cross(from, to);
     const double sine = length(turning);
-    if (sine < 1e-15) return;
+    if (sine < min_sine) return;
     const Vec3 axis = turning / sine, ahead = cross(axis, from), ahead_after = cross(axis, to);
     const double across = dot(ball.velocity, ahead), along = dot(ball.velocity, axis);
     if (!rolls) {
@@ -94,9 +95,8 @@ bool set_energy(BallMotion& ball, Vec3 normal, double energy, bool rolls) {
     return has_energy;
 }
 
-std::optional<Vec3> collide_balls(const CollidingBall& a, const CollidingBall& b, Vec3 direction, double restitution,
-                                  double friction) {
-    constexpr double max_lift = 1e-3;  // m/s
+std::optional<Vec3> collide_balls(const CollidingBall& a, const CollidingBall& b, const BallCollision& collision) {
+    const Vec3 direction = collision.direction;
     const auto yielding_along = [&](const CollidingBall& ball) {
         const double into_ground = dot(direction, ball.ground);
         return (1 - into_ground * into_ground) / ball.mass;
@@ -105,15 +105,17 @@ std::optional<Vec3> collide_balls(const CollidingBall& a, const CollidingBall& b
         return ball.motion.velocity + cross(ball.motion.spin, direction * (side * ball.motion.radius));
     };
     const double closing = dot(direction, a.motion.velocity - b.motion.velocity);
-    const double normal = (1 + restitution) * closing / (yielding_along(a) + yielding_along(b));
+    const double normal = (1 + collision.restitution) * closing / (yielding_along(a) + yielding_along(b));
 
     // The slip of spheres yields to friction alone.
     Vec3 slip = surface_velocity(b, -1) - surface_velocity(a, 1);
     slip -= direction * dot(direction, slip);
     const double speed = length(slip);
     const double yielding = (1 + 1 / a.motion.inertia) / a.mass + (1 + 1 / b.motion.inertia) / b.mass;
-    const Vec3 friction_impulse = speed > 0 ? slip * (-std::min(1 / yielding, friction * normal / speed)) : Vec3{};
+    const Vec3 friction_impulse =
+        speed > 0 ? slip * (-std::min(1 / yielding, collision.friction * normal / speed)) : Vec3{};
     const Vec3 impulse = direction * normal + friction_impulse;
+    const double max_lift = collision.max_parting_speed;
     if (-dot(impulse, a.ground) > max_lift * a.mass || dot(impulse, b.ground) > max_lift * b.mass) return std::nullopt;
     const auto push = [&](const CollidingBall& ball, double sign) {
         BallMotion& motion = ball.motion;

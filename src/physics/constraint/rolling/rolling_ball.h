@@ -52,9 +52,15 @@ struct CollidingBall {
     Vec3 ground;      ///< normal of its ground, towards its centre
 };
 
-/// Collides two balls that approach each other, with the ground under each; `direction`: from a's centre to b's, unit.
-/// The impulse on b, N s; none, and nothing done, where it would lift one of them off its ground.
-std::optional<Vec3> collide_balls(const CollidingBall& a, const CollidingBall& b, Vec3 direction, double restitution,
-                                  double friction);
+/// How they meet.
+struct BallCollision {
+    Vec3 direction;  ///< from a's centre to b's, unit
+    double restitution = 0, friction = 0;
+    double max_parting_speed = 0;  ///< m/s: what leaves its ground faster is lifted off it
+};
+
+/// Collides two balls that approach each other, with the ground under each. The impulse on b, N s; none, and nothing
+/// done, where it would lift one of them off its ground.
+std::optional<Vec3> collide_balls(const CollidingBall& a, const CollidingBall& b, const BallCollision& collision);
 
 }  // namespace embody::physics::constraint

@@ -18,17 +18,8 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr double touch_gap = 2e-4;     // m: nearer to the ground than this a ring touches
-constexpr double side_gap = 5e-5;      // m: no farther apart are both ends of a line that touches
-constexpr double max_slip = 0.05;      // of the speed of turning, that is stopped at the start
-constexpr double slow_slip = 0.01;     // m/s: is stopped as well
-constexpr double max_approach = 0.05;  // m/s along the normal: slower than any impact
-constexpr double min_lean = 0.005;     // sine of the angle between axis and normal: flatter, the rim lies on the ground
-constexpr double min_turn = 1e-3;      // rad of the axis in a step: slower, the contact solver loses nothing
-constexpr double fast_turn = 0.5;      // rad of the body in a step: faster, the solver's small turns are none
-constexpr double body_part_turn = 0.08;  // rad in a part of the step, at most
-constexpr int max_parts = 400;           // of a step
-constexpr double max_correction = 1e-3;  // share of the energy that Runge-Kutta may miss in a step
+constexpr double min_squared_sine =
+    1e-12;  // of axis and normal: rounding leaves 1e-16, an upright axis has no lowest point
 
 /// Where a ring is lowest, from the centre of mass, and how fast that place moves.
 struct Lowest {
@@ -44,8 +35,9 @@ struct Moving {
 
 class Roller {
 public:
-    Roller(const BodyConstants& constants, const RollingBody& body, const RollingGround& ground)
-        : constants_(constants), body_(body), ground_(ground) {}
+    Roller(const BodyConstants& constants, const RollingBody& body, const RollingGround& ground,
+           const RollingSettings& settings)
+        : constants_(constants), body_(body), ground_(ground), limits_(settings), settings_(settings.body) {}
 
     std::optional<Vec3> roll(BodyState& state, double time);
 
@@ -55,7 +47,8 @@ private:
         return dot(at.center + lowest(ring, at).arm - ground_.point, ground_.normal);
     }
     [[nodiscard]] double allowed_slip(const Moving& at) const {
-        return slow_slip + (ground_.holds ? max_slip * length(at.spin) * body_.size : 0);
+        return settings_.max_slip_speed +
+               (ground_.holds ? settings_.max_slip_fraction * length(at.spin) * body_.size : 0);
     }
     bool choose_rings(const Moving& at);
     [[nodiscard]] bool on_side() const { return ring_ != end_; }
@@ -73,6 +66,8 @@ private:
     const BodyConstants& constants_;
     const RollingBody& body_;
     const RollingGround& ground_;
+    const RollingSettings& limits_;
+    const RollingBodySettings& settings_;
     const RollingRing* ring_ = nullptr;  // that touches
     const RollingRing* end_ = nullptr;   // and to where; the same, where it is not on its side
     Vec3 force_;
@@ -81,7 +76,7 @@ private:
 Lowest Roller::lowest(const RollingRing& ring, const Moving& at) const {
     const Vec3 n = ground_.normal, center = rotate(at.rotation, ring.center), e = rotate(at.rotation, body_.axis);
     const Vec3 turning = cross(at.spin, e);
-    const double along = dot(n, e), sine = std::sqrt(std::fmax(1e-12, 1 - along * along));
+    const double along = dot(n, e), sine = std::sqrt(std::fmax(min_squared_sine, 1 - along * along));
     const double along_rate = dot(n, turning), sine_rate = -along * along_rate / sine;
     const Vec3 down = (e * along - n) / sine;
     const Vec3 down_rate = (e * along_rate + turning * along) / sine - down * (sine_rate / sine);
@@ -100,10 +95,10 @@ bool Roller::choose_rings(const Moving& at) {
     const auto count = static_cast<std::size_t>(body_.ring_count);
     for (std::size_t i = 0; i < count; ++i) gaps[i] = gap(body_.rings[i], at);
     const auto least = std::min_element(gaps.begin(), gaps.begin() + body_.ring_count);
-    if (!(std::fabs(*least) <= touch_gap)) return false;
+    if (!(std::fabs(*least) <= limits_.touch_gap)) return false;
     double first = 1e300, last = -1e300;
     for (std::size_t i = 0; i < count; ++i) {
-        if (gaps[i] > *least + side_gap) continue;
+        if (gaps[i] > *least + settings_.side_gap) continue;
         const double place = dot(body_.rings[i].center, body_.axis);
         if (place < first) ring_ = &body_.rings[i];
         if (place > last) end_ = &body_.rings[i];
@@ -115,7 +110,7 @@ bool Roller::choose_rings(const Moving& at) {
         ring_ = end_ = &body_.rings[static_cast<std::size_t>(least - gaps.begin())];
     }
     const double along = dot(ground_.normal, rotate(at.rotation, body_.axis));
-    return on_side() || ring_->radius == 0 || 1 - along * along > min_lean * min_lean;
+    return on_side() || ring_->radius == 0 || 1 - along * along > settings_.min_lean * settings_.min_lean;
 }
 
 // What slips is stopped, by the least impulse at the place that touches.
@@ -123,7 +118,8 @@ bool Roller::begin(const BodyState& state, Moving& at) {
     at = {state.center, state.rotation, state.angular_velocity};
     if (!choose_rings(at)) return false;
     const Vec3 arm = lowest(*ring_, at).arm, slip = velocity_at(state, arm);
-    if (length(slip) > allowed_slip(at) || std::fabs(dot(slip, ground_.normal)) > max_approach) return false;
+    if (length(slip) > allowed_slip(at) || std::fabs(dot(slip, ground_.normal)) > limits_.max_approach_speed)
+        return false;
     at.center -= ground_.normal * dot(at.center + arm - ground_.point, ground_.normal);
 
     // The angular momentum about the place that touches stays.
@@ -151,7 +147,7 @@ double Roller::rate_of(const Moving& at) const { return std::max(length(at.spin)
 
 double Roller::axis_rate(const Moving& at) const {
     const Vec3 e = rotate(at.rotation, body_.axis);
-    const double along = dot(ground_.normal, e), sine = std::sqrt(std::fmax(1e-12, 1 - along * along));
+    const double along = dot(ground_.normal, e), sine = std::sqrt(std::fmax(min_squared_sine, 1 - along * along));
     return length(cross(at.spin, e)) / sine;
 }
 
@@ -167,7 +163,8 @@ Vec3 Roller::spin_rate(const Moving& at) {
         // dω/dt = dσ/dt l + σ dl/dt; the line turns about the normal with the axis.
         const Vec3 l = line(at), e = rotate(at.rotation, body_.axis), n = ground_.normal;
         const double along = dot(n, e);
-        const Vec3 turning = cross(n, l) * (dot(cross(n, e), cross(at.spin, e)) / std::fmax(1e-12, 1 - along * along));
+        const Vec3 turning =
+            cross(n, l) * (dot(cross(n, e), cross(at.spin, e)) / std::fmax(min_squared_sine, 1 - along * along));
         const double sigma = dot(at.spin, l);
         result = turning * sigma;
         result += l * (dot(l, moment - about * result) / dot(l, about * l));
@@ -237,9 +234,9 @@ std::optional<Vec3> Roller::roll(BodyState& state, double time) {
     Moving at;
     if (!begin(state, at)) return std::nullopt;
     const double rate = rate_of(at);
-    const auto parts = static_cast<int>(std::ceil(rate * time / body_part_turn));
-    const bool is_slow = axis_rate(at) * time < min_turn && length(at.spin) * time < fast_turn;
-    if (is_slow || !(parts <= max_parts)) return std::nullopt;
+    const auto parts = static_cast<int>(std::ceil(rate * time / settings_.part_turn));
+    const bool is_slow = axis_rate(at) * time < settings_.min_axis_turn && length(at.spin) * time < settings_.min_turn;
+    if (is_slow || !(parts <= settings_.max_parts)) return std::nullopt;
 
     // The way up out of the ground is taken from the motion.
     const double start = energy(at) - constants_.mass * dot(constants_.acceleration, state.center - at.center);
@@ -252,7 +249,7 @@ std::optional<Vec3> Roller::roll(BodyState& state, double time) {
     }
     const double now = energy(at), kinetic = now + constants_.mass * dot(constants_.acceleration, at.center);
     const double fraction = 1 + (start - now) / kinetic;
-    if (!(std::fabs(fraction - 1) < max_correction)) return std::nullopt;
+    if (!(std::fabs(fraction - 1) < settings_.max_energy_error)) return std::nullopt;
     at.spin *= std::sqrt(fraction);
 
     const Vec3 arm = lowest(*ring_, at).arm;
@@ -268,8 +265,8 @@ std::optional<Vec3> Roller::roll(BodyState& state, double time) {
 }  // namespace
 
 std::optional<Vec3> roll(BodyState& state, const BodyConstants& constants, const RollingBody& body,
-                         const RollingGround& ground, double time) {
-    return Roller(constants, body, ground).roll(state, time);
+                         const RollingGround& ground, const RollingStep& step) {
+    return Roller(constants, body, ground, step.settings).roll(state, step.time);
 }
 
 }  // namespace embody::physics::constraint

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "physics/constraint/namespace.h"
+#include "physics/definitions/settings/rolling_settings.h"
 #include "physics/dynamic/body_state.h"
 
 namespace embody::physics::constraint {
@@ -35,12 +36,18 @@ struct RollingGround {
     bool holds;       ///< the body stuck to it in the last step
 };
 
-/// Takes the body through `time` (s) in pure rolling: Lagrange's equations (paper, eq. 2) with the constraint that what
+/// For how long, and how.
+struct RollingStep {
+    double time = 0;  ///< s
+    const RollingSettings& settings;
+};
+
+/// Takes the body through the time in pure rolling: Lagrange's equations (paper, eq. 2) with the constraint that what
 /// touches stands still, by the classical Runge-Kutta method in as many parts as the motion asks for; no work but that
 /// of `constants.acceleration` is done. Returns the ground's impulse, N s. Nothing is changed and there is no result
 /// where the body does not roll like that: it slips or lifts, the ground would have to pull or would need more
 /// friction, or it lies on more than one point or the side's line.
 std::optional<Vec3> roll(BodyState& state, const BodyConstants& constants, const RollingBody& body,
-                         const RollingGround& ground, double time);
+                         const RollingGround& ground, const RollingStep& step);
 
 }  // namespace embody::physics::constraint

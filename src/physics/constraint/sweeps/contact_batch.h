@@ -11,12 +11,9 @@
 
 namespace embody::physics::constraint {
 
-/// Rounds over the points of a region within one pass, in which its bodies are not touched.
-inline constexpr int normal_iterations = 1;
-
 /// Quantities of a contact, in floats times lanes from the start of its batch.
 struct BatchHead {
-    static constexpr int max_points = 4;
+    static constexpr int max_points = 4;  ///< of a region, as in Manifold
     enum Quantity : int {
         body_a,  ///< row of the body, an integer
         body_b,

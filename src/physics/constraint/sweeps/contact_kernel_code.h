@@ -171,6 +171,7 @@ EMBODY_WIDE_INLINE Wide3 solve_friction(float* batch, int points, const RegionMo
     const Wide3 before = about_center(old);
     Wide3 slid{before.x - mass * (u1 - spin * p.along_2), before.y - mass * (u2 + spin * p.along_1),
                select(lever > zero, before.z - mass * lever_squared * spin, zero)};
+    // At least 1e-37, the smallest float but for denormal ones: no division by 0.
     const Wide bound = slide.bound(), size = slide.squared(slid);
     slid = slid * select(size > bound * bound, bound / square_root(maximum(size, broadcast(1e-37F))), one);
 
@@ -252,13 +253,11 @@ EMBODY_WIDE_INLINE NormalLoad solve_normals(float* batch, const RegionMotion& mo
         const Wide rest = kind == Sweep::positions ? impulse[k] * kept[k] : impulse[k];
         return maximum(rest - speed[k], zero);
     };
-    for (int iteration = 0; iteration < physics::constraint::normal_iterations; ++iteration) {
-        for (int k = 0; k < points; ++k) solve_point(k, wanted(k));
-        // The way back begins at each contact's last point but one, whatever the batch's other contacts have.
-        for (int k = points - 2; k >= 0; --k) {
-            const WideMask is_last = quantity(point_of(batch, k + 1), BatchPoint::normal_mass) == zero;
-            solve_point(k, select(is_last, impulse[k], wanted(k)));
-        }
+    for (int k = 0; k < points; ++k) solve_point(k, wanted(k));
+    // The way back begins at each contact's last point but one, whatever the batch's other contacts have.
+    for (int k = points - 2; k >= 0; --k) {
+        const WideMask is_last = quantity(point_of(batch, k + 1), BatchPoint::normal_mass) == zero;
+        solve_point(k, select(is_last, impulse[k], wanted(k)));
     }
 
     NormalLoad change;

@@ -23,15 +23,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/constraint/sweeps/contact_batch.h"
-
 namespace embody::physics::constraint {
 
 namespace {
 
-// Share of a penetration that is taken out a second, 1/s. Faster, a foot that was found too deep kicks its chair up.
-constexpr double recovery_rate = 10;
 constexpr double pi = 3.14159265358979323846;
+constexpr double critical_damping = 2;  // a₁ = 2 ζ, ζ = 1: with less a contact would swing
+constexpr double unbounded = 1e30;      // ratio of a squared force to a bound of nothing
 
 using Points = std::span<ContactPoint>;
 Points points_of(Contact& contact) { return Points(contact.points).first(static_cast<std::size_t>(contact.count)); }
@@ -94,10 +92,8 @@ void solve_normals(Contact& contact, const PreparedContact& prepared, SolvePhase
         change[i] += step;
         for (std::size_t j = 0; j < points.size(); ++j) speed[j] += prepared.coupling[i][j] * step;
     };
-    for (int iteration = 0; iteration < normal_iterations; ++iteration) {
-        for (std::size_t i = 0; i < points.size(); ++i) solve_point(i);
-        for (std::size_t i = points.size() - 1; i-- > 0;) solve_point(i);
-    }
+    for (std::size_t i = 0; i < points.size(); ++i) solve_point(i);
+    for (std::size_t i = points.size() - 1; i-- > 0;) solve_point(i);
     apply_normals(contact, prepared, change, bodies);
 }
 
@@ -142,7 +138,7 @@ void solve_friction(Contact& contact, const PreparedContact& prepared, std::span
     };
     const auto excess = [](Vec3 f, const std::array<double, 2>& limit) {
         const auto ratio = [](double squared, double bound) {
-            return bound > 0 ? squared / (bound * bound) : (squared > 0 ? 1e30 : 0);
+            return bound > 0 ? squared / (bound * bound) : (squared > 0 ? unbounded : 0);
         };
         return ratio(f.x * f.x + f.y * f.y, limit[0]) + ratio(f.z * f.z, limit[1]);
     };
@@ -196,21 +192,29 @@ void solve_rolling(Contact& contact, std::span<BodyState> bodies) {
 
 }  // namespace
 
-ContactSoftness ContactPlan::softness(double time_step) const {
+ContactSoftness ContactPlan::softness(double time_step, const ContactSettings& settings) const {
     // ω for the load it carries, and damped so far that the penetration fades at the recovery rate.
     const double substep = time_step / substeps;
     const double omega = 2 * pi * stiffness / substep;
-    const double a1 = std::max(omega / recovery_rate, 2.0);
+    const double a1 = std::max(omega / settings.recovery_rate, critical_damping);
     const double a2 = substep * omega * a1;
-    return {substep, omega / a1, a2 / (1 + a2), 1 / (1 + a2)};
+    return {.substep = substep,
+            .bias_rate = omega / a1,
+            .mass_scale = a2 / (1 + a2),
+            .impulse_scale = 1 / (1 + a2),
+            .push_speed = settings.max_correction_speed,
+            .penetration_slop = settings.penetration_slop};
 }
 
-ContactPlan contact_plan(std::size_t contacts, int substeps) {
-    return contacts <= 64 ? ContactPlan{substeps, 2, 0.3} : ContactPlan{2 * substeps, 1, 0.15};
+ContactPlan contact_plan(std::size_t contacts, int substeps, const ContactSettings& settings) {
+    if (contacts <= settings.long_list_contacts)
+        return {substeps, settings.short_list_passes, settings.short_list_stiffness};
+    return {settings.long_list_substeps * substeps, settings.long_list_passes, settings.long_list_stiffness};
 }
 
-ContactPlan jointed_contact_plan(std::size_t contacts, int substeps) {
-    return contacts <= 64 ? ContactPlan{substeps, 8, 0.5} : ContactPlan{substeps, 1, 0.15};
+ContactPlan jointed_contact_plan(std::size_t contacts, int substeps, const ContactSettings& settings) {
+    if (contacts <= settings.long_list_contacts) return {substeps, settings.jointed_passes, settings.jointed_stiffness};
+    return {substeps, settings.long_list_passes, settings.long_list_stiffness};
 }
 
 PreparedContact prepare_contact(const Contact& contact, std::span<const BodyState> bodies) {

@@ -7,6 +7,7 @@
 
 #include "physics/constraint/contact/contact.h"
 #include "physics/constraint/namespace.h"
+#include "physics/definitions/settings/contact_settings.h"
 
 namespace embody::physics::constraint {
 
@@ -19,7 +20,8 @@ struct ContactSoftness {
     double substep = 0;    ///< s
     double bias_rate = 0;  ///< share of the penetration taken out a second, 1/s
     double mass_scale = 1, impulse_scale = 0;
-    double push_speed = 3;  ///< overlapping bodies part no faster than this, m/s
+    double push_speed = ContactSettings{}.max_correction_speed;    ///< overlapping bodies part no faster, m/s
+    double penetration_slop = ContactSettings{}.penetration_slop;  ///< penetration beyond the sag that is let be, m
 
     /// How deep a point sinks under its load: without that it would not press back. `response` in 1/kg, `impulse` of a
     /// substep in N s.
@@ -29,9 +31,6 @@ struct ContactSoftness {
     }
 };
 
-/// Penetration beyond the sag that is let be, m.
-inline constexpr double penetration_slop = 1e-4;
-
 /// Whether the bodies resist rolling on each other.
 inline bool resists_rolling(const Contact& contact) { return contact.friction_rolling > 0; }
 
@@ -39,16 +38,16 @@ inline bool resists_rolling(const Contact& contact) { return contact.friction_ro
 /// rather than many iterations (M. Macklin et al., "Small Steps in Physics Simulation", 2019). Short lists converge
 /// with the world's substeps and a second pass (docs/physics/contact-solver.md).
 struct ContactPlan {
-    int substeps = 4;
-    int passes = 1;          ///< sweeps of each phase
-    double stiffness = 0.2;  ///< contact frequency over substep frequency: as much as converges
+    int substeps = 1;
+    int passes = 1;        ///< sweeps of each phase
+    double stiffness = 0;  ///< contact frequency over substep frequency: as much as converges
 
-    [[nodiscard]] ContactSoftness softness(double time_step) const;
+    [[nodiscard]] ContactSoftness softness(double time_step, const ContactSettings& settings) const;
 };
 /// Of an island without joints; `substeps`: those of the world.
-ContactPlan contact_plan(std::size_t contacts, int substeps);
+ContactPlan contact_plan(std::size_t contacts, int substeps, const ContactSettings& settings);
 /// Of an island with joints, which keeps the world's substeps.
-ContactPlan jointed_contact_plan(std::size_t contacts, int substeps);
+ContactPlan jointed_contact_plan(std::size_t contacts, int substeps, const ContactSettings& settings);
 
 /// What the sweeps need of a contact: arms and inertias are those of the step's start.
 struct PreparedContact {

@@ -6,6 +6,7 @@
 #include "physics/constraint/joint/joint_system.h"
 #include "physics/constraint/namespace.h"
 #include "physics/constraint/sweeps/contact_solver.h"
+#include "physics/definitions/settings/constraint_settings.h"
 
 namespace embody::physics::constraint {
 
@@ -17,6 +18,7 @@ struct ConstraintList {
     std::span<Joint> joints;
     std::span<const std::uint32_t> joint_order;
     JointSystem* system = nullptr;  ///< all the joints, to be solved at once; none: one after the other
+    const ConstraintSettings& settings;
 };
 
 /// Passes over the list in one phase: few for long lists, more for short ones, until a joint's error is gone. `time`:

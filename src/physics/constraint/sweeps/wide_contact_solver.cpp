@@ -19,7 +19,7 @@ constexpr std::size_t fewest_batches_in_mean = 4, min_parallel_batches = 2;
 float to_float(double number) { return static_cast<float>(number); }
 
 // Contact lies in the rows that kernels read.
-constexpr std::size_t row_bytes = 8 * sizeof(float);
+constexpr std::size_t row_bytes = 8 * sizeof(float);  // of a row of ContactRow
 static_assert(offsetof(Contact, normal) == ContactRow::frame * row_bytes);
 static_assert(offsetof(Contact, friction_static) == offsetof(Contact, normal) + 6 * sizeof(float));
 static_assert(offsetof(Contact, friction) == ContactRow::friction * row_bytes);
@@ -389,7 +389,7 @@ void WideContactSolver::write_contact(const Batch& batch, std::uint32_t lane, co
         summary.touches = summary.touches || point.total > 0 || point.separation <= 0;
         is_pressed = is_pressed || point.impulse > 0;
         const double sag = softness.sag(from[BatchPoint::normal_response * lanes], point.impulse);
-        is_deep = is_deep || -from[BatchPoint::separation * lanes] > sag + penetration_slop;
+        is_deep = is_deep || -from[BatchPoint::separation * lanes] > sag + softness.penetration_slop;
     }
     summary.is_sunk = is_pressed && is_deep;
 }

@@ -14,11 +14,13 @@ struct ClothLayers::Search {
     const Nodes& nodes;
     std::span<const Vec3> moves;
     double thickness = 0;
+    double same_layer_reach = 0;  // m
 
     // Adds it if it may come nearer than twice the thickness.
     void add(LayerContact contact, Vec3 away, std::vector<LayerContact>& found) const {
+        constexpr double same_place = 1e-9;  // m: nearer ones have no direction
         contact.distance = length(away);
-        if (contact.distance < 1e-9 || layers.is_same_layer(contact, thickness)) return;
+        if (contact.distance < same_place || layers.is_same_layer(contact, same_layer_reach)) return;
         contact.normal = away / contact.distance;
         double end = contact.distance;
         for (std::size_t k = 0; k < 4; ++k) end += contact.weight[k] * dot(contact.normal, moves[contact.node[k]]);
@@ -56,7 +58,7 @@ bool ClothLayers::is_same_layer(const LayerContact& contact, double reach) const
     if (dot(rest_normal_[contact.node[0]], rest_normal_[contact.node[other]]) <= 0) return false;
     Vec3 away;
     for (std::size_t k = 0; k < 4; ++k) away += contact.weight[k] * rest_[contact.node[k]];
-    return length(away) < 3 * reach;
+    return length(away) < reach;
 }
 
 // The whole's own move is left out: what falls together does not meet.
@@ -142,8 +144,7 @@ void ClothLayers::search_pair(const Search& search, const std::array<std::uint32
     }
 }
 
-void ClothLayers::find(const Nodes& nodes, double thickness, std::span<const Vec3> moves, TaskPool& workers) {
-    const Search search{*this, nodes, moves, thickness};
+void ClothLayers::find(const Search& search, TaskPool& workers) {
     find_boxes(search, workers);
     patches_.find_pairs(leaf_pairs_);
     struct Found {
@@ -188,10 +189,10 @@ void push(const LayerContact& contact, Vec3 by, std::span<const double> complian
 
 // Where pushes did not part them all: nodes that would pass through each other go together for this substep, with the
 // mean of their moves (X. Provot, "Collision and self-collision handling in cloth model", 1997).
-void join(std::span<const LayerContact> contacts, double thickness, std::span<const double> compliance,
-          std::span<Vec3> moves) {
-    constexpr double min_fraction = 0.2;
-    constexpr int max_iterations = 20;
+void join(std::span<const LayerContact> contacts, const LayerParting& parting, std::span<Vec3> moves) {
+    const std::span<const double> compliance = parting.compliance;
+    const double min_fraction = parting.settings.joining_gap_fraction;
+    const int max_iterations = parting.settings.joining_iterations;
     std::vector<std::uint32_t> zone(moves.size());
     for (std::uint32_t i = 0; i < zone.size(); ++i) zone[i] = i;
     const auto root_of = [&](std::uint32_t i) {
@@ -202,7 +203,7 @@ void join(std::span<const LayerContact> contacts, double thickness, std::span<co
         bool has_joined = false;
         for (const LayerContact& contact : contacts) {
             const double end = contact.distance + dot(contact.normal, displacement_of(contact, moves));
-            if (end >= min_fraction * std::min(thickness, contact.distance)) continue;
+            if (end >= min_fraction * std::min(parting.thickness, contact.distance)) continue;
             for (std::size_t k = 1; k < 4; ++k) {
                 const std::uint32_t a = root_of(contact.node[0]), b = root_of(contact.node[k]);
                 if (a == b) continue;
@@ -234,8 +235,8 @@ void join(std::span<const LayerContact> contacts, double thickness, std::span<co
 }  // namespace
 
 std::vector<ThinCandidate> ClothLayers::near(const Nodes& nodes, double reach, std::span<const Vec3> moves,
-                                             TaskPool& workers) {
-    find(nodes, reach, moves, workers);
+                                             const ClothSettings& settings, TaskPool& workers) {
+    find({*this, nodes, moves, reach, settings.same_layer_reach * reach}, workers);
     std::vector<ThinCandidate> candidates;
     for (const LayerContact& contact : contacts_)
         candidates.push_back({contact.kind, false, contact.first, contact.second});
@@ -244,17 +245,18 @@ std::vector<ThinCandidate> ClothLayers::near(const Nodes& nodes, double reach, s
 }
 
 double ClothLayers::max_displacement(const Nodes& nodes, double thickness, std::span<const Vec3> moves,
-                                     TaskPool& workers) {
-    find(nodes, thickness, moves, workers);
+                                     const ClothSettings& settings, TaskPool& workers) {
+    find({*this, nodes, moves, thickness, settings.same_layer_reach * thickness}, workers);
     double longest = 0;
     for (const LayerContact& contact : contacts_) longest = std::max(longest, length(displacement_of(contact, moves)));
     return longest;
 }
 
-void ClothLayers::part(const Nodes& nodes, double thickness, double friction, std::span<const double> compliance,
-                       std::span<Vec3> moves, TaskPool& workers) {
-    constexpr int iterations = 10;
-    find(nodes, thickness, moves, workers);
+void ClothLayers::part(const Nodes& nodes, const LayerParting& parting, std::span<Vec3> moves, TaskPool& workers) {
+    const double thickness = parting.thickness;
+    const std::span<const double> compliance = parting.compliance;
+    const int iterations = parting.settings.parting_iterations;
+    find({*this, nodes, moves, thickness, parting.settings.same_layer_reach * thickness}, workers);
     std::vector<double> pushed(contacts_.size(), 0);  // m kg, so far
     for (int iteration = 0; iteration < iterations; ++iteration) {
         bool is_parted = true;
@@ -276,10 +278,11 @@ void ClothLayers::part(const Nodes& nodes, double thickness, double friction, st
                    sliding = displacement - dot(displacement, contact.normal) * contact.normal;
         const double size = length(sliding);
         if (size == 0) continue;
-        push(contact, (-std::min(friction * pushed[c], size / compliance_of(contact, compliance)) / size) * sliding,
+        push(contact,
+             (-std::min(parting.friction * pushed[c], size / compliance_of(contact, compliance)) / size) * sliding,
              compliance, moves);
     }
-    join(contacts_, thickness, compliance, moves);
+    join(contacts_, parting, moves);
 }
 
 }  // namespace embody::physics::deformable

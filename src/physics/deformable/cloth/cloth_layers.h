@@ -8,6 +8,7 @@
 
 #include "foundation/task_pool.h"
 #include "math/bounds.h"
+#include "physics/definitions/settings/thin_settings.h"
 #include "physics/deformable/cloth/patch_tree.h"
 #include "physics/deformable/contact/nodes.h"
 #include "physics/deformable/contact/thin_pairs.h"
@@ -26,23 +27,29 @@ struct LayerContact {
     double distance = 0;
 };
 
+/// How ClothLayers::part() keeps layers apart.
+struct LayerParting {
+    double thickness = 0;                ///< that they keep, m
+    double friction = 0;                 ///< Coulomb coefficient
+    std::span<const double> compliance;  ///< of the nodes, 1/kg; 0: none
+    ClothSettings settings = {};
+};
+
 /// Finds where a sheet may touch itself, and keeps its layers from going through each other.
 class ClothLayers {
 public:
     ClothLayers(const std::vector<std::array<std::uint32_t, 3>>& triangles, const std::vector<Vec3>& nodes);
 
-    /// Changes `moves` (m) so that what would come nearer than `thickness` (m) along the line between them stays that
-    /// far apart, or as near as it was: the nodes give way by `give` (1/kg, 0: not at all), sliding is braked by
-    /// friction. Momentum is kept. What moves by more than about half an edge against another layer in one substep may
-    /// be missed.
-    void part(const Nodes& nodes, double thickness, double friction, std::span<const double> compliance,
-              std::span<Vec3> moves, TaskPool& workers);
+    /// Changes `moves` (m) so that what would come nearer than the thickness along the line between them stays that
+    /// far apart, or as near as it was; sliding is braked by friction. Momentum is kept. What moves by more than about
+    /// half an edge against another layer in one substep may be missed.
+    void part(const Nodes& nodes, const LayerParting& parting, std::span<Vec3> moves, TaskPool& workers);
     /// What may come nearer than twice `reach` (m) by these moves, in the order that PairSprings asks for.
     [[nodiscard]] std::vector<ThinCandidate> near(const Nodes& nodes, double reach, std::span<const Vec3> moves,
-                                                  TaskPool& workers);
+                                                  const ClothSettings& settings, TaskPool& workers);
     /// The longest way (m) that those which come near each other by these moves go against each other.
     [[nodiscard]] double max_displacement(const Nodes& nodes, double thickness, std::span<const Vec3> moves,
-                                          TaskPool& workers);
+                                          const ClothSettings& settings, TaskPool& workers);
     /// Mean, m.
     [[nodiscard]] double edge_length() const { return edge_length_; }
     /// Each once.
@@ -52,7 +59,7 @@ public:
 
 private:
     struct Search;
-    void find(const Nodes& nodes, double thickness, std::span<const Vec3> moves, TaskPool& workers);
+    void find(const Search& search, TaskPool& workers);
     void find_boxes(const Search& search, TaskPool& workers);
     void search_pair(const Search& search, const std::array<std::uint32_t, 2>& leaves, std::vector<LayerContact>& nodes,
                      std::vector<LayerContact>& edges) const;

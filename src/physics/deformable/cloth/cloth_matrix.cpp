@@ -16,7 +16,7 @@ void SliceBlocks::set(std::size_t slice, std::size_t lane, const Block& block) {
 // Elements of a slice that lie on one diagonal share a slot where they fill enough of it: a load of neighbours instead
 // of one a row. Sheets that are meshed row by row have nearly no others.
 void ClothMatrix::Slots::make(std::span<const std::vector<std::uint32_t>> rows) {
-    constexpr int enough = 6;
+    constexpr int min_band_rows = 6;  // of slice_rows: fewer cost more as a band than one by one
     const auto places = static_cast<std::int64_t>(slices_for(rows.size()) * slice_rows);
     *this = {};
     start = first = {0};
@@ -33,7 +33,7 @@ void ClothMatrix::Slots::make(std::span<const std::vector<std::uint32_t>> rows) 
         std::map<std::int32_t, std::uint32_t> slot_of;
         for (const auto& [along, count] : counts) {
             const std::int64_t from = static_cast<std::int64_t>(begin) + along;
-            if (count < enough || from < 0 || from + static_cast<std::int64_t>(slice_rows) > places) continue;
+            if (count < min_band_rows || from < 0 || from + static_cast<std::int64_t>(slice_rows) > places) continue;
             slot_of[along] = static_cast<std::uint32_t>(offset.size());
             offset.push_back(along);
         }

@@ -16,7 +16,7 @@ namespace embody::physics::deformable {
 
 namespace {
 
-constexpr std::uint32_t not_far = ~std::uint32_t{0};
+constexpr std::uint32_t not_far = ~std::uint32_t{0};  // of elements that lie near or on the diagonal
 
 Mat3 symmetric_outer(Vec3 a) { return outer(a, a); }
 
@@ -124,6 +124,7 @@ void ClothSheet::make_pattern(const ScalarRows& bending) {
 }
 
 void ClothSheet::find_strains(const Substep& substep, TaskPool& workers) {
+    constexpr double min_stretch = 1e-9;  // length over that at rest: keeps its inverse finite
     const double damped = 1 + cloth_.rayleigh_damping / substep.h;
     strains_.resize(triangles_.size());
     air_.resize(triangles_.size());
@@ -150,8 +151,8 @@ void ClothSheet::find_strains(const Substep& substep, TaskPool& workers) {
             strain.across_ff = f > 0 ? k * (1 - 1 / f) : -k;
             strain.across_gg = g > 0 ? k * (1 - 1 / g) : -k;
             strain.across_fg = s * angle;
-            strain.warp = k * (std::min(1.0, 1 / std::max(f, 1e-9)) + damped - 1);
-            strain.weft = k * (std::min(1.0, 1 / std::max(g, 1e-9)) + damped - 1);
+            strain.warp = k * (std::min(1.0, 1 / std::max(f, min_stretch)) + damped - 1);
+            strain.weft = k * (std::min(1.0, 1 / std::max(g, min_stretch)) + damped - 1);
             strain.shear = s * damped;
             make_positive(strain.across_ff, strain.across_fg, strain.across_gg);
 
@@ -222,7 +223,7 @@ void ClothSheet::fill_rows(const Substep& substep, TaskPool& workers) {
     weight_.resize(count);
     small_load_.resize(count);
     node_stiffness_.resize(count);
-    const double least = std::max(length(substep.gravity), 1.0);  // m/s²: an acceleration that matters anywhere
+    const double least = std::max(length(substep.gravity), substep.settings.thin_contact.min_gravity);  // m/s²
     for (std::size_t i = 0; i < count; ++i) {
         weight_[i] = nodes_.mass[i] * substep.gravity;
         small_load_[i] = {0, nodes_.mass[i] * least, 0};
@@ -242,7 +243,7 @@ bool ClothSheet::solve_moves(const Substep& substep, std::span<const TouchedBody
     springs_.choose(moves_, body_moves_, true);
     layer_springs_.choose(moves_, true);
     iterations_ = solves_ = 0;
-    constexpr int max_solves = 4;
+    const int max_solves = substep.settings.cloth.max_solves;
     std::vector<TouchSpring> all;
     for (;;) {
         all.assign(springs_.springs().begin(), springs_.springs().end());
@@ -279,7 +280,7 @@ void ClothSheet::keep_momentum(const Substep& substep, std::span<const Vec3> giv
         for (const std::uint32_t node : triangles_[t].node)
             all[node] += dot(air_[t], h * winds_[t] - moves_[node]) * air_[t];
     }
-    keep_momenta(nodes_, all, h, moves_);
+    keep_momenta(nodes_, all, h, substep.settings.thin_contact, moves_);
 }
 
 // As of two sheets, but that this one is both.
@@ -295,26 +296,27 @@ void ClothSheet::find_layers(const Substep& substep, TaskPool& workers) {
                       .edge_length = layers_->edge_length()};
     member.load.assign(nodes_.size(), 0);
     layer_friction_ = friction_between(springs_.material, springs_.material, *substep.surface_pairs);
-    const ThinPair self{0, 0, layer_friction_,
-                        layers_->near(nodes_, apart() + gravity * substep.h * substep.h, moves, workers)};
-    layer_springs_.begin(std::span(&member, 1), std::span(&self, 1), layer_contacts_, substep.h, gravity);
+    const ThinPair self{
+        0, 0, layer_friction_,
+        layers_->near(nodes_, apart() + gravity * substep.h * substep.h, moves, substep.settings.cloth, workers)};
+    layer_springs_.begin(std::span(&member, 1), std::span(&self, 1), layer_contacts_,
+                         {substep.h, gravity, substep.settings.thin_contact});
 }
 
 // What no spring held off in time; what lies on a body gives way last.
-void ClothSheet::part_layers(TaskPool& workers) {
-    constexpr double compliance_on_body = 0.05, min_fraction = 0.5;
+void ClothSheet::part_layers(const ClothSettings& settings, TaskPool& workers) {
     std::vector<double> compliance = nodes_.inverse_mass;
     for (const TouchSpring& spring : springs_.springs()) {
         for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count) && spring.acts; ++k)
-            compliance[spring.node[k]] = compliance_on_body * nodes_.inverse_mass[spring.node[k]];
+            compliance[spring.node[k]] = settings.compliance_on_body * nodes_.inverse_mass[spring.node[k]];
     }
-    layers_->part(nodes_, min_fraction * apart(), layer_friction_.sliding, compliance, moves_, workers);
+    const LayerParting parting{settings.min_gap_fraction * apart(), layer_friction_.sliding, compliance, settings};
+    layers_->part(nodes_, parting, moves_, workers);
 }
 
 // Layers are kept apart reliably where they pass each other by no more than half an edge: faster ones take more parts.
-int ClothSheet::parts_of(double h, TaskPool& workers) {
-    constexpr int max_parts = 4;
-    const double edge = layers_->edge_length();
+int ClothSheet::parts_of(double h, const ClothSettings& settings, TaskPool& workers) {
+    const double max_travel = settings.max_layer_travel * layers_->edge_length();
     Vec3 mean;
     double mass = 0, fastest = 0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -322,11 +324,11 @@ int ClothSheet::parts_of(double h, TaskPool& workers) {
         mass += nodes_.mass[i];
     }
     for (const Vec3 velocity : nodes_.mean_velocity) fastest = std::max(fastest, length(velocity - mean / mass));
-    if (2 * h * fastest <= edge) return 1;
+    if (h * fastest <= max_travel) return 1;
     moves_.resize(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) moves_[i] = h * nodes_.mean_velocity[i];
-    const double travel = layers_->max_displacement(nodes_, apart(), moves_, workers);
-    return static_cast<int>(std::clamp(std::ceil(2 * travel / edge), 1.0, double{max_parts}));
+    const double travel = layers_->max_displacement(nodes_, apart(), moves_, settings, workers);
+    return static_cast<int>(std::clamp(std::ceil(travel / max_travel), 1.0, static_cast<double>(settings.max_parts)));
 }
 
 void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> contacts,
@@ -334,7 +336,7 @@ void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> co
                          std::span<TouchedBody> bodies, TaskPool& workers) {
     const PartPushes pushes(bodies);
     if (is_frozen_) return;
-    const int parts = parts_of(substep.h, workers);
+    const int parts = parts_of(substep.h, substep.settings.cloth, workers);
     int iterations = 0, solves = 0;
     for (int part = 0; part < parts; ++part) {
         Substep own = substep;
@@ -354,6 +356,8 @@ void ClothSheet::advance(const Substep& substep, std::span<const NodeContact> co
 void ClothSheet::begin(const Substep& substep, std::span<const NodeContact> contacts,
                        std::span<const SheetContact> between, std::span<const std::uint32_t> attachment_bodies,
                        std::span<const TouchedBody> bodies, TaskPool& workers) {
+    solver.set(substep.settings.cloth);
+    springs_.tolerance = substep.settings.thin_contact.change_tolerance;
     find_strains(substep, workers);
     fill_rows(substep, workers);
     springs_.attachment_bodies.assign(attachment_bodies.begin(), attachment_bodies.end());
@@ -377,7 +381,7 @@ void ClothSheet::end(const Substep& substep, std::span<const Vec3> moves, std::s
     std::vector<Vec3> within(nodes_.size());  // forces that are in the moves already
     layer_springs_.finish(moves_, within, layer_contacts_);
     springs_.finish(moves_, body_moves, substep, bodies);
-    part_layers(workers);
+    part_layers(substep.settings.cloth, workers);
     set_velocities(nodes_, moves_, substep.h);
     for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += moves_[i];
 }

@@ -29,7 +29,7 @@ public:
 
     // The same in parts, where sheets and ropes that touch each other are solved together (docs/physics/cloth.md):
     /// How many parts the substep takes.
-    [[nodiscard]] int parts_of(double h, TaskPool& workers);
+    [[nodiscard]] int parts_of(double h, const ClothSettings& settings, TaskPool& workers);
     /// Finds system(), touch() and layers() for the part.
     void begin(const Substep& substep, std::span<const NodeContact> contacts, std::span<const SheetContact> between,
                std::span<const std::uint32_t> attachment_bodies, std::span<const TouchedBody> bodies,
@@ -96,7 +96,7 @@ private:
     bool solve_moves(const Substep& substep, std::span<const TouchedBody> bodies, TaskPool& workers);
     void keep_momentum(const Substep& substep, std::span<const Vec3> given);
     void find_layers(const Substep& substep, TaskPool& workers);
-    void part_layers(TaskPool& workers);
+    void part_layers(const ClothSettings& settings, TaskPool& workers);
     // Layers lie as far from each other as two of them from a body between.
     [[nodiscard]] double apart() const { return std::max(cloth_.thickness, 2 * springs_.radius); }
 

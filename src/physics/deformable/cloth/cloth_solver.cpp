@@ -352,7 +352,8 @@ int ClothSolver::solve(std::span<const SheetSystem> sheets, std::span<const Line
     curvatures_.back() = 0;
     // The norm of the preconditioner leaves out fixed nodes: their residual is the force that holds them.
     constexpr double rounding = 1e-12;  // floats cannot tell less of the first residual
-    const GradientLimits limits{max_iterations, tolerance * tolerance * load, rounding};
+    const double tolerance = settings_.gradient_tolerance;
+    const GradientLimits limits{settings_.max_gradient_iterations, tolerance * tolerance * load, rounding};
     const int count = nodes_ >= min_parallel_count ? workers.workers() : 1;
     Barrier barrier(count);
     GradientResult result;

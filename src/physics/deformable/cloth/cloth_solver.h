@@ -7,6 +7,7 @@
 
 #include "foundation/task_pool.h"
 #include "math/kernel_width.h"
+#include "physics/definitions/settings/thin_settings.h"
 #include "physics/deformable/cloth/cloth_matrix.h"
 #include "physics/deformable/contact/touch_springs.h"
 #include "physics/deformable/namespace.h"
@@ -42,15 +43,15 @@ struct LineSystem {
 class ClothSolver {
 public:
     /// Nodes are counted through, sheet after sheet, then line after line: by those numbers springs name them. `moves`:
-    /// first guess and answer. It ends when the residual is `tolerance` of the small loads in the norm of the
+    /// first guess and answer. It ends when the residual is gradient_tolerance of the small loads in the norm of the
     /// preconditioner. Returns the rounds that it took, or not_finite where numbers have broken.
     int solve(std::span<const SheetSystem> sheets, std::span<const LineSystem> lines,
               std::span<const TouchSpring> springs, std::span<const BodyInertia> bodies, std::span<Vec3> moves,
               std::span<BodyMove> body_moves, TaskPool& workers);
 
-    static constexpr int not_finite = -1;
-    double tolerance = 5e-3;
-    int max_iterations = 200;
+    static constexpr int not_finite = -1;  ///< in the place of a number of rounds
+    /// Of the world, before a step's first solve().
+    void set(const ClothSettings& settings) { settings_ = settings; }
 
 private:
     static constexpr std::size_t min_parallel_count = 1000;  // nodes
@@ -108,6 +109,7 @@ private:
         return a == b || (a >= nodes_ && b >= nodes_ && line_of_[a - nodes_] == line_of_[b - nodes_]);
     }
 
+    ClothSettings settings_;
     std::vector<Block> own_, inverse_;  // node's own block, springs with it, and its inverse
     SliceBlocks own_blocks_, inverse_blocks_;
     // As in linear/conjugate_gradient.h: of nodes of sheets, of bodies, of nodes of lines.

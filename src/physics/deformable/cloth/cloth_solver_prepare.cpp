@@ -13,11 +13,12 @@ constexpr std::size_t chunk_slices = 8;  // whose products are summed before the
 
 // Lower factor L Lᵀ in place, row by row.
 void factorize(std::array<double, 36>& m) {
+    constexpr double min_pivot = 1e-300;  // keeps the root real and its inverse finite
     for (std::size_t i = 0; i < 6; ++i) {
         for (std::size_t k = 0; k <= i; ++k) {
             double sum = m[6 * i + k];
             for (std::size_t j = 0; j < k; ++j) sum -= m[6 * i + j] * m[6 * k + j];
-            m[6 * i + k] = i == k ? std::sqrt(std::max(sum, 1e-300)) : sum / m[6 * k + k];
+            m[6 * i + k] = i == k ? std::sqrt(std::max(sum, min_pivot)) : sum / m[6 * k + k];
         }
     }
 }

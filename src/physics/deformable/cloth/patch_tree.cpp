@@ -9,7 +9,7 @@ namespace embody::physics::deformable {
 
 namespace {
 
-constexpr std::size_t leaf_size = 4;        // triangles, at least; fewer than twice as many
+constexpr std::size_t leaf_size = 4;        // triangles, at least; fewer than twice as many: block size
 constexpr std::size_t largest_piece = 256;  // triangles: a longer strip could wind itself over itself
 
 // Triangles around each node.
@@ -89,11 +89,11 @@ private:
 }  // namespace
 
 LeanMask leans_of(Vec3 normal) {
-    constexpr double least = 0.3;  // cosine
+    constexpr double min_cosine = 0.3;  // any above zero is right: the larger, the fewer triangles share a direction
     const double size = length(normal);
     if (!(size > 0)) return 0;
     const auto [x, y, z] = normal;
-    const double to_face = least * size, to_corner = to_face * std::numbers::sqrt3;
+    const double to_face = min_cosine * size, to_corner = to_face * std::numbers::sqrt3;
     LeanMask leans = 0;
     int bit = 0;
     const auto add = [&](double along, double enough) {

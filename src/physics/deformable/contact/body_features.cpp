@@ -6,7 +6,7 @@ namespace embody::physics::deformable {
 namespace {
 
 // Directions around the Y axis, an eighth of a turn apart.
-constexpr double half_root = 0.70710678118654752;
+constexpr double half_root = 0.70710678118654752;  // √½
 constexpr std::array<std::array<double, 2>, 8> around{{{1, 0},
                                                        {half_root, half_root},
                                                        {0, 1},

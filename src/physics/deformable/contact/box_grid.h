@@ -46,7 +46,7 @@ private:
         Float4 lower{}, upper{};
     };
     [[nodiscard]] static RoundedBox rounded(const Bounds& box) {
-        constexpr double fraction = 1e-6;
+        constexpr double fraction = 1e-6;  // of a place: floats round by 6e-8 of it
         const auto down = [](double x) { return static_cast<float>(x - fraction * std::fabs(x)); };
         const auto up = [](double x) { return static_cast<float>(x + fraction * std::fabs(x)); };
         return {Float4{down(box.lower.x), down(box.lower.y), down(box.lower.z), 0},
@@ -60,9 +60,9 @@ private:
         int x = 0, y = 0, z = 0;
     };
     [[nodiscard]] Cell cell_of(Vec3 p) const {
-        constexpr double farthest = 1e9;
+        constexpr double max_cell = 1e9;  // cells: what an int holds
         const auto index = [&](double x) {
-            return static_cast<int>(std::floor(std::max(-farthest, std::min(farthest, x / cell_size_))));
+            return static_cast<int>(std::floor(std::max(-max_cell, std::min(max_cell, x / cell_size_))));
         };
         return {index(p.x), index(p.y), index(p.z)};
     }

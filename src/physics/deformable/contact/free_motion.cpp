@@ -5,7 +5,9 @@
 
 namespace embody::physics::deformable {
 
-void keep_momenta(const Nodes& nodes, std::span<const Vec3> given, double h, std::span<Vec3> moves) {
+void keep_momenta(const Nodes& nodes, std::span<const Vec3> given, double h, const ThinContactSettings& settings,
+                  std::span<Vec3> moves) {
+    constexpr double line_inertia = 1e-9;  // of the whole inertia: rounding leaves 1e-15 of it about a straight line
     double mass = 0;
     Vec3 momentum, moved, center;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -21,7 +23,7 @@ void keep_momenta(const Nodes& nodes, std::span<const Vec3> given, double h, std
     const Vec3 mean = momentum / mass, shift = (h / mass) * (momentum - moved), new_center = center + h * mean;
     for (Vec3& move : moves) move += shift;
     // The turn changes the arms too, so it takes some rounds.
-    for (int iteration = 0; iteration < 5; ++iteration) {
+    for (int iteration = 0; iteration < settings.momentum_iterations; ++iteration) {
         Mat3 inertia = Mat3::zero();
         Vec3 missing = angular;
         for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -30,9 +32,9 @@ void keep_momenta(const Nodes& nodes, std::span<const Vec3> given, double h, std
             inertia += nodes.mass[i] * (length_squared(arm) * Mat3::identity() - outer(arm, arm));
         }
         // A straight line has no inertia about itself.
-        inertia += 1e-9 * trace(inertia) * Mat3::identity();
+        inertia += line_inertia * trace(inertia) * Mat3::identity();
         const Vec3 spin = solve(inertia, missing);
-        if (!is_finite(spin) || length(spin) * h > 0.1) return;
+        if (!is_finite(spin) || length(spin) * h > settings.max_momentum_turn) return;
         for (std::size_t i = 0; i < nodes.size(); ++i)
             moves[i] += h * cross(spin, nodes.position[i] + moves[i] - new_center);
     }

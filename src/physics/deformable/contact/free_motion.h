@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "physics/definitions/settings/thin_contact_settings.h"
 #include "physics/deformable/contact/nodes.h"
 #include "physics/deformable/namespace.h"
 
@@ -11,7 +12,8 @@ namespace embody::physics::deformable {
 /// Of a deformable that nothing holds: changes `moves` (m, of a substep of h seconds) by a small move and turn of the
 /// whole, so that momentum and angular momentum are those before and what is `given` from outside (N s, by node).
 /// Elastic forces change neither; a solve that ended early does, and backward Euler slows turning.
-void keep_momenta(const Nodes& nodes, std::span<const Vec3> given, double h, std::span<Vec3> moves);
+void keep_momenta(const Nodes& nodes, std::span<const Vec3> given, double h, const ThinContactSettings& settings,
+                  std::span<Vec3> moves);
 
 /// That of all nodes, by their mass.
 struct WholeMotion {

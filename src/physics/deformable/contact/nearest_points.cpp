@@ -37,7 +37,8 @@ bool nearest_inside(Vec3 a, Vec3 b, Vec3 c, Vec3 d, double& s, double& t) {
     const Vec3 u = b - a, v = d - c, w = a - c;
     const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w), vw = dot(v, w);
     const double spread = uu * vv - uv * uv;
-    if (!(spread > 1e-6 * uu * vv)) return false;
+    constexpr double parallel = 1e-6;  // square of the angle between them, rad²: rounding of places in floats is less
+    if (!(spread > parallel * uu * vv)) return false;
     s = (uv * vw - vv * uw) / spread;
     t = (uu * vw - uv * uw) / spread;
     return s > 0 && s < 1 && t > 0 && t < 1;

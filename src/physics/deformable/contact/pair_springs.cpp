@@ -20,7 +20,7 @@ struct PairSprings::Found {
 struct PairSprings::Search {
     const ThinMember &a, &b;
     std::span<const ThinContact> memory;
-    double h = 0, gravity = 0;
+    const Start& start;
     double radius = 0;  // of both together
     PairFriction friction;
 
@@ -43,8 +43,9 @@ struct PairSprings::Search {
 bool PairSprings::Search::place(const ThinCandidate& candidate, Found& found) const {
     found = {.candidate = candidate, .points = {}, .normal = {}};
     if (!find_points(a.surface, b.surface, candidate, found.points)) return false;
+    constexpr double same_place = 1e-9;  // m: nearer ones have no direction
     found.distance = length(found.points.away);
-    if (found.distance > 1e-9)
+    if (found.distance > same_place)
         found.normal = found.points.away / found.distance;
     else if (candidate.kind == ThinFeature::node_on_triangle)
         found.normal = side_of(candidate);
@@ -74,11 +75,10 @@ bool PairSprings::Search::is_next_to(const ThinContact& known, const ThinCandida
 
 // A sheet has no inside: which side something is on is remembered.
 void PairSprings::Search::recall(Found& found) const {
-    constexpr double same_direction = 0.8, same_side = 0.5;  // cosines
-    constexpr double farthest = 3;  // radii on the wrong side: beyond it has really gone through
+    const ThinContactSettings& settings = start.settings;
     const auto is_before = [](const ThinContact& m, const auto& key) { return m.key() < key; };
     const ThinContact* nearest = nullptr;
-    double most = same_side;
+    double most = settings.same_side_cosine;
     for (auto at = std::lower_bound(memory.begin(), memory.end(), found.key(), is_before);
          at != memory.end() && at->key() == found.key(); ++at) {
         if (found.candidate.kind == ThinFeature::edge_on_edge && at->second != found.candidate.second) continue;
@@ -89,11 +89,11 @@ void PairSprings::Search::recall(Found& found) const {
     }
     if (nearest == nullptr) return;
     if (dot(nearest->normal, found.normal) < 0) {
-        if (found.distance > farthest * radius) return;
+        if (found.distance > settings.max_wrong_side_radii * radius) return;
         found.normal = -found.normal;
         found.distance = -found.distance;
     }
-    if (most > same_direction) found.memory = nearest;
+    if (most > settings.same_normal_cosine) found.memory = nearest;
 }
 
 // Whether it may touch within the substep: by its own speed and what gravity adds.
@@ -103,12 +103,12 @@ bool PairSprings::Search::is_near(const Found& found) const {
         const auto at = static_cast<std::size_t>(k);
         velocity += found.points.weight[at] * member_of(found, k).surface.nodes->mean_velocity[found.points.node[at]];
     }
-    return found.distance - radius < (length(velocity) + gravity * h) * h + radius;
+    return found.distance - radius < (length(velocity) + start.gravity * start.h) * start.h + radius;
 }
 
 // A node touches the nearest of the triangles, and of others those that lie in another direction.
 void PairSprings::Search::add_nodes(std::span<const ThinCandidate> of_node, std::vector<Found>& kept) const {
-    constexpr double other_direction = 0.5;  // cosine
+    const double other_direction = start.settings.other_normal_cosine;
     std::vector<Found> near;
     for (const ThinCandidate& candidate : of_node) {
         Found found;
@@ -128,19 +128,15 @@ void PairSprings::Search::add_nodes(std::span<const ThinCandidate> of_node, std:
 // Of two sheets: whether both ends of either edge touch the other sheet from the same side.
 bool PairSprings::Search::is_held(const Found& edges, std::span<const Vec3> held_a,
                                   std::span<const Vec3> held_b) const {
-    constexpr double same_direction = 0.7;  // cosine
+    const double same_direction = start.settings.held_edge_cosine;
     const auto holds = [&](Vec3 normal) { return dot(normal, edges.normal) > same_direction; };
     const auto& node = edges.points.node;
     return holds(held_a[node[0]]) || holds(held_a[node[1]]) || holds(-held_b[node[2]]) || holds(-held_b[node[3]]);
 }
 
 void PairSprings::add(const Search& search, const Found& found) {
-    constexpr double stiffness_factor = 20;  // over the inertia of the heavier, and of what weighs on it
-    constexpr double min_weight = 0.1;       // of a node that bears what lies there
-    constexpr double recovery = 0.2;         // share of a depth that is parted in a substep
-    constexpr double fastest = 0.2;          // m/s: no faster than this
-    constexpr double forgotten = 0.2;        // of both radii: at that depth layers of one sheet remember no force
-    const double h = search.h;
+    const ThinContactSettings& settings = search.start.settings;
+    const double h = search.start.h;
     TouchSpring spring{.node = found.points.node, .weight = found.points.weight, .count = found.points.count};
     std::array<double, 2> mass{};
     const bool is_self = &search.a == &search.b;
@@ -153,19 +149,19 @@ void PairSprings::add(const Search& search, const Found& found) {
         const std::size_t side = k < found.points.count_first ? 0 : 1;
         mass[side] += std::fabs(weight) * member.surface.nodes->mass[node];
         compliance += weight * weight * member.surface.nodes->inverse_mass[node];
-        if (std::fabs(weight) > min_weight) load = std::max(load, member.load[node]);
+        if (std::fabs(weight) > settings.min_load_weight) load = std::max(load, member.load[node]);
         spring.node[at] = member.first + node;
     }
     if (compliance == 0) return;
-    spring.stiffness = stiffness_factor * std::max({mass[0], mass[1], load}) / (h * h);
+    spring.stiffness = settings.stiffness_factor * std::max({mass[0], mass[1], load}) / (h * h);
     spring.inertia = 1 / (compliance * h * h);
     spring.normal = found.normal;
     const double gap = found.distance - search.radius;
-    spring.gap = gap > 0 ? gap : std::max(recovery * gap, -fastest * h);
+    spring.gap = gap > 0 ? gap : std::max(settings.recovery_fraction * gap, -settings.recovery_speed * h);
     spring.friction = search.friction;
     if (found.memory != nullptr) {
         // Layers that something holds in each other push no harder and harder: the deeper, the more they forget.
-        const double kept = is_self ? std::clamp(1 + gap / (forgotten * search.radius), 0.0, 1.0) : 1;
+        const double kept = is_self ? std::clamp(1 + gap / (settings.memory_depth * search.radius), 0.0, 1.0) : 1;
         spring.pull = kept * found.memory->push * found.normal;
         spring.hold = (found.memory->stiffness / spring.stiffness) * across(found.memory->hold, found.normal);
         spring.sticks = found.memory->sticks;
@@ -184,12 +180,11 @@ void PairSprings::add(const Search& search, const Found& found) {
 }
 
 void PairSprings::begin(std::span<const ThinMember> members, std::span<const ThinPair> pairs,
-                        const ThinContacts& memories, double h, double gravity) {
+                        const ThinContacts& memories, const Start& start) {
     springs_.clear();
     features_.clear();
     last_of_.clear();
-    gravity_ = gravity;
-    h_ = h;
+    start_ = start;
     std::vector<Found> kept;
     for (const ThinPair& pair : pairs) {
         const ThinMember &a = members[pair.a], &b = members[pair.b];
@@ -198,8 +193,7 @@ void PairSprings::begin(std::span<const ThinMember> members, std::span<const Thi
         const Search search{a,
                             b,
                             known == memories.end() ? std::span<const ThinContact>() : known->second,
-                            h,
-                            gravity,
+                            start_,
                             a.surface.radius + b.surface.radius,
                             pair.friction};
         kept.clear();
@@ -234,10 +228,11 @@ void PairSprings::begin(std::span<const ThinMember> members, std::span<const Thi
 bool PairSprings::choose(std::span<const Vec3> moves, bool is_predicted) {
     SpringChange sum;
     for (TouchSpring& spring : springs_) choose_contact(spring, spring.lead(moves, {}), is_predicted, sum);
-    return sum.change > tolerance * sum.acting;
+    return sum.change > start_.settings.change_tolerance * sum.acting;
 }
 
 void PairSprings::finish(std::span<const Vec3> moves, std::span<Vec3> given, ThinContacts& memories) {
+    const double gravity = std::max(start_.gravity, start_.settings.min_gravity);
     std::size_t i = 0;
     for (const auto& [slots, last] : last_of_) {
         std::vector<ThinContact>& memory = memories[slots];
@@ -250,8 +245,8 @@ void PairSprings::finish(std::span<const Vec3> moves, std::span<Vec3> given, Thi
             const Vec3 force = spring.force(s);
             const double push = std::max(0.0, dot(force, spring.normal));
             own.push = std::max(0.0, push + spring.stiffness * std::min(spring.gap, 0.0));
-            own.carried = std::max(own.push / std::max(gravity_, 1.0), 0.9 * own.carried);
-            own.hold = held_stretch(spring, spring.hold + across(s, spring.normal), push, h_);
+            own.carried = std::max(own.push / gravity, start_.settings.load_memory * own.carried);
+            own.hold = held_stretch(spring, spring.hold + across(s, spring.normal), push, start_.h);
             own.sticks = spring.sticks;
             for (std::size_t k = 0; k < static_cast<std::size_t>(spring.count); ++k)
                 given[spring.node[k]] += spring.weight[k] * force;

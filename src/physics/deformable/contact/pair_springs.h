@@ -46,16 +46,19 @@ struct ThinPair {
 /// those with bodies. Their forces are equal and opposite, so they leave the whole's momentum as it is.
 class PairSprings {
 public:
-    /// Begins a substep of h seconds. `gravity`: m/s².
+    struct Start {
+        double h = 0;        ///< length of the substep, s
+        double gravity = 0;  ///< m/s²
+        ThinContactSettings settings = {};
+    };
+    /// Begins a substep.
     void begin(std::span<const ThinMember> members, std::span<const ThinPair> pairs, const ThinContacts& memories,
-               double h, double gravity);
+               const Start& start);
     /// As TouchSprings::choose(), for moves of all nodes.
     bool choose(std::span<const Vec3> moves, bool is_predicted);
     /// Adds the forces of the springs to `given` (N), by node, and remembers.
     void finish(std::span<const Vec3> moves, std::span<Vec3> given, ThinContacts& memories);
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_; }
-
-    double tolerance = 0.05;  ///< share of the forces whose change is not worth a solve
 
 private:
     using Slots = std::pair<std::uint32_t, std::uint32_t>;
@@ -63,7 +66,7 @@ private:
     struct Search;
     void add(const Search& search, const Found& found);
 
-    double gravity_ = 0, h_ = 0;
+    Start start_;
     std::vector<TouchSpring> springs_;
     std::vector<ThinContact> features_;                   // of the springs: what they are of, nothing of forces
     std::vector<std::pair<Slots, std::size_t>> last_of_;  // of each pair, one beyond its last spring

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/definitions/settings/deformable_settings.h"
 #include "physics/definitions/surface_pairs.h"
 #include "physics/deformable/namespace.h"
 #include "physics/dynamic/wind.h"
@@ -15,6 +16,7 @@ struct Substep {
     Wind wind;                                              ///< of the air
     double air_density = 1.2;                               ///< kg/m³
     const SurfacePairs* surface_pairs = &no_surface_pairs;  ///< of the world
+    DeformableSettings settings = {};                       ///< of the world
 };
 
 }  // namespace embody::physics::deformable

@@ -23,7 +23,7 @@ TouchSpring spring_of(const PlacedTie& placed) {
 }  // namespace
 
 // As stiff as contacts between sheets and ropes, and for the same reasons (docs/physics/cloth.md).
-void TieSprings::begin(std::span<const PlacedTie> ties, double h, double gravity) {
+void TieSprings::begin(std::span<const PlacedTie> ties, double h, double gravity, const ThinContactSettings& settings) {
     springs_.clear();
     pulls_.clear();
     for (const PlacedTie& placed : ties) {
@@ -38,10 +38,10 @@ void TieSprings::begin(std::span<const PlacedTie> ties, double h, double gravity
             compliance += tie.weight[k] * tie.weight[k] * placed.other->inverse_mass[tie.other_nodes[k]];
         }
         if (compliance == 0) continue;
-        const double most = recovery_speed * h, distance = length(apart);
+        const double most = settings.recovery_speed * h, distance = length(apart);
         if (distance > most) apart *= most / distance;
         spring.stiffness =
-            contact_stiffness(std::max(mass, placed.own->mass[tie.node]), length(*placed.pull), h, gravity);
+            contact_stiffness(std::max(mass, placed.own->mass[tie.node]), length(*placed.pull), h, gravity, settings);
         spring.acts = true;
         spring.matrix = spring.stiffness * Mat3::identity();
         spring.load = *placed.pull - spring.stiffness * apart;

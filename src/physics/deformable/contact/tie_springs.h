@@ -23,7 +23,7 @@ struct PlacedTie {
 class TieSprings {
 public:
     /// Begins a substep of h seconds. `gravity`: m/s². What is apart is drawn together no faster than recovery_speed.
-    void begin(std::span<const PlacedTie> ties, double h, double gravity);
+    void begin(std::span<const PlacedTie> ties, double h, double gravity, const ThinContactSettings& settings);
     /// Adds the forces of the springs to `given` (N), by node, and remembers.
     void finish(std::span<const Vec3> moves, std::span<Vec3> given);
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_; }

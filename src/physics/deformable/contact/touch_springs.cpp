@@ -8,23 +8,20 @@ namespace embody::physics::deformable {
 
 namespace {
 
-constexpr double stiffness_factor = 20;  // over what the node's neighbours resist with, or over a point's inertia
-constexpr double recovery_factor = 2;    // over the inertia of a body at the place where something began inside it
-constexpr double load_factor = 4;        // over the inertia of what weighs on a point
-
 // A new contact that is deeper than its point can have come in the substep began inside, or something was put there. It
 // is brought out at a bounded speed, by no more than the point's own inertia asks for: where the point is held inside
 // by something else, a force that is remembered would grow for ever. Nor by more than a few times what that of a light
 // body asks for: squeezed between points on both sides of it by all that a heavy rope can give, it turns out of there
 // faster than substeps can follow.
-void begin_recovery(TouchSpring& spring, const TouchedBody& body, double h) {
+void begin_recovery(TouchSpring& spring, const TouchedBody& body, double h, const ThinContactSettings& settings) {
     spring.is_recovery = true;
     spring.friction = {};
-    spring.stiffness = stiffness_factor * spring.inertia;
+    spring.stiffness = settings.stiffness_factor * spring.inertia;
     const Vec3 turning = cross(spring.arm, spring.normal);
     const double body_compliance = body.inverse_mass + dot(turning, body.inverse_inertia * turning);  // 1/kg
-    if (body_compliance > 0) spring.stiffness = std::min(spring.stiffness, recovery_factor / (body_compliance * h * h));
-    spring.gap = -recovery_speed * h - dot(spring.carried, spring.normal);
+    if (body_compliance > 0)
+        spring.stiffness = std::min(spring.stiffness, settings.recovery_stiffness_factor / (body_compliance * h * h));
+    spring.gap = -settings.recovery_speed * h - dot(spring.carried, spring.normal);
 }
 
 // Friction: k (hold + slip) up to its limit. Beyond it the secant through that limit at the slip to be expected, which
@@ -32,13 +29,14 @@ void begin_recovery(TouchSpring& spring, const TouchedBody& body, double h) {
 // Expected of what stuck is what the point would do alone with the limit instead of the larger force that it had. What
 // stuck in the last substep does so up to the static limit. Returns by how much the force is another than before, N.
 double choose_friction(TouchSpring& spring, Vec3 s, double load, bool is_predicted) {
+    constexpr double stuck_fraction = 0.99;  // of k times the stretch: below it the force was that of a secant
     double limit = spring.friction.coefficient(spring.sticks) * load;
     const Mat3 plane = Mat3::identity() - outer(spring.normal, spring.normal);
     const Vec3 loose = spring.hold - across(spring.carried, spring.normal);  // stretch with s = 0
     const Vec3 stretch = loose + across(s, spring.normal), force = across(spring.force(s), spring.normal);
     const double size = length(stretch);
     const double excess = length(force) - limit;
-    const bool has_stuck = length(force) > 0.99 * spring.stiffness * size;
+    const bool has_stuck = length(force) > stuck_fraction * spring.stiffness * size;
     const double expected = !is_predicted && has_stuck && excess > 0 ? size + excess / spring.inertia : size;
     const bool sticks = limit > 0 && spring.stiffness * expected <= limit;
     if (!sticks) limit = spring.friction.sliding * load;
@@ -84,9 +82,9 @@ Vec3 held_stretch(TouchSpring& spring, Vec3 stretch, double push, double h) {
     return size > most ? (most / size) * stretch : stretch;
 }
 
-double contact_stiffness(double mass, double force, double h, double gravity) {
+double contact_stiffness(double mass, double force, double h, double gravity, const ThinContactSettings& settings) {
     const double carried = gravity > 0 ? force / gravity : 0;
-    return std::max(stiffness_factor * mass, load_factor * carried) / (h * h);
+    return std::max(settings.stiffness_factor * mass, settings.load_stiffness_factor * carried) / (h * h);
 }
 
 std::vector<BodyInertia> inertias_of(std::span<const TouchedBody> bodies, double h) {
@@ -94,9 +92,11 @@ std::vector<BodyInertia> inertias_of(std::span<const TouchedBody> bodies, double
     for (const TouchedBody& body : bodies) {
         BodyInertia inertia;
         if (body.inverse_mass > 0) {
-            // Axes that are held still turn a million times harder than the freest.
+            // Axes that are held still turn a million times harder than the freest; where none turns, as a mass at a
+            // million metres: both keep the inverse finite.
+            constexpr double of_freest = 1e-6, of_inverse_mass = 1e-12;  // the latter in 1/m²
             const Mat3& inverse = body.inverse_inertia;
-            const double least = std::max(1e-6 * trace(inverse), 1e-12 * body.inverse_mass);
+            const double least = std::max(of_freest * trace(inverse), of_inverse_mass * body.inverse_mass);
             inertia = {true, 1 / (body.inverse_mass * h * h),
                        (1 / (h * h)) * inverse_or_zero(inverse + least * Mat3::identity())};
         }
@@ -133,9 +133,9 @@ double energy_of(const BodyInertia& inertia, const BodyMove& move) {
 
 std::vector<double> fractions_of(std::span<const TouchSpring> springs, std::span<const Vec3> node_moves,
                                  std::span<const BodyMove> body_moves, std::span<const BodyInertia> inertias,
-                                 double h) {
-    constexpr double most = 4;         // times the energy that the body's move takes
-    constexpr double slow_push = 0.5;  // m/s: what speeds it up by less does no harm
+                                 const Substep& substep) {
+    const double most = substep.settings.thin_contact.max_energy_ratio;  // times what the body's move takes
+    const double slow_push = substep.settings.thin_contact.free_push_speed, h = substep.h;
     std::vector<BodyMove> pushes(inertias.size());
     for (const TouchSpring& spring : springs) {
         if (!spring.acts || !moves_body(spring, inertias)) continue;
@@ -156,10 +156,10 @@ std::vector<double> fractions_of(std::span<const TouchSpring> springs, std::span
     return fractions;
 }
 
-bool TouchSprings::recall(const TouchedBody& body, TouchSpring& spring) const {
+bool TouchSprings::recall(const TouchedBody& body, const ThinContactSettings& settings, TouchSpring& spring) const {
     auto at = std::ranges::lower_bound(memory_, spring.feature, {}, &Memory::feature);
     bool is_known = false;
-    double nearest = 0.8;  // cosine: another face of the body is another contact
+    double nearest = settings.same_normal_cosine;
     for (; at != memory_.end() && at->feature == spring.feature; ++at) {
         if (at->slot != body.body || at->is_attachment != spring.is_attachment) continue;
         if (dot(at->normal, spring.normal) < nearest) continue;
@@ -181,6 +181,7 @@ bool TouchSprings::is_attached(std::uint32_t node, std::uint32_t body) const {
 
 void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::span<const TouchedBody> bodies,
                             const Substep& substep, std::span<const double> node_stiffness, TouchSpring& spring) {
+    const ThinContactSettings& settings = substep.settings.thin_contact;
     const TouchedBody& body = bodies[plane.body];
     const Place& place = places_[plane.body];
     Vec3 point, velocity;
@@ -191,7 +192,7 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
         point += spring.weight[k] * nodes.position[node];
         velocity += spring.weight[k] * nodes.mean_velocity[node];
         if (!node_stiffness.empty())
-            spring.stiffness = std::max(spring.stiffness, stiffness_factor * node_stiffness[node]);
+            spring.stiffness = std::max(spring.stiffness, settings.stiffness_factor * node_stiffness[node]);
         spring.inertia += spring.weight[k] * nodes.mass[node] / (substep.h * substep.h);
         compliance += spring.weight[k] * spring.weight[k] * nodes.inverse_mass[node];
         is_free |= nodes.inverse_mass[node] > 0;
@@ -209,11 +210,11 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
     spring.carried = place.displacement_of(spring.arm) + substep.h * plane.velocity;
     const double gap_at_start = spring.gap + dot(spring.carried, spring.normal);
     const double came_in = std::max(0.0, dot(spring.carried - substep.h * velocity, spring.normal));
-    const bool is_known = recall(body, spring);
+    const bool is_known = recall(body, settings, spring);
     if (node_stiffness.empty()) soften(substep, compliance, body.inverse_mass > 0, spring);
-    if (!is_known && gap_at_start < -recovery_speed * substep.h - came_in) {
+    if (!is_known && gap_at_start < -settings.recovery_speed * substep.h - came_in) {
         if (std::ranges::find(attachment_bodies, plane.body) != attachment_bodies.end()) return;
-        begin_recovery(spring, body, substep.h);
+        begin_recovery(spring, body, substep.h, settings);
     }
     springs_.push_back(spring);
 }
@@ -221,12 +222,14 @@ void TouchSprings::complete(const Nodes& nodes, const NodeContact& plane, std::s
 // As between sheets (pair_springs.cpp): by inertia and by that of what weighs on it. That of a body would ask for
 // stiffer springs than these: with memory they would swing up, so they have none.
 void TouchSprings::soften(const Substep& substep, double compliance, bool is_with_body, TouchSpring& spring) {
+    const ThinContactSettings& settings = substep.settings.thin_contact;
     if (is_with_body) spring.pull = spring.hold = {};
     const double g = length(substep.gravity), squared = substep.h * substep.h;
     const double carried = g > 0 ? length(spring.pull) / g : 0;
-    spring.stiffness = std::max(stiffness_factor * spring.inertia, load_factor * carried / squared);
+    spring.stiffness =
+        std::max(settings.stiffness_factor * spring.inertia, settings.load_stiffness_factor * carried / squared);
     spring.inertia = 1 / (compliance * squared);
-    spring.gap = std::max(spring.gap, -recovery_speed * substep.h);
+    spring.gap = std::max(spring.gap, -settings.recovery_speed * substep.h);
 }
 
 void TouchSprings::add(const Nodes& nodes, const SheetContact& contact, std::span<const TouchedBody> bodies,
@@ -257,6 +260,7 @@ TouchSprings::Place TouchSprings::place_of(const TouchedBody& body, const Subste
 
 void TouchSprings::begin(const Nodes& nodes, std::span<const NodeContact> contacts, std::span<const TouchedBody> bodies,
                          const Substep& substep, std::span<const double> node_stiffness) {
+    const ThinContactSettings& settings = substep.settings.thin_contact;
     places_.clear();
     for (const TouchedBody& body : bodies) places_.push_back(place_of(body, substep));
     springs_.clear();
@@ -280,8 +284,8 @@ void TouchSprings::begin(const Nodes& nodes, std::span<const NodeContact> contac
         const Vec3 anchor = transform_point(body.start, attachment.anchor) - body.start_center;
         spring.arm = places_[b].rotation * anchor;
         spring.carried = nodes.position[attachment.node] - places_[b].center - spring.arm;  // off the anchor
-        spring.stiffness = stiffness_factor * node_stiffness[attachment.node];
-        recall(body, spring);
+        spring.stiffness = settings.stiffness_factor * node_stiffness[attachment.node];
+        recall(body, settings, spring);
         springs_.push_back(spring);
     }
 }

@@ -28,8 +28,6 @@ inline Vec3 unit_move(std::size_t c, Vec3 arm) {
 inline constexpr std::uint32_t no_body = 0xFFFFFFFFu;
 inline constexpr std::uint32_t no_node = 0xFFFFFFFFu;
 
-inline constexpr double recovery_speed = 0.2;  ///< m/s: what begins inside of something is parted from it no faster
-
 /// How hard bodies are to move within a substep of h seconds: none that the pushes do not move.
 struct BodyInertia {
     bool moves = false;
@@ -102,10 +100,10 @@ double energy_pressed(const TouchSpring& spring, std::span<const Vec3> node_move
                       std::span<const BodyMove> body_moves);
 
 /// Of each body, how much of what the springs push it for these moves it may get: 1 where it goes by that as the solve
-/// has it in the substep of h seconds, less where a solve that has not come to its end left stiff springs with far
-/// more.
+/// has it in the substep, less where a solve that has not come to its end left stiff springs with far more.
 std::vector<double> fractions_of(std::span<const TouchSpring> springs, std::span<const Vec3> node_moves,
-                                 std::span<const BodyMove> body_moves, std::span<const BodyInertia> inertias, double h);
+                                 std::span<const BodyMove> body_moves, std::span<const BodyInertia> inertias,
+                                 const Substep& substep);
 
 /// How much of contacts' forces has changed, N, beside those of contacts that act, and those that all that are near
 /// would have: the finer and the coarser measure.
@@ -120,7 +118,7 @@ void choose_contact(TouchSpring& spring, Vec3 s, bool is_predicted, SpringChange
 Vec3 held_stretch(TouchSpring& spring, Vec3 stretch, double push, double h);
 /// Of a contact or tie between sheets and ropes, N/m: over the inertia of the heavier point (`mass`, kg), or of what
 /// weighs on it, which `force` (N) tells, in a substep of h seconds. `gravity`: m/s².
-double contact_stiffness(double mass, double force, double h, double gravity);
+double contact_stiffness(double mass, double force, double h, double gravity, const ThinContactSettings& settings);
 /// The part of v along a plane.
 inline Vec3 across(Vec3 v, Vec3 normal) { return v - dot(v, normal) * normal; }
 
@@ -154,10 +152,11 @@ public:
 
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_; }
 
-    double radius = 1e-3;                          ///< m
-    Material material;                             ///< of the deformable's surface
-    double tolerance = 0.05;                       ///< share of the forces whose change is not worth a solve
-    std::vector<Attachment> attachments;           ///< that still hold
+    double radius = 1e-3;                                       ///< m
+    Material material;                                          ///< of the deformable's surface
+    double tolerance = ThinContactSettings{}.change_tolerance;  ///< share of the forces whose change is not worth a
+                                                                ///< solve, set before begin()
+    std::vector<Attachment> attachments;                        ///< that still hold
     std::vector<std::uint32_t> attachment_bodies;  ///< index of each in the list of bodies, set before begin()
 
 private:
@@ -182,7 +181,7 @@ private:
     static void soften(const Substep& substep, double compliance, bool is_with_body, TouchSpring& spring);
     [[nodiscard]] bool is_attached(std::uint32_t node, std::uint32_t body) const;
     // False where the contact is new.
-    bool recall(const TouchedBody& body, TouchSpring& spring) const;
+    bool recall(const TouchedBody& body, const ThinContactSettings& settings, TouchSpring& spring) const;
     static bool stop(TouchSpring& spring, std::span<Vec3> node_moves, std::span<const BodyMove> body_moves);
 
     std::vector<TouchSpring> springs_;

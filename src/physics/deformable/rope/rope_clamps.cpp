@@ -19,18 +19,18 @@ namespace embody::physics::deformable {
 
 namespace {
 
-constexpr double turn_around = 2 * 3.14159265358979323846;
-constexpr std::uint32_t other_holder = 0xFFFFFFFEu;  // the slot of no body: the angle alone is known
-constexpr double max_folded = 0.02;  // 1 + a·b where curvature ends to grow: folded back by 168 degrees
+constexpr double turn_around = 2 * 3.14159265358979323846;  // 2 π
+constexpr std::uint32_t other_holder = 0xFFFFFFFEu;         // the slot of no body: the angle alone is known
 
 double one_plus_cosine(Vec3 a, Vec3 b, double least) { return std::max(1 + dot(a, b), least); }
 
-Vec3 curvature_of(Vec3 a, Vec3 b) { return (2 / one_plus_cosine(a, b, max_folded)) * cross(a, b); }
+Vec3 curvature_of(Vec3 a, Vec3 b, double fold_limit) { return (2 / one_plus_cosine(a, b, fold_limit)) * cross(a, b); }
 
 // By the smallest turn that takes the unit vector a to b.
 Vec3 carried(Vec3 v, Vec3 a, Vec3 b) {
+    constexpr double opposite = 1e-9;  // 1 + a·b below which no turn is the smallest: keeps the quotient finite
     const Vec3 axis = cross(a, b);
-    return dot(a, b) * v + cross(axis, v) + (dot(axis, v) / one_plus_cosine(a, b, 1e-9)) * axis;
+    return dot(a, b) * v + cross(axis, v) + (dot(axis, v) / one_plus_cosine(a, b, opposite)) * axis;
 }
 
 double nearest_turn(double angle, double to) { return angle + turn_around * std::round((to - angle) / turn_around); }
@@ -146,6 +146,7 @@ void RopeClamps::find_spans(const Start& start, std::span<const Frame> at_start)
 
 void RopeClamps::begin(const Start& start) {
     if (clamps_.empty()) return;
+    fold_limit_ = start.substep.settings.rope.fold_limit;
     lengths_.clear();
     for (const RopeSegment& segment : start.segments) lengths_.push_back(segment.length);
     std::vector<Frame> at_start;
@@ -190,7 +191,8 @@ RopeClamps::Bow RopeClamps::bow_of(const Span& span, std::span<const Vec3> place
         bow.directions.push_back(direction_of(places[s + 1] - places[s], lengths_[s]));
     bow.directions.push_back({frame_of(to, body_moves).axis, Mat3::zero()});
     for (std::size_t i = 1; i < bow.directions.size(); ++i)
-        bow.curvature.push_back(curvature_of(bow.directions[i - 1].displacement, bow.directions[i].displacement));
+        bow.curvature.push_back(
+            curvature_of(bow.directions[i - 1].displacement, bow.directions[i].displacement, fold_limit_));
     return bow;
 }
 
@@ -254,7 +256,7 @@ void RopeClamps::add_curvature(const Span& span, const Bow& bow, std::span<const
         const SegmentDirection &a = bow.directions[c], &b = bow.directions[c + 1];
         const Vec3 bend = bow.curvature[c];
         const Vec3 middle =
-            (a.displacement + b.displacement) / one_plus_cosine(a.displacement, b.displacement, max_folded);
+            (a.displacement + b.displacement) / one_plus_cosine(a.displacement, b.displacement, fold_limit_);
         const Mat3 pair = symmetric(outer(bend, middle));
         // Edges that are directions of clamps do not move with nodes: their by_end is zero.
         const Mat3 own_a =

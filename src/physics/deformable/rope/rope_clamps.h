@@ -104,6 +104,7 @@ private:
 
     // Of the substep.
     std::vector<double> lengths_;  // of segments at rest, m
+    double fold_limit_ = 0;        // RopeSettings::fold_limit
     std::vector<Held> held_;
     std::vector<HalfBend> bends_;
     std::vector<Span> spans_;

@@ -15,7 +15,7 @@ namespace embody::physics::deformable {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+constexpr double pi = 3.14159265358979323846;  // turns of Euler's load
 
 }  // namespace
 
@@ -52,7 +52,6 @@ RopeLine::RopeLine(const DeformableDefinition& definition) : rope_(std::get<Rope
     springs_.material = definition.material;
     springs_.attachments = definition.attachments;
     clamps_.set(definition.clamps);
-    springs_.tolerance = 0.005;  // along a drum the errors add up in the exponent
 }
 
 RopeLine::Bend RopeLine::bend_at(std::size_t node, std::span<const Vec3> positions) const {
@@ -90,6 +89,7 @@ RopeLine::Tension RopeLine::damped_tension_at(std::size_t segment, double now, d
 }
 
 void RopeLine::add_stretch(std::size_t segment, double h) {
+    constexpr double min_length = 1e-12;  // m: keeps the quotient finite
     if (segments_[segment].is_broken) return;
     const std::size_t a = segment, b = segment + 1;
     const Vec3 edge = places_[b] - places_[a];
@@ -98,7 +98,7 @@ void RopeLine::add_stretch(std::size_t segment, double h) {
     const Vec3 displacement = normalized(edge, {1, 0, 0});
     // (EA/l₀) t tᵀ + (T/l)(1 - t tᵀ); a pressed segment buckles, which is left to the forces. T is what the last round
     // predicted, not what its nodes' places say: those it has moved by d across, which lengthens the segment by d²/2l.
-    const double across = std::max(pulls_[segment], 0.0) / std::max(now, 1e-12);
+    const double across = std::max(pulls_[segment], 0.0) / std::max(now, min_length);
     const Mat3 stiffness = (tension.slope - across) * outer(displacement, displacement) + across * Mat3::identity();
     system_.band.add(a, a, stiffness);
     system_.band.add(b, b, stiffness);
@@ -191,7 +191,8 @@ bool RopeLine::take_step(const Substep& substep, std::span<const BodyInertia> in
     const std::vector<Vec3> from = moves_, full = next_moves_;
     const std::vector<BodyMove> body_from = body_moves_, body_full = next_body_moves_;
     const double before = merit(substep, inertias, from, body_from);
-    for (double fraction = 1; fraction > 1e-3; fraction /= 2) {
+    constexpr double rounding = 1e-9;  // of the energy: sums of thousands of terms round by less
+    for (double fraction = 1; fraction > substep.settings.rope.min_step_fraction; fraction /= 2) {
         for (std::size_t i = 0; i < from.size(); ++i) moves_[i] = from[i] + fraction * (full[i] - from[i]);
         for (std::size_t b = 0; b < body_from.size(); ++b) {
             body_moves_[b].shift = body_from[b].shift + fraction * (body_full[b].shift - body_from[b].shift);
@@ -199,7 +200,7 @@ bool RopeLine::take_step(const Substep& substep, std::span<const BodyInertia> in
         }
         const double after = merit(substep, inertias, moves_, body_moves_);
         if (!std::isfinite(after)) continue;
-        if (after <= before + 1e-9 * std::fabs(before)) {
+        if (after <= before + rounding * std::fabs(before)) {
             predict(substep, from, moves_);
             return true;
         }
@@ -245,8 +246,8 @@ bool RopeLine::solve_iteration(const Substep& substep, std::span<const BodyInert
 }
 
 bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> bodies) {
-    constexpr int max_iterations = 12;
-    constexpr double small = 1e-4;  // of a segment's length
+    const int max_iterations = substep.settings.rope.max_iterations;
+    const double move_tolerance = substep.settings.rope.move_tolerance * segments_[0].length;  // m
     const std::vector<BodyInertia> inertias = inertias_of(bodies, substep.h);
     TouchSprings chosen = springs_;
     chosen.choose(moves_, body_moves_, true);
@@ -272,7 +273,7 @@ bool RopeLine::solve_moves(const Substep& substep, std::span<const TouchedBody> 
             change = std::max(change, length(moves_[i] - before[i]));
         }
         const bool has_changed = chosen.choose(moves_, body_moves_, false);
-        if (!has_changed && change < small * segments_[0].length) return true;
+        if (!has_changed && change < move_tolerance) return true;
         if (const double left = merit_pressed(substep, inertias); left < least) {
             least = left;
             best_moves = moves_;
@@ -312,6 +313,7 @@ void RopeLine::begin(const Substep& substep, std::span<const NodeContact> contac
                      std::span<const SegmentContact> segment_contacts, std::span<const std::uint32_t> attachment_bodies,
                      std::span<const TouchedBody> bodies) {
     const std::size_t count = nodes_.size();
+    springs_.tolerance = substep.settings.rope.change_tolerance;
     springs_.attachment_bodies.assign(attachment_bodies.begin(), attachment_bodies.end());
     clamps_.begin({rope_, segments_, nodes_, fixed_, springs_, bodies, substep});
     begin_substep(substep.h);
@@ -332,7 +334,7 @@ LineSystem RopeLine::linearize(const Substep& substep, std::span<const Vec3> mov
         for (std::size_t i = 0; i < system_.rhs.size(); ++i)
             system_.rhs[i] -= moments_[k] * system_.twists[k].by_node[i];
     }
-    const double least = std::max(length(substep.gravity), 1.0);  // m/s²: an acceleration that matters anywhere
+    const double least = std::max(length(substep.gravity), substep.settings.thin_contact.min_gravity);  // m/s²
     small_load_.resize(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) small_load_[i] = {0, nodes_.mass[i] * least, 0};
     return {&system_.band, system_.rhs, small_load_, &fixed_};
@@ -354,7 +356,7 @@ void RopeLine::advance(const Substep& substep, std::span<const NodeContact> cont
     if (!solve_moves(substep, bodies)) return freeze();
     std::vector<double> fractions;
     if (!clamps_.holds_any())
-        fractions = fractions_of(springs_.springs(), moves_, body_moves_, inertias_of(bodies, substep.h), substep.h);
+        fractions = fractions_of(springs_.springs(), moves_, body_moves_, inertias_of(bodies, substep.h), substep);
     end(substep, moves_, body_moves_, {}, bodies, fractions);
 }
 
@@ -372,7 +374,7 @@ void RopeLine::end(const Substep& substep, std::span<const Vec3> moves, std::spa
         std::vector<Vec3> all(count);
         for (std::size_t i = 0; i < count; ++i) all[i] = substep.h * nodes_.mass[i] * substep.gravity;
         for (std::size_t i = 0; i < given.size(); ++i) all[i] += substep.h * given[i];
-        keep_momenta(nodes_, all, substep.h, moves_);
+        keep_momenta(nodes_, all, substep.h, substep.settings.thin_contact, moves_);
     }
     held_.clear();
     springs_.finish(moves_, body_moves, substep, bodies, fractions);

@@ -19,14 +19,17 @@ struct SegmentDirection {
     Mat3 by_end;        ///< 1/m
 };
 inline SegmentDirection direction_of(Vec3 edge, double rest_length) {
-    const double l = std::max(length(edge), 0.01 * rest_length);
+    // Of the length at rest: keeps the derivative finite where the segment is pressed flat.
+    constexpr double min_fraction = 0.01;
+    const double l = std::max(length(edge), min_fraction * rest_length);
     const Vec3 t = edge / l;
     return {t, (1 / l) * (Mat3::identity() - outer(t, t))};
 }
 
 /// Damping sees how a turn of direction grows, not how it turns with the rope.
 inline Mat3 damping_of_growth(Vec3 turn, double damping) {
-    const double size = length_squared(turn), turning = size / (size + 1e-4);
+    constexpr double straight = 1e-4;  // rad²: a turn that is smaller has no axis yet
+    const double size = length_squared(turn), turning = size / (size + straight);
     const Vec3 axis = normalized(turn);
     return damping * ((1 - turning) * Mat3::identity() + turning * outer(axis, axis));
 }

@@ -9,7 +9,6 @@ namespace embody::physics::deformable {
 namespace {
 
 constexpr double air_pressure = 101'325;  // Pa, of the standard atmosphere (ISO 2533)
-constexpr double min_fraction = 0.05;     // of the volume at rest: what is squashed more presses no harder
 
 }  // namespace
 
@@ -21,7 +20,8 @@ EnclosedGas::EnclosedGas(double pressure, std::span<const std::array<std::uint32
 }
 
 // V = Σ a·(b × c)/6 over the faces, from a place among them so that little cancels.
-void EnclosedGas::measure(std::span<const std::array<std::uint32_t, 3>> surface, std::span<const Vec3> position) {
+void EnclosedGas::measure(std::span<const std::array<std::uint32_t, 3>> surface, std::span<const Vec3> position,
+                          double min_fraction) {
     slope_.assign(position.size(), {});
     const Vec3 origin = position[surface.front()[0]];
     volume_ = 0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "math/vec3.h"
+#include "physics/definitions/settings/solid_settings.h"
 #include "physics/deformable/namespace.h"
 
 namespace embody::physics::deformable {
@@ -18,8 +19,9 @@ public:
     /// `surface` is counter-clockwise from outside; `pressure` above that of the air around, Pa, > 0.
     EnclosedGas(double pressure, std::span<const std::array<std::uint32_t, 3>> surface, std::span<const Vec3> rest);
 
-    /// Finds volume and slope with the nodes at these places, m.
-    void measure(std::span<const std::array<std::uint32_t, 3>> surface, std::span<const Vec3> position);
+    /// Finds volume and slope with the nodes at these places, m. `min_fraction`: SolidSettings::min_gas_fraction.
+    void measure(std::span<const std::array<std::uint32_t, 3>> surface, std::span<const Vec3> position,
+                 double min_fraction = SolidSettings{}.min_gas_fraction);
 
     /// ∂V/∂x of each node, m², of the last measure().
     [[nodiscard]] const std::vector<Vec3>& slope() const { return slope_; }

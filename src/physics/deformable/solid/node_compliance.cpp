@@ -15,9 +15,9 @@ void NodeCompliance::forget(std::size_t nodes) {
 }
 
 void NodeCompliance::begin() {
-    constexpr std::size_t few = 32;
+    constexpr std::size_t max_idle_count = 32;  // nodes whose columns cost less to keep than to find again
     const auto asked_for = static_cast<std::size_t>(std::ranges::count(is_asked_for_, std::uint8_t{1}));
-    if (size() > 2 * asked_for + few) keep_only_asked_for();
+    if (size() > 2 * asked_for + max_idle_count) keep_only_asked_for();
     std::ranges::fill(is_asked_for_, std::uint8_t{0});
 }
 

@@ -10,17 +10,7 @@ namespace embody::physics::deformable {
 
 namespace {
 
-constexpr int max_iterations = 5, sweeps_per_iteration = 2, max_leaning_sweeps = 10;
-constexpr double close_enough = 2e-6;  // m: no contact moves by more in the last sweep
-constexpr double small_fraction =
-    0.05;                               // or by this of what the first sweeps did: forces are kept for the next substep
-constexpr double slid_fraction = 0.02;  // or by this of the farthest way that two slide or close in the substep
-constexpr double not_worth_it = 1e-7;   // m: a contact that would move by less is left as it is
-constexpr double recovery_speed = 0.5;  // m/s: what overlaps is parted no faster
-// Of a contact's own compliance along the normal: where contacts say the same of a place, all bear a part.
-constexpr double softness = 0.01;
-constexpr double farthest = 1e3;           // m: gaps beyond belong to solids whose numbers have broken
-constexpr double reach_beyond_radius = 1;  // contacts farther than this many radii stay out of the sweeps
+constexpr double max_finite_gap = 1e3;  // m: gaps beyond belong to solids whose numbers have broken
 
 Vec3 position(const CarriedPoint& point, SolidContacts::Solids solids) {
     Vec3 sum;
@@ -53,9 +43,11 @@ void SolidContacts::begin(std::span<const SolidContact> contacts, Solids solids,
     }
 }
 
-void SolidContacts::solve(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h,
-                          double time, TaskPool& workers) {
-    gather(contacts, solids, bodies, h, time);
+void SolidContacts::solve(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies,
+                          const Substep& substep, TaskPool& workers) {
+    const double h = substep.h;
+    settings_ = substep.settings;
+    gather(contacts, solids, bodies, h, substep.time);
     for (std::size_t s = 0; s < solids.size(); ++s) touched_[s].complete(*solids[s], workers);
     for (Active& active : active_) find_compliance(active, h);
     find_groups(solids.size(), bodies);
@@ -137,19 +129,20 @@ void SolidContacts::find_groups(std::size_t solids, std::span<const TouchedBody>
 void SolidContacts::find_forces(const Group& group, double h, TaskPool& workers) {
     const auto sweeps = [&] {
         double moved = 0;
-        for (int k = 0; k < sweeps_per_iteration && (k == 0 || moved > close_enough); ++k)
+        for (int k = 0; k < settings_.sweeps_per_iteration && (k == 0 || moved > settings_.sweep_tolerance); ++k)
             moved = sweep(group, h, k % 2 == 0);
         return moved;
     };
     double moved = sweeps(), best = moved;
     double slid = 0;
     for (const Active* active : group.active) slid = std::max(slid, length(active->slid));
-    const double enough = std::max({close_enough, small_fraction * moved, slid_fraction * slid});
+    const double enough = std::max({settings_.sweep_tolerance, settings_.sweep_tolerance_of_first * moved,
+                                    settings_.sweep_tolerance_of_slip * slid});
     const auto keep = [&] {
         for (Active* active : group.active) active->best = active->contact->force;
     };
     keep();
-    for (int iteration = 0; iteration < max_iterations && moved > enough; ++iteration) {
+    for (int iteration = 0; iteration < settings_.max_iterations && moved > enough; ++iteration) {
         solve_together(group, h, workers);
         moved = sweeps();
         if (!(moved < best)) continue;
@@ -160,15 +153,16 @@ void SolidContacts::find_forces(const Group& group, double h, TaskPool& workers)
         for (const Active* active : group.active) apply(*active, active->best - active->contact->force, h);
         moved = best;
     }
+    const int max_sweeps = settings_.max_conjugate_sweeps;
     double last = 0;
-    for (int k = 0; k < max_leaning_sweeps && moved > enough; ++k) {
+    for (int k = 0; k < max_sweeps && moved > enough; ++k) {
         for (Active* active : group.active) active->before = active->contact->force;
         moved = sweep(group, h, k % 2 == 0);
         double size = 0;
         for (const Active* active : group.active) size += length_squared(active->contact->force - active->before);
         const double factor = k > 0 && size < last ? size / last : 0;
         last = size;
-        if (k + 1 < max_leaning_sweeps && moved > enough) lean_on(group, factor, h);
+        if (k + 1 < max_sweeps && moved > enough) lean_on(group, factor, h);
     }
 }
 
@@ -200,13 +194,13 @@ void SolidContacts::gather(std::span<SolidContact> contacts, Solids solids, std:
             active.gap = dot(at - other, contact.normal) - contact.radius;
             active.slid = at - was - (other - start_position(contact.other, solids));
         }
-        if (!(std::fabs(active.gap) < farthest && length(active.slid) < farthest)) {
+        if (!(std::fabs(active.gap) < max_finite_gap && length(active.slid) < max_finite_gap)) {
             contact.force = {};
             continue;
         }
-        if (!contact.holds && contact.force == Vec3{} && active.gap > reach_beyond_radius * contact.radius) continue;
+        if (!contact.holds && contact.force == Vec3{} && active.gap > settings_.reach_radii * contact.radius) continue;
         const double gap_before = active.gap - dot(active.slid, active.normal);
-        active.target = std::min(0.0, gap_before + recovery_speed * h);
+        active.target = std::min(0.0, gap_before + settings_.recovery_speed * h);
         add_terms(active, contact.point, 1);
         add_terms(active, contact.other, -1);
         active_.push_back(active);
@@ -225,7 +219,7 @@ void SolidContacts::place_against_body(Active& active, Vec3 at, Vec3 was, double
         // overlaps do.
         active.arm = body.rotation_before(h, time) * contact.anchor;
         const Vec3 before = was - body.center_before(h, time) - active.arm;
-        const double off = length(before), most = recovery_speed * h;
+        const double off = length(before), most = settings_.recovery_speed * h;
         active.slid = at - was - body.displacement(h, time, active.arm) + (off > most ? (most / off) * before : before);
         return;
     }
@@ -292,6 +286,7 @@ double SolidContacts::sweep(const Group& group, double h, bool forwards) {
 // One contact to where it wants to be with the others as they are; returns how far it had to move.
 double SolidContacts::relax(Active& active, double h) {
     const SolidContact& contact = *active.contact;
+    const double softness = settings_.softness;
     if (contact.holds) {
         const Vec3 off = active.slid + moved(active) + soft_part(active, contact.force);
         apply(active, (-1 / (1 + softness)) * embody::solve(active.compliance, off), h);
@@ -316,7 +311,7 @@ double SolidContacts::relax(Active& active, double h) {
         within_cone(contact.force + along - sliding / tangential_compliance, n, contact.present_friction());
     const Vec3 change = wanted - contact.force, across = change - dot(change, n) * n;
     const double moved_by = std::max(std::fabs(after - before) * compliance, length(across) * tangential_compliance);
-    if (moved_by > not_worth_it) apply(active, along + across, h);
+    if (moved_by > settings_.idle_move) apply(active, along + across, h);
     return moved_by;
 }
 
@@ -329,7 +324,8 @@ Vec3 SolidContacts::within_cone(Vec3 force, Vec3 normal, double friction) {
 }
 
 // By how much a contact gives way to a force beyond what bodies and solids do, m.
-Vec3 SolidContacts::soft_part(const Active& active, Vec3 force) {
+Vec3 SolidContacts::soft_part(const Active& active, Vec3 force) const {
+    const double softness = settings_.softness;
     if (active.contact->holds) return softness * (active.compliance * force);
     const Vec3 n = active.normal;
     return (softness * dot(n, active.compliance * n) * dot(force, n)) * n;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "physics/definitions/settings/solid_settings.h"
 #include "physics/deformable/contact/touched_body.h"
 #include "physics/deformable/namespace.h"
 #include "physics/deformable/solid/solid_contact.h"
@@ -23,8 +24,13 @@ public:
     /// Lets the forces that are remembered act on solids and bodies; before the solids' solve().
     static void begin(std::span<const SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h,
                       double time);
-    /// Finds the forces for a substep of h seconds that ends `time` (s) after the step began, settles the solids.
-    void solve(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, double h, double time,
+    /// A substep of h seconds that ends `time` (s) after the step began.
+    struct Substep {
+        double h = 0, time = 0;
+        SolidContactSettings settings = {};
+    };
+    /// Finds the forces for the substep, settles the solids.
+    void solve(std::span<SolidContact> contacts, Solids solids, std::span<TouchedBody> bodies, const Substep& substep,
                TaskPool& workers);
 
 private:
@@ -76,13 +82,14 @@ private:
     void respond(const Group& group, double h, TaskPool& workers);
     void probe(const Group& group, TaskPool& workers);
     [[nodiscard]] static Vec3 within_cone(Vec3 force, Vec3 normal, double friction);
-    [[nodiscard]] static Vec3 soft_part(const Active& active, Vec3 force);
+    [[nodiscard]] Vec3 soft_part(const Active& active, Vec3 force) const;
     [[nodiscard]] Vec3 missing(const Active& active) const;
     static void find_state(Active& active);
     void note_sticking(const Active& active, double h);
     [[nodiscard]] static double precondition(Active& active);
     [[nodiscard]] static Vec3 free_part(const Active& active, Vec3 v);
 
+    SolidContactSettings settings_;  // of the substep
     std::vector<Active> active_;
     std::vector<Group> groups_;
     std::vector<TouchedNodes> touched_;               // by solid

@@ -24,13 +24,14 @@ Vec3 SolidContacts::missing(const Active& active) const {
 }
 
 void SolidContacts::find_state(Active& active) {
+    constexpr double rounding = 1e-6;  // of the limit: sweeps leave what slides that near to it
     const SolidContact& contact = *active.contact;
     const double along = dot(contact.force, active.normal);
     const double across = length(contact.force - along * active.normal);
-    active.state = contact.holds                                              ? State::holds
-                   : !(along > 0)                                             ? State::open
-                   : across < (1 - 1e-6) * contact.present_friction() * along ? State::sticks
-                                                                              : State::slides;
+    active.state = contact.holds                                                  ? State::holds
+                   : !(along > 0)                                                 ? State::open
+                   : across < (1 - rounding) * contact.present_friction() * along ? State::sticks
+                                                                                  : State::slides;
 }
 
 // The part of a vector that the contact's state leaves free.
@@ -138,10 +139,8 @@ void SolidContacts::solve_together(const Group& group, double h, TaskPool& worke
             return {product, product};
         }
     };
-    constexpr int max_iterations = 8;
-    constexpr double tolerance = 0.01;  // of the first r·z
     System system{*this, group, h, workers};
-    conjugate_gradient(system, {.iterations = max_iterations, .relative = tolerance});
+    conjugate_gradient(system, {.iterations = settings_.gradient_iterations, .relative = settings_.gradient_tolerance});
     for (Active* const one : group.active) {
         Active& active = *one;
         if (active.state == State::open) continue;

@@ -9,19 +9,6 @@
 
 namespace embody::physics::deformable {
 
-namespace {
-
-// Of the true stiffness along a move over the metric's.
-constexpr double stiffest_ratio = 1.3;
-// Of its energy: as much may come from nowhere, by rounding and by rotations that lag.
-constexpr double max_surplus = 0.01;
-// Nodes that go less than this of a triangle's side in a substep make none.
-constexpr double slow_fraction = 0.02;
-// rad: velocities are turned back no farther, where a substep turns the whole by more than it can follow.
-constexpr double max_turn_back = 0.3;
-
-}  // namespace
-
 SolidDeformable::SolidDeformable(const DeformableDefinition& definition)
     : elements_(std::get<SoftSolid>(definition.matter), definition.nodes),
       damping_(std::get<SoftSolid>(definition.matter).rayleigh_damping),
@@ -100,14 +87,17 @@ void SolidDeformable::make_factor(double h) {
     compliance_.forget(nodes_.size());
 }
 
-void SolidDeformable::begin_substep(double h, Vec3 gravity) {
+void SolidDeformable::begin_substep(double h, Vec3 gravity, const SolidSettings& settings) {
+    settings_ = settings;
+    elements_.set(settings);
     h_ = h;
     gravity_ = gravity;
     // The definition tells the velocity at the start, not the mean before it: half a substep of gravity and of the turn
     // of the whole earlier.
     if (is_new_) {
+        constexpr double min_spin = 1e-9;  // rad/s: keeps the quotient finite
         const WholeMotion whole = motion_of_whole(nodes_);
-        const double back = std::min(h / 2, max_turn_back / std::max(length(whole.spin), 1e-9));  // s
+        const double back = std::min(h / 2, settings.max_turn_back / std::max(length(whole.spin), min_spin));  // s
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
             if (!(nodes_.inverse_mass[i] > 0)) continue;
             const Vec3 turning = is_free_ ? cross(whole.spin, nodes_.mean_velocity[i] - whole.velocity) : Vec3{};
@@ -146,14 +136,15 @@ void SolidDeformable::solve(TaskPool& workers) {
     quasi_newton_move(force_, move_, workers);
     // The metric must not be softer than what it stands for along the move, or moves grow from substep to substep.
     stretch_ = 1;
+    const double max_ratio = settings_.max_stiffness_ratio;
     double ratio = stiffness_ratio();
-    if (ratio > stiffest_ratio) {
+    if (ratio > max_ratio) {
         make_factor(h_);
         find_gas_move(workers);
         quasi_newton_move(force_, move_, workers);
         ratio = stiffness_ratio();
     }
-    stretch_ = std::max(1.0, ratio / stiffest_ratio);
+    stretch_ = std::max(1.0, ratio / max_ratio);
     for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.position[i] += move_[i] / stretch_;
 }
 
@@ -172,7 +163,7 @@ void SolidDeformable::find_response(std::span<const Vec3> force, std::span<Vec3>
 // The force of the gas on the nodes: what it presses more than at rest, along ∂V/∂x.
 void SolidDeformable::press() {
     if (!gas_) return;
-    gas_->measure(surface_, nodes_.position);
+    gas_->measure(surface_, nodes_.position, settings_.min_gas_fraction);
     for (const std::uint32_t node : surface_nodes_) force_[node] += gas_->excess() * gas_->slope()[node];
 }
 
@@ -265,7 +256,7 @@ double SolidDeformable::elastic_energy(std::span<const Vec3> positions) const {
     double sum = elements_.energy(positions);
     if (gas_) {
         EnclosedGas gas = *gas_;
-        gas.measure(surface_, positions);
+        gas.measure(surface_, positions, settings_.min_gas_fraction);
         sum += gas.energy();
     }
     return sum;
@@ -278,6 +269,7 @@ std::optional<double> SolidDeformable::find_surplus() {
     double farthest = 0;
     for (std::size_t i = 0; i < nodes_.size(); ++i)
         farthest = std::max(farthest, length_squared(nodes_.position[i] - start_[i]));
+    const double slow_fraction = settings_.energy_travel_fraction;
     if (farthest < slow_fraction * slow_fraction * mean_side_ * mean_side_) return std::nullopt;
     if (!energy_at_start_)
         energy_at_start_ = kinetic_energy_at_start_ + (elastic_energy_ ? *elastic_energy_ : elastic_energy(start_));
@@ -292,7 +284,7 @@ std::optional<double> SolidDeformable::find_surplus() {
 
 // What was too much before may only become less.
 bool SolidDeformable::is_too_much(std::optional<double> surplus) const {
-    return surplus && !(*surplus <= std::max(max_surplus * *energy_at_start_, surplus_));
+    return surplus && !(*surplus <= std::max(settings_.max_energy_gain * *energy_at_start_, surplus_));
 }
 
 // What further rounds leave is taken off: the move of the substep beyond that of the whole is made shorter, down to
@@ -303,7 +295,7 @@ bool SolidDeformable::keep_energy() {
     const bool is_shortened = is_too_much(left);
     if (is_shortened) {
         const RigidMove whole = is_free_ ? move_of_whole() : RigidMove{};
-        constexpr int max_halvings = 4;
+        const int max_halvings = settings_.max_halvings;
         for (int k = 1; k <= max_halvings && is_too_much(left); ++k) {
             const double fraction = k < max_halvings ? 0.5 : 0;
             for (std::size_t i = 0; i < nodes_.size(); ++i) {

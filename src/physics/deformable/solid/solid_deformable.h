@@ -30,7 +30,8 @@ public:
     [[nodiscard]] Bounds bounds() const;
 
     /// Begins a substep of h seconds: nodes go on with their velocities. `gravity` in m/s², the body's factor counted.
-    void begin_substep(double h, Vec3 gravity);
+    /// `settings` hold until the next one.
+    void begin_substep(double h, Vec3 gravity, const SolidSettings& settings = {});
     /// Lets a force (N) act on a node for this substep; counts in the next solve() or settle().
     void push(std::uint32_t node, Vec3 force);
     /// Moves the nodes to where elastic, damping and inertial forces balance what acts on them: one round of a
@@ -105,7 +106,8 @@ private:
     [[nodiscard]] double elastic_energy(std::span<const Vec3> positions) const;
 
     SolidElements elements_;
-    double damping_ = 0;  // s
+    SolidSettings settings_;  // of the substep
+    double damping_ = 0;      // s
     Nodes nodes_;
     std::vector<Vec3> rest_;
     std::vector<std::array<std::uint32_t, 3>> surface_;

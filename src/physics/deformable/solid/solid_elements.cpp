@@ -21,9 +21,6 @@ Mat3 symmetric_part(const Mat3& m) { return 0.5 * (m + transpose(m)); }
 
 double squares(const Mat3& m) { return length_squared(m.x) + length_squared(m.y) + length_squared(m.z); }
 
-// Strain beyond which it is as if it were full: it flows no further, so that nothing is rolled out to nothing.
-constexpr double max_plastic_strain = 0.5;
-
 }  // namespace
 
 SolidElements::SolidElements(const SoftSolid& solid, std::span<const Vec3> rest)
@@ -132,11 +129,11 @@ Mat3 SolidElements::stress(const Mat3& deformation, Quat rotation, const Mat3& p
 
 // Rᵀ F at the start of a substep, before it turned to `rotation`. Of small turns the square does not count, as long as
 // the damping does not make much of it.
-Mat3 SolidElements::start_stretch(const Mat3& deformation, Quat before, Quat rotation, double damping_rate) {
-    constexpr double small = 1e-3;  // of the quaternion: half the angle, rad
+Mat3 SolidElements::start_stretch(const Mat3& deformation, Quat before, Quat rotation, double damping_rate) const {
+    const double same = settings_.same_rotation_turn;  // of the quaternion: half the angle, rad
     const Vec3 turn{rotation.x - before.x, rotation.y - before.y, rotation.z - before.z};
     Quat there = rotation;
-    if (length_squared(turn) * (1 + damping_rate) > small * small) {
+    if (length_squared(turn) * (1 + damping_rate) > same * same) {
         there = before;
         follow_rotation(deformation, there);
     }
@@ -165,6 +162,7 @@ void SolidElements::linearise(std::span<const Vec3> position, std::span<const Ve
         rotation_f_[e] = to_single(rotation_[e]);
     }
     // Means around the nodes.
+    const double node_fraction = settings_.node_fraction;
     for (std::size_t i = 0; i < node_rotation_.size(); ++i) {
         const Mat3 deformation = mean_around(i, deformation_);
         const Quat before = node_rotation_[i];
@@ -233,8 +231,8 @@ void SolidElements::add_stiffness(float factor, std::span<const Vec3f> move, std
         }
         stress_of(node_rotation_f_[i].value, g, node_stress_f_[i].value);
     }
-    const auto own_fraction = static_cast<float>(1 - node_fraction),
-               one_node_fraction = static_cast<float>(node_fraction / 4);
+    const auto own_fraction = static_cast<float>(1 - settings_.node_fraction),
+               one_node_fraction = static_cast<float>(settings_.node_fraction / 4);
     for (std::size_t e = 0; e < size(); ++e) {
         float s[9];
         stress_of(rotation_f_[e].value, gradient_f_[e].value, s);
@@ -263,6 +261,7 @@ double SolidElements::energy(std::span<const Vec3> position) const {
         const Mat3 off = transpose(to_matrix(rotation)) * deformation - Mat3::identity() - plastic;
         return mu_ * squares(off) + lambda_ / 2 * trace(off) * trace(off);
     };
+    const double node_fraction = settings_.node_fraction;
     double sum = 0;
     std::vector<Mat3> deformation(size());
     for (std::size_t e = 0; e < size(); ++e) {
@@ -302,8 +301,8 @@ void SolidElements::flow(const Mat3& deformation, Quat rotation, Mat3& plastic) 
     const double stress = 2 * mu_ * std::sqrt(1.5 * squares(elastic));
     if (!(stress > yield_stress_)) return;
     plastic += (1 - yield_stress_ / stress) * elastic;
-    const double strain = std::sqrt(squares(plastic));
-    if (strain > max_plastic_strain) plastic = (max_plastic_strain / strain) * plastic;
+    const double strain = std::sqrt(squares(plastic)), most = settings_.max_plastic_strain;
+    if (strain > most) plastic = (most / strain) * plastic;
 }
 
 void SolidElements::take_plastic_strain(const SolidElements& other) {

@@ -6,6 +6,7 @@
 #include "math/mat3.h"
 #include "math/quat.h"
 #include "physics/definitions/deformable_definition.h"
+#include "physics/definitions/settings/solid_settings.h"
 #include "physics/deformable/namespace.h"
 
 namespace embody::physics::deformable {
@@ -22,9 +23,10 @@ namespace embody::physics::deformable {
 /// in the substep, which no turn makes.
 class SolidElements {
 public:
-    static constexpr double node_fraction = 0.7;
-
     SolidElements(const SoftSolid& solid, std::span<const Vec3> rest);
+
+    /// Of the world in this substep; before the others, else the defaults count.
+    void set(const SolidSettings& settings) { settings_ = settings; }
 
     [[nodiscard]] std::size_t size() const { return corners_.size(); }
     /// Nodes of each tetrahedron, turned so that its volume is positive.
@@ -71,10 +73,11 @@ private:
                               double damping_rate) const;
     void flow(const Mat3& deformation, Quat rotation, Mat3& plastic) const;
     [[nodiscard]] Mat3 mean_around(std::size_t node, std::span<const Mat3> of_elements) const;
-    static Mat3 start_stretch(const Mat3& deformation, Quat before, Quat rotation, double damping_rate);
+    [[nodiscard]] Mat3 start_stretch(const Mat3& deformation, Quat before, Quat rotation, double damping_rate) const;
     void find_edges();
     void find_surroundings(std::size_t nodes);
 
+    SolidSettings settings_;
     double mu_, lambda_, damping_, yield_stress_;
     std::vector<std::array<std::uint32_t, 4>> corners_;
     std::vector<std::array<Vec3, 3>> gradient_;  ///< of corners 1 to 3, 1/m; that of corner 0 is minus their sum

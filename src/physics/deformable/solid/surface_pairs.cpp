@@ -69,6 +69,7 @@ std::optional<PlacedSurface::Place> PlacedSurface::find(Vec3 p, double reach) co
         point = candidate;
     });
     if (triangle == nullptr) return std::nullopt;
+    constexpr double same_place = 1e-9;  // m: nearer ones have no direction
     // Which side: by the normals of the corners around the point (J. Baerentzen, H. Aanaes, "Signed distance
     // computation using the angle weighted pseudonormal", 2005).
     Vec3 outwards;
@@ -76,7 +77,8 @@ std::optional<PlacedSurface::Place> PlacedSurface::find(Vec3 p, double reach) co
     const Vec3 apart = p - point.at;
     const double distance = length(apart), side = dot(apart, outwards) < 0 ? -1 : 1;
     const Vec3 fallback = length(outwards) > 0 ? outwards / length(outwards) : Vec3{0, 1, 0};
-    return Place{*triangle, point.weight, distance > 1e-9 ? (side / distance) * apart : fallback, side * distance};
+    return Place{*triangle, point.weight, distance > same_place ? (side / distance) * apart : fallback,
+                 side * distance};
 }
 
 template <class Visit>
@@ -84,7 +86,8 @@ void PlacedSurface::visit_crossings(Vec3 p, int axis, Visit&& visit) const {
     const int across = (axis + 1) % 3, up = (axis + 2) % 3;
     // A line through a node or along an edge would be counted twice or not at all: lines pass beside p by nearly
     // nothing.
-    const double aside = 1e-6 * deepest_, x = p[across] + 0.755 * aside, y = p[up] + 0.570 * aside;
+    constexpr double beside = 1e-6;  // of a mean side: rounding leaves 1e-13
+    const double aside = beside * deepest_, x = p[across] + 0.755 * aside, y = p[up] + 0.570 * aside;
     const auto side = [&](Vec3 a, Vec3 b) {
         return (b[across] - a[across]) * (y - a[up]) - (b[up] - a[up]) * (x - a[across]);
     };
@@ -127,10 +130,9 @@ bool PlacedSurface::encloses(Vec3 p) const {
     return before % 2 == 1 && after % 2 == 1;
 }
 
-double PlacedSurface::fraction_within(const PlacedSurface& other, double depth) const {
-    constexpr std::size_t most = 64;
+double PlacedSurface::fraction_within(const PlacedSurface& other, double depth, std::size_t samples) const {
     const std::vector<std::uint32_t>& nodes = solid_.surface_nodes();
-    const std::size_t step = (nodes.size() + most - 1) / most;
+    const std::size_t step = (nodes.size() + samples - 1) / samples;
     std::size_t inside = 0, asked = 0;
     for (std::size_t k = 0; k < nodes.size(); k += step) {
         const Vec3 normal = normal_[nodes[k]];
@@ -156,8 +158,6 @@ ExitDirection min_travel(const Bounds& one, const Bounds& two, bool is_later) {
 
 namespace {
 
-constexpr double sure_depth = 0.5, min_depth = 0.1;  // of points asked, in mean sides
-
 double volume(const Bounds& box) {
     const Vec3 size = box.size();
     return box.is_empty() ? 0 : size.x * size.y * size.z;
@@ -165,50 +165,50 @@ double volume(const Bounds& box) {
 
 // Where much of one of the two lies within the other, as a scene may begin; or where any does and they have been
 // parting.
-std::optional<ExitDirection> find_exit_direction(const SolidDeformable& one, const PlacedSurface& surface_one,
-                                                 const SolidDeformable& two, const PlacedSurface& surface_two,
-                                                 bool is_later, bool is_parting) {
-    const double depth = is_parting ? min_depth : sure_depth;
-    const double most =
-        std::max(surface_one.fraction_within(surface_two, depth), surface_two.fraction_within(surface_one, depth));
-    if (!(is_parting ? most > 0 : most >= much_within)) return std::nullopt;
-    return min_travel(one.bounds(), two.bounds(), is_later);
+std::optional<ExitDirection> find_exit_direction(const NumberedSolid& one, const NumberedSolid& two,
+                                                 const PlacedSurface& surface_two, const SurfaceSearch& search) {
+    const SolidContactSettings& settings = search.settings;
+    const PlacedSurface surface_one(one.solid);
+    const double depth = search.is_parting ? settings.parted_depth : settings.parting_depth;
+    const double most = std::max(surface_one.fraction_within(surface_two, depth, settings.parting_samples),
+                                 surface_two.fraction_within(surface_one, depth, settings.parting_samples));
+    if (!(search.is_parting ? most > 0 : most >= settings.parting_fraction)) return std::nullopt;
+    return min_travel(one.solid.bounds(), two.solid.bounds(), one.number > two.number);
 }
 
-bool may_be_within(const Bounds& one, const Bounds& two) {
+bool may_be_within(const Bounds& one, const Bounds& two, double fraction) {
     const Bounds common{max(one.lower, two.lower), min(one.upper, two.upper)};
-    return volume(common) >= much_within * std::min(volume(one), volume(two));
+    return volume(common) >= fraction * std::min(volume(one), volume(two));
 }
 
 }  // namespace
 
-void find_surface_contacts(const SolidDeformable& one, std::uint32_t one_number, const SolidDeformable& two,
-                           std::uint32_t two_number, double reach, double radius, PairFriction friction,
-                           bool is_parting, std::vector<SolidContact>& contacts) {
-    const Bounds near = enlarged(two.bounds(), reach + radius);
+void find_surface_contacts(const NumberedSolid& one, const NumberedSolid& two, const SurfaceSearch& search,
+                           std::vector<SolidContact>& contacts) {
+    const Bounds near = enlarged(two.solid.bounds(), search.reach + search.radius);
     std::vector<std::uint32_t> nodes;
-    for (const std::uint32_t node : one.surface_nodes()) {
-        if (contains(near, one.nodes().position[node])) nodes.push_back(node);
+    for (const std::uint32_t node : one.solid.surface_nodes()) {
+        if (contains(near, one.solid.nodes().position[node])) nodes.push_back(node);
     }
     if (nodes.empty()) return;
-    const PlacedSurface surface(two);
+    const PlacedSurface surface(two.solid);
     std::optional<ExitDirection> travel;
-    if (is_parting || may_be_within(one.bounds(), two.bounds()))
-        travel = find_exit_direction(one, PlacedSurface(one), two, surface, one_number > two_number, is_parting);
+    if (search.is_parting || may_be_within(one.solid.bounds(), two.solid.bounds(), search.settings.parting_fraction))
+        travel = find_exit_direction(one, two, surface, search);
     for (const std::uint32_t node : nodes) {
-        const Vec3 p = one.nodes().position[node];
-        auto place = surface.find(p, std::max(reach + radius, surface.deepest()));
+        const Vec3 p = one.solid.nodes().position[node];
+        auto place = surface.find(p, std::max(search.reach + search.radius, surface.deepest()));
         // What is too deep to be told where it came from, or would be pushed deeper.
         if (travel && (!place || travel->sign * place->normal[travel->axis] < 0))
             place = surface.find_exit(p, travel->axis, travel->sign);
         if (!place) continue;
         SolidContact contact;
         contact.normal = place->normal;
-        contact.other = {two_number, 3, place->triangle, place->weight};
-        contact.point = {one_number, 1, {node}, {1}};
+        contact.other = {two.number, 3, place->triangle, place->weight};
+        contact.point = {one.number, 1, {node}, {1}};
         contact.parts = travel.has_value();
-        contact.radius = radius;
-        contact.friction = friction;
+        contact.radius = search.radius;
+        contact.friction = search.friction;
         contacts.push_back(contact);
     }
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/bounding_volume_tree.h"
+#include "physics/definitions/settings/solid_settings.h"
 #include "physics/deformable/namespace.h"
 #include "physics/deformable/solid/solid_contact.h"
 #include "physics/deformable/solid/solid_deformable.h"
@@ -18,8 +19,6 @@ struct ExitDirection {
 };
 /// The shortest on which the box of `one` leaves that of `two`; of equal ones the first upwards for the later one.
 [[nodiscard]] ExitDirection min_travel(const Bounds& one, const Bounds& two, bool is_later);
-
-inline constexpr double much_within = 0.125;  ///< share of one thing within another: not the work of contact
 
 /// A solid's surface as it lies now.
 class PlacedSurface {
@@ -41,8 +40,9 @@ public:
     [[nodiscard]] bool encloses(Vec3 p) const;
     /// How deep a point may be inside and still be told where it came from, m.
     [[nodiscard]] double deepest() const { return deepest_; }
-    /// Which share of points evenly chosen beneath this surface, by `depth` of the mean side, is inside of the other.
-    [[nodiscard]] double fraction_within(const PlacedSurface& other, double depth) const;
+    /// Which share of so many points evenly chosen beneath this surface, by `depth` of the mean side, is inside of the
+    /// other.
+    [[nodiscard]] double fraction_within(const PlacedSurface& other, double depth, std::size_t samples) const;
 
 private:
     [[nodiscard]] Vec3 at(std::uint32_t node) const { return solid_.nodes().position[node]; }
@@ -55,12 +55,22 @@ private:
     double deepest_ = 0;
 };
 
+/// A solid with its number in the list of solids.
+struct NumberedSolid {
+    const SolidDeformable& solid;
+    std::uint32_t number = 0;
+};
+struct SurfaceSearch {
+    double reach = 0;   ///< what the two may come closer in the step, m
+    double radius = 0;  ///< distance that they keep, m
+    PairFriction friction;
+    bool is_parting = false;  ///< they were parted in the last step
+    SolidContactSettings settings = {};
+};
 /// Appends a contact for every surface node of `one` that may come to the surface of `two` within a step, with the
-/// nearest triangle there. `reach` (m) is what the two may come closer in the step, `radius` the distance that they
-/// keep. `point` and `other` are of the solids with these numbers. Solids of which much lies within each other are
-/// parted along the axis on which their boxes overlap least; `is_parting`: they were in the last step.
-void find_surface_contacts(const SolidDeformable& one, std::uint32_t one_number, const SolidDeformable& two,
-                           std::uint32_t two_number, double reach, double radius, PairFriction friction,
-                           bool is_parting, std::vector<SolidContact>& contacts);
+/// nearest triangle there. Solids of which much lies within each other are parted along the axis on which their boxes
+/// overlap least.
+void find_surface_contacts(const NumberedSolid& one, const NumberedSolid& two, const SurfaceSearch& search,
+                           std::vector<SolidContact>& contacts);
 
 }  // namespace embody::physics::deformable

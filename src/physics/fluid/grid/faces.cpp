@@ -34,7 +34,7 @@ std::uint64_t row_of(const std::vector<std::uint8_t>& known, int first) {
 // Means of the known neighbours of unknown faces in a tile.
 void list_next_layer(const FluidGrid& grid, const std::array<std::vector<float>, 3>& field, const Cell& corner,
                      std::vector<FaceValue>& found) {
-    constexpr std::uint64_t all = 0x0101010101010101;
+    constexpr std::uint64_t all = 0x0101010101010101;  // eight flags that are set
     const int dy = grid.stride(1), dz = grid.stride(2);
     const int strides[3] = {1, dy, dz};
     for (int axis = 0; axis < 3; ++axis) {
@@ -186,7 +186,7 @@ void add_surface_pressure(const FluidGrid& grid, const PressureSystem& system, c
                 for (const int other : {cell - stride, cell + stride}) {
                     const float open = grid.open[axis][std::max(cell, other)];
                     if (open <= 0 || grid.row[other] >= 0) continue;
-                    const float gap = PressureSystem::gap_fraction(grid.surface[cell], grid.surface[other]);
+                    const float gap = system.gap_fraction(grid.surface[cell], grid.surface[other]);
                     b[row] += static_cast<double>(open) / gap * surface.at(cell, other, gap);
                 }
             }
@@ -194,8 +194,12 @@ void add_surface_pressure(const FluidGrid& grid, const PressureSystem& system, c
     });
 }
 
-void subtract_gradient(FluidGrid& grid, std::span<const double> x, const SurfacePressure& surface, double scale,
-                       std::array<std::vector<float>, 3>& field, TaskPool& workers) {
+void subtract_gradient(FluidGrid& grid, const PressureGradient& gradient, std::array<std::vector<float>, 3>& field,
+                       TaskPool& workers) {
+    const PressureSystem& system = gradient.system;
+    const std::span<const double> x = gradient.x;
+    const SurfacePressure& surface = gradient.surface;
+    const double scale = gradient.scale;
     grid.for_tiles(workers, [&](const Cell& corner) {
         for (int axis = 0; axis < 3; ++axis) {
             const int stride = grid.stride(axis);
@@ -215,7 +219,7 @@ void subtract_gradient(FluidGrid& grid, std::span<const double> x, const Surface
                     difference = x[upper] - x[lower];
                 } else {
                     const int liquid = upper >= 0 ? cell : below, air = upper >= 0 ? below : cell;
-                    const float gap = PressureSystem::gap_fraction(grid.surface[liquid], grid.surface[air]);
+                    const float gap = system.gap_fraction(grid.surface[liquid], grid.surface[air]);
                     const double outside = surface.is_none() ? 0 : surface.at(liquid, air, gap);
                     difference = (x[grid.row[liquid]] - outside) / (upper >= 0 ? gap : -gap);
                 }

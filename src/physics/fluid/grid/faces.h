@@ -32,9 +32,17 @@ void outflow(const FluidGrid& grid, const FluidObstacles& obstacles, const Press
 void add_surface_pressure(const FluidGrid& grid, const PressureSystem& system, const SurfacePressure& surface,
                           std::vector<double>& b, TaskPool& workers);
 
+/// The gradient of a solution of the pressure's equation, times a number.
+struct PressureGradient {
+    const PressureSystem& system;
+    std::span<const double> x;       ///< by row
+    const SurfacePressure& surface;  ///< x at the surface
+    double scale = 1;
+};
+
 /// Adds −`scale` ∂x to the open faces of liquid cells (∂x: difference over the way to the neighbour or the surface, in
-/// cells), with x at the surface as it says. Other faces become unknown.
-void subtract_gradient(FluidGrid& grid, std::span<const double> x, const SurfacePressure& surface, double scale,
-                       std::array<std::vector<float>, 3>& field, TaskPool& workers);
+/// cells). Other faces become unknown.
+void subtract_gradient(FluidGrid& grid, const PressureGradient& gradient, std::array<std::vector<float>, 3>& field,
+                       TaskPool& workers);
 
 }  // namespace embody::physics::fluid

@@ -80,21 +80,25 @@ void carry_over(std::vector<T>& array, const Box& from, const Box& to, T none = 
 
 }  // namespace
 
-std::size_t FluidGrid::cover(std::vector<FluidParticle>& particles, TaskPool& workers) {
-    // Coordinates beyond these cannot be counted in cells.
-    constexpr float farthest = 1e8f;
+std::size_t FluidGrid::cover(std::vector<FluidParticle>& particles, const FluidCellSettings& settings,
+                             TaskPool& workers) {
+    // Coordinates beyond these, in cells, are too large to be counted by an int.
+    constexpr float max_coordinate = 1e8f;
     const std::size_t before = particles.size();
     ParticleReach reach = reach_of(particles, workers);
-    if (!(reach.farthest() * per_cell_ < farthest)) {
+    if (!(reach.farthest() * per_cell_ < max_coordinate)) {
         std::erase_if(particles, [&](const FluidParticle& p) {
-            const auto is_far = [&](float x) { return !(std::fabs(x) * per_cell_ < farthest); };
+            const auto is_far = [&](float x) { return !(std::fabs(x) * per_cell_ < max_coordinate); };
             return is_far(p.position[0]) || is_far(p.position[1]) || is_far(p.position[2]);
         });
         reach = reach_of(particles, workers);
     }
     if (particles.empty()) return before;
     CellRange range = range_of(reach, cell_);
-    while (range.cells_of_box() > static_cast<double>(std::max(fewest_cells, cells_by_particle * particles.size()))) {
+    const auto allowed_cells = [&] {
+        return std::max(settings.min_box_cells, settings.box_cells_per_particle * particles.size());
+    };
+    while (range.cells_of_box() > static_cast<double>(allowed_cells())) {
         trim(particles, range, cell_);
         range = range_of(reach_of(particles, workers), cell_);
     }
@@ -154,9 +158,8 @@ void FluidGrid::resize(const Cell& lower, const Cell& upper) {
     };
     const Cell one{1, 1, 1};
     const Box from = box_of(old_lower, old_size, one), to = box_of(lower_, size_, one);
-    constexpr float far = 2;  // cells
     carry_over(pressure, from, to);
-    carry_over(static_distance, from, to, far);
+    carry_over(static_distance, from, to, static_cast<float>(obstacle_reach));
     carry_over(static_room, from, to, 1.0f);
     for (auto& array : static_fraction) carry_over(array, from, to);
     carry_over(static_thin, from, to);
@@ -167,7 +170,7 @@ void FluidGrid::resize(const Cell& lower, const Cell& upper) {
 }
 
 void FluidGrid::sort(std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near,
-                     TaskPool& workers) {
+                     const FluidCellSettings& settings, TaskPool& workers) {
     // Which cell each is in, and which tiles that makes active.
     const std::size_t count = particles.size();
     cell_of_.resize(count);
@@ -181,7 +184,7 @@ void FluidGrid::sort(std::vector<FluidParticle>& particles, float volume, std::s
             tile_of_particle_[i] = static_cast<std::uint32_t>(tile_of(c));
         }
     });
-    mark_tiles(particles, volume, near);
+    mark_tiles(particles, volume, near, settings);
 
     // Counting sort, stable, tile by tile, drops after all others. Places first: to move the particles takes longest
     // and can be shared.

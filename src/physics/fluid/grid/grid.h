@@ -9,6 +9,7 @@
 #include "foundation/task_pool.h"
 #include "math/bounds.h"
 #include "math/vec3.h"
+#include "physics/definitions/settings/fluid_cell_settings.h"
 #include "physics/fluid/namespace.h"
 #include "physics/fluid/particles/particle.h"
 
@@ -30,16 +31,17 @@ enum TileMark : std::uint8_t {
 class FluidGrid {
 public:
     static constexpr Cell tile{8, 4, 4};  ///< cells; active tiles are those with particles and all around them
-    /// Of the box, by particle; strays that would need more are given up.
-    static constexpr std::size_t cells_by_particle = 16, fewest_cells = 2'000'000;
+    /// Cells: obstacles that are farther away are not told apart.
+    static constexpr int obstacle_reach = 2;
 
     explicit FluidGrid(double cell_size) : cell_(cell_size), per_cell_(static_cast<float>(1 / cell_size)) {}
 
     /// Makes the box hold the particles. Removes those that would make it too large, and returns how many.
-    std::size_t cover(std::vector<FluidParticle>& particles, TaskPool& workers);
+    std::size_t cover(std::vector<FluidParticle>& particles, const FluidCellSettings& settings, TaskPool& workers);
     /// Sorts the particles by cell and lists the active tiles. `volume`: a particle's, in cells; `near`: boxes of the
     /// fluid's frame in which even drops meet the grid.
-    void sort(std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near, TaskPool& workers);
+    void sort(std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near,
+              const FluidCellSettings& settings, TaskPool& workers);
     /// How many particles meet the grid, the first ones; those after them are drops that fly by themselves.
     [[nodiscard]] std::size_t on_grid() const { return on_grid_; }
 
@@ -67,7 +69,7 @@ public:
     /// Indices into tiles() of those that hold particles, by one of eight colours: tiles of a colour are never next to
     /// each other.
     [[nodiscard]] std::span<const std::uint32_t> colored(int color) const { return colored_[color]; }
-    static constexpr int colors = 8;
+    static constexpr int colors = 8;  ///< one for each tile of a block of 2 × 2 × 2
     /// Lowest cells of tiles that were active when the particles were last sorted, and are not now.
     [[nodiscard]] std::span<const Cell> left() const { return left_; }
     /// Of tiles around drops that fly by themselves, whose static obstacles are not known yet.
@@ -123,8 +125,10 @@ public:
 
 private:
     void resize(const Cell& lower, const Cell& upper);
-    void mark_tiles(const std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near);
-    void mark_wet_tiles(const std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near);
+    void mark_tiles(const std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near,
+                    const FluidCellSettings& settings);
+    void mark_wet_tiles(const std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near,
+                        const FluidCellSettings& settings);
     void list_tiles();
     template <class Visit>
     void for_tiles_around(int place, Visit visit) const;

@@ -4,19 +4,10 @@
 #include <cmath>
 
 #include "physics/fluid/grid/grid.h"
-#include "physics/fluid/grid/liquid_cells.h"
 
 namespace embody::physics::fluid {
 
 namespace {
-
-// A tile with so many particles, one and a half a cell, is not looked at closer.
-constexpr std::uint32_t full_tile = 192;
-// Liquid cells hold half of what has room in them (height_of_surface in liquid_cells.cpp); what may soon be one counts.
-constexpr float wet_fraction = 0.45f;
-// A cell or two of them in a tile are a few drops beside each other, as long as they are not full.
-constexpr int few_cells = 2;
-constexpr float full_fraction = 0.9f;
 
 /// The eight centres around a place and their trilinear weights.
 struct Centers {
@@ -55,8 +46,9 @@ void FluidGrid::for_tiles_around(int place, Visit visit) const {
 
 // Where liquid may be: where many particles are, near moving obstacles and where nothing is known of the static ones,
 // and around each cell that the particles of the other tiles fill so far.
-void FluidGrid::mark_wet_tiles(const std::vector<FluidParticle>& particles, float volume,
-                               std::span<const Bounds> near) {
+void FluidGrid::mark_wet_tiles(const std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near,
+                               const FluidCellSettings& settings) {
+    const std::uint32_t full_tile = settings.full_tile_particles;
     for (std::size_t t = 0; t < tile_state_.size(); ++t) {
         if (tile_count_[t] > 0 && (tile_count_[t] >= full_tile || !is_static_known[t])) tile_state_[t] |= tile_wet;
     }
@@ -89,24 +81,27 @@ void FluidGrid::mark_wet_tiles(const std::vector<FluidParticle>& particles, floa
     for (const Centers& centers : sparse) {
         for (std::size_t k = 0; k < 8; ++k) density[centers.cells[k]] += volume * centers.weights[k];
     }
+    // A cell or two of liquid in a tile are a few drops beside each other, as long as they are not full.
+    const float min_room = settings.min_room, wet = settings.wet_fraction, full = settings.full_fraction;
     const int across = size_[0], layer = size_[0] * size_[1];
     for (const Centers& centers : sparse) {
         for (const int cell : centers.cells) {
             const float most = static_room[cell], filled = density[cell];
             density[cell] = 0;  // counted once
-            if (most < min_room || filled < wet_fraction * most) continue;
+            if (most < min_room || filled < wet * most) continue;
             const int t = tile_of({cell % across, cell % layer / across, cell / layer});
-            if (++wet_cells_[t] > few_cells || filled > full_fraction * most) tile_state_[t] |= tile_wet;
+            if (++wet_cells_[t] > settings.max_drop_cells || filled > full * most) tile_state_[t] |= tile_wet;
         }
     }
 }
 
-void FluidGrid::mark_tiles(const std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near) {
+void FluidGrid::mark_tiles(const std::vector<FluidParticle>& particles, float volume, std::span<const Bounds> near,
+                           const FluidCellSettings& settings) {
     std::fill(tile_state_.begin(), tile_state_.end(), 0);
     std::fill(tile_count_.begin(), tile_count_.end(), 0);
     std::fill(wet_cells_.begin(), wet_cells_.end(), 0);
     for (const std::uint32_t t : tile_of_particle_) ++tile_count_[t];
-    mark_wet_tiles(particles, volume, near);
+    mark_wet_tiles(particles, volume, near, settings);
     const auto number = static_cast<int>(tile_state_.size());
     for (int t = 0; t < number; ++t) {
         if ((tile_state_[t] & tile_wet) == 0) continue;

@@ -14,13 +14,25 @@ float height_of_surface(float filled) {
     return 1 - std::sqrt(2 * std::max(1 - filled, 0.0f));
 }
 
+// Depth of the surface over the centre of a hole in the liquid, cells: liquid, and by no more than that.
+constexpr float hole_depth = 0.05f;
+
 struct MarkedCell {
     int cell;
     float surface;
 };
 
-// What the open neighbours make of a cell that is not liquid by itself. Without `and_narrow` narrow ones do not count.
-void look_around(const FluidGrid& grid, int cell, bool and_narrow, std::vector<MarkedCell>& marked) {
+/// Cells with less room than `min_room` are narrow; they count as neighbours if `are_narrow_told`.
+struct Neighbourhood {
+    const FluidGrid& grid;
+    float min_room;
+    bool are_narrow_told;
+};
+
+// What the open neighbours make of a cell that is not liquid by itself.
+void look_around(const Neighbourhood& around, int cell, std::vector<MarkedCell>& marked) {
+    const FluidGrid& grid = around.grid;
+    const float min_room = around.min_room;
     if (grid.surface[cell] < 0) return;
     const bool is_narrow = grid.room[cell] < min_room;
     int liquid = 0, dry = 0;
@@ -30,7 +42,7 @@ void look_around(const FluidGrid& grid, int cell, bool and_narrow, std::vector<M
         for (const int side : {-1, 1}) {
             if (grid.open[axis][side < 0 ? cell : cell + stride] <= 0) continue;
             const int other = cell + side * stride;
-            const bool counts = and_narrow || grid.room[other] >= min_room;
+            const bool counts = around.are_narrow_told || grid.room[other] >= min_room;
             if (grid.surface[other] < 0 && counts) {
                 ++liquid;
                 sum += grid.surface[other];
@@ -40,7 +52,7 @@ void look_around(const FluidGrid& grid, int cell, bool and_narrow, std::vector<M
         }
     }
     if (is_narrow && liquid > 0) marked.push_back({cell, sum / static_cast<float>(liquid)});
-    if (!is_narrow && liquid > 0 && dry == 0) marked.push_back({cell, -0.05f});
+    if (!is_narrow && liquid > 0 && dry == 0) marked.push_back({cell, -hole_depth});
 }
 
 void mark(FluidGrid& grid, const std::vector<MarkedCell>& marked) {
@@ -48,30 +60,30 @@ void mark(FluidGrid& grid, const std::vector<MarkedCell>& marked) {
 }
 
 // Narrow cells are liquid beside liquid, those in corners beside such ones; holes with liquid all around are none.
-void mark_beside_liquid(FluidGrid& grid, TaskPool& workers) {
+void mark_beside_liquid(FluidGrid& grid, const FluidCellSettings& settings, TaskPool& workers) {
     const auto tiles = grid.tiles();
     struct Found {
         std::vector<MarkedCell> marked;
         std::vector<int> narrow;
     };
+    const float min_room = settings.min_room;
     std::vector<Found> found(static_cast<std::size_t>(workers.workers()));
     parallel_for(workers, tiles.size(), tiles.size() > 16, [&](int worker, IndexRange range) {
         Found& own = found[static_cast<std::size_t>(worker)];
         for (std::size_t i = range.first; i < range.last; ++i) {
             grid.for_cells(tiles[i], [&](int cell, const Cell&) {
                 const std::size_t before = own.marked.size();
-                look_around(grid, cell, false, own.marked);
+                look_around({grid, min_room, false}, cell, own.marked);
                 const bool is_dry = own.marked.size() == before && grid.surface[cell] >= 0;
                 if (is_dry && grid.room[cell] < min_room && grid.obstacle[cell] > -1) own.narrow.push_back(cell);
             });
         }
     });
     for (const Found& own : found) mark(grid, own.marked);
-    constexpr int passes = 2;
-    for (int pass = 0; pass < passes; ++pass) {
+    for (int pass = 0; pass < settings.narrow_passes; ++pass) {
         std::vector<MarkedCell> marked;
         for (const Found& own : found) {
-            for (const int cell : own.narrow) look_around(grid, cell, true, marked);
+            for (const int cell : own.narrow) look_around({grid, min_room, true}, cell, marked);
         }
         mark(grid, marked);
     }
@@ -113,7 +125,8 @@ void number_rows(FluidGrid& grid, LiquidCells& liquid, TaskPool& workers) {
 
 }  // namespace
 
-void mark_liquid(FluidGrid& grid, LiquidCells& liquid, TaskPool& workers) {
+void mark_liquid(FluidGrid& grid, const FluidCellSettings& settings, LiquidCells& liquid, TaskPool& workers) {
+    const float min_room = settings.min_room;
     grid.for_tiles(workers, [&](const Cell& corner) {
         grid.for_cells(corner, [&](int cell, const Cell&) {
             const float room = grid.room[cell];
@@ -121,7 +134,7 @@ void mark_liquid(FluidGrid& grid, LiquidCells& liquid, TaskPool& workers) {
         });
     });
 
-    mark_beside_liquid(grid, workers);
+    mark_beside_liquid(grid, settings, workers);
     number_rows(grid, liquid, workers);
 }
 

@@ -5,13 +5,11 @@
 #include <vector>
 
 #include "foundation/task_pool.h"
+#include "physics/definitions/settings/fluid_cell_settings.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
 
 namespace embody::physics::fluid {
-
-/// Cells of which obstacles leave less have no surface of their own: they take it from their neighbours.
-inline constexpr float min_room = 0.3f;
 
 /// The cells of liquid by row.
 struct LiquidCells {
@@ -20,6 +18,6 @@ struct LiquidCells {
 };
 
 /// Marks the liquid's cells: grid.surface from the density and the room around, grid.row by number.
-void mark_liquid(FluidGrid& grid, LiquidCells& liquid, TaskPool& workers);
+void mark_liquid(FluidGrid& grid, const FluidCellSettings& settings, LiquidCells& liquid, TaskPool& workers);
 
 }  // namespace embody::physics::fluid

@@ -18,7 +18,8 @@ double outside_of(const Bounds& box, Vec3 p) {
 }
 
 // Half-space distances of a convex at a point: the largest, and the largest of those whose faces are turned away from
-// its face by more than this cosine tells.
+// its face by more than this cosine tells: facets of a round thing (32 a turn: 0.98) count as one face, corners of 45°
+// (0.71) and more do not.
 constexpr double turned_away = 0.8;
 struct TwoFaces {
     ObstacleDistance first{-1e300, {}}, second{-1e300, {}};
@@ -77,35 +78,33 @@ struct FacesOfCube {
         for (const Polytope::Face& face : convex.polytope.faces) {
             const double distance = dot(face.normal, center) - face.offset;
             is_outside = is_outside || distance > reach;
-            if (distance < -reach || count == most) continue;
+            if (distance < -reach || count == max_faces) continue;
             faces[count++] = &face;
         }
     }
     /// Of those, as faces_near; wholly inside where there are none.
     [[nodiscard]] TwoFaces at(Vec3 p) const {
-        if (convex.kind != ConvexKind::polytope || count == most) return faces_near(convex, p);
+        if (convex.kind != ConvexKind::polytope || count == max_faces) return faces_near(convex, p);
         TwoFaces two;
         for (int i = 0; i < count; ++i) two.offer(dot(faces[i]->normal, p) - faces[i]->offset, faces[i]->normal);
         return two;
     }
 
-    static constexpr int most = 12;
+    static constexpr int max_faces = 12;                // capacity: with more the convex is asked
     static constexpr double half_diagonal = 0.8660254;  // √3 / 2
     const Convex& convex;
-    const Polytope::Face* faces[most] = {};
+    const Polytope::Face* faces[max_faces] = {};
     int count = 0;
     bool is_outside = false;
 };
 
-// How much thicker the hulls of a compound are met, m. Those of catalogue models lie up to 0.8 mm (a mug of 12 cm) to
-// 1.3 mm (a bathtub of 1.7 m) inside of the surface that they stand for.
-double seal_of(const CollisionShape& shape) {
-    constexpr double fraction = 0.01, most = 0.0015;  // of its longest side; m
+// How much thicker the hulls of a compound are met, m.
+double seal_of(const CollisionShape& shape, const FluidObstacleSettings& settings) {
     const auto* compound = std::get_if<CompoundShape>(&shape.definition());
     if (compound == nullptr || compound->children.size() < 2) return 0;
     if (!std::holds_alternative<HullShape>(compound->children.front().shape)) return 0;
     const Vec3 size = shape.local_bounds().size();
-    return std::min(most, fraction * std::max({size.x, size.y, size.z}));
+    return std::min(settings.max_seal, settings.seal_fraction * std::max({size.x, size.y, size.z}));
 }
 
 // Where a way (unit direction) enters a polytope whose faces lie `seal` farther out; nothing from inside. By clipping
@@ -129,7 +128,7 @@ std::optional<ShapeRayHit> enter(const Polytope& polytope, double seal, Vec3 ori
     return ShapeRayHit{first, entered->normal};
 }
 
-constexpr int octants = 8;
+constexpr int octants = 8;  // of a cube
 
 Vec3 octant_offset(int octant) {
     return {(octant & 1) ? 0.25 : -0.25, (octant & 2) ? 0.25 : -0.25, (octant & 4) ? 0.25 : -0.25};
@@ -167,8 +166,8 @@ Vec3 closest_on_triangle(Vec3 p, const std::array<Vec3, 3>& t) {
 
 }  // namespace
 
-ObstacleProbe::ObstacleProbe(const CollisionShape& shape, const Transform& pose)
-    : shape_(&shape), pose_(pose), bounds_(shape.bounds(pose)), seal_(seal_of(shape)) {
+ObstacleProbe::ObstacleProbe(const CollisionShape& shape, const Transform& pose, const FluidObstacleSettings& settings)
+    : shape_(&shape), pose_(pose), bounds_(shape.bounds(pose)), seal_(seal_of(shape, settings)) {
     bounds_ = enlarged(bounds_, seal_);
     for (const ConvexPiece& piece : shape.data().pieces) {
         const Transform placed = pose * piece.local;
@@ -331,7 +330,7 @@ std::optional<ObstacleProbe::Crossing> ObstacleProbe::crossing(Vec3 a, Vec3 b) c
         const Vec3 from = a - c0, q = cross(from, e1);
         const double u = dot(from, p) / determinant, v = dot(displacement, q) / determinant,
                      t = dot(e2, q) / determinant;
-        constexpr double slack = 1e-9;
+        constexpr double slack = 1e-9;  // of an edge: rounding leaves 1e-12, and neighbours have no gap
         if (u < -slack || v < -slack || u + v > 1 + slack || t < 0 || t > 1) continue;
         if (first && t >= first->fraction) continue;
         first = Crossing{t, determinant > 0 ? triangle.normal : -triangle.normal};

@@ -9,6 +9,7 @@
 #include "math/mat3.h"
 #include "physics/collision/shapes/collision_shape.h"
 #include "physics/collision/shapes/convex.h"
+#include "physics/definitions/settings/fluid_obstacle_settings.h"
 #include "physics/fluid/namespace.h"
 
 namespace embody::physics::fluid {
@@ -25,7 +26,7 @@ struct ObstacleDistance {
 /// is (its shares of cubes are its own).
 class ObstacleProbe {
 public:
-    ObstacleProbe(const CollisionShape& shape, const Transform& pose);
+    ObstacleProbe(const CollisionShape& shape, const Transform& pose, const FluidObstacleSettings& settings);
 
     [[nodiscard]] const Bounds& bounds() const { return bounds_; }
     /// Chooses the parts within `reach` of the box; the questions below are for points in the box alone. False if there

@@ -13,6 +13,7 @@ constexpr double half_diagonal = 1.7320508;
 
 // Whether a wall stands between two places, and not the tip of an edge: its sides look away from each other.
 bool is_walled(const ObstacleProbe& probe, Vec3 a, Vec3 b) {
+    // Cosine between the two normals: a wall's sides have −1, an edge of 90° has 0 and blunter ones have more.
     constexpr double min_opposed = -0.5;
     const auto entry = probe.crossing(a, b);
     if (!entry) return false;
@@ -72,8 +73,9 @@ bool ObstacleRegion::add(ObstacleProbe& probe) {
 // outside, and walls around a centre that end before the next one.
 void ObstacleRegion::shut_thin(const ObstacleProbe& probe) {
     const double h = grid_->cell_size();
-    constexpr double thickness = 1.9;  // cells: nothing is left open of the faces beside a wall of two
-    constexpr float on_surface = 1e-3f;
+    constexpr double thickness = 1.9;    // cells: nothing is left open of the faces beside a wall of two
+    constexpr float on_surface = 1e-3f;  // cells: rounding of floats leaves 1e-6
+    constexpr float max_apart = 1.05f;  // cells: a centre's distance from what is between it and the next, and rounding
     const auto shut = [&](int axis, int cell) {
         fraction_[axis][cell] = 1;
         thin_[cell] |= static_cast<std::uint8_t>(1 << axis);
@@ -83,7 +85,7 @@ void ObstacleRegion::shut_thin(const ObstacleProbe& probe) {
         for (int y = 0; y < size_[1]; ++y) {
             for (int x = 0; x < size_[0]; ++x, ++cell) {
                 const float here = own_distance_[cell];
-                if (here > 1.05f || here < -1) continue;
+                if (here > max_apart || here < -1) continue;
                 const Vec3 center = grid_->center({x + lower_[0] - 1, y + lower_[1] - 1, z + lower_[2] - 1});
                 const Cell place{x, y, z};
                 if (here < on_surface) {
@@ -102,7 +104,7 @@ void ObstacleRegion::shut_thin(const ObstacleProbe& probe) {
                 for (int axis = 0; axis < 3; ++axis) {
                     if (place[axis] == 0) continue;
                     const float there = own_distance_[cell - stride(axis)];
-                    if (there < on_surface || here + there > 1.05f) continue;
+                    if (there < on_surface || here + there > max_apart) continue;
                     Vec3 from = center;
                     from[axis] -= h;
                     if (is_walled(probe, from, center)) shut(axis, cell);

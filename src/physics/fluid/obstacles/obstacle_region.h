@@ -15,7 +15,7 @@ namespace embody::physics::fluid {
 /// a cell) they fill. From these come the shares of the faces' control volumes and of the density's kernel.
 class ObstacleRegion {
 public:
-    static constexpr double reach = 2;  ///< cells: farther surfaces are not told apart
+    static constexpr double reach = FluidGrid::obstacle_reach;  ///< cells: farther surfaces are not told apart
 
     /// Cells from `lower` to below `upper` of the grid; measured is one more all around.
     void begin(const FluidGrid& grid, const Cell& lower, const Cell& upper);

@@ -8,11 +8,6 @@ namespace embody::physics::fluid {
 
 namespace {
 
-// Faces of which less is open are shut: seams between obstacles that touch do not leak.
-constexpr float min_open = 0.02f;
-// A body that was put farther away than this from outside was not moved through the fluid, m.
-constexpr double farthest_put = 0.5;
-
 Quat turned(Quat rotation, Vec3 angular_velocity, double dt) {
     const Vec3 half = angular_velocity * (dt / 2);
     const Quat change = Quat{half.x, half.y, half.z, 0} * rotation;
@@ -31,9 +26,8 @@ Vec3 turn_between(Quat from, Quat to) {
     return Vec3{turn.x, turn.y, turn.z} * (turn.w < 0 ? -2.0 : 2.0);
 }
 
-// A face that is shut though the obstacle does not fill it.
+// A face that is shut though `fraction` of its control volume lies outside of the obstacle.
 void bind_face(MovingObstacle& moving, const FluidGrid& grid, int axis, const Cell& c, float fraction) {
-    if (fraction < min_open) return;
     const Vec3 n{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
     const Vec3 place = grid.center(c) - n * (grid.cell_size() / 2);
     moving.bound.push_back(
@@ -47,7 +41,7 @@ const FluidObstacles::LeftBody* FluidObstacles::left(const FluidObstacle& obstac
     const auto found = std::ranges::lower_bound(left_, obstacle.body, {}, &LeftBody::body);
     if (found == left_.end() || found->body != obstacle.body) return nullptr;
     if (found->version == obstacle.version) return &*found;
-    return length(found->center + origin_ - obstacle.center) < farthest_put ? &*found : nullptr;
+    return length(found->center + origin_ - obstacle.center) < settings_.max_jump ? &*found : nullptr;
 }
 
 void FluidObstacles::put_where_it_is(MovingObstacle& moving) const {
@@ -58,7 +52,9 @@ void FluidObstacles::put_where_it_is(MovingObstacle& moving) const {
     moving.angular_velocity = obstacle.angular_velocity;
 }
 
-void FluidObstacles::begin(std::span<FluidObstacle> obstacles, FluidGrid& grid) {
+void FluidObstacles::begin(std::span<FluidObstacle> obstacles, const FluidObstacleSettings& settings, FluidGrid& grid) {
+    const bool are_settings_same = settings == settings_;
+    settings_ = settings;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> versions;
     std::size_t count = 0;
     for (FluidObstacle& obstacle : obstacles) {
@@ -67,7 +63,7 @@ void FluidObstacles::begin(std::span<FluidObstacle> obstacles, FluidGrid& grid) 
             continue;
         }
         if (count == moving_.size()) {
-            moving_.push_back({.probe = ObstacleProbe(*obstacle.shape, obstacle.pose)});
+            moving_.push_back({.probe = ObstacleProbe(*obstacle.shape, obstacle.pose, settings)});
         }
         MovingObstacle& moving = moving_[count++];
         moving.obstacle = &obstacle;
@@ -77,12 +73,13 @@ void FluidObstacles::begin(std::span<FluidObstacle> obstacles, FluidGrid& grid) 
         moving.kept_rotation = before != nullptr ? before->rotation : moving.rotation;
     }
     moving_.erase(moving_.begin() + static_cast<std::ptrdiff_t>(count), moving_.end());
-    if (versions == fixed_versions_) return;
+    if (versions == fixed_versions_ && are_settings_same) return;
     fixed_versions_ = std::move(versions);
     fixed_.clear();
     for (const FluidObstacle& obstacle : obstacles) {
         if (!obstacle.is_static) continue;
-        fixed_.emplace_back(*obstacle.shape, Transform{obstacle.pose.position - origin_, obstacle.pose.rotation});
+        const Transform placed{obstacle.pose.position - origin_, obstacle.pose.rotation};
+        fixed_.emplace_back(*obstacle.shape, placed, settings);
     }
     std::fill(grid.is_static_known.begin(), grid.is_static_known.end(), 0);
 }
@@ -182,7 +179,8 @@ void FluidObstacles::measure_moving(MovingObstacle& moving, const FluidGrid& gri
 }
 
 // Where obstacles overlap, the first one has the space.
-void FluidObstacles::place_moving(MovingObstacle& moving, int owner, FluidGrid& grid) {
+void FluidObstacles::place_moving(MovingObstacle& moving, int owner, FluidGrid& grid) const {
+    const float min_open = settings_.min_open;
     if (!moving.is_in_reach) return;
     const ObstacleRegion& region = moving.region;
     const Cell &lower = region.lower(), &upper = region.upper();
@@ -200,7 +198,8 @@ void FluidObstacles::place_moving(MovingObstacle& moving, int owner, FluidGrid& 
                     if (open - fraction < min_open) fraction = open;
                     moving.fraction[axis][here] = fraction;
                     open -= fraction;
-                    bind_face(moving, grid, axis, c, fraction - region.filled(axis, here));
+                    const float unfilled = fraction - region.filled(axis, here);
+                    if (unfilled >= min_open) bind_face(moving, grid, axis, c, unfilled);
                 }
                 if (region.distance(here) < grid.obstacle[cell]) {
                     grid.obstacle[cell] = region.distance(here);
@@ -214,7 +213,8 @@ void FluidObstacles::place_moving(MovingObstacle& moving, int owner, FluidGrid& 
 }
 
 std::vector<Bounds> FluidObstacles::in_reach(double dt, double cell_size) const {
-    constexpr double cells = 6;  // as far as a particle goes in a part, and what it asks of its surroundings
+    // Cells: a particle goes no farther than 4 in a part (ParticleCollider::move), and asks for 2 around it.
+    constexpr double cells = 6;
     std::vector<Bounds> boxes;
     for (const MovingObstacle& moving : moving_) {
         const FluidObstacle& obstacle = *moving.obstacle;
@@ -230,11 +230,12 @@ void FluidObstacles::place() {
     for (MovingObstacle& moving : moving_) {
         const FluidObstacle& obstacle = *moving.obstacle;
         const Transform placed = moved(obstacle, origin_, moving.center + origin_, moving.rotation);
-        moving.probe = ObstacleProbe(*obstacle.shape, placed);
+        moving.probe = ObstacleProbe(*obstacle.shape, placed, settings_);
     }
 }
 
 void FluidObstacles::measure(double dt, FluidGrid& grid, TaskPool& workers) {
+    const float min_open = settings_.min_open;
     measure_static(grid, workers);
     for (const Cell& corner : grid.left()) grid.clear_tile(corner);
     grid.for_tiles(workers, [&](const Cell& corner) {

@@ -64,7 +64,7 @@ public:
     explicit FluidObstacles(Vec3 origin) : origin_(origin) {}
 
     /// Before the parts of a step.
-    void begin(std::span<FluidObstacle> obstacles, FluidGrid& grid);
+    void begin(std::span<FluidObstacle> obstacles, const FluidObstacleSettings& settings, FluidGrid& grid);
     /// How far the obstacles are from where the last step left them, m: what they met there was not expected.
     [[nodiscard]] double unexpected_displacement() const;
     /// Puts the obstacles where the last step left them, with velocities that bring them where they are in a second;
@@ -100,7 +100,7 @@ private:
     void measure_static_tile(FluidGrid& grid, const Cell& corner, std::vector<ObstacleProbe>& probes,
                              ObstacleRegion& region);
     static void measure_moving(MovingObstacle& moving, const FluidGrid& grid);
-    static void place_moving(MovingObstacle& moving, int owner, FluidGrid& grid);
+    void place_moving(MovingObstacle& moving, int owner, FluidGrid& grid) const;
 
     /// Where a step left a body.
     struct LeftBody {
@@ -112,6 +112,7 @@ private:
     void put_where_it_is(MovingObstacle& moving) const;
 
     Vec3 origin_;
+    FluidObstacleSettings settings_;  // of the last begin()
     std::vector<MovingObstacle> moving_;
     std::vector<LeftBody> left_;
     std::vector<ObstacleProbe> fixed_;

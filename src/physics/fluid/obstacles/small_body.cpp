@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "physics/fluid/obstacles/obstacles.h"
 #include "physics/fluid/particles/transfer.h"
@@ -13,7 +14,7 @@ namespace embody::physics::fluid {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 }  // namespace
 

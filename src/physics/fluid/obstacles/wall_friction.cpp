@@ -11,9 +11,9 @@ namespace embody::physics::fluid {
 
 namespace {
 
-// Faces nearer to a wall than the first, in cells, are inside of it; beyond the other they are not the first layer: one
-// layer wherever the wall lies between the cells.
-constexpr float nearest = 0.05f, farthest = 1 + nearest;
+// Distances from a wall, in cells, between which faces are the first layer: one layer wherever the wall lies between
+// the cells. Nearer ones are as good as in the wall.
+constexpr float min_distance = 0.05f, max_distance = 1 + min_distance;
 
 /// A face that a wall slows.
 struct SlowedFace {
@@ -39,7 +39,7 @@ void apply_wall_friction(FluidGrid& grid, FluidObstacles& obstacles, double dens
     const auto look_at = [&](int axis, int cell, const Cell& c, std::vector<SlowedFace>& slowed) {
         const int below = cell - grid.stride(axis);
         const float distance = 0.5f * (grid.obstacle[cell] + grid.obstacle[below]);
-        if (!(distance > nearest && distance <= farthest) || !(grid.open[axis][cell] > 0.25f)) return;
+        if (!(distance > min_distance && distance <= max_distance) || !(grid.open[axis][cell] > 0.25f)) return;
         if (!(grid.mass[axis][cell] > 0) || (grid.row[cell] < 0 && grid.row[below] < 0)) return;
         Vec3 center = grid.center(c);
         center[axis] -= h / 2;
@@ -62,7 +62,7 @@ void apply_wall_friction(FluidGrid& grid, FluidObstacles& obstacles, double dens
         auto& slowed = found[static_cast<std::size_t>(worker)];
         for (std::size_t i = range.first; i < range.last; ++i) {
             grid.for_cells(tiles[i], [&](int cell, const Cell& c) {
-                if (!(grid.obstacle[cell] < farthest + 0.5f)) return;
+                if (!(grid.obstacle[cell] < max_distance + 0.5f)) return;
                 for (int axis = 0; axis < 3; ++axis) look_at(axis, cell, c, slowed);
             });
         }

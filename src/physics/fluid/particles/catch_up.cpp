@@ -10,27 +10,19 @@
 
 namespace embody::physics::fluid {
 
-namespace {
-
-constexpr double min_travel = 0.005;       // cells: less does not bring a particle into an obstacle
-constexpr double single_direction = 0.25;  // cells: of less the particles are kept out one by one
-constexpr double max_displacement = 1.5;   // cells, of a part
-constexpr int max_parts = 16;
-
-}  // namespace
-
 FluidSolver::Followed FluidSolver::follow(std::span<FluidObstacle> obstacles, TaskPool& workers) {
     Followed followed;
     if (particles_.empty()) return followed;
-    obstacles_.begin(obstacles, grid_);
+    obstacles_.begin(obstacles, settings_.obstacles, grid_);
     const double travel = obstacles_.unexpected_displacement() / grid_.cell_size();
-    if (travel > single_direction) {
-        const double parts = std::clamp(std::ceil(travel / max_displacement), 1.0, static_cast<double>(max_parts));
+    if (travel > settings_.collision.max_single_catch_up) {
+        const double wanted = std::ceil(travel / settings_.parts.max_displacement);
+        const double parts = std::clamp(wanted, 1.0, static_cast<double>(settings_.parts.max_parts));
         obstacles_.begin_catching_up();
         for (int i = 0; i < static_cast<int>(parts) && !particles_.empty(); ++i) displace(1 / parts, followed, workers);
         obstacles_.end_catching_up();
     }
-    if (travel > min_travel) keep_out(workers);
+    if (travel > settings_.collision.min_catch_up) keep_out(workers);
     obstacles_.end();
     return followed;
 }
@@ -39,7 +31,7 @@ FluidSolver::Followed FluidSolver::follow(std::span<FluidObstacle> obstacles, Ta
 void FluidSolver::keep_out(TaskPool& workers) {
     obstacles_.place();
     parallel_for(workers, particles_.size(), particles_.size() > few_particles, [&](int, IndexRange part) {
-        ParticleCollider collider(grid_, obstacles_, 0);
+        ParticleCollider collider(grid_, obstacles_, settings_.collision, 0);
         for (std::size_t i = part.first; i < part.last; ++i) {
             if (!collider.is_near_thin(particles_[i].position)) continue;
             FluidParticle moved = particles_[i];
@@ -53,12 +45,11 @@ void FluidSolver::keep_out(TaskPool& workers) {
 // The displacement of least Σ |d|² that lets the obstacles through and keeps the liquid's volume: d = −∇q, ∇·d = 0, as
 // the pressure moves liquid at rest.
 void FluidSolver::displace(double fraction, Followed& followed, TaskPool& workers) {
-    constexpr double allowed_change = 1e-3;  // of a cell's volume
-    constexpr int max_iterations = 300;
+    const int max_iterations = settings_.pressure.max_iterations;
     const double h = grid_.cell_size();
-    followed.lost += grid_.cover(particles_, workers);
+    followed.lost += grid_.cover(particles_, settings_.cells, workers);
     if (particles_.empty()) return;
-    grid_.sort(particles_, particle_fraction(), obstacles_.in_reach(fraction, h), workers);
+    grid_.sort(particles_, particle_fraction(), obstacles_.in_reach(fraction, h), settings_.cells, workers);
     obstacles_.measure(fraction, grid_, workers);
     if (grid_.on_grid() == 0) return obstacles_.advance(fraction);
     find_places(fraction, workers);
@@ -68,14 +59,15 @@ void FluidSolver::displace(double fraction, Followed& followed, TaskPool& worker
             for (auto& field : grid_.velocity) std::fill_n(field.begin() + first, FluidGrid::tile[0], 0.0f);
         });
     });
-    system_.build(grid_, workers);
+    system_.build(grid_, settings_, workers);
     obstacles_.list_areas(grid_);
     outflow(grid_, obstacles_, system_, flow_, workers);
     for (double& flow : flow_) flow *= -1 / h;
     potential_.assign(system_.size(), 0);
     system_.set_bodies({}, 0);
-    const int iterations = system_.solve(flow_, potential_, allowed_change * h * h / fraction, max_iterations, workers);
-    subtract_gradient(grid_, potential_, {}, 1 / h, grid_.velocity, workers);
+    const double tolerance = settings_.pressure.catch_up_tolerance * h * h / fraction;
+    const int iterations = system_.solve(flow_, potential_, tolerance, max_iterations, workers);
+    subtract_gradient(grid_, {system_, potential_, {}, 1 / h}, grid_.velocity, workers);
     extrapolate(grid_, grid_.velocity, 1, workers);
     admit_drops(grid_, workers);
     extrapolate(grid_, grid_.velocity, 2, workers);
@@ -83,7 +75,7 @@ void FluidSolver::displace(double fraction, Followed& followed, TaskPool& worker
 
     const std::size_t count = grid_.on_grid();
     parallel_for(workers, count, count > few_particles, [&](int, IndexRange part) {
-        ParticleCollider collider(grid_, obstacles_, fraction);
+        ParticleCollider collider(grid_, obstacles_, settings_.collision, fraction);
         for (std::size_t i = part.first; i < part.last; ++i) {
             FluidParticle moved = particles_[i];
             float travel[3], end[3];

@@ -10,10 +10,12 @@ namespace embody::physics::fluid {
 
 namespace {
 
-// Particles come no nearer to an obstacle than this, in cells.
-constexpr float min_distance = 0.02f;
-// They go no farther in a part of a step than this, in cells.
-constexpr double longest_part = 4;
+// Particles go no farther in a part of a step than this, in cells: the edge of a tile, as far as the box of cells
+// reaches around them in any case.
+constexpr double max_travel = 4;
+// A move is cut into pieces no longer than this, in cells: the distances of obstacles, which push out what has entered
+// them, are known for two cells.
+constexpr float max_stride = 1.5f;
 
 void set_position(FluidParticle& particle, Vec3 p) {
     for (int axis = 0; axis < 3; ++axis) particle.position[axis] = static_cast<float>(p[axis]);
@@ -29,8 +31,9 @@ Cell cell_at(const FluidGrid& grid, const float* position) {
 
 }  // namespace
 
-ParticleCollider::ParticleCollider(const FluidGrid& grid, const FluidObstacles& obstacles, double dt)
-    : grid_(grid), obstacles_(obstacles), fixed_(obstacles.fixed()) {
+ParticleCollider::ParticleCollider(const FluidGrid& grid, const FluidObstacles& obstacles,
+                                   const FluidCollisionSettings& settings, double dt)
+    : grid_(grid), obstacles_(obstacles), settings_(settings), fixed_(obstacles.fixed()) {
     for (const MovingObstacle& moving : obstacles.moving()) {
         Mover mover{moving.probe, &moving, {}, {}};
         mover.before = mover.posed(moving.kept_center, moving.kept_rotation);
@@ -68,7 +71,7 @@ bool ParticleCollider::is_near_thin(const float* position) const {
 // Particles come by cells: the probes look at what is around several of them at once.
 void ParticleCollider::look_around(const Bounds& swept) {
     if (contains(seen_, swept)) return;
-    const double h = grid_.cell_size(), gap = min_distance * h;
+    const double h = grid_.cell_size(), gap = settings_.wall_gap * h;
     seen_ = enlarged(swept, h);
     near_fixed_.clear();
     near_moving_.clear();
@@ -104,7 +107,7 @@ std::array<float, 3> ParticleCollider::place_of(const FluidParticle& particle) {
     const Vec3 p = to_vec(particle.position);
     Cell cell = cell_at(grid_, particle.position);
     const auto is_shut = [&](const Cell& c) {
-        constexpr int all = closed_x | closed_y | closed_z;
+        constexpr int all = closed_x | closed_y | closed_z;  // bits of the lower faces
         const int index = grid_.index(c);
         bool shut = (grid_.thin[index] & all) == all;
         for (int axis = 0; axis < 3; ++axis) shut = shut && (grid_.thin[index + grid_.stride(axis)] & (1 << axis)) != 0;
@@ -144,7 +147,7 @@ void ParticleCollider::stop_at(FluidParticle& particle, const Wall& wall) const 
 }
 
 void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span& when) const {
-    constexpr float deep = -0.1f;  // cells
+    const float gap = settings_.wall_gap;
     // The grid has a moving obstacle where it is in the middle of the part.
     const int owner = grid_.obstacle_owner[grid_.index(cell_at(grid_, particle.position))];
     const Mover* mover = owner >= 0 ? &moving_[static_cast<std::size_t>(owner)] : nullptr;
@@ -156,16 +159,16 @@ void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span
     };
     const Vec3 inside = pose.seen(to_vec(particle.position));
     const float distance = distance_at(inside);
-    if (distance >= min_distance) return;
+    if (distance >= gap) return;
     const Vec3 normal = normalized(Vec3{gradient[0], gradient[1], gradient[2]});
-    const Vec3 outside = inside + normal * ((min_distance - distance) * grid_.cell_size());
+    const Vec3 outside = inside + normal * ((gap - distance) * grid_.cell_size());
     const Vec3 wall = obstacles_.velocity_at(owner, outside);
     set_position(particle, pose.back(outside));
     stop_at(particle, {normal, wall});
 
     // Where that leads nowhere (the seam of two obstacles) it does not go on.
     const float now = distance_at(outside);
-    if (now > deep) return;
+    if (now > -settings_.seam_depth) return;
     const Vec3 stayed = mover != nullptr ? mover->at(when.first).seen(before) : before;
     if (distance_at(stayed) < now) return;
     set_position(particle, pose.back(stayed));
@@ -174,8 +177,8 @@ void ParticleCollider::push_out(FluidParticle& particle, Vec3 before, const Span
 
 // Shortens the way from `from` to `to` where the probe bars it, and slides on along what bars it.
 bool ParticleCollider::bar(const ObstacleProbe& probe, Vec3 from, Vec3& to, Vec3& normal) const {
-    constexpr int max_slides = 3;
-    const double gap = min_distance * grid_.cell_size();
+    const int max_slides = settings_.max_slides;
+    const double gap = settings_.wall_gap * grid_.cell_size();
     bool is_barred = false;
     Vec3 start = from;
     for (int slide = 0; slide < max_slides; ++slide) {
@@ -201,13 +204,12 @@ bool ParticleCollider::bar(const ObstacleProbe& probe, Vec3 from, Vec3& to, Vec3
 
 // By the true shapes; a moving one is seen from the middle of its way.
 void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to, const Span& when) {
-    constexpr int iterations = 2;
     Bounds swept;
     swept.add(from);
     swept.add(to);
     look_around(swept);
     Vec3 normal;
-    for (int iteration = 0; iteration < iterations; ++iteration) {
+    for (int iteration = 0; iteration < settings_.max_sweeps; ++iteration) {
         bool any = false;
         for (const std::size_t i : near_fixed_) {
             if (!bar(fixed_[i], from, to, normal)) continue;
@@ -231,14 +233,14 @@ void ParticleCollider::sweep(FluidParticle& particle, Vec3 from, Vec3 to, const 
 
 void ParticleCollider::move(FluidParticle& particle, const float* end) {
     // Nothing goes farther than the tiles around the particles' reach, nor two cells at once.
-    const auto longest = static_cast<float>(longest_part * grid_.cell_size());
+    const auto longest = static_cast<float>(max_travel * grid_.cell_size());
     float displacement[3], size = 0;
     for (int axis = 0; axis < 3; ++axis) {
         displacement[axis] = std::clamp(end[axis] - particle.position[axis], -longest, longest);
         if (!std::isfinite(displacement[axis])) return;  // its velocity tells the solver
         size = std::max(size, std::fabs(displacement[axis]));
     }
-    const int strides = 1 + static_cast<int>(size / (1.5f * static_cast<float>(grid_.cell_size())));
+    const int strides = 1 + static_cast<int>(size / (max_stride * static_cast<float>(grid_.cell_size())));
     const double piece = 1.0 / strides;
     for (int i = 0; i < strides; ++i) {
         float to[3];

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "physics/definitions/settings/fluid_obstacle_settings.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/obstacles.h"
@@ -14,7 +15,8 @@ namespace embody::physics::fluid {
 /// One a worker.
 class ParticleCollider {
 public:
-    ParticleCollider(const FluidGrid& grid, const FluidObstacles& obstacles, double dt);
+    ParticleCollider(const FluidGrid& grid, const FluidObstacles& obstacles, const FluidCollisionSettings& settings,
+                     double dt);
     /// Where a particle meets the grid: its place, but on its own side of thin walls only.
     std::array<float, 3> place_of(const FluidParticle& particle);
     /// Moves the particle towards `end`, a place of the fluid's frame, as far as obstacles let it.
@@ -61,6 +63,7 @@ private:
 
     const FluidGrid& grid_;
     const FluidObstacles& obstacles_;
+    const FluidCollisionSettings settings_;
     std::vector<ObstacleProbe> fixed_;
     std::vector<Mover> moving_;  // as obstacles.moving()
     Bounds seen_;                // the probes have looked at this box, and those of these indices meet it

@@ -24,15 +24,15 @@ bool is_drop(const FluidGrid& grid, const float* place) {
 // A film of the particle's volume spread over a cell's area, of thickness δ: the stress at the ground is 3 μ u/δ
 // (Nusselt) and what turbulence adds. Its rim holds it by σ (cos θr − cos θa) a width, that of the particle's edge d
 // (C. Furmidge, "Studies at phase interfaces", 1962).
-void slow_at_wall(const FluidGrid& grid, const FluidObstacles& obstacles, const FluidProperties& liquid, double dt,
-                  const float* place, float* velocity) {
-    constexpr float touching = 0.25f;  // cells: half of the particle's edge
-    constexpr double hysteresis = 0.4;  // cos θr − cos θa: water on glass, glaze and paint, 30 to 35° and 60 to 75°
+void slow_at_wall(const DropSurroundings& around, const float* place, float* velocity) {
+    const FluidGrid& grid = around.grid;
+    const FluidProperties& liquid = around.liquid;
+    const double dt = around.dt, hysteresis = around.settings.angle_hysteresis;
     float gradient[3];
-    if (!(sample_center(grid, grid.obstacle, place, gradient) < touching)) return;
+    if (!(sample_center(grid, grid.obstacle, place, gradient) < around.settings.wall_distance)) return;
     Cell c{};
     for (int axis = 0; axis < 3; ++axis) c[axis] = static_cast<int>(grid.in_cells(place[axis], axis));
-    const Vec3 wall = obstacles.velocity_at(grid.obstacle_owner[grid.index(c)], {place[0], place[1], place[2]});
+    const Vec3 wall = around.obstacles.velocity_at(grid.obstacle_owner[grid.index(c)], {place[0], place[1], place[2]});
     const Vec3 normal = normalized(Vec3{gradient[0], gradient[1], gradient[2]});
     const Vec3 slip = Vec3{velocity[0], velocity[1], velocity[2]} - wall, along = slip - normal * dot(slip, normal);
     const double speed = length(along);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "physics/definitions/settings/fluid_obstacle_settings.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/obstacles.h"
@@ -12,9 +13,16 @@ struct FluidProperties;
 /// Whether neither the cell of a place nor those beside it are liquid: a particle there is a drop by itself.
 bool is_drop(const FluidGrid& grid, const float* place);
 
-/// Takes from the velocity (m/s) of a drop at `place` what a wall beside it takes in dt (docs/physics/fluids.md,
-/// "Drops").
-void slow_at_wall(const FluidGrid& grid, const FluidObstacles& obstacles, const FluidProperties& liquid, double dt,
-                  const float* place, float* velocity);
+/// Where drops are, of what, and for how long, s.
+struct DropSurroundings {
+    const FluidGrid& grid;
+    const FluidObstacles& obstacles;
+    const FluidProperties& liquid;
+    const FluidDropSettings& settings;
+    double dt = 0;
+};
+
+/// Takes from the velocity (m/s) of a drop at `place` what a wall beside it takes (docs/physics/fluids.md, "Drops").
+void slow_at_wall(const DropSurroundings& around, const float* place, float* velocity);
 
 }  // namespace embody::physics::fluid

@@ -70,13 +70,14 @@ void FreeComponents::touch(const FluidGrid& grid, const FluidObstacles& obstacle
 
 // Of the cell that a place lies in or is next to; a drop at a body is with what touches the body.
 std::int32_t FreeComponents::component_at(const FluidGrid& grid, const float* place) const {
-    constexpr float next_to = 1.5f;  // cells
     const std::int32_t row = row_near(grid, place);
     if (row >= 0) return component_of_row_[static_cast<std::size_t>(row)];
     Cell c{};
     for (int axis = 0; axis < 3; ++axis) c[axis] = static_cast<int>(grid.in_cells(place[axis], axis));
     const int cell = grid.index(c), owner = grid.obstacle_owner[cell];
-    return owner >= 0 && grid.obstacle[cell] < next_to ? bodies_[static_cast<std::size_t>(owner)].component : -1;
+    return owner >= 0 && grid.obstacle[cell] < settings_.body_distance
+               ? bodies_[static_cast<std::size_t>(owner)].component
+               : -1;
 }
 
 // Rows that are neighbours are of one component.
@@ -120,10 +121,11 @@ void FreeComponents::find(const FluidGrid& grid, const PressureSystem& system, c
 }
 
 void FreeComponents::begin(const FluidGrid& grid, const PressureSystem& system, const FluidObstacles& obstacles,
-                           const std::vector<FluidParticle>& particles, bool all) {
+                           const std::vector<FluidParticle>& particles, const Options& options) {
+    settings_ = options.settings;
     components_.clear();
     component_of_particle_.clear();
-    if (!all && touches_fixed(grid, system, obstacles)) return;
+    if (!options.all && touches_fixed(grid, system, obstacles)) return;
     find(grid, system, obstacles);
     component_of_particle_.assign(particles.size(), -1);
     for (std::size_t i = 0; i < particles.size(); ++i) {
@@ -139,7 +141,7 @@ void FreeComponents::begin(const FluidGrid& grid, const PressureSystem& system, 
 void FreeComponents::end(Vec3 change, const FluidObstacles& obstacles, double particle_mass,
                          std::vector<FluidParticle>& particles) const {
     if (components_.empty()) return;
-    constexpr double fewest = 64;  // that are turned
+    const double min_turned = settings_.min_turned_particles;
     struct Correction {
         Vec3 linear, angular, center;
     };
@@ -170,7 +172,7 @@ void FreeComponents::end(Vec3 change, const FluidObstacles& obstacles, double pa
         if (after.count == 0) continue;
         corrections[component].linear = corrections[component].linear / after.count;
         corrections[component].angular =
-            after.count < fewest ? Vec3{} : solve(after.inertia(), corrections[component].angular);
+            after.count < min_turned ? Vec3{} : solve(after.inertia(), corrections[component].angular);
     }
     for (std::size_t i = 0; i < particles.size(); ++i) {
         if (component_of_particle_[i] < 0) continue;

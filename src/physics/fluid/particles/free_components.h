@@ -6,6 +6,7 @@
 
 #include "math/mat3.h"
 #include "math/vec3.h"
+#include "physics/definitions/settings/fluid_obstacle_settings.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/obstacles.h"
@@ -18,10 +19,14 @@ namespace embody::physics::fluid {
 /// it, and what a body gives it would not arrive, since the faces' masses are not the particles'.
 class FreeComponents {
 public:
-    /// Finds them, and what momentum their particles and the bodies have. Unless `all`, only where the whole fluid is
-    /// free. Rows are known, and nothing has been done to the bodies in this part of the step.
+    struct Options {
+        bool all = false;  ///< else only where the whole fluid is free
+        FluidComponentSettings settings;
+    };
+    /// Finds them, and what momentum their particles and the bodies have. Rows are known, and nothing has been done to
+    /// the bodies in this part of the step.
     void begin(const FluidGrid& grid, const PressureSystem& system, const FluidObstacles& obstacles,
-               const std::vector<FluidParticle>& particles, bool all);
+               const std::vector<FluidParticle>& particles, const Options& options);
     /// The same particles after they moved: each component gets the momentum that it had, less what its bodies were
     /// given, and so it does with the angular momentum about its centre. `change`: of all velocities by gravity, m/s.
     void end(Vec3 change, const FluidObstacles& obstacles, double particle_mass,
@@ -49,6 +54,7 @@ private:
     [[nodiscard]] std::int32_t joined(std::int32_t component) const;
     [[nodiscard]] std::int32_t component_at(const FluidGrid& grid, const float* place) const;
 
+    FluidComponentSettings settings_;                                     // of the last begin()
     std::vector<std::int32_t> component_of_row_, component_of_particle_;  // −1: a drop of its own
     std::vector<std::int32_t> joined_;  // by component: an earlier one that it is part of, or itself
     std::vector<Component> components_;

@@ -66,8 +66,9 @@ ParticleReach reach_of(std::span<const FluidParticle> particles, TaskPool& worke
     return all;
 }
 
-double usual_speed_of(std::span<const FluidParticle> particles, std::size_t drops_by_particle, TaskPool& workers) {
+double usual_speed_of(std::span<const FluidParticle> particles, std::size_t particles_per_outlier, TaskPool& workers) {
     // Squares counted by their exponent and the first bits of their mantissa: 2 % of a square, 1 % of a speed.
+    // A float has 8 bits of exponent and 23 of mantissa.
     constexpr int kept_bits = 6, dropped_bits = 23 - kept_bits;
     constexpr std::size_t bins = std::size_t{1} << (8 + kept_bits);
     std::vector<std::vector<std::uint32_t>> counts(static_cast<std::size_t>(workers.workers()));
@@ -80,12 +81,12 @@ double usual_speed_of(std::span<const FluidParticle> particles, std::size_t drop
             ++own[(std::bit_cast<std::uint32_t>(square) & 0x7FFFFFFF) >> dropped_bits];
         }
     });
-    std::size_t left = particles.size() / drops_by_particle;
+    std::size_t left = particles.size() / particles_per_outlier;
     for (std::size_t bin = bins; bin-- > 0;) {
         std::size_t here = 0;
         for (const auto& own : counts) here += own.empty() ? 0 : own[bin];
         if (here > left) {
-            constexpr std::size_t infinite = 255 << kept_bits;
+            constexpr std::size_t infinite = 255 << kept_bits;  // the first bin of the largest exponent
             const auto upper = static_cast<std::uint32_t>(std::min(bin + 1, infinite)) << dropped_bits;
             return std::sqrt(static_cast<double>(std::bit_cast<float>(upper)));
         }

@@ -25,7 +25,7 @@ static_assert(sizeof(FluidParticle) == 64);
 /// A particle's position or velocity.
 inline Vec3 to_vec(const float* p) { return {p[0], p[1], p[2]}; }
 
-/// Loops over fewer particles are not shared among workers.
+/// Loops over fewer particles run on one worker.
 inline constexpr std::size_t few_particles = 1000;
 
 /// The box of particles' places and their largest speed.
@@ -41,7 +41,7 @@ struct ParticleReach {
 };
 ParticleReach reach_of(std::span<const FluidParticle> particles, TaskPool& workers);
 
-/// The speed that all but 1 in `drops_by_particle` stay below, m/s, at most 1 % too large.
-double usual_speed_of(std::span<const FluidParticle> particles, std::size_t drops_by_particle, TaskPool& workers);
+/// The speed that all but 1 in `particles_per_outlier` stay below, m/s, at most 1 % too large.
+double usual_speed_of(std::span<const FluidParticle> particles, std::size_t particles_per_outlier, TaskPool& workers);
 
 }  // namespace embody::physics::fluid

@@ -16,6 +16,7 @@ namespace embody::physics::fluid {
 
 namespace {
 
+// Rows of a block at least, and blocks at most (an array's capacity): the workers share sums by them.
 constexpr std::size_t rows_of_block = 512, max_blocks = 16;
 
 template <class Vector>
@@ -31,9 +32,8 @@ double largest_of(std::span<const double> values) {
 
 }  // namespace
 
-float PressureSystem::gap_fraction(float inside, float outside) {
-    constexpr float least = 0.005f;  // nearer surfaces would make the matrix stiff
-    return std::clamp(inside / (inside - std::max(outside, 0.0f)), least, 1.0f);
+float PressureSystem::gap_fraction(float inside, float outside) const {
+    return std::clamp(inside / (inside - std::max(outside, 0.0f)), settings_.min_gap, 1.0f);
 }
 
 void PressureSystem::build_row(const FluidGrid& grid, std::size_t row) {
@@ -62,8 +62,9 @@ void PressureSystem::build_row(const FluidGrid& grid, std::size_t row) {
     diagonal_[row] = sum * (1 + 1e-8) + 1e-9;
 }
 
-void PressureSystem::build(FluidGrid& grid, TaskPool& workers) {
-    mark_liquid(grid, liquid_, workers);
+void PressureSystem::build(FluidGrid& grid, const FluidSettings& settings, TaskPool& workers) {
+    settings_ = settings.pressure;
+    mark_liquid(grid, settings.cells, liquid_, workers);
     const std::size_t count = size();
     blocks_ = std::clamp<std::size_t>(count / rows_of_block, 1, max_blocks);
     rows_.resize(count + 1);
@@ -126,7 +127,7 @@ void PressureSystem::make_strips(const FluidGrid& grid, int workers) {
 
 // L Lᵀ with L = (D − lower part) / D, D = 1 / scaling²; rows are scaled such that L has ones on its diagonal.
 void PressureSystem::factor() {
-    constexpr double modification = 0.97, safety = 0.25;
+    const double modification = settings_.cholesky_modification, safety = settings_.cholesky_safety;
     const auto none = static_cast<std::int32_t>(size());
     for (std::size_t i = 0; i < size(); ++i) {
         Row& row = rows_[i];

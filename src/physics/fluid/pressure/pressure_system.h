@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "foundation/task_pool.h"
+#include "physics/definitions/settings/fluid_settings.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/grid/liquid_cells.h"
 #include "physics/fluid/namespace.h"
@@ -19,12 +20,12 @@ namespace embody::physics::fluid {
 class PressureSystem {
 public:
     /// Marks and numbers the liquid's cells; coefficients and preconditioner from the grid's open shares and surface.
-    void build(FluidGrid& grid, TaskPool& workers);
+    void build(FluidGrid& grid, const FluidSettings& settings, TaskPool& workers);
     [[nodiscard]] std::size_t size() const { return liquid_.cells.size(); }
     /// Cell of a row.
     [[nodiscard]] std::uint32_t cell(std::size_t row) const { return liquid_.cells[row]; }
     /// θ of the face between two cells, one of which is liquid, the other air.
-    [[nodiscard]] static float gap_fraction(float inside, float outside);
+    [[nodiscard]] float gap_fraction(float inside, float outside) const;
 
     /// The bodies that take part: adds `scale` J M⁻¹ Jᵀ. None, as after build(): the liquid alone.
     void set_bodies(std::span<const MovingObstacle> bodies, double scale);
@@ -66,6 +67,7 @@ private:
         return range_of(size(), static_cast<int>(block), static_cast<int>(blocks_));
     }
 
+    FluidPressureSettings settings_;  // of the last build()
     LiquidCells liquid_;
     std::vector<Strip> strips_;  // by worker
     std::vector<Row> rows_;

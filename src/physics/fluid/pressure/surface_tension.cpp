@@ -11,15 +11,17 @@ namespace embody::physics::fluid {
 
 namespace {
 
-// The density is smoothed once more by (1, 4, 1)/6 along each axis. (1, 2, 1)/4 takes waves of two cells away wholly:
-// nothing holds them then, and drops fall to pieces within seconds.
-constexpr float side_weight = 1.0f / 6;
-// Where the liquid's share changes by less a cell there is no surface; nothing is more curved than this, in 1/cells.
-constexpr float min_slope = 0.02f, max_curved = 1;
+/// Smooths along an axis over the active tiles; elsewhere a field stays as it is. The density is smoothed once more by
+/// (1, 4, 1)/6 along each axis.
+struct Smoothing {
+    const FluidGrid& grid;
+    float side_weight;
+    std::vector<float>& scratch;
+    TaskPool& workers;
+    void apply(int axis, std::vector<float>& field) const;
+};
 
-// Along an axis over the active tiles; elsewhere `field` stays as it is.
-void smooth(const FluidGrid& grid, int axis, std::vector<float>& field, std::vector<float>& scratch,
-            TaskPool& workers) {
+void Smoothing::apply(int axis, std::vector<float>& field) const {
     const int stride = grid.stride(axis);
     grid.for_tiles(workers, [&](const Cell& corner) {
         grid.for_cells(corner, [&](int cell, const Cell&) {
@@ -35,7 +37,8 @@ void smooth(const FluidGrid& grid, int axis, std::vector<float>& field, std::vec
 }
 
 // −∇·(∇c/|∇c|), in 1/cells, by central differences.
-float curvature_at(const FluidGrid& grid, const std::vector<float>& c, int cell) {
+float curvature_at(const FluidGrid& grid, const FluidTensionSettings& settings, const std::vector<float>& c, int cell) {
+    const float min_slope = settings.min_slope, max_curvature = settings.max_curvature;
     const int strides[3] = {grid.stride(0), grid.stride(1), grid.stride(2)};
     float g[3], second[3][3];
     for (int a = 0; a < 3; ++a) {
@@ -52,13 +55,13 @@ float curvature_at(const FluidGrid& grid, const std::vector<float>& c, int cell)
     const float along = g[0] * g[0] * second[0][0] + g[1] * g[1] * second[1][1] + g[2] * g[2] * second[2][2] +
                         2 * (g[0] * g[1] * second[1][0] + g[0] * g[2] * second[2][0] + g[1] * g[2] * second[2][1]);
     const float trace = second[0][0] + second[1][1] + second[2][2];
-    return std::clamp((along / squared - trace) / std::sqrt(squared), -max_curved, max_curved);
+    return std::clamp((along / squared - trace) / std::sqrt(squared), -max_curvature, max_curvature);
 }
 
 }  // namespace
 
-bool is_tense(double tension, double density, double gravity, double h) {
-    constexpr double coarsest = 2;  // capillary lengths
+bool is_tense(const FluidTensionSettings& settings, double tension, double density, double gravity, double h) {
+    const double coarsest = settings.max_cell_size;
     return tension > 0 && density * gravity * h * h < coarsest * coarsest * tension;
 }
 
@@ -66,7 +69,10 @@ double steady_tension(double density, double h, double dt) {
     return density * h * h * h / (4 * std::numbers::pi * dt * dt);
 }
 
-void SurfacePressure::measure(double impulse, const FluidGrid& grid, TaskPool& workers) {
+void SurfacePressure::measure(double impulse, const FluidTensionSettings& settings, const FluidGrid& grid,
+                              TaskPool& workers) {
+    constexpr float min_room = 1e-3f;  // of the kernel: what is less is rounding
+    settings_ = settings;
     impulse_ = impulse;
     const std::size_t cells = grid.row.size();
     filled_.assign(cells, 0);
@@ -79,32 +85,34 @@ void SurfacePressure::measure(double impulse, const FluidGrid& grid, TaskPool& w
             filled_[cell] = std::min(grid.density[cell], grid.room[cell]);
         });
     });
+    const Smoothing smoothing{grid, settings.smoothing_weight, scratch_, workers};
     for (int axis = 0; axis < 3; ++axis) {
-        smooth(grid, axis, filled_, scratch_, workers);
-        smooth(grid, axis, room_, scratch_, workers);
+        smoothing.apply(axis, filled_);
+        smoothing.apply(axis, room_);
     }
     // Shares of what is not obstacle, so that a wall curves nothing: the surface meets it at a right angle.
     grid.for_tiles(workers, [&](const Cell& corner) {
         grid.for_cells(corner, [&](int cell, const Cell&) {
-            filled_[cell] = room_[cell] > 1e-3f ? filled_[cell] / room_[cell] : 0;
+            filled_[cell] = room_[cell] > min_room ? filled_[cell] / room_[cell] : 0;
         });
     });
     const auto per_cell = static_cast<float>(1 / grid.cell_size());
     grid.for_tiles(workers, [&](const Cell& corner) {
-        grid.for_cells(corner,
-                       [&](int cell, const Cell&) { curvature_[cell] = curvature_at(grid, filled_, cell) * per_cell; });
+        grid.for_cells(corner, [&](int cell, const Cell&) {
+            curvature_[cell] = curvature_at(grid, settings, filled_, cell) * per_cell;
+        });
     });
 }
 
 void SurfacePressure::draw_in(const FluidGrid& grid, const float* place, float* shift) const {
-    constexpr float nearest = 0.1f, rate = 0.2f, flattest = 0.01f;
     float slope[3];
     const float outside = sample_center(grid, grid.surface, place, slope);
-    if (outside < nearest) return;
+    if (outside < settings_.stray_distance) return;
     (void)sample_center(grid, filled_, place, slope);
     const float steepness = std::sqrt(slope[0] * slope[0] + slope[1] * slope[1] + slope[2] * slope[2]);
-    if (steepness < flattest) return;
-    const float travel = rate * (outside - nearest) * static_cast<float>(grid.cell_size()) / steepness;
+    if (steepness < settings_.stray_min_slope) return;
+    const float beyond = outside - settings_.stray_distance;
+    const float travel = settings_.stray_rate * beyond * static_cast<float>(grid.cell_size()) / steepness;
     for (int axis = 0; axis < 3; ++axis) shift[axis] += travel * slope[axis];
 }
 

@@ -4,14 +4,15 @@
 #include <vector>
 
 #include "foundation/task_pool.h"
+#include "physics/definitions/settings/fluid_pressure_settings.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
 
 namespace embody::physics::fluid {
 
-/// Whether surface tension σ (N/m) is more than noise beside gravity on cells of h: these are finer than twice the
-/// capillary length √(σ/(ρ g)).
-bool is_tense(double tension, double density, double gravity, double h);
+/// Whether surface tension σ (N/m) is more than noise beside gravity on cells of h: these are finer than the settings
+/// say, by the capillary length √(σ/(ρ g)).
+bool is_tense(const FluidTensionSettings& settings, double tension, double density, double gravity, double h);
 
 /// The largest tension, N/m, with which the shortest waves of the surface do not grow in steps of dt (J. Brackbill, D.
 /// Kothe, C. Zemach, "A continuum method for modeling surface tension", 1992): dt² = ρ h³/(4 π σ).
@@ -22,7 +23,7 @@ double steady_tension(double density, double h, double dt);
 class SurfacePressure {
 public:
     /// Curvature from the density around centres. `impulse`: tension times the length of the step, N s/m.
-    void measure(double impulse, const FluidGrid& grid, TaskPool& workers);
+    void measure(double impulse, const FluidTensionSettings& settings, const FluidGrid& grid, TaskPool& workers);
     /// From here on it is none.
     void clear() { impulse_ = 0; }
     [[nodiscard]] bool is_none() const { return impulse_ == 0; }
@@ -38,6 +39,7 @@ public:
     void draw_in(const FluidGrid& grid, const float* place, float* shift) const;
 
 private:
+    FluidTensionSettings settings_;  // of the last measure()
     double impulse_ = 0;
     std::vector<float> filled_, room_, scratch_;
     std::vector<float> curvature_;  // of the surface through or near a centre, 1/m; positive around a drop

@@ -13,11 +13,6 @@ namespace embody::physics::fluid {
 
 namespace {
 
-// Walls that are nearer to a face, in cells, are taken as so far.
-constexpr double min_wall = 0.1;
-// Liquid that does not yield is as viscous, in ν dt / h²: more would take too many iterations.
-constexpr double stiffest = 200;
-
 Vec3 face_center(const FluidGrid& grid, int axis, const Cell& c) {
     Vec3 center = grid.center(c);
     center[axis] -= grid.cell_size() / 2;
@@ -29,16 +24,15 @@ float filled(const FluidGrid& grid, int cell) { return std::clamp(0.5f - grid.su
 
 }  // namespace
 
-bool is_viscous(const Viscosity& liquid, double h, double dt) {
-    constexpr double noticed = 1e-4;
-    return liquid.yield_stress > 0 || liquid.viscosity / liquid.density * dt / (h * h) > noticed;
+bool is_viscous(const Viscosity& liquid, const FluidViscositySettings& settings, double h, double dt) {
+    return liquid.yield_stress > 0 || liquid.viscosity / liquid.density * dt / (h * h) > settings.min_diffusion_number;
 }
 
-double sticking_of(const Viscosity& liquid, double h, double speed) {
-    constexpr double slowest = 1e-3, layer = 4;
-    const double rate = std::max(speed, slowest) / h;
+double sticking_of(const Viscosity& liquid, const FluidViscositySettings& settings, double h, double speed) {
+    constexpr double min_viscosity = 1e-12;  // Pa s: only not zero; the thinnest liquids have 1e-4
+    const double layer = settings.stick_reynolds, rate = std::max(speed, settings.min_stick_speed) / h;
     const double reynolds =
-        liquid.density * rate * h * h / std::max(liquid.viscosity + liquid.yield_stress / rate, 1e-12);
+        liquid.density * rate * h * h / std::max(liquid.viscosity + liquid.yield_stress / rate, min_viscosity);
     return 1 / (1 + (reynolds / layer) * (reynolds / layer));
 }
 
@@ -47,6 +41,7 @@ void ViscositySystem::number_faces(const FluidGrid& grid, const FluidObstacles& 
     faces_.clear();
     fixed_.clear();
     inertia_.clear();
+    const float min_fraction = settings_.min_fraction;
     const std::size_t cells = grid.row.size();
     for (auto& numbers : number_) {
         if (numbers.size() != cells) numbers.assign(cells, -1);
@@ -62,7 +57,7 @@ void ViscositySystem::number_faces(const FluidGrid& grid, const FluidObstacles& 
                 const float liquid = (filled(grid, cell) + filled(grid, below)) / 2;
                 number_[axis][cell] = static_cast<std::int32_t>(faces_.size());
                 faces_.emplace_back(axis, cell);
-                inertia_.push_back(std::max(0.05f, grid.open[axis][cell] * liquid));
+                inertia_.push_back(std::max(min_fraction, grid.open[axis][cell] * liquid));
             });
         }
     }
@@ -85,12 +80,14 @@ std::int32_t ViscositySystem::fixed_face(const FluidGrid& grid, const FluidObsta
 
 // Bingham: μ + τ / rate, from the rates of strain before the step.
 void ViscositySystem::measure_rates(const Viscosity& liquid, double dt, const FluidGrid& grid) {
-    const double h = grid.cell_size(), most = stiffest * liquid.density * h * h / dt;
+    constexpr double min_rate = 1e-6, min_viscosity = 1e-9;  // 1/s, Pa s: only not zero
+    const double h = grid.cell_size(), most = settings_.max_diffusion_number * liquid.density * h * h / dt;
+    const float min_fraction = settings_.min_fraction;
     for (const Cell& corner : grid.tiles()) {
         grid.for_cells(corner, [&](int cell, const Cell&) {
             const float fraction = filled(grid, cell);
             viscosity_[cell] = 0;
-            if (grid.row[cell] < 0 && fraction < 0.05f) return;
+            if (grid.row[cell] < 0 && fraction < min_fraction) return;
             double viscosity = liquid.viscosity;
             if (liquid.yield_stress > 0) {
                 const auto at_center = [&](int axis, int at) {
@@ -107,9 +104,9 @@ void ViscositySystem::measure_rates(const Viscosity& liquid, double dt, const Fl
                         squares += (a == b ? 2 : 4) * rate * rate;
                     }
                 }
-                viscosity += liquid.yield_stress / std::max(std::sqrt(squares), 1e-6);
+                viscosity += liquid.yield_stress / std::max(std::sqrt(squares), min_rate);
             }
-            viscosity_[cell] = static_cast<float>(std::max(std::min(viscosity, most), 1e-9));
+            viscosity_[cell] = static_cast<float>(std::max(std::min(viscosity, most), min_viscosity));
         });
     }
 }
@@ -158,7 +155,7 @@ void ViscositySystem::add_edge(const FluidGrid& grid, const FluidObstacles& obst
         if (is_free && !(grid.open[side.axis][partner] > 0)) {
             const double distance =
                 0.5 * (grid.obstacle[side.cell] + grid.obstacle[side.cell - grid.stride(side.axis)]);
-            nearest_wall = std::min(nearest_wall, std::max(distance, min_wall));
+            nearest_wall = std::min(nearest_wall, std::max(distance, settings_.min_wall_distance));
         }
     }
     if (!any_free) return;
@@ -325,7 +322,7 @@ GradientResidual ViscositySystem::precondition() {
     return {product, product};
 }
 
-int ViscositySystem::iterate(int most) {
+int ViscositySystem::iterate() {
     struct System {
         ViscositySystem& of;
         GradientResidual begin() { return of.precondition(); }
@@ -339,13 +336,16 @@ int ViscositySystem::iterate(int most) {
             return of.precondition();
         }
     };
-    constexpr double tolerance = 1e-4;  // of the first residual
+    const double tolerance = settings_.tolerance;
+    const int most = settings_.max_iterations;
     System system{*this};
     const auto result = conjugate_gradient(system, {.iterations = most, .relative = tolerance * tolerance});
     return result.end == GradientEnd::converged ? result.iterations : most + 1;
 }
 
-int ViscositySystem::solve(const Viscosity& liquid, double dt, int most, FluidGrid& grid, FluidObstacles& obstacles) {
+int ViscositySystem::solve(const Viscosity& liquid, double dt, const FluidViscositySettings& settings, FluidGrid& grid,
+                           FluidObstacles& obstacles) {
+    settings_ = settings;
     const double h = grid.cell_size();
     number_faces(grid, obstacles);
     measure_rates(liquid, dt, grid);
@@ -356,7 +356,7 @@ int ViscositySystem::solve(const Viscosity& liquid, double dt, int most, FluidGr
     start_from(grid, obstacles);
     fill_diagonal();
     fill_residual();
-    const int iterations = iterate(most);
+    const int iterations = iterate();
     write_back(liquid, grid, obstacles);
     return iterations;
 }

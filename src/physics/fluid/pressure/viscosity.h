@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "physics/definitions/settings/fluid_pressure_settings.h"
 #include "physics/fluid/grid/grid.h"
 #include "physics/fluid/namespace.h"
 #include "physics/fluid/obstacles/obstacles.h"
@@ -18,19 +19,20 @@ struct Viscosity {
 };
 
 /// Whether it is more than rounding in a step of dt on cells of h.
-bool is_viscous(const Viscosity& liquid, double h, double dt);
+bool is_viscous(const Viscosity& liquid, const FluidViscositySettings& settings, double h, double dt);
 
 /// How far a liquid sticks to walls on cells of h, 0 … 1: by the Reynolds number of a cell at `speed`, m/s. Layers at
 /// walls that are thinner than a cell cannot be told, and it slides.
-double sticking_of(const Viscosity& liquid, double h, double speed);
+double sticking_of(const Viscosity& liquid, const FluidViscositySettings& settings, double h, double speed);
 
 /// Implicit viscous step of the face velocities, with no slip at obstacles, no stress at the surface, and the bodies
 /// that it moves as unknowns (docs/physics/fluids.md, "Viscosity").
 class ViscositySystem {
 public:
     /// Changes the velocities of faces and of moving obstacles, and adds to the obstacles' impulses. Returns the
-    /// iterations; most + 1 where they did not suffice.
-    int solve(const Viscosity& liquid, double dt, int most, FluidGrid& grid, FluidObstacles& obstacles);
+    /// iterations; one more than the settings' where they did not suffice.
+    int solve(const Viscosity& liquid, double dt, const FluidViscositySettings& settings, FluidGrid& grid,
+              FluidObstacles& obstacles);
 
 private:
     /// A rate of strain: signed sum of up to four velocities, and its weight.
@@ -55,7 +57,7 @@ private:
     void fill_diagonal();
     void fill_residual();
     GradientResidual precondition();
-    int iterate(int most);
+    int iterate();
     void write_back(const Viscosity& liquid, FluidGrid& grid, FluidObstacles& obstacles);
 
     /// A body that the liquid moves: its six unknowns come after the faces'.
@@ -65,6 +67,7 @@ private:
         Mat3 inertia;
         Vec3 linear_before, angular_before;
     };
+    FluidViscositySettings settings_;                  // of this solve
     std::array<std::vector<std::int32_t>, 3> number_;  // of faces by cell; −1: none
     std::vector<float> viscosity_;                     // by cell, Pa s; 0: no liquid
     std::vector<std::pair<int, int>> faces_;           // axis, cell

@@ -24,13 +24,6 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr double quiet_speed = 0.02;  // m/s: all nodes slower than this may sleep
-constexpr double quiet_displacement =
-    1e-3;                                // m: or a sheet or rope that only trembles, none of whose nodes goes so far
-constexpr double noticed_change = 0.05;  // of a sleeping body's weight: a push that differs by more wakes it
-constexpr int max_corrections = 3;       // rounds besides the first
-constexpr double noticed_speed = 0.05;   // m/s: a body as fast as this wakes what it is near
-
 template <class Visit>
 void for_each_body_near(const DeformableAccess& world, const DeformableRecord& record, Visit visit) {
     world.contacts.broad_phase.query(enlarged(record.bounds(), reach_of(world, record)), [&](std::uint32_t slot) {
@@ -43,6 +36,7 @@ void for_each_body_near(const DeformableAccess& world, const DeformableRecord& r
 TouchedBody touched(const DeformableAccess& world, std::uint32_t slot) {
     const BodyRecord& record = world.rigid.record(slot);
     const BodyState& state = world.rigid.motion[slot];
+    constexpr double min_cosine = 1e-3;  // of half the turn in a step: keeps its tangent finite at a whole half turn
     const double dt = world.settings.time_step;
     const bool moves = record.definition.kind != BodyKind::static_body && !world.activity.is_asleep(slot);
     TouchedBody body;
@@ -64,7 +58,7 @@ TouchedBody touched(const DeformableAccess& world, std::uint32_t slot) {
     }
     body.path_velocity = (state.center - body.start_center) / dt;
     body.path_spin = sine > 0 ? (2 * std::asin(std::min(sine, 1.0)) / (sine * dt)) * half_sine : Vec3{};
-    body.path_turn = (2 / (std::max(half_cosine, 1e-3) * dt)) * half_sine;
+    body.path_turn = (2 / (std::max(half_cosine, min_cosine) * dt)) * half_sine;
     body.inverse_mass = state.inverse_mass;
     body.inverse_inertia = state.inverse_inertia;
     body.expected_force = record.deformable_force;
@@ -101,12 +95,13 @@ bool is_disturbed(const DeformableAccess& world, const DeformableRecord& record)
     for (const Attachment& attachment : record.definition.attachments) {
         if (world.rigid.bodies.find(attachment.body) != nullptr && is_led(world, attachment.body.index)) return true;
     }
+    const double wake_speed = world.settings.solver.deformable.sleep.wake_speed;
     bool is_disturbed = false;
     for_each_body_near(world, record, [&](std::uint32_t slot) {
         if (world.rigid.record(slot).definition.kind == BodyKind::static_body || world.activity.is_asleep(slot)) return;
         const BodyState& state = world.rigid.motion[slot];
-        is_disturbed = is_disturbed || length(state.linear_velocity) > noticed_speed ||
-                       length(state.angular_velocity) * world.rigid.record(slot).reach > noticed_speed;
+        is_disturbed = is_disturbed || length(state.linear_velocity) > wake_speed ||
+                       length(state.angular_velocity) * world.rigid.record(slot).reach > wake_speed;
     });
     for (std::uint32_t slot = 0; slot < world.deformables.records.slot_count(); ++slot) {
         if (!world.deformables.records.used(slot)) continue;
@@ -114,7 +109,7 @@ bool is_disturbed(const DeformableAccess& world, const DeformableRecord& record)
         is_disturbed = is_disturbed || (other.definition.enabled && !other.is_asleep &&
                                         may_collide(record.definition, other.definition) &&
                                         overlaps(enlarged(record.bounds(), reach_of(world, other)), other.bounds()) &&
-                                        fastest_node(other) > noticed_speed);
+                                        fastest_node(other) > wake_speed);
     }
     return is_disturbed;
 }
@@ -177,7 +172,7 @@ void find_contacts_of(const DeformableAccess& world, const MovingDeformables& mo
         const bool is_there = world.rigid.bodies.find(attachment.body) != nullptr;
         thin.attachment_bodies.push_back(is_there ? moving.index_of(attachment.body.index) : no_body);
     }
-    find_thin_contacts(moving.bodies, colliding, world.settings.time_step, world.settings.gravity, thin, world.workers);
+    find_thin_contacts(moving.bodies, colliding, world.settings, thin, world.workers);
 }
 
 // What sheets and ropes pushed the solids in their last substep.
@@ -226,9 +221,11 @@ bool correct_solids(const DeformableAccess& world, const MovingDeformables& movi
 void run_substeps(const DeformableAccess& world, MovingDeformables& moving) {
     const int substeps = world.settings.deformable_substeps;
     const double h = world.settings.time_step / substeps;
+    const DeformableSettings& settings = world.settings.solver.deformable;
     for (int k = 1; k <= substeps; ++k) {
         parallel_for_solids(world, moving, [&](std::size_t i, TaskPool&) {
-            moving.solids[i]->begin_substep(h, moving.solid_records[i]->acceleration(world.settings.gravity));
+            moving.solids[i]->begin_substep(h, moving.solid_records[i]->acceleration(world.settings.gravity),
+                                            settings.solid);
         });
         push_solids(world, moving);
         for (TouchedBody& body : moving.bodies) body.enter_substep(h);
@@ -236,9 +233,9 @@ void run_substeps(const DeformableAccess& world, MovingDeformables& moving) {
         solve_solids(world, moving);
         int corrections = 0;
         do {
-            world.deformables.solid_contacts.solve(moving.contacts, moving.solids, moving.bodies, h, k * h,
-                                                   world.workers);
-        } while (corrections++ < max_corrections && correct_solids(world, moving));
+            world.deformables.solid_contacts.solve(moving.contacts, moving.solids, moving.bodies,
+                                                   {h, k * h, settings.solid_contact}, world.workers);
+        } while (corrections++ < settings.solid.max_corrections && correct_solids(world, moving));
         parallel_for_solids(world, moving, [&](std::size_t i, TaskPool&) { moving.solids[i]->finish(); });
         advance_thin_groups(world, moving.groups, moving.thin, moving.bodies, k);
     }
@@ -248,6 +245,7 @@ void run_substeps(const DeformableAccess& world, MovingDeformables& moving) {
 // they are pushed otherwise than when they fell asleep.
 void put_back_bodies(const DeformableAccess& world, const MovingDeformables& moving) {
     EMBODY_ZONE("push bodies");
+    constexpr double min_reach = 1e-6;  // m: keeps the quotient finite
     const double dt = world.settings.time_step;
     std::erase_if(world.deformables.pushed_bodies,
                   [&](std::uint32_t slot) { return !world.rigid.is_used(slot) || !world.activity.is_asleep(slot); });
@@ -259,8 +257,9 @@ void put_back_bodies(const DeformableAccess& world, const MovingDeformables& mov
             const double mass = 1 / world.rigid.motion[body.body].inverse_mass;
             const double weight = mass * length(world.settings.gravity);
             const double more = std::max(length(force - record.deformable_force),
-                                         length(torque - record.deformable_torque) / std::max(record.reach, 1e-6));
-            if (more > noticed_change * weight) world.activity.to_wake.push_back(body.body);
+                                         length(torque - record.deformable_torque) / std::max(record.reach, min_reach));
+            if (more > world.settings.solver.optimization.wake_force_fraction * weight)
+                world.activity.to_wake.push_back(body.body);
             continue;
         }
         record.deformable_force = force;
@@ -360,11 +359,11 @@ bool may_sleep(const DeformableAccess& world, const DeformableRecord& record, st
 }
 
 // Where contacts of layers and bodies hold a node in turns it trembles for good.
-bool is_quiet(DeformableRecord& record) {
-    if (fastest_node(record) < quiet_speed) return true;
+bool is_quiet(DeformableRecord& record, const DeformableSleepSettings& settings) {
+    if (fastest_node(record) < settings.max_speed) return true;
     if (record.solid()) return false;
     const std::vector<Vec3>& places = record.nodes().position;
-    const auto has_stayed = [](Vec3 a, Vec3 b) { return length(a - b) < quiet_displacement; };
+    const auto has_stayed = [&](Vec3 a, Vec3 b) { return length(a - b) < settings.max_displacement; };
     if (std::ranges::equal(places, record.quiet_places, has_stayed)) return true;
     record.quiet_places = places;
     return false;
@@ -374,7 +373,8 @@ bool is_quiet(DeformableRecord& record) {
 void note_quiet(const DeformableAccess& world, MovingDeformables& moving) {
     for (DeformableRecord* record : moving.records) {
         const bool is_blown = record->cloth() && wind_at(world.settings, world.report.time).is_gusty();
-        record->quiet_time = !is_blown && is_quiet(*record) ? record->quiet_time + world.settings.time_step : 0;
+        const bool is_calm = !is_blown && is_quiet(*record, world.settings.solver.deformable.sleep);
+        record->quiet_time = is_calm ? record->quiet_time + world.settings.time_step : 0;
         for (const std::uint32_t slot : record->touched_bodies) {
             if (!world.rigid.is_used(slot) || !world.rigid.is_dynamic(slot)) continue;
             world.activity.sleep[slot].quiet_time = std::min(world.activity.sleep[slot].quiet_time, record->quiet_time);

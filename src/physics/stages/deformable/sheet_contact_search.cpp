@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "physics/collision/shapes/collision_shape_data.h"
+#include "physics/definitions/world_settings.h"
 #include "physics/deformable/contact/box_grid.h"
 #include "physics/deformable/contact/nearest_points.h"
 
@@ -13,18 +14,17 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr double end_fraction = 0.02;  // of an edge or triangle: nearer to its end the contacts of that hold
-
 /// One body beside one sheet.
 class SheetSearch {
 public:
-    SheetSearch(const TouchedBody& body, std::uint32_t index, double time_step, Vec3 gravity, ThinDeformable& thin,
+    SheetSearch(const TouchedBody& body, std::uint32_t index, const WorldSettings& settings, ThinDeformable& thin,
                 TaskPool& workers)
         : body_(body),
           index_(index),
-          time_step_(time_step),
-          fall_(length(gravity) * time_step),
-          displacement_(displacement_of(body, time_step)),
+          settings_(settings.solver.deformable.thin_search),
+          time_step_(settings.time_step),
+          fall_(length(settings.gravity) * time_step_),
+          displacement_(displacement_of(body, time_step_)),
           bounds_(body.shape->bounds(body.start)),
           thin_(thin),
           workers_(workers),
@@ -61,6 +61,7 @@ private:
 
     const TouchedBody& body_;
     std::uint32_t index_;
+    const ThinSearchSettings& settings_;
     double time_step_, fall_, displacement_;
     Bounds bounds_;
     ThinDeformable& thin_;
@@ -76,11 +77,11 @@ private:
 // Whether the body cannot poke between two nodes, as each plane that one of them has the other has too, nearly: it lies
 // below both, so no more than a quarter of the way between the nodes times the angle between the planes may look out.
 bool SheetSearch::is_over_same(std::uint32_t a, std::uint32_t b) const {
-    constexpr double most = 0.8;  // over the contact radius
     const auto of_a = planes_of(a), of_b = planes_of(b);
     if (of_a.empty() || of_b.empty()) return false;
     const double displacement = length(nodes_.position[b] - nodes_.position[a]);
-    const double angle = std::min(0.5, 4 * most * radius_ / std::max(displacement, radius_));
+    const double angle =
+        std::min(settings_.max_plane_angle, 4 * settings_.max_bulge_radii * radius_ / std::max(displacement, radius_));
     const double cosine = 1 - angle * angle / 2;
     const auto has_twin = [&](const NodeContact& plane, std::span<const NodeContact> others) {
         return std::ranges::any_of(others,
@@ -93,7 +94,7 @@ bool SheetSearch::is_over_same(std::uint32_t a, std::uint32_t b) const {
 // All that find(share, found) finds, in the order of the shares.
 template <class Found, class Find>
 std::vector<Found> SheetSearch::gather(std::size_t count, Find find) const {
-    constexpr std::size_t min_parallel_count = 1000;
+    constexpr std::size_t min_parallel_count = 1000;  // edges or triangles
     std::vector<std::vector<Found>> parts(static_cast<std::size_t>(workers_.workers()));
     parallel_for(workers_, count, count >= min_parallel_count,
                  [&](int worker, IndexRange range) { find(range, parts[static_cast<std::size_t>(worker)]); });
@@ -107,6 +108,7 @@ void SheetSearch::find_edge(std::uint32_t a, std::uint32_t b, double reach, std:
     const Vec3 from = nodes_.position[a], edge = nodes_.position[b] - from;
     const double size = length(edge);
     if (!(size > 0)) return;
+    const double end_fraction = settings_.sheet_end_fraction;
     manifolds.clear();
     collide_capsule(from, from + edge, radius_, *body_.shape, body_.start, reach, manifolds);
     for (const Manifold& manifold : manifolds) {
@@ -162,7 +164,7 @@ void SheetSearch::find_corner(Vec3 point, Vec3 inside, double radius, std::uint3
         const std::vector<Vec3>& x = nodes_.position;
         const Vec3 a = x[triangle[0]], b = x[triangle[1]], c = x[triangle[2]];
         const auto weight = nearest_weights(point, a, b, c);
-        if (std::ranges::min(weight) < end_fraction) continue;
+        if (std::ranges::min(weight) < settings_.sheet_end_fraction) continue;
         const Vec3 from = radius > 0 ? weight[0] * a + weight[1] * b + weight[2] * c : point;
         Vec3 normal = normalized(cross(b - a, c - a));
         if (dot(normal, from - inside) < 0) normal = -normal;
@@ -195,7 +197,7 @@ void SheetSearch::find_corners() {
                 const Vec3 n = piece.direction_to_local(normal);
                 return std::ranges::all_of(polytope.neighbours(v), [&](std::uint32_t other) {
                     const Vec3 displacement = polytope.vertices[other] - polytope.vertices[v];
-                    return dot(displacement, n) <= 0.3 * length(displacement);
+                    return dot(displacement, n) <= settings_.corner_cosine * length(displacement);
                 });
             };
             find_corner(piece.to_frame(polytope.vertices[v]), interior_point(piece), 0, p * max_corners + v,
@@ -206,8 +208,9 @@ void SheetSearch::find_corners() {
 
 }  // namespace
 
-void find_sheet_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide, double time_step,
-                         Vec3 gravity, ThinDeformable& thin, TaskPool& workers) {
+void find_sheet_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide,
+                         const WorldSettings& settings, ThinDeformable& thin, TaskPool& workers) {
+    const double time_step = settings.time_step;
     const Nodes& nodes = thin.record->nodes();
     Bounds sheet;
     double fastest = 0;
@@ -216,13 +219,13 @@ void find_sheet_contacts(std::span<const TouchedBody> bodies, const std::vector<
         fastest = std::max(fastest, length(nodes.mean_velocity[i]));
     }
     const double own_reach =
-        2 * thin.record->definition.contact_radius + (fastest + length(gravity) * time_step) * time_step;
+        2 * thin.record->definition.contact_radius + (fastest + length(settings.gravity) * time_step) * time_step;
     for (std::uint32_t b = 0; b < bodies.size(); ++b) {
         // Nodes tell all of a plane.
         if (!may_collide[b] || std::holds_alternative<PlaneShape>(bodies[b].shape->definition())) continue;
         const double reach = own_reach + displacement_of(bodies[b], time_step);
         if (!overlaps(enlarged(bodies[b].shape->bounds(bodies[b].start), reach), sheet)) continue;
-        SheetSearch search(bodies[b], b, time_step, gravity, thin, workers);
+        SheetSearch search(bodies[b], b, settings, thin, workers);
         search.find_edges();
         search.find_corners();
     }

@@ -8,7 +8,7 @@ namespace embody::physics::stages {
 
 /// What of bodies pokes between the nodes of a sheet, once the contacts of its nodes are known: edges, rims and round
 /// sides under its edges, corners and small balls under its triangles. As of find_thin_contacts().
-void find_sheet_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide, double time_step,
-                         Vec3 gravity, ThinDeformable& thin, TaskPool& workers);
+void find_sheet_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide,
+                         const WorldSettings& settings, ThinDeformable& thin, TaskPool& workers);
 
 }  // namespace embody::physics::stages

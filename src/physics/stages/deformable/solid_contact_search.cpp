@@ -19,9 +19,6 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr double small_body = 1.5;     // reach over the mean side of the surface's triangles
-constexpr double deep_fraction = 0.5;  // of the mean side: no contact that closed in a step leaves a node so deep
-
 std::uint32_t index_of(std::span<const TouchedBody> bodies, std::uint32_t slot) {
     return static_cast<std::uint32_t>(std::ranges::lower_bound(bodies, slot, {}, &TouchedBody::body) - bodies.begin());
 }
@@ -68,7 +65,7 @@ public:
         }
         std::optional<PlacedSurface> surface;
         for (const TouchedBody& body : colliding_) {
-            if (world_.rigid.record(body.body).reach < small_body * solid.mean_side())
+            if (world_.rigid.record(body.body).reach < settings().feature_body_ratio * solid.mean_side())
                 add_feature_contacts(body, surface, contacts);
         }
     }
@@ -115,12 +112,12 @@ private:
             double inside = 0;
             Vec3 normals;
             for (const NodeContact& node : found) {
-                if (height(body, node) > -deep_fraction * solid.mean_side()) continue;
+                if (height(body, node) > -settings().parting_depth * solid.mean_side()) continue;
                 ++inside;
                 normals += node.normal;
             }
-            if (inside < much_within * static_cast<double>(solid.nodes().size())) return std::nullopt;
-            if (length(normals) > 0.5 * inside) return std::nullopt;
+            if (inside < settings().parting_fraction * static_cast<double>(solid.nodes().size())) return std::nullopt;
+            if (length(normals) > settings().one_side_cosine * inside) return std::nullopt;
         }
         return min_travel(solid.bounds(), box, true);
     }
@@ -149,6 +146,9 @@ private:
         }
     }
 
+    [[nodiscard]] const SolidContactSettings& settings() const {
+        return world_.settings.solver.deformable.solid_contact;
+    }
     [[nodiscard]] double radius() const { return record_.definition.contact_radius; }
 
     [[nodiscard]] SolidContact contact_with(const TouchedBody& body) const {
@@ -178,12 +178,11 @@ void add_pairs(const DeformableAccess& world, std::span<DeformableRecord* const>
     for (std::uint32_t other = 0; other < records.size(); ++other) {
         const DeformableRecord& two = *records[other];
         if (other == number || !may_collide(record.definition, two.definition)) continue;
-        const bool is_parting = are_parting(record, two) || are_parting(two, record);
-        find_surface_contacts(
-            *record.solid(), number, *two.solid(), other, reach + reach_of(world, two),
-            record.definition.contact_radius + two.definition.contact_radius,
+        const SurfaceSearch search{
+            reach + reach_of(world, two), record.definition.contact_radius + two.definition.contact_radius,
             friction_between(record.definition.material, two.definition.material, world.rigid.surface_pairs),
-            is_parting, contacts);
+            are_parting(record, two) || are_parting(two, record), world.settings.solver.deformable.solid_contact};
+        find_surface_contacts({*record.solid(), number}, {*two.solid(), other}, search, contacts);
     }
 }
 

@@ -59,7 +59,7 @@ void SolidTies::add(ThinDeformable& thin, std::vector<TouchedBody>& bodies, doub
             apart -= weight * solid.start(node);
             place += weight * solid.nodes().position[node];
         });
-        const double distance = length(apart), most = recovery_speed * h;
+        const double distance = length(apart), most = world_.settings.solver.deformable.thin_contact.recovery_speed * h;
         if (distance > most) place += (1 - most / distance) * apart;
         // Where the solid's point were without the pull that its substep has counted with.
         TouchedBody point;

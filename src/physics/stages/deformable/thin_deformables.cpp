@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/definitions/world_settings.h"
 #include "physics/stages/deformable/sheet_contact_search.h"
 
 namespace embody::physics::stages {
@@ -11,13 +12,14 @@ namespace embody::physics::stages {
 namespace {
 
 // Points of segments between the nodes that may touch: corners and edges of bodies, round ones between two nodes.
-void find_segment_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide, double time_step,
-                           Vec3 gravity, ThinDeformable& thin) {
-    constexpr double segment_end_fraction =
-        0.05;  // of a segment's length: nearer to its ends the node's own contact holds
+void find_segment_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide,
+                           const WorldSettings& settings, ThinDeformable& thin) {
+    constexpr double min_length = 1e-12;  // m: keeps the quotient finite
+    const double end_fraction = settings.solver.deformable.thin_search.segment_end_fraction;
+    const double time_step = settings.time_step;
     const DeformableRecord& record = *thin.record;
     const Nodes& nodes = record.nodes();
-    const double radius = record.definition.contact_radius, fall = length(gravity) * time_step;
+    const double radius = record.definition.contact_radius, fall = length(settings.gravity) * time_step;
     std::vector<Manifold> manifolds;
     for (std::uint32_t b = 0; b < bodies.size(); ++b) {
         if (!may_collide[b]) continue;
@@ -39,8 +41,8 @@ void find_segment_contacts(std::span<const TouchedBody> bodies, const std::vecto
             collide(*record.capsules[record.segment_capsule[s]], pose, *body.shape, body.start, reach, manifolds);
             for (const Manifold& manifold : manifolds) {
                 const ManifoldPoint& point = manifold.points[0];
-                const double along = dot(point.position - from, displacement) / std::max(length(edge), 1e-12);
-                if (along < segment_end_fraction || along > 1 - segment_end_fraction) continue;
+                const double along = dot(point.position - from, displacement) / std::max(length(edge), min_length);
+                if (along < end_fraction || along > 1 - end_fraction) continue;
                 const Vec3 normal = -manifold.normal;  // from the body to the rope
                 const Vec3 on_axis = from + along * edge;
                 const Vec3 anchor = on_axis - (point.separation + radius) * normal - body.start_center;
@@ -56,8 +58,8 @@ std::span<const TouchSpring> springs_of(const DeformableRecord& record) {
     return record.cloth() ? record.cloth()->springs() : record.rope()->springs();
 }
 
-void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide, double time_step,
-                        Vec3 gravity, ThinDeformable& thin, TaskPool& workers) {
+void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide,
+                        const WorldSettings& settings, ThinDeformable& thin, TaskPool& workers) {
     const DeformableRecord& record = *thin.record;
     std::vector<std::uint32_t> all(record.nodes().size());
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
@@ -68,13 +70,13 @@ void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<b
         colliding.push_back(bodies[b]);
         place.push_back(b);
     }
-    find_node_contacts(record.nodes(), all, *record.node_ball, record.definition.contact_radius, colliding, time_step,
-                       gravity, thin.contacts, workers);
+    find_node_contacts(record.nodes(), all, *record.node_ball, record.definition.contact_radius, colliding,
+                       settings.time_step, settings.gravity, thin.contacts, workers);
     for (NodeContact& contact : thin.contacts) contact.body = place[contact.body];
     if (record.rope())
-        find_segment_contacts(bodies, may_collide, time_step, gravity, thin);
+        find_segment_contacts(bodies, may_collide, settings, thin);
     else
-        find_sheet_contacts(bodies, may_collide, time_step, gravity, thin, workers);
+        find_sheet_contacts(bodies, may_collide, settings, thin, workers);
 }
 
 void advance_thin(ThinDeformable& thin, const Substep& substep, std::span<TouchedBody> bodies, TaskPool& workers) {

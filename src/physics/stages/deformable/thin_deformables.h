@@ -7,6 +7,9 @@
 namespace embody {
 class TaskPool;
 }
+namespace embody::physics {
+struct WorldSettings;
+}
 
 namespace embody::physics::stages {
 
@@ -20,9 +23,9 @@ struct ThinDeformable {
     std::vector<std::uint32_t> attachment_bodies;  ///< index of each one's body, no_body where it is gone
 };
 
-/// What it may touch in a step of `time_step` seconds. `may_collide`: for each of `bodies`, those of the step.
-void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide, double time_step,
-                        Vec3 gravity, ThinDeformable& thin, TaskPool& workers);
+/// What it may touch in a step of these settings. `may_collide`: for each of `bodies`, those of the step.
+void find_thin_contacts(std::span<const TouchedBody> bodies, const std::vector<bool>& may_collide,
+                        const WorldSettings& settings, ThinDeformable& thin, TaskPool& workers);
 /// One substep of it; pushes the bodies.
 void advance_thin(ThinDeformable& thin, const Substep& substep, std::span<TouchedBody> bodies, TaskPool& workers);
 /// Its contacts and attachments in the last substep.

@@ -27,6 +27,7 @@ ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<st
         surface.radius = std::max(surface.radius, cloth.thickness / 2);
         return surface;
     }
+    constexpr double min_length = 1e-6;  // m: the cells of a grid are as long
     double sum = 0;
     segments.clear();
     const std::vector<Vec3>& nodes = surface.nodes->position;
@@ -36,7 +37,7 @@ ThinSurface surface_of(const DeformableRecord& record, std::vector<std::array<st
         segments.push_back({s, record.rope()->is_broken(s) ? s : s + 1});
     }
     surface.edges = segments;
-    surface.edge_length = std::max(sum / static_cast<double>(nodes.size() - 1), 1e-6);
+    surface.edge_length = std::max(sum / static_cast<double>(nodes.size() - 1), min_length);
     return surface;
 }
 
@@ -46,6 +47,7 @@ Substep substep_of(const DeformableAccess& world, const DeformableRecord& record
     substep.wind = wind_at(world.settings, world.report.time);
     substep.air_density = world.settings.air_density;
     substep.surface_pairs = &world.rigid.surface_pairs;
+    substep.settings = world.settings.solver.deformable;
     return substep;
 }
 
@@ -129,7 +131,8 @@ void ThinGroupPart::begin_pairs(std::span<const ThinMember> seen) {
         pair.a = place_[pair.a];
         pair.b = place_[pair.b];
     }
-    pairs_.begin(seen, pairs, world_.deformables.thin_contacts, h_, pull);
+    const ThinContactSettings& settings = world_.settings.solver.deformable.thin_contact;
+    pairs_.begin(seen, pairs, world_.deformables.thin_contacts, {h_, pull, settings});
     std::vector<PlacedTie> ties;
     for (const ThinTie& tie : group_.ties) {
         const Member &own = members_[place_[tie.member]], &other = members_[place_[tie.other]];
@@ -138,7 +141,7 @@ void ThinGroupPart::begin_pairs(std::span<const ThinMember> seen) {
                         static_cast<std::uint32_t>(other.first), &record.definition.ties[tie.index],
                         &record.tie_pulls[tie.index]});
     }
-    ties_.begin(ties, h_, gravity);
+    ties_.begin(ties, h_, gravity, settings);
 }
 
 void ThinGroupPart::begin(std::span<const TouchedBody> bodies) {
@@ -213,7 +216,8 @@ double ThinGroupPart::energy(std::span<const SheetSystem> sheets, std::span<cons
 // Ropes are not linear: from the moves before towards those of the solve as far as the energy falls. Returns how far
 // the fastest node of a rope has gone, over a segment's length.
 double ThinGroupPart::go_as_far_as_it_pays(std::span<const SheetSystem> sheets, std::span<const BodyInertia> inertias) {
-    constexpr double rounding = 1e-6, min_fraction = 1e-3;  // sheets are solved in floats
+    constexpr double rounding = 1e-6;  // of the energy: sheets are solved in floats
+    const double min_fraction = world_.settings.solver.deformable.rope.min_step_fraction;
     const std::vector<Vec3> full = std::exchange(moves_, from_);
     const std::vector<BodyMove> body_full = std::exchange(body_moves_, body_from_);
     const double before = energy(sheets, inertias), enough = before + rounding * std::fabs(before);
@@ -237,8 +241,10 @@ double ThinGroupPart::go_as_far_as_it_pays(std::span<const SheetSystem> sheets, 
 
 // Ropes about their last moves, as in Newton's method.
 bool ThinGroupPart::solve(std::span<const TouchedBody> bodies) {
-    constexpr double small = 1e-3;  // of a segment's length
-    const int max_solves = has_ropes() ? 12 : 4;
+    const DeformableSettings& settings = world_.settings.solver.deformable;
+    const double move_tolerance = settings.rope.move_tolerance_together;  // of a segment's length
+    const int max_solves = has_ropes() ? settings.rope.max_iterations : settings.cloth.max_solves;
+    world_.deformables.pair_solver.set(settings.cloth);
     const std::vector<BodyInertia> inertias = inertias_of(bodies, h_);
     std::vector<SheetSystem> sheets;
     for (std::size_t m = 0; m < sheets_; ++m) sheets.push_back(members_[m].record().cloth()->system());
@@ -253,7 +259,7 @@ bool ThinGroupPart::solve(std::span<const TouchedBody> bodies) {
                                                                     body_moves_, world_.workers);
         if (iterations == ClothSolver::not_finite) return false;
         const double travel = has_ropes() ? go_as_far_as_it_pays(sheets, inertias) : 0;
-        if (solves == max_solves || (!choose_again() && travel < small)) break;
+        if (solves == max_solves || (!choose_again() && travel < move_tolerance)) break;
     }
     return std::ranges::all_of(moves_, [](Vec3 move) { return is_finite(move); }) &&
            std::ranges::all_of(body_moves_,
@@ -286,7 +292,8 @@ std::vector<TouchSpring> ThinGroupPart::springs_of_others(const Member& member) 
 // A clamped rope goes once more on its own: the solve knew nothing of its twist.
 void ThinGroupPart::end(std::span<TouchedBody> bodies) {
     given_.assign(moves_.size(), {});
-    const std::vector<double> fractions = fractions_of(springs_, moves_, body_moves_, inertias_of(bodies, h_), h_);
+    const std::vector<double> fractions =
+        fractions_of(springs_, moves_, body_moves_, inertias_of(bodies, h_), members_[0].substep);
     pairs_.finish(moves_, given_, world_.deformables.thin_contacts);
     ties_.finish(moves_, given_);
     for (Member& member : members_) {

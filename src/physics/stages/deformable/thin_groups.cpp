@@ -76,11 +76,11 @@ std::vector<ThinCandidate> candidates_of(const DeformableAccess& world, const De
 bool is_thin(const DeformableRecord& record) { return !record.solid() && record.definition.enabled; }
 
 // What is wider than this has broken numbers, m: it will freeze, and nothing else is to know of it.
-constexpr double widest = 1e5;
+constexpr double max_finite_size = 1e5;
 
 bool may_touch_others(const Bounds& bounds) {
     const Vec3 size = bounds.size();
-    return size.x < widest && size.y < widest && size.z < widest;
+    return size.x < max_finite_size && size.y < max_finite_size && size.z < max_finite_size;
 }
 
 // The group that member i belongs to: that of its first member.
@@ -110,7 +110,8 @@ void advance_group(const DeformableAccess& world, const ThinGroup& group, std::s
         int parts = 1;
         for (const std::uint32_t member : group.members) {
             ClothSheet* sheet = thin[member].record->cloth();
-            if (sheet != nullptr) parts = std::max(parts, sheet->parts_of(h, world.workers));
+            if (sheet != nullptr)
+                parts = std::max(parts, sheet->parts_of(h, world.settings.solver.deformable.cloth, world.workers));
         }
         const PartPushes pushes(bodies);
         for (int k = 0; k < parts; ++k) {

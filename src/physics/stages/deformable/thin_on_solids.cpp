@@ -65,10 +65,11 @@ void ThinOnSolids::add_solid(ThinDeformable& thin, std::uint32_t slot, std::vect
 // A rigid body on a sheet on a solid presses on the solid itself, harder than the sheet in between could pass on: where
 // the sheet lies on the solid it does not feel it.
 void ThinOnSolids::uncover(ThinDeformable& thin, std::uint32_t solid, double distance) const {
+    const double covered_cosine = world_.settings.solver.deformable.thin_search.covered_cosine;
     const auto is_covered = [&](std::uint32_t node, const NodeContact& plane) {
         const auto held = std::ranges::lower_bound(held_, std::pair{solid, node}, {}, key);
         return plane.body < solid && held != held_.end() && key(*held) == std::pair{solid, node} &&
-               held->place.distance < distance && dot(held->place.normal, plane.normal) < -0.5;
+               held->place.distance < distance && dot(held->place.normal, plane.normal) < -covered_cosine;
     };
     std::erase_if(thin.contacts, [&](const NodeContact& contact) { return is_covered(contact.node, contact); });
     std::erase_if(thin.sheet_contacts, [&](const SheetContact& contact) {
@@ -118,10 +119,11 @@ void ThinOnSolids::take(ThinDeformable& thin, std::span<const TouchedBody> bodie
         sheet.surface_pushes.push_back(push);
     }
     // What was pushed and has left is still owed what the solid has not taken on.
-    constexpr double lasting = 0.5, least = 1e-9;  // share a substep; N
+    constexpr double min_push = 1e-9;  // N: far below what moves a node of any sheet
+    const double lasting = world_.settings.solver.deformable.thin_search.push_memory;
     for (SurfacePush& push : pushes) {
         push.force *= lasting;
-        if (length(push.force) > least) sheet.surface_pushes.push_back(push);
+        if (length(push.force) > min_push) sheet.surface_pushes.push_back(push);
     }
     std::ranges::stable_sort(sheet.surface_pushes, {}, touch_of);
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "foundation/task_pool.h"
+#include "physics/definitions/world_settings.h"
 #include "physics/fluid/obstacles/obstacle_probe.h"
 #include "physics/stages/access.h"
 #include "physics/stages/fluid/fluids.h"
@@ -68,7 +69,7 @@ Result<void> fill_boxes(const FluidDefinition& definition, Filling& filling) {
 }
 
 // The world's lattice, as far as it lies in the hull.
-Result<void> fill_hulls(const FluidDefinition& definition, Filling& filling) {
+Result<void> fill_hulls(const FluidDefinition& definition, const FluidObstacleSettings& settings, Filling& filling) {
     const double step = definition.cell_size / 2;
     std::vector<std::unique_ptr<CollisionShape>> shapes;
     std::vector<ObstacleProbe> probes;
@@ -76,7 +77,7 @@ Result<void> fill_hulls(const FluidDefinition& definition, Filling& filling) {
         auto shape = CollisionShape::create(HullShape{definition.hulls[i]});
         if (!shape) return Error{"hulls[" + std::to_string(i) + "]", shape.error().why, shape.error().remedy};
         shapes.push_back(std::move(*shape));
-        probes.emplace_back(*shapes.back(), Transform{});
+        probes.emplace_back(*shapes.back(), Transform{}, settings);
         probes.back().look_at(probes.back().bounds(), definition.cell_size);
         const Bounds bounds = probes.back().bounds();
         Vec3 first;
@@ -101,12 +102,13 @@ Result<void> fill_hulls(const FluidDefinition& definition, Filling& filling) {
 
 // Those in obstacles are left out.
 void leave_out_obstacles(const ObstacleAccess& world, double cell_size, std::vector<Vec3>& places) {
+    const FluidObstacleSettings& settings = world.settings.solver.fluid.obstacles;
     Bounds bounds;
     for (const Vec3 p : places) bounds.add(p);
     world.contacts.broad_phase.query(bounds, [&](std::uint32_t slot) {
         const BodyRecord& record = world.rigid.record(slot);
         if (!record.shape || !record.definition.enabled) return;
-        ObstacleProbe probe(*record.shape, world.rigid.pose(slot));
+        ObstacleProbe probe(*record.shape, world.rigid.pose(slot), settings);
         if (!probe.look_at(bounds, cell_size)) return;
         std::erase_if(places, [&](Vec3 p) {
             return !(contains(enlarged(probe.bounds(), cell_size), p)) ? false : probe.nearest(p).distance < 0;
@@ -169,7 +171,8 @@ Result<FluidRecord> set_up_fluid(const ObstacleAccess& world, const FluidDefinit
     if (auto result = validate(definition); !result) return result.error();
     Filling filling;
     if (auto result = fill_boxes(definition, filling); !result) return result.error();
-    if (auto result = fill_hulls(definition, filling); !result) return result.error();
+    const FluidObstacleSettings& settings = world.settings.solver.fluid.obstacles;
+    if (auto result = fill_hulls(definition, settings, filling); !result) return result.error();
     const double step = definition.cell_size / 2;
     filling.places.insert(filling.places.end(), definition.points.begin(), definition.points.end());
     filling.volume += static_cast<double>(definition.points.size()) * step * step * step;

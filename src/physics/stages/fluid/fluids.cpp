@@ -20,13 +20,6 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr double quiet_speed = 0.01;     // m/s: a fluid whose particles are slower, but for a few drops, may sleep
-constexpr double time_to_sleep = 1;      // s
-constexpr double quiet_sinking = 0.02;   // cells a second: a fluid whose middle sinks faster does not sleep
-constexpr double noticed_change = 0.05;  // of a sleeping body's weight: another force by more wakes it
-constexpr double max_support = 1.5;      // of the weight of a body and of its volume of the fluid, or what it carries
-constexpr double farthest_jump = 0.5;    // m: a body that was put farther away was not moved through the fluid
-
 Vec3 angular_momentum_of(const FluidAccess& world, std::uint32_t slot, Vec3 angular_velocity) {
     const Quat rotation = world.rigid.motion[slot].rotation;
     return rotate(rotation, world.rigid.constants[slot].inertia * rotate_inverse(rotation, angular_velocity));
@@ -54,6 +47,7 @@ Support support_of(const FluidAccess& world, std::uint32_t slot, double density)
     const Vec3 angular =
         angular_momentum_of(world, slot, state.angular_velocity - touch.angular_velocity) - touch.torque * dt;
     const double gravity = length(world.settings.gravity), volume = record.shape->mass_properties().volume;
+    const double max_support = world.settings.solver.fluid.obstacles.max_support;
     const double most = max_support * (mass * gravity + std::max(density * volume * gravity, touch.carried)) * dt;
     return {at_most(linear, most), at_most(angular, most * record.reach)};
 }
@@ -84,7 +78,9 @@ FluidObstacle fixed_obstacle(const FluidAccess& world, const FluidRecord& fluid,
     const Vec3 displacement = state.center - last_center,
                turn = turn_between(seen->second.pose.rotation, obstacle.pose.rotation);
     if (displacement == Vec3{} && turn == Vec3{}) return obstacle;
-    if (length(displacement) + length(turn) * record.reach > farthest_jump) return obstacle;
+    // What was put farther away was not moved through the fluid.
+    const double jump = length(displacement) + length(turn) * record.reach;
+    if (jump > world.settings.solver.fluid.obstacles.max_jump) return obstacle;
     obstacle.is_static = false;
     obstacle.pose = seen->second.pose;
     obstacle.center = last_center;
@@ -159,11 +155,12 @@ void add_forces(const FluidAccess& world, const FluidRecord& fluid) {
 
 // Bodies that sleep and feel another force than when they fell asleep wake.
 void wake_pushed(const FluidAccess& world) {
+    const double noticed_fraction = world.settings.solver.optimization.wake_force_fraction;
     for (const std::uint32_t slot : world.fluids.pushed_bodies) {
         if (!world.rigid.is_dynamic(slot) || !world.activity.is_asleep(slot)) continue;
         const Vec3 change = world.rigid.record(slot).fluid_force - world.fluids.touches[slot].force_asleep;
         const double weight = world.rigid.constants[slot].mass * length(world.settings.gravity);
-        if (length(change) > noticed_change * weight) wake_group_of(world, slot);
+        if (length(change) > noticed_fraction * weight) wake_group_of(world, slot);
     }
 }
 
@@ -216,10 +213,13 @@ double height_of(const FluidSolver& solver, Vec3 gravity) {
 // Honey that runs is slower than water at rest trembles: what still sinks as a whole does not sleep.
 bool has_sunk(const FluidAccess& world, const FluidRecord& fluid) {
     const double sunk = fluid.quiet_height - height_of(*fluid.solver, world.settings.gravity);
-    return sunk > quiet_sinking * fluid.definition.cell_size * fluid.quiet_time;
+    const double max_sinking_speed = world.settings.solver.fluid.sleep.max_sinking_speed;
+    return sunk > max_sinking_speed * fluid.definition.cell_size * fluid.quiet_time;
 }
 
 void fall_asleep_if_quiet(const FluidAccess& world, FluidRecord& fluid) {
+    const double quiet_speed = world.settings.solver.fluid.sleep.quiet_speed,
+                 time_to_sleep = world.settings.solver.fluid.sleep.time_to_sleep;
     const bool is_quiet = fluid.solver->particles().empty() || fluid.solver->usual_speed(world.workers) < quiet_speed;
     if (is_quiet && fluid.quiet_time == 0) fluid.quiet_height = height_of(*fluid.solver, world.settings.gravity);
     fluid.quiet_time = is_quiet ? fluid.quiet_time + world.settings.time_step : 0;
@@ -259,6 +259,7 @@ void advance_fluid(const FluidAccess& world, FluidRecord& fluid) {
     fluid.is_asleep = false;
     const TaskPool::StayAwake stay_awake(world.workers);
     std::vector<FluidObstacle> obstacles = obstacles_near(world, fluid, slots);
+    fluid.solver->set_settings(world.settings.solver.fluid);
     const FluidOutcome outcome = fluid.solver->advance(
         world.settings.time_step, world.settings.gravity * fluid.definition.gravity_factor, obstacles, world.workers);
     note_outcome(world, fluid, outcome);
@@ -274,6 +275,7 @@ void follow_bodies(const FluidAccess& world, FluidRecord& fluid) {
         if (world.rigid.is_used(slot)) slots.push_back(slot);
     }
     std::vector<FluidObstacle> obstacles = obstacles_near(world, fluid, slots);
+    fluid.solver->set_settings(world.settings.solver.fluid);
     const FluidSolver::Followed followed = fluid.solver->follow(obstacles, world.workers);
     fluid.lost += followed.lost;
     if (followed.lost > 0) report_limit(world, StepLimit::fluid_particles_lost);
@@ -286,6 +288,7 @@ void follow_bodies(const FluidAccess& world, FluidRecord& fluid) {
 void prepare_fluid(const FluidAccess& world, FluidRecord& fluid) {
     world.fluids.touches.resize(world.rigid.bodies.slot_count());
     std::vector<FluidObstacle> obstacles = obstacles_near(world, fluid, bodies_near(world, fluid));
+    fluid.solver->set_settings(world.settings.solver.fluid);
     fluid.solver->prepare(obstacles, world.workers);
 }
 

@@ -16,7 +16,7 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr std::uint32_t not_remembered = 0xFFFFFFFFu;
+constexpr std::uint32_t not_remembered = 0xFFFFFFFFu;  // no path
 
 // Turns by `omega` in whole substeps and the rest of one, either way: as drift() does it. All these Cayley turns have
 // one axis, so they are one quaternion (vector · ω h/2, scalar): each multiplies it by (ω h/2, 1).
@@ -172,7 +172,7 @@ void BodyPaths::fill_path(std::uint32_t body) {
 }
 
 void BodyPaths::remember(std::span<const std::uint32_t> bodies) {
-    constexpr std::size_t min_parallel_count = 200;
+    constexpr std::size_t min_parallel_count = 200;  // bodies: below, waking the workers costs more
     std::vector<std::uint32_t>& remembered = memory_.remembered_bodies;
     remembered.clear();
     for (const std::uint32_t body : bodies) {

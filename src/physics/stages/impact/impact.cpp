@@ -37,12 +37,7 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr double pile_slack = 0.02;    // of a step: in a heap, impacts this near in time may change places
-constexpr int max_bounces = 3;         // of one contact in a step; later impacts do not bounce (Zeno's ball)
-constexpr double same_instant = 1e-6;  // of a step: impacts this near in time are as simultaneous as mirror images
-constexpr std::size_t max_simultaneous_sites = 64;  // what else collides then has events of its own
-constexpr int max_impacts = 5;                      // of one contact in a step; then the contact solver stops it
-constexpr std::size_t nodes_as_bounce = 32;         // of an assembly's bodies and joints: they cost a bounce in a heap
+constexpr double time_rounding = 1e-12;  // s: moments as near as that are one; a step of 1e-5 s is the shortest
 
 class ImpactStage {
 public:
@@ -52,8 +47,9 @@ public:
           bodies_(world),
           paths_(world, bodies_),
           regions_(world, bodies_, paths_),
+          settings_(world.settings.solver.constraint.impact),
           step_(world.settings.time_step),
-          max_assembly_nodes_(nodes_as_bounce * paths_.max_pile_bounces()) {
+          max_assembly_nodes_(settings_.budget.nodes_per_bounce * paths_.max_pile_bounces()) {
         memory_.assembly_nodes = 0;
     }
 
@@ -88,6 +84,7 @@ private:
     BodyPaths bodies_;
     ImpactPaths paths_;
     ImpactRegions regions_;
+    const ImpactSettings& settings_;
     const double step_;
     const std::size_t max_assembly_nodes_;  // in a step
 };
@@ -101,7 +98,7 @@ void ImpactStage::push(double time, std::uint32_t contact) {
 void ImpactStage::predict(std::uint32_t contact) {
     memory_.is_open[contact] = 0;
     memory_.next_time[contact] = ImpactPaths::never;
-    if (memory_.impacts[contact] >= max_impacts) return;
+    if (memory_.impacts[contact] >= settings_.budget.max_impacts) return;
     note(contact, paths_.predict(world_.contacts.list[contact]));
 }
 
@@ -114,7 +111,7 @@ void ImpactStage::note(std::uint32_t contact, ImpactPaths::Prediction next) {
 // Contacts are looked at on their own, so all workers can; the events are listed in the order of the contacts.
 void ImpactStage::predict_all() {
     EMBODY_ZONE("predict impacts");
-    constexpr std::size_t min_parallel_count = 1000;
+    constexpr std::size_t min_parallel_count = 1000;  // contacts: below, waking the workers costs more
     const std::size_t count = world_.contacts.list.size();
     std::vector<ImpactPaths::Prediction>& first = memory_.first;
     first.assign(count, {});
@@ -247,7 +244,8 @@ void ImpactStage::go_to(double time) {
     }
     joints.clear();
     if (!memory_.jointed.empty()) {
-        const ImpactJoints::View view{world_.rigid.motion, world_.rigid.constants, world_.joints.active};
+        const ImpactJoints::View view{world_.rigid.motion, world_.rigid.constants, world_.joints.active,
+                                      world_.settings.solver.constraint.joint};
         move_carriers(world_, time);
         joints.set({memory_.jointed, memory_.jointed_joints}, view);
         joints.project(view);
@@ -266,7 +264,8 @@ void ImpactStage::solve(double time, SlidePath path) {
     gather(time);
     count_assembly();
     go_to(time);
-    const ImpactReport report = solve_impact_group(memory_.sites, world_.rigid.motion, memory_.group, path);
+    const ImpactReport report =
+        solve_impact_group(memory_.sites, world_.rigid.motion, memory_.group, settings_.solver, path);
     if (!report.converged) {
         world_.report.limits |= static_cast<std::uint32_t>(StepLimit::impact_iterations_exhausted);
     }
@@ -290,8 +289,8 @@ void ImpactStage::note_joint_impulses() {
         memory_.pushes.push_back({site.a, -site.impulse, site.arm_a});
         memory_.pushes.push_back({site.b, site.impulse, site.arm_b});
     }
-    memory_.group.joints.add_to_totals(memory_.pushes,
-                                       {world_.rigid.motion, world_.rigid.constants, world_.joints.active});
+    memory_.group.joints.add_to_totals(memory_.pushes, {world_.rigid.motion, world_.rigid.constants,
+                                                        world_.joints.active, world_.settings.solver.constraint.joint});
 }
 
 void ImpactStage::go_back(double time) {
@@ -325,8 +324,8 @@ void ImpactStage::go_back(double time) {
 // Whether the contact may bounce once more.
 bool ImpactStage::count_impact(std::uint32_t contact) {
     std::uint8_t& count = memory_.impacts[contact];
-    const bool may_bounce = count < max_bounces && paths_.bounces(world_.contacts.list[contact]);
-    if (count < max_impacts) ++count;
+    const bool may_bounce = count < settings_.budget.max_bounces && paths_.bounces(world_.contacts.list[contact]);
+    if (count < settings_.budget.max_impacts) ++count;
     return may_bounce;
 }
 
@@ -343,7 +342,7 @@ bool ImpactStage::add_region(std::uint32_t contact, const Manifold& manifold, do
 
 // Whether the contact, of a body that takes part, collides at this instant, too; then its sites are added.
 bool ImpactStage::joins_in(std::uint32_t contact, double time) {
-    const double latest = time + same_instant * step_;
+    const double latest = time + settings_.budget.simultaneous_fraction * step_;
     const auto& known = memory_.site_contact;
     double own_time = memory_.next_time[contact];
     if (own_time > latest || !paths_.bounces(world_.contacts.list[contact])) return false;
@@ -366,7 +365,7 @@ void ImpactStage::add_simultaneous(double time) {
     for (std::size_t i = 0; i < memory_.bodies.size(); ++i) {
         const std::uint32_t body = memory_.bodies[i].body;
         for (std::uint32_t k = memory_.first_of_body[body]; k < memory_.first_of_body[body + 1]; ++k) {
-            if (memory_.sites.size() >= max_simultaneous_sites) return;
+            if (memory_.sites.size() >= settings_.budget.max_simultaneous_sites) return;
             const std::size_t known = memory_.sites.size();
             if (joins_in(memory_.of_body[k], time)) list_bodies(known);
         }
@@ -390,7 +389,8 @@ void ImpactStage::take(const ImpactEvent& event) {
             }
             return;
         }
-        if (!memory_.events.empty() && time > memory_.events.front().time + (in_pile ? pile_slack * step_ : 1e-12)) {
+        const double tolerance = in_pile ? settings_.budget.pile_order_fraction * step_ : time_rounding;
+        if (!memory_.events.empty() && time > memory_.events.front().time + tolerance) {
             ++memory_.version[event.contact];
             push(time, event.contact);
             return;
@@ -437,7 +437,6 @@ void ImpactStage::open_jointed_contacts() {
 }
 
 bool ImpactStage::keeps_apart_when_held(const Contact& contact) const {
-    constexpr double wrong_fraction = 0.1;
     using HeldAcceleration = ImpactMemory::HeldAcceleration;
     const auto held = [&](std::uint32_t body) {
         const bool is_held = memory_.has_jointed_path[body] && body < memory_.held_accelerations.size();
@@ -451,11 +450,12 @@ bool ImpactStage::keeps_apart_when_held(const Contact& contact) const {
     };
     const HeldAcceleration a = held(contact.a), b = held(contact.b);
     const double closing = dot(contact.normal, Vec3(a.linear) - Vec3(b.linear)) +
-                           wrong_fraction * (length(Vec3(a.linear)) + length(Vec3(b.linear))) + a.turning + b.turning;
+                           settings_.held_acceleration_tolerance * (length(Vec3(a.linear)) + length(Vec3(b.linear))) +
+                           a.turning + b.turning;
     const double start = paths_.earliest_time(contact), time = step_ - start;
     const ImpactPaths::Gaps first = paths_.gaps_at(contact, start), last = paths_.gaps_at(contact, step_);
     for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
-        const bool begins_apart = first[k].size > ImpactPaths::touch_gap || first[k].rate > closing * time;
+        const bool begins_apart = first[k].size > settings_.touch_gap || first[k].rate > closing * time;
         if (!begins_apart || last[k].size <= closing * time * time / 2) return false;
     }
     return true;
@@ -470,7 +470,7 @@ void ImpactStage::run() {
     memory_.events.clear();
     memory_.has_lists = memory_.has_joint_lists = false;
     predict_all();
-    std::size_t left = 64 + 32 * count;
+    std::size_t left = settings_.budget.base_events + settings_.budget.events_per_contact * count;
     while (!memory_.events.empty()) {
         const ImpactEvent event = memory_.events.front();
         std::pop_heap(memory_.events.begin(), memory_.events.end(), std::greater<>());

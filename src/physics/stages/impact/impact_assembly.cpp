@@ -15,8 +15,7 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr std::size_t max_flown_bodies = 8;
-constexpr std::size_t max_flights = 16;  // remembered
+constexpr std::size_t max_flights = 16;  // remembered; what is analysed again is the same
 
 bool is_movable(const ImpactAccess& world, std::uint32_t body) { return world.rigid.motion[body].inverse_mass > 0; }
 
@@ -91,7 +90,9 @@ bool has_joints(const ImpactAccess& world, std::uint32_t body) { return !joints_
 bool can_fly_jointed(const ImpactAccess& world) {
     const ImpactMemory& memory = world.impacts;
     const std::size_t nodes = memory.jointed.size() + memory.jointed_joints.size();
-    if (memory.jointed.size() > max_flown_bodies || nodes >= BlockPattern::max_nodes) return false;
+    if (memory.jointed.size() > world.settings.solver.constraint.impact.budget.max_flown_bodies ||
+        nodes >= BlockPattern::max_nodes)
+        return false;
     const auto is_reversible = [&](std::uint32_t body) {
         return memory.has_jointed_path[body] && !memory.is_supported[body];
     };
@@ -106,7 +107,8 @@ void fly_jointed(const ImpactAccess& world, double time) {
         memory.flown_list.push_back(static_cast<std::uint32_t>(memory.flown_joints.size()));
         memory.flown_joints.push_back(world.joints.active[index]);
     }
-    const JointSystem::View view{world.rigid.motion, world.rigid.constants, memory.flown_joints};
+    const JointSystem::View view{world.rigid.motion, world.rigid.constants, memory.flown_joints,
+                                 world.settings.solver.constraint.joint};
     JointSystem& system = flight_of_jointed(memory);
     system.set({memory.jointed, memory.flown_list}, view);
     system.start_cold();
@@ -149,6 +151,7 @@ void gather_jointed(const ImpactAccess& world) {
     list_joints_of_bodies(world);
 
     // Breadth first from what collides.
+    const std::size_t max_jointed_bodies = world.settings.solver.constraint.impact.budget.max_jointed_bodies;
     std::vector<std::uint32_t>& found = memory.jointed;
     const auto is_found = [&](std::uint32_t body) {
         return std::find(found.begin(), found.end(), body) != found.end();

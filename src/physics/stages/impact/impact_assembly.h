@@ -8,11 +8,9 @@
 namespace embody::physics::stages {
 
 /// Adds to the bodies of the present impact (ImpactMemory::bodies) those that joints connect with them, at most
-/// `max_jointed_bodies` and as many joints as a direct solve takes, the fewest joints away first; lists them and their
-/// joints (jointed, jointed_joints). Farther ones learn of the impact from the substeps.
+/// ImpactBudgetSettings::max_jointed_bodies and as many joints as a direct solve takes, the fewest joints away first;
+/// lists them and their joints (jointed, jointed_joints). Farther ones learn of the impact from the substeps.
 void gather_jointed(const ImpactAccess& world);
-
-inline constexpr std::size_t max_jointed_bodies = 64;
 
 /// Whether an active joint holds the body. Needs an impact of jointed bodies before in this step.
 bool has_joints(const ImpactAccess& world, std::uint32_t body);

@@ -23,7 +23,9 @@ ImpactPaths::ImpactPaths(const ImpactAccess& world, const BodyPaths& bodies)
       memory_(world.impacts),
       step_(world.settings.time_step),
       substep_(step_ / world.settings.substeps),
-      max_pile_bounces_(500 + world.activity.awake.size() / 8) {
+      settings_(world.settings.solver.constraint.impact),
+      max_pile_bounces_(settings_.budget.pile_bounces +
+                        world.activity.awake.size() / settings_.budget.bodies_per_pile_bounce) {
     memory_.pile_bounces = 0;
     const std::size_t count = world.rigid.motion.size();
     memory_.last_time.assign(count, 0);
@@ -49,6 +51,7 @@ Material ImpactPaths::material_of(const Contact& contact) const {
 
 bool ImpactPaths::bounces(const Contact& contact) const {
     if (memory_.pile_bounces >= max_pile_bounces_ && hits_pile(contact)) return false;
+    const double min_remaining_restitution = settings_.budget.min_remaining_restitution;
     return contact.bounces && memory_.remaining_restitution[contact.a] > min_remaining_restitution &&
            memory_.remaining_restitution[contact.b] > min_remaining_restitution;
 }
@@ -76,13 +79,15 @@ double ImpactPaths::slowest_speed(const Contact& contact) const {
     const bool can_bounce = bounces(contact);
     if (contact.was_touching && !can_bounce) return never;
     const double acceleration = dot(contact.normal, world_.settings.gravity);
-    const double slowest = std::max(slowest_impact, 2 * std::fabs(acceleration) * substep_);
-    return contact.was_loaded || !can_bounce ? 5 * slowest : slowest;
+    const double slowest =
+        std::max(settings_.min_impact_speed, settings_.min_impact_substeps * std::fabs(acceleration) * substep_);
+    return contact.was_loaded || !can_bounce ? settings_.loaded_speed_ratio * slowest : slowest;
 }
 
 bool ImpactPaths::is_surely_slow(const ContactSummary& summary) const {
     if (summary.was_touching && !summary.bounces) return true;
-    const double slowest = summary.was_loaded || !summary.bounces ? 5 * slowest_impact : slowest_impact;
+    const double ratio = summary.was_loaded || !summary.bounces ? settings_.loaded_speed_ratio : 1;
+    const double slowest = ratio * settings_.min_impact_speed;
     return summary.approach_speed + memory_.speed_gain[summary.a] + memory_.speed_gain[summary.b] < slowest;
 }
 
@@ -106,7 +111,7 @@ ImpactPaths::Motion ImpactPaths::motion_at(std::uint32_t body, double time) cons
 bool ImpactPaths::turns_far(std::uint32_t body) const {
     const TouchBody& touch = world_.contacts.touch.bodies[body];
     const Vec3 turn = world_.rigid.motion[body].angular_velocity * step_;
-    return !touch.is_ball && length_squared(turn) * touch.size / 2 > patch_gap;
+    return !touch.is_ball && length_squared(turn) * touch.size / 2 > settings_.patch_gap;
 }
 
 namespace {
@@ -157,7 +162,7 @@ ImpactPaths::Gaps ImpactPaths::gaps_at(const Contact& contact, double time) cons
 // `never` if it does not.
 double ImpactPaths::touch_time(const Contact& contact, const ContactPoint& point, double start, Gap first,
                                Gap last) const {
-    if (first.size <= touch_gap) return start;
+    if (first.size <= settings_.touch_gap) return start;
     if (last.size > 0) {
         // Open at both ends; a parabola that opens upwards may dip through in between.
         const double acceleration = step_ > start ? (last.rate - first.rate) / (step_ - start) : 0;
@@ -170,10 +175,10 @@ double ImpactPaths::touch_time(const Contact& contact, const ContactPoint& point
     // Closed at the end: the root between, by the regula falsi (Illinois).
     double low = start, high = step_, at_low = first.size, at_high = last.size;
     double time = high;
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0; i < settings_.root_iterations; ++i) {
         time = low + (high - low) * at_low / (at_low - at_high);
         const double gap = gap_at(contact, point, time).size;
-        if (std::fabs(gap) < touch_gap) break;
+        if (std::fabs(gap) < settings_.touch_gap) break;
         (gap > 0 ? low : high) = time;
         (gap > 0 ? at_low : at_high) = gap;
         (gap > 0 ? at_high : at_low) /= 2;
@@ -193,7 +198,7 @@ ImpactPaths::Prediction ImpactPaths::predict_straight(Contact& contact) {
         ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const Gap now = gap_between(contact, point, a, b);
         const double end = now.size + now.rate * step_;
-        const bool may_meet = now.size <= touch_gap || std::min(now.size, end) < deviation.distance;
+        const bool may_meet = now.size <= settings_.touch_gap || std::min(now.size, end) < deviation.distance;
         if (may_meet && now.rate - deviation.speed < -slowest) first.is_certain = false;
         const bool parts = start > 0 && now.rate > deviation.speed && end > deviation.distance;
         if (may_meet && !parts) first.is_open = false;
@@ -236,7 +241,7 @@ ImpactPaths::Prediction ImpactPaths::predict_exactly(Contact& contact) {
         nearest = std::min(nearest, std::min(gap_now.size, gap_end.size));
 
         // Whatever is still apart when an earlier point touches comes later.
-        if (first < never && gap(at_first).size > touch_gap) continue;
+        if (first < never && gap(at_first).size > settings_.touch_gap) continue;
         const double time = touch_time(contact, point, start, start > 0 ? gap(begin) : gap_now, gap_end);
         if (time >= first) continue;
         const Motions then = at(time);
@@ -245,7 +250,7 @@ ImpactPaths::Prediction ImpactPaths::predict_exactly(Contact& contact) {
         at_first = then;
     }
     if (first < never) return {.time = first};
-    const double farthest_turn = widest_followed_turn / step_;
+    const double farthest_turn = settings_.max_followed_turn / step_;
     const auto is_fast = [&](std::uint32_t body, const Motion& m) {
         return !world_.contacts.touch.bodies[body].is_ball && length_squared(m.spin) > farthest_turn * farthest_turn;
     };
@@ -261,8 +266,8 @@ bool ImpactPaths::keeps_apart(const Contact& contact, double start) const {
         if (k > 0 && time <= start) continue;
         const Gaps gaps = gaps_at(contact, time);
         for (std::size_t i = 0; i < static_cast<std::size_t>(contact.count); ++i) {
-            const bool parts = k == 0 && gaps[i].rate > slowest_impact;
-            if (gaps[i].size <= touch_gap && !parts) return false;
+            const bool parts = k == 0 && gaps[i].rate > settings_.min_impact_speed;
+            if (gaps[i].size <= settings_.touch_gap && !parts) return false;
         }
     }
     return true;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "physics/definitions/settings/impact_settings.h"
 #include "physics/stages/access.h"
 #include "physics/stages/impact/body_paths.h"
 #include "physics/stages/namespace.h"
@@ -17,12 +18,6 @@ class ImpactPaths {
 public:
     using Prediction = ImpactPrediction;
     static constexpr double never = Prediction::never;
-    static constexpr double touch_gap = 1e-6;  ///< m: bodies this near touch
-    static constexpr double patch_gap = 5e-4;  ///< m: corners this near to the first one collide together with it
-    static constexpr double widest_followed_turn =
-        0.25;                                       ///< rad in a step: farther, other corners than known may touch
-    static constexpr double slowest_impact = 0.02;  ///< m/s: slower contacts rest
-    static constexpr double min_remaining_restitution = 0.05;
 
     ImpactPaths(const ImpactAccess& world, const BodyPaths& bodies);
 
@@ -45,6 +40,7 @@ public:
     [[nodiscard]] std::size_t max_pile_bounces() const { return max_pile_bounces_; }
     /// Whether it hits what others carry: one of many contacts that stop it together.
     [[nodiscard]] bool hits_pile(const Contact& contact) const;
+    [[nodiscard]] const ImpactSettings& settings() const { return settings_; }
     /// Whether no point can close as fast as an impact does: most contacts of a heap at rest, told by what the touch
     /// stage noted of them. Holds for bodies that had no impact in this step.
     [[nodiscard]] bool is_surely_slow(const ContactSummary& summary) const;
@@ -84,7 +80,8 @@ private:
     const BodyPaths& bodies_;
     ImpactMemory& memory_;
     const double step_, substep_;
-    const std::size_t max_pile_bounces_;  ///< in a step; the collapse of a large heap of bouncing bodies has no end
+    const ImpactSettings& settings_;
+    const std::size_t max_pile_bounces_;  ///< in a step
 };
 
 }  // namespace embody::physics::stages

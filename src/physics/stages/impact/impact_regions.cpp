@@ -13,10 +13,6 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr double patch_gap = ImpactPaths::patch_gap;
-constexpr double near_fraction = 0.05;  // of a body's size
-constexpr double elastic = 0.7;         // restitution from which on at least half of the energy comes back
-
 ImpactCoefficients coefficients_of(const Material& material, double restitution) {
     return {material.friction_dynamic, material.friction_static, restitution};
 }
@@ -33,8 +29,8 @@ void ImpactRegions::collide_at(const Contact& contact, double time) {
     const auto watch = std::lower_bound(touch.watches.begin(), touch.watches.end(), pair,
                                         [](const PairWatch& w, const BroadPhase::Pair& p) { return w.pair < p; });
     PairMemory pair_memory = touch.records[watch->record].memory;
-    collide(*a.shape, bodies_.pose_at(contact.a, time), *b.shape, bodies_.pose_at(contact.b, time), 0.02, pair_memory,
-            memory_.manifolds);
+    collide(*a.shape, bodies_.pose_at(contact.a, time), *b.shape, bodies_.pose_at(contact.b, time),
+            settings_.search_margin, pair_memory, memory_.manifolds);
 }
 
 double ImpactRegions::min_separation(const Manifold& manifold) {
@@ -50,7 +46,8 @@ bool ImpactRegions::is_beside(const Manifold& first, double nearest, const Manif
     const bool is_first = other.piece_a == first.piece_a && other.piece_b == first.piece_b && other.part == first.part;
     if (is_first || other.count == 0) return false;
     const double gap = min_separation(other);
-    return gap <= nearest + patch_gap && closing_speed(contact, other, time, gap) >= ImpactPaths::slowest_impact;
+    return gap <= nearest + settings_.patch_gap &&
+           closing_speed(contact, other, time, gap) >= settings_.min_impact_speed;
 }
 
 std::optional<std::uint32_t> ImpactRegions::find_contact(std::uint32_t beside, const Manifold& manifold) const {
@@ -68,7 +65,7 @@ double ImpactRegions::closing_speed(const Contact& contact, const Manifold& mani
     double speed = 0;
     for (int i = 0; i < manifold.count; ++i) {
         const ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
-        if (point.separation > gap + patch_gap) continue;
+        if (point.separation > gap + settings_.patch_gap) continue;
         const auto velocity = [&](const BodyState& body) { return velocity_at(body, point.position - body.center); };
         speed = std::max(speed, -dot(velocity(b) - velocity(a), manifold.normal));
     }
@@ -84,7 +81,7 @@ bool ImpactRegions::is_near(const Contact& contact, double time) const {
     for (const double reach : {reach_a, reach_b}) {
         if (reach > 0) size = std::min(size, reach);
     }
-    return travel < near_fraction * size;
+    return travel < settings_.region_travel_fraction * size;
 }
 
 const Manifold* ImpactRegions::find_region(const Contact& contact) const {
@@ -116,9 +113,11 @@ double ImpactRegions::first_touch(const Contact& contact) {
 // Follows the closing surfaces (secant) for a few rounds.
 bool ImpactRegions::refine(const Contact& contact, double& time, Manifold& manifold) {
     const bool is_rough = paths_.hits_pile(contact) && !paths_.bounces(contact);
-    const int max_iterations = is_rough ? 4 : 8;
+    const int max_iterations = is_rough ? settings_.rough_refine_iterations : settings_.refine_iterations;
     const double start = paths_.earliest_time(contact);
-    const double tolerance = is_rough ? patch_gap : ImpactPaths::touch_gap;
+    const double tolerance = is_rough ? settings_.patch_gap : settings_.touch_gap;
+    const double last_gap =
+        (is_rough ? settings_.rough_refine_gap_ratio : settings_.refine_gap_ratio) * settings_.patch_gap;
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
         collide_at(contact, time);
         const Manifold* found = find_region(contact);
@@ -126,9 +125,9 @@ bool ImpactRegions::refine(const Contact& contact, double& time, Manifold& manif
         manifold = *found;
 
         const double gap = min_separation(manifold), speed = closing_speed(contact, manifold, time, gap);
-        if (speed < ImpactPaths::slowest_impact) return false;
+        if (speed < settings_.min_impact_speed) return false;
         const bool is_touching = std::fabs(gap) <= tolerance || (gap < 0 && time <= start);
-        if (is_touching || (iteration + 1 == max_iterations && gap < (is_rough ? 2 : 10) * patch_gap)) return true;
+        if (is_touching || (iteration + 1 == max_iterations && gap < last_gap)) return true;
         time = std::max(start, time + gap / speed);
         if (time > step_) return false;
     }
@@ -162,14 +161,14 @@ void ImpactRegions::add_manifold_sites(const Contact& contact, const Manifold& m
     int count = 0;
     for (int i = 0; i < manifold.count; ++i) {
         const ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
-        if (point.separation > nearest + patch_gap) continue;
+        if (point.separation > nearest + settings_.patch_gap) continue;
         sum += point.position;
         ++count;
     }
     if (count > 1) add(sum / count);
     for (int i = 0; i < manifold.count; ++i) {
         const ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
-        if (point.separation <= nearest + patch_gap) add(point.position);
+        if (point.separation <= nearest + settings_.patch_gap) add(point.position);
     }
 }
 
@@ -204,12 +203,12 @@ void ImpactRegions::add_points_below(const Contact& contact, const PointGaps& ga
 void ImpactRegions::add_point_sites(const Contact& contact, double time) {
     const PointGaps gaps = straight_gaps(contact, time);
     const double nearest = *std::min_element(gaps.begin(), gaps.begin() + contact.count);
-    add_points_below(contact, gaps, nearest + patch_gap, time);
+    add_points_below(contact, gaps, nearest + settings_.patch_gap, time);
 }
 
 // Whether the two bodies pass an impact on by one of their own, which gives back most of the energy.
 bool ImpactRegions::passes_on(const Contact& contact) const {
-    return paths_.bounces(contact) && paths_.material_of(contact).restitution >= elastic;
+    return paths_.bounces(contact) && paths_.material_of(contact).restitution >= settings_.elastic_restitution;
 }
 
 // Loaded contacts of the colliding bodies take part, without a bounce. Others that collide at the same time have their
@@ -224,7 +223,7 @@ void ImpactRegions::add_loaded_neighbours(std::span<const std::uint32_t> bodies,
             if (std::find(known.begin(), known.end(), other) != known.end()) continue;
             if (passes_on(world_.contacts.list[other])) continue;
             const Contact& contact = world_.contacts.list[other];
-            add_points_below(contact, straight_gaps(contact, time), patch_gap, time);
+            add_points_below(contact, straight_gaps(contact, time), settings_.patch_gap, time);
             memory_.site_contact.resize(memory_.sites.size(), other);
         }
     }

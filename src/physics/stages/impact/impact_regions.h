@@ -17,7 +17,12 @@ namespace embody::physics::stages {
 class ImpactRegions {
 public:
     ImpactRegions(const ImpactAccess& world, BodyPaths& bodies, const ImpactPaths& paths)
-        : world_(world), memory_(world.impacts), bodies_(bodies), paths_(paths), step_(world.settings.time_step) {}
+        : world_(world),
+          memory_(world.impacts),
+          bodies_(bodies),
+          paths_(paths),
+          settings_(paths.settings()),
+          step_(world.settings.time_step) {}
 
     /// Whether the region found at the start of the step is still right at `time`: the bodies have hardly moved on.
     [[nodiscard]] bool is_near(const Contact& contact, double time) const;
@@ -73,6 +78,7 @@ private:
     ImpactMemory& memory_;
     BodyPaths& bodies_;
     const ImpactPaths& paths_;
+    const ImpactSettings& settings_;
     const double step_;
 };
 

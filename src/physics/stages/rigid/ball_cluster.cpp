@@ -12,7 +12,6 @@
 #include "physics/definitions/step_report.h"
 #include "physics/definitions/world_settings.h"
 #include "physics/stages/access.h"
-#include "physics/stages/impact/impact_paths.h"
 #include "physics/stages/rigid/ball_ground.h"
 #include "physics/state/ball_memory.h"
 #include "physics/state/rigid_state.h"
@@ -21,18 +20,17 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr double touch_gap = 1e-6;  // of the smaller radius: nearer balls touch
-constexpr double deepest = 0.5;     // of the smaller radius: deeper, the contact solver takes balls out of each other
-constexpr double deepest_rest = 0.01;  // the same of balls that stay together
-constexpr int max_collisions = 64;     // of a pair in a step
-constexpr int parts_of_budget = 4;     // for each part and each pair, in a step
-constexpr double min_fraction = 1e-6;  // of a part: a shorter rest is none
+constexpr double min_fraction = 1e-6;  // of a part: a shorter rest is none, and each collision takes so much time
 
 class BallCluster {
 public:
     BallCluster(const RollAccess& world, BallMemory& memory, std::span<const std::uint32_t> members,
                 std::span<BallMemory::Pair> pairs)
-        : world_(world), memory_(memory), members_(members), pairs_(pairs) {}
+        : world_(world),
+          memory_(memory),
+          members_(members),
+          pairs_(pairs),
+          settings_(world.settings.solver.constraint) {}
     bool roll();
     /// Whether it was given up because there was no end of collisions.
     [[nodiscard]] bool is_exhausted() const { return is_exhausted_; }
@@ -65,6 +63,7 @@ private:
     BallMemory& memory_;
     const std::span<const std::uint32_t> members_;
     const std::span<BallMemory::Pair> pairs_;
+    const ConstraintSettings& settings_;
     std::size_t collisions_ = 0;
     bool is_exhausted_ = false;
 };
@@ -88,14 +87,15 @@ bool BallCluster::begin() {
 bool BallCluster::is_too_deep(const Pair& pair) const {
     const BallPlace &a = ball(pair.a).at, &b = ball(pair.b).at;
     const double parting = dot(normalized(b.center - a.center), b.motion.velocity - a.motion.velocity);
-    const bool stay = std::fabs(parting) < ImpactPaths::slowest_impact;
-    return gap(pair) < -(stay ? deepest_rest : deepest) * size(pair);
+    const BallClusterSettings& limits = settings_.rolling.cluster;
+    const bool stay = std::fabs(parting) < settings_.impact.min_impact_speed;
+    return gap(pair) < -(stay ? limits.max_rest_depth_fraction : limits.max_depth_fraction) * size(pair);
 }
 
 // What has come to rest is the contact solver's.
 bool BallCluster::is_quiet() const {
     return std::all_of(members_.begin(), members_.end(), [&](std::uint32_t index) {
-        return length(ball(index).at.motion.velocity) < ImpactPaths::slowest_impact;
+        return length(ball(index).at.motion.velocity) < settings_.impact.min_impact_speed;
     });
 }
 
@@ -120,7 +120,7 @@ double BallCluster::meeting(const Pair& pair) const {
     const Vec3 start = b.at.center - a.at.center, change = b.next.center - a.next.center - start;
     const double along = dot(start, change), square = length_squared(change), both = radii(pair);
     const double rest = length_squared(start) - both * both;
-    if (gap(pair) <= touch_gap * size(pair) || along >= 0) return 1;
+    if (gap(pair) <= settings_.rolling.cluster.touch_fraction * size(pair) || along >= 0) return 1;
     const double discriminant = along * along - square * rest;
     return discriminant < 0 ? 1 : std::min(1.0, (-along - std::sqrt(discriminant)) / square);
 }
@@ -134,10 +134,10 @@ bool BallCluster::collide(Pair& pair) {
     const double before = energy(a) + energy(b);
     const double closing = dot(direction, a.at.motion.velocity - b.at.motion.velocity);
     const double restitution = closing >= material.restitution_threshold ? material.restitution : 0;
-    const std::optional<Vec3> impulse = collide_balls({a.at.motion, a.path->mass(), a.at.touch.normal},
-                                                      {b.at.motion, b.path->mass(), b.at.touch.normal}, direction,
-                                                      restitution, material.friction_dynamic);
-    is_exhausted_ = ++collisions_ > max_collisions * pairs_.size();
+    const std::optional<Vec3> impulse = collide_balls(
+        {a.at.motion, a.path->mass(), a.at.touch.normal}, {b.at.motion, b.path->mass(), b.at.touch.normal},
+        {direction, restitution, material.friction_dynamic, settings_.rolling.max_parting_speed});
+    is_exhausted_ = ++collisions_ > settings_.rolling.cluster.max_collisions * pairs_.size();
     if (!impulse || is_exhausted_) return false;
     a.at.rolls = b.at.rolls = false;
     a.at.centripetal = b.at.centripetal = 0;
@@ -150,11 +150,12 @@ bool BallCluster::collide(Pair& pair) {
 
 // All that touch and approach each other, until none does.
 bool BallCluster::collide_all() {
-    constexpr double rounding = 1e-9;  // m/s
+    constexpr double rounding = 1e-9;  // m/s: that of speeds of 1e6 m/s; slower balls only touch
+    const double touch = 2 * settings_.rolling.cluster.touch_fraction;
     for (bool any = true; any;) {
         any = false;
         for (Pair& pair : pairs_) {
-            if (gap(pair) > 2 * touch_gap * size(pair)) continue;
+            if (gap(pair) > touch * size(pair)) continue;
             const BallPlace &a = ball(pair.a).at, &b = ball(pair.b).at;
             if (dot(b.center - a.center, a.motion.velocity - b.motion.velocity) <= rounding * radii(pair)) continue;
             if (!collide(pair)) return false;
@@ -176,12 +177,12 @@ bool BallCluster::end() {
 bool BallCluster::roll() {
     if (!begin()) return false;
     const int parts = count_parts();
-    if (parts > BallPath::max_parts) return false;
+    if (parts > settings_.rolling.ball.max_parts) return false;
     const double part = world_.settings.time_step / parts;
     for (const std::uint32_t index : members_) {
         if (!ball(index).path->see_curvature(ball(index).at, part)) return false;
     }
-    int left_parts = parts_of_budget * (parts + static_cast<int>(pairs_.size()));
+    int left_parts = settings_.rolling.cluster.part_budget * (parts + static_cast<int>(pairs_.size()));
     for (double left = world_.settings.time_step; left > min_fraction * part;) {
         is_exhausted_ = left_parts-- == 0;
         if (is_exhausted_) return false;

@@ -30,7 +30,8 @@ BallPath path_of_ball(const RollAccess& world, std::uint32_t body, std::span<con
                           world.contacts.list,
                           contacts,
                           world.settings.time_step,
-                          world.settings.substeps};
+                          world.settings.substeps,
+                          world.settings.solver.constraint.rolling};
     return {ball, surroundings};
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "foundation/task_pool.h"
+#include "physics/definitions/world_settings.h"
 #include "physics/dynamic/equations_of_motion.h"
 #include "physics/stages/access.h"
 #include "physics/stages/parallel_for_awake.h"
@@ -22,9 +23,6 @@ namespace embody::physics::stages {
 
 namespace {
 
-// So near to each other the contact solver has them already, m.
-constexpr double stop_gap = 1e-3;
-
 /// A body on its way through the step, and how much of the way it may go.
 struct FastBody {
     std::uint32_t body = 0;
@@ -38,24 +36,26 @@ struct Meeting {
 };
 
 // How far it may move without passing through another body unseen, m.
-double thickness_of(const BodyRecord& record) {
-    return (record.definition.continuous ? 0.25 : 1.0) * record.inner_radius;
+double thickness_of(const ContinuousAccess& world, const BodyRecord& record) {
+    const double fraction = world.settings.solver.collision.continuous_travel_fraction;
+    return (record.definition.continuous ? fraction : 1.0) * record.inner_radius;
 }
 
-// Whether a body turns so far that points outside of its inner ball sweep its thickness; by less than a quarter of a
-// radian the contacts themselves follow it.
-bool turns_fast(const BodyRecord& record, const BodyState& state) {
-    constexpr double min_half_sine = 0.125;
+// Whether a body turns so far that points outside of its inner ball sweep its thickness; what turns less is followed by
+// the contacts themselves.
+bool turns_fast(const ContinuousAccess& world, const BodyRecord& record, const BodyState& state) {
     const double half_sine = length(Vec3{state.turn.x, state.turn.y, state.turn.z});
-    return half_sine > min_half_sine && 2 * half_sine * (record.reach - record.inner_radius) > thickness_of(record);
+    return half_sine > world.settings.solver.collision.continuous_half_turn &&
+           2 * half_sine * (record.reach - record.inner_radius) > thickness_of(world, record);
 }
 
 bool may_tunnel(const ContinuousAccess& world, std::uint32_t body) {
     const BodyRecord& record = world.rigid.record(body);
     if (!record.shape || !record.definition.enabled || !world.rigid.is_dynamic(body)) return false;
     const BodyState& state = world.rigid.motion[body];
-    const double thickness = thickness_of(record);
-    return length_squared(state.center - state.start_center) > thickness * thickness || turns_fast(record, state);
+    const double thickness = thickness_of(world, record);
+    return length_squared(state.center - state.start_center) > thickness * thickness ||
+           turns_fast(world, record, state);
 }
 
 // Things that fly side by side do not pass through each other.
@@ -63,8 +63,9 @@ bool may_pass(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b) {
     const BodyRecord &ra = world.rigid.record(a), &rb = world.rigid.record(b);
     const BodyState &sa = world.rigid.motion[a], &sb = world.rigid.motion[b];
     const Vec3 displacement = (sa.center - sa.start_center) - (sb.center - sb.start_center);
-    const double thickness = std::min(thickness_of(ra), thickness_of(rb));
-    return length_squared(displacement) > thickness * thickness || turns_fast(ra, sa) || turns_fast(rb, sb);
+    const double thickness = std::min(thickness_of(world, ra), thickness_of(world, rb));
+    return length_squared(displacement) > thickness * thickness || turns_fast(world, ra, sa) ||
+           turns_fast(world, rb, sb);
 }
 
 bool may_meet(const ContinuousAccess& world, std::uint32_t a, std::uint32_t b) {
@@ -99,9 +100,10 @@ std::optional<double> meeting_time(const ContinuousAccess& world, std::uint32_t 
                                    const Sweep& path_b) {
     // Sliding and rolling along a thing ends no deeper in it than this.
     const BodyRecord& record = world.rigid.record(a);
-    const double harmless = record.definition.continuous ? 0 : 0.25 * record.inner_radius;
+    const CollisionSettings& settings = world.settings.solver.collision;
+    const double harmless = record.definition.continuous ? 0 : settings.continuous_slide_fraction * record.inner_radius;
     return time_of_impact(*record.shape, path_a, *world.rigid.record(b).shape, path_b,
-                          {stop_gap / 2, stop_gap, harmless});
+                          {settings.continuous_gap / 2, settings.continuous_gap, harmless});
 }
 
 // The velocity with which a body that has `velocity` under the constant `acceleration` was at the place `back` from

@@ -16,8 +16,8 @@ namespace embody::physics::stages {
 
 namespace {
 
-constexpr double same_normal = 1 - 1e-9;  // cosine
-constexpr double aligned = 1e-6;          // sine, share of the size: what lies on one axis
+constexpr double same_normal = 1 - 1e-9;  // cosine: 4e-5 rad, what floats of a mesh leave of a flat face is 1e-7
+constexpr double aligned = 1e-6;  // sine, share of the size: what lies on one axis; definitions round to below 1e-7
 
 // Adds the rings of a piece whose middle is there (from the centre of mass, body axes).
 bool add_rings(const Convex& shape, Vec3 middle, Vec3 axis, RollingBody& body) {
@@ -111,7 +111,7 @@ std::optional<DeepestPoint> deepest_on_flat_ground(const SubstepAccess& world, s
 
 void note_load(const WorldSettings& settings, std::span<const std::uint32_t> contacts, const DeepestPoint& deepest,
                Vec3 impulse, std::vector<Contact>& list) {
-    const ContactPlan plan = contact_plan(contacts.size(), settings.substeps);
+    const ContactPlan plan = contact_plan(contacts.size(), settings.substeps, settings.solver.constraint.contact);
     const auto part = static_cast<float>(1.0 / plan.substeps);
     for (const std::uint32_t index : contacts) {
         Contact& contact = list[index];
@@ -132,8 +132,9 @@ void note_load(const WorldSettings& settings, std::span<const std::uint32_t> con
 }
 
 bool roll_alone(const SubstepAccess& world, const Island& island) {
-    constexpr std::uint32_t max_contacts = 8;  // what rolls on still faces has two rims on two neighbouring triangles
-    if (island.body_count != 1 || island.joint_count > 0 || island.contact_count > max_contacts) return false;
+    const RollingSettings& settings = world.settings.solver.constraint.rolling;
+    if (island.body_count != 1 || island.joint_count > 0 || island.contact_count > settings.body.max_contacts)
+        return false;
     const std::uint32_t body = world.islands.bodies[island.first_body];
     const BodyConstants& constants = world.rigid.constants[body];
     if (constants.torque != Vec3{} || constants.linear_damping > 0 || constants.angular_damping > 0) return false;
@@ -150,7 +151,7 @@ bool roll_alone(const SubstepAccess& world, const Island& island) {
     BodyState& state = world.rigid.motion[body];
     const Vec3 on_body = state.center + Vec3(is_b ? point.arm_b : point.arm_a);
     const RollingGround ground{up, on_body - up * point.separation, contact.friction_static, contact.sticks};
-    const std::optional<Vec3> impulse = roll(state, constants, *round, ground, world.settings.time_step);
+    const std::optional<Vec3> impulse = roll(state, constants, *round, ground, {world.settings.time_step, settings});
     if (!impulse) return false;
     note_load(world.settings, contacts, *deepest, *impulse * (is_b ? 1.0 : -1.0), world.contacts.list);
     return true;

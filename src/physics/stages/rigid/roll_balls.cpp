@@ -129,7 +129,7 @@ void note_collision(const RollAccess& world, const BallMemory::Pair& pair) {
 }
 
 void roll_clusters(const RollAccess& world, BallMemory& memory) {
-    constexpr std::size_t max_members = 32;  // balls: the time of one worker grows with the square of their number
+    const std::size_t max_members = world.settings.solver.constraint.rolling.cluster.max_members;
     for (BallMemory::Pair& pair : memory.pairs) pair.root = root_of(memory, pair.a);
     std::sort(memory.pairs.begin(), memory.pairs.end(), [](const BallMemory::Pair& p, const BallMemory::Pair& q) {
         return p.root != q.root ? p.root < q.root : p.contact < q.contact;

@@ -60,7 +60,8 @@ void put_to_sleep(const SleepAccess& world) {
     for_each_awake(world, [&](std::uint32_t body) {
         if (world.rigid.motion[body].inverse_mass == 0) return;
         const BodyRecord& record = world.rigid.record(body);
-        const QuietRules rules{settings.time_step, settings.time_to_sleep, record.deformable_force != Vec3{}};
+        const QuietRules rules{settings.time_step, settings.time_to_sleep,
+                               settings.solver.optimization.sleep_travel_fraction, record.deformable_force != Vec3{}};
         track_quietness(world.activity.sleep[body], world.rigid.motion[body], world.rigid.constants[body], record.reach,
                         rules);
     });

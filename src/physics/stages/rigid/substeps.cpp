@@ -42,6 +42,20 @@ std::span<const std::uint32_t> bodies_of(const SubstepAccess& world, const Islan
     return std::span(world.islands.bodies).subspan(island.first_body, island.body_count);
 }
 
+const ConstraintSettings& constraint_settings(const SubstepAccess& world) { return world.settings.solver.constraint; }
+
+JointSystem::View joint_view(const SubstepAccess& world) {
+    return {world.rigid.motion, world.rigid.constants, world.joints.active, constraint_settings(world).joint};
+}
+
+ContactPlan plan_of(const SubstepAccess& world, const Island& island) {
+    return contact_plan(island.contact_count, world.settings.substeps, constraint_settings(world).contact);
+}
+
+ContactSoftness softness_of(const SubstepAccess& world, const ContactPlan& plan) {
+    return plan.softness(world.settings.time_step, constraint_settings(world).contact);
+}
+
 JointedList jointed_list(const SubstepAccess& world, const Island& island) {
     return {bodies_of(world, island), joints_of(world, island)};
 }
@@ -103,7 +117,7 @@ void solve_wide(const SubstepAccess& world, const IslandsBySolver::Wide& group) 
     }
     WideContactSolver& solver = world.substeps.wide_solver;
     build_schedule(order, world.contacts.summaries, world.rigid.motion, solver.lanes(), world.substeps.schedule);
-    const ContactSoftness softness = group.plan.softness(world.settings.time_step);
+    const ContactSoftness softness = softness_of(world, group.plan);
     solver.begin({bodies, world.substeps.wide_carriers, groups}, softness.substep, group.plan.substeps);
     for (const SolveSchedule::Stage& stage : world.substeps.schedule.stages) {
         solver.begin_stage();
@@ -148,7 +162,7 @@ void note_held(const SubstepAccess& world, const Island& island) {
 // Whether the island was solved directly; else the sweeps have to.
 bool solve_directly(const SubstepAccess& world, const Island& island) {
     // Impulses in the sweeps' measure, so that either way can go on where the other one left off.
-    const int parts = contact_plan(island.contact_count, world.settings.substeps).substeps;
+    const int parts = plan_of(world, island).substeps;
     const DirectContactSolver::List list{bodies_of(world, island), contacts_of(world, island), parts};
     if (is_still_held(world, island)) {
         DirectContactSolver::hold(list, world.contacts.list);
@@ -156,7 +170,8 @@ bool solve_directly(const SubstepAccess& world, const Island& island) {
         note_outcomes(world, island);
         return true;
     }
-    const DirectUse use = direct_use_of(island, world.islands, world.contacts.list, world.rigid.motion);
+    const DirectUse use = direct_use_of(island, world.islands, world.contacts.list, world.rigid.motion,
+                                        world.settings.solver.optimization);
     if (use == DirectUse::never) return false;
     using Effort = DirectContactSolver::Effort;
     const Effort effort = use == DirectUse::always ? Effort::any : Effort::while_slow;
@@ -179,14 +194,14 @@ void set_up_joint_systems(const SubstepAccess& world) {
         auto known = last.extract(list.bodies.front());
         JointSystem& system = known.empty() ? world.substeps.joint_systems[list.bodies.front()]
                                             : world.substeps.joint_systems.insert(std::move(known)).position->second;
-        system.set(list, {world.rigid.motion, world.rigid.constants, world.joints.active});
+        system.set(list, joint_view(world));
     }
 }
 
 // Joints only: each island through the whole step. Kinematic bodies go along; others take them from where they were.
 void solve_jointed(const SubstepAccess& world, const std::vector<Island>& islands, double h) {
     EMBODY_ZONE("solve jointed");
-    const JointSystem::View view{world.rigid.motion, world.rigid.constants, world.joints.active};
+    const JointSystem::View view = joint_view(world);
     for (const Island& island : islands) {
         JointSystem& system = *joint_system(world, island);
         std::vector<std::pair<std::uint32_t, BodyState>>& carriers = world.substeps.carriers;
@@ -206,7 +221,7 @@ const IslandsBySolver& sort_islands(const SubstepAccess& world) {
     sorted.clear();
     set_up_joint_systems(world);
     world.substeps.held.resize(world.rigid.bodies.slot_count());
-    world.substeps.direct_solver.begin(world.settings.time_step, world.settings.substeps);
+    world.substeps.direct_solver.begin(world.settings.time_step, world.settings.substeps, constraint_settings(world));
     for (const Island& island : world.islands.list) {
         if (take_rolled_balls(world, island)) {
             note_outcomes(world, island);
@@ -223,7 +238,7 @@ const IslandsBySolver& sort_islands(const SubstepAccess& world) {
             note_outcomes(world, island);
             if (world.ledger) world.ledger->note_rolled(world.islands.bodies[island.first_body]);
         } else if (!solve_directly(world, island)) {
-            sorted.add(island, contact_plan(island.contact_count, world.settings.substeps));
+            sorted.add(island, plan_of(world, island));
         }
     }
     return sorted;
@@ -239,7 +254,8 @@ void solve_islands(const SubstepAccess& world, const std::vector<Island>& island
             .prepared = std::span(world.substeps.prepared_contacts).subspan(first, island.contact_count),
             .joints = world.joints.active,
             .joint_order = joints_of(world, island),
-            .system = joint_system(world, island)};
+            .system = joint_system(world, island),
+            .settings = constraint_settings(world)};
         solve_phase(list, phase, h, time, world.rigid.motion, world.rigid.constants);
         first += island.contact_count;
     }
@@ -333,7 +349,10 @@ void clear_traces_of_lost(const SubstepAccess& world) {
     }
 }
 
-bool is_lost(const BodyState& state) { return !is_state_finite(state) || !(length(state.center) < 1e15); }
+bool is_lost(const BodyState& state) {
+    constexpr double farthest = 1e15;  // m: there doubles lie 0.1 m apart
+    return !is_state_finite(state) || !(length(state.center) < farthest);
+}
 
 // A body that left the finite numbers would take all it touches along: it is put back and switched off.
 void freeze_lost_bodies(const SubstepAccess& world) {
@@ -368,14 +387,13 @@ void freeze_lost_bodies(const SubstepAccess& world) {
 class EnergyBounds {
 public:
     EnergyBounds(const SubstepAccess& world, const std::vector<Island>& islands)
-        : world_(world),
-          view_{world.rigid.motion, world.rigid.constants, world.joints.active},
-          bounds_(world.substeps.energy_bounds) {
+        : world_(world), view_(joint_view(world)), bounds_(world.substeps.energy_bounds) {
         bounds_.clear();
+        const double speed = constraint_settings(world).contact.max_correction_speed;
         for (const Island& island : islands) {
             const JointSystem* system = island.contact_count > 0 ? joint_system(world, island) : nullptr;
             if (!system || is_pushed(world, island)) continue;
-            bounds_.push_back({island, system, 0, system->mass(view_) * correction_speed * correction_speed / 2});
+            bounds_.push_back({island, system, 0, system->mass(view_) * speed * speed / 2});
         }
     }
     void note() {
@@ -389,9 +407,6 @@ public:
     }
 
 private:
-    static constexpr double correction_speed = 3;  // m/s
-    static constexpr double far_off = 0.7;         // impulses that gave so much too much are no guess for the next ones
-
     using Bound = SubstepMemory::EnergyBound;
     void keep(const Bound& bound, double most) const {
         const double fraction = bound.system->bound_energy(most, view_);
@@ -400,7 +415,8 @@ private:
                 world_.ledger->note_scaled(body, fraction);
             }
         }
-        if (fraction > far_off) return;
+        // Impulses that gave so much too much are no guess for the next ones.
+        if (fraction > view_.settings.warm_start_kept_fraction) return;
         for (const std::uint32_t index : contacts_of(world_, bound.island)) {
             Contact& contact = world_.contacts.list[index];
             for (ContactPoint& point : contact.points) point.impulse = 0;
@@ -417,7 +433,7 @@ private:
 // Through the whole step: half of the forces before the drift and half after it.
 void solve_free(const SubstepAccess& world, const std::vector<std::uint32_t>& bodies, double h) {
     EMBODY_ZONE("move free bodies");
-    constexpr std::size_t min_parallel_count = 200;
+    constexpr std::size_t min_parallel_count = 200;  // bodies: below, waking the workers costs more
     parallel_for(world.workers, bodies.size(), bodies.size() >= min_parallel_count, [&](int, IndexRange range) {
         for (std::size_t i = range.first; i < range.last; ++i) {
             BodyState& state = world.rigid.motion[bodies[i]];
@@ -491,8 +507,8 @@ void note_held_accelerations(const SubstepAccess& world) {
 void propagate_shocks(const SubstepAccess& world, const IslandsBySolver& sorted) {
     EMBODY_ZONE("propagate shocks");
     const auto propagate = [&](const Island& island, const ContactPlan& plan) {
-        propagate_shock(island, world.islands, world.contacts.list, plan.softness(world.settings.time_step),
-                        world.rigid.motion);
+        propagate_shock(island, world.islands, world.contacts.list,
+                        {world.settings.solver.optimization, softness_of(world, plan)}, world.rigid.motion);
     };
     const auto is_sunk = [&](std::uint32_t contact) { return world.contacts.summaries[contact].is_sunk; };
     for (const IslandsBySolver::Wide& group : sorted.wide) {
@@ -502,7 +518,8 @@ void propagate_shocks(const SubstepAccess& world, const IslandsBySolver& sorted)
         }
     }
     for (const Island& island : sorted.one_by_one) {
-        propagate(island, jointed_contact_plan(island.contact_count, world.settings.substeps));
+        propagate(island, jointed_contact_plan(island.contact_count, world.settings.substeps,
+                                               constraint_settings(world).contact));
     }
 }
 

@@ -55,17 +55,17 @@ Vec3 drag_of_air(const WakeAccess& world, std::uint32_t body, const Wind& wind) 
     return (strength / (1 + strength * world.rigid.motion[body].inverse_mass * world.settings.time_step)) * u;
 }
 
-// Sleepers that the wind pushes otherwise than when they fell asleep: each is asked four times a second at 60 Hz.
+// Sleepers that the wind pushes otherwise than when they fell asleep: some in each step, all in turn.
 void wake_by_wind(const WakeAccess& world, const Wind& wind) {
-    constexpr double noticed_change = 0.05;  // of the weight
-    constexpr std::uint32_t turns = 15;
+    const OptimizationSettings& settings = world.settings.solver.optimization;
+    const std::uint32_t turns = settings.wake_wind_steps;
     const auto first = static_cast<std::uint32_t>(world.report.step % turns);
     for (std::uint32_t body = first; body < world.rigid.bodies.slot_count(); body += turns) {
         if (!world.rigid.is_used(body) || !world.activity.is_asleep(body) || !world.rigid.is_dynamic(body)) continue;
         const BodyRecord& record = world.rigid.record(body);
         if (!(record.definition.drag_area > 0)) continue;
         const double weight = world.rigid.constants[body].mass * length(world.settings.gravity);
-        if (length(drag_of_air(world, body, wind) - record.drag) > noticed_change * weight)
+        if (length(drag_of_air(world, body, wind) - record.drag) > settings.wake_force_fraction * weight)
             world.activity.to_wake.push_back(body);
     }
 }
@@ -137,7 +137,8 @@ void wake_touching(const WakeAccess& world, std::uint32_t body) {
     // What is awake sleeps no sooner than the body beside it: the search is for sleepers alone. Without them a scene of
     // 100,000 bodies would be sorted again for each that is added.
     if (!world.rigid.record(body).shape || world.activity.sleepers.empty()) return;
-    const Bounds bounds = enlarged(world.rigid.record(body).shape->bounds(world.rigid.pose(body)), 0.01);
+    const Bounds bounds = enlarged(world.rigid.record(body).shape->bounds(world.rigid.pose(body)),
+                                   world.settings.solver.optimization.wake_reach);
     world.contacts.broad_phase.query(bounds, [&](std::uint32_t other) {
         world.activity.sleep[other].quiet_time = 0;
         if (world.activity.is_asleep(other)) wake_later(world.activity, other);

@@ -12,10 +12,6 @@ namespace embody::physics::stages {
 
 namespace {
 
-// At most this share of a round body's reach is near: beyond, the far points of its rim would move the anchor of
-// friction up to the axle (validation.Rolling: a wheel of 6 cm at 5 m/s jumps).
-constexpr double near_part = 0.1;
-
 // Velocity of the surface's place (not of its matter) at a point of the piece: turning about the axis of what rolls
 // moves none.
 Vec3 surface_velocity(const TouchAccess& world, std::uint32_t body, std::uint32_t piece, bool is_round, Vec3 point) {
@@ -32,14 +28,16 @@ Vec3 surface_velocity(const TouchAccess& world, std::uint32_t body, std::uint32_
 
 }  // namespace
 
-double leave_out_unreachable(const TouchAccess& world, const BroadPhase::Pair& pair, double near,
-                             std::vector<Manifold>& manifolds) {
+double leave_out_unreachable(const TouchAccess& world, const BroadPhase::Pair& pair, std::vector<Manifold>& manifolds) {
+    const CollisionSettings& settings = world.settings.solver.collision;
     double least = 1e300;
     for (Manifold& manifold : manifolds) {
         if (manifold.count < 2 || !(manifold.a_is_round || manifold.b_is_round)) continue;
-        double limit = near;
-        if (manifold.a_is_round) limit = std::min(limit, near_part * world.rigid.record(pair.a).reach);
-        if (manifold.b_is_round) limit = std::min(limit, near_part * world.rigid.record(pair.b).reach);
+        double limit = settings.contact_margin;
+        if (manifold.a_is_round)
+            limit = std::min(limit, settings.rim_reach_fraction * world.rigid.record(pair.a).reach);
+        if (manifold.b_is_round)
+            limit = std::min(limit, settings.rim_reach_fraction * world.rigid.record(pair.b).reach);
         const auto first = manifold.points.begin(), end = first + manifold.count;
         const auto deepest = std::min_element(
             first, end, [](const ManifoldPoint& p, const ManifoldPoint& q) { return p.separation < q.separation; });

@@ -10,11 +10,10 @@
 
 namespace embody::physics::stages {
 
-/// Takes those points out of the contacts of what rolls that will not come nearer than `near` (m) in this step: a wheel
-/// that rolls brings nothing of its rim to the ground but its lowest point, however far it goes. They would draw the
-/// place where friction acts up to the axle. The deepest point of each contact stays. Returns the least separation of
-/// what was left out, m; 1e300 if nothing was.
-double leave_out_unreachable(const TouchAccess& world, const BroadPhase::Pair& pair, double near,
-                             std::vector<Manifold>& manifolds);
+/// Takes those points out of the contacts of what rolls that will not come within CollisionSettings::contact_margin in
+/// this step: a wheel that rolls brings nothing of its rim to the ground but its lowest point, however far it goes.
+/// They would draw the place where friction acts up to the axle. The deepest point of each contact stays. Returns the
+/// least separation of what was left out, m; 1e300 if nothing was.
+double leave_out_unreachable(const TouchAccess& world, const BroadPhase::Pair& pair, std::vector<Manifold>& manifolds);
 
 }  // namespace embody::physics::stages

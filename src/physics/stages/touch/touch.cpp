@@ -19,10 +19,10 @@ namespace embody::physics::stages {
 
 namespace {
 
-// Points that are farther apart than this and will not meet within the step are not looked for, m.
-constexpr double base_margin = 0.005;
-// A sleeper is woken by what comes as near as this, m.
-constexpr double wake_gap = 1e-4;
+// Contacts tell that all corners near to them are among them until their bodies have moved so far.
+static_assert(CollisionSettings{}.follow_travel == Manifold::whole_travel);
+
+const CollisionSettings& collision_settings(const TouchAccess& world) { return world.settings.solver.collision; }
 
 bool may_collide(const TouchAccess& world, std::uint32_t a, std::uint32_t b) {
     const TouchBody &ta = world.contacts.touch.bodies[a], &tb = world.contacts.touch.bodies[b];
@@ -40,16 +40,17 @@ bool is_moving(const TouchAccess& world, std::uint32_t body) {
 
 // A ball has one point of contact, which does not jump to another corner: a part of its size is far enough. Grains of
 // millimetres would have most of their contacts with others that they do not touch.
-double within_ball(double distance, const TouchBody& a, const TouchBody& b) {
-    constexpr double part_of_ball = 0.1;
-    if (a.is_ball) distance = std::min(distance, part_of_ball * a.size);
-    if (b.is_ball) distance = std::min(distance, part_of_ball * b.size);
+double within_ball(const TouchAccess& world, double distance, const TouchBody& a, const TouchBody& b) {
+    const double fraction = collision_settings(world).ball_margin_fraction;
+    if (a.is_ball) distance = std::min(distance, fraction * a.size);
+    if (b.is_ball) distance = std::min(distance, fraction * b.size);
     return distance;
 }
 
 // How near surfaces are looked at whatever their speed, m.
 double base_margin_of(const TouchAccess& world, const BroadPhase::Pair& pair) {
-    return within_ball(base_margin, world.contacts.touch.bodies[pair.a], world.contacts.touch.bodies[pair.b]);
+    return within_ball(world, collision_settings(world).contact_margin, world.contacts.touch.bodies[pair.a],
+                       world.contacts.touch.bodies[pair.b]);
 }
 
 // How far the surfaces can approach each other within the step: the margin of the narrow phase.
@@ -64,7 +65,7 @@ double margin_of(const TouchAccess& world, std::uint32_t a, std::uint32_t b) {
     double size = 1e300;
     if (ta.yields) size = std::min(size, ta.size);
     if (tb.yields) size = std::min(size, tb.size);
-    return within_ball(base_margin, ta, tb) + std::min(travel, 2 * size);
+    return within_ball(world, collision_settings(world).contact_margin, ta, tb) + std::min(travel, 2 * size);
 }
 
 void collide_pair(const TouchAccess& world, std::uint32_t a, std::uint32_t b, std::vector<Manifold>& manifolds) {
@@ -75,6 +76,7 @@ void collide_pair(const TouchAccess& world, std::uint32_t a, std::uint32_t b, st
 
 // Whether some point of the contact is or comes within wake_gap in this step.
 bool meets_in_step(const TouchAccess& world, const Contact& contact) {
+    const double wake_gap = collision_settings(world).wake_gap;
     for (int i = 0; i < contact.count; ++i) {
         const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];
         const double approach = -dot(relative_velocity(contact, point, world.rigid.motion), contact.normal);
@@ -112,15 +114,6 @@ void wake_touched(const TouchAccess& world, std::vector<Manifold>& manifolds) {
         return;
     }
 }
-
-// Contacts follow their bodies for as long as the pair has moved less than this since it was compared, m. Every corner
-// that was within the margin then is among the contacts: whatever else comes near had been farther away by this.
-constexpr double follow_window = Manifold::whole_travel;
-// Where corners had to be left out (a foot of a chair whose four points lie on the three others) they sink unseen, so
-// the pair is compared again before that matters.
-constexpr double short_follow_window = 1e-3;
-// The point of contact of what rolls does not stay on it; after so short a way the gap is right to a hundredth of it.
-constexpr double round_follow_window = 2e-5;
 
 /// A pair seen from its larger body: turning that one moves surface points the least. A ball's own turn does not count:
 /// it is seen from the other body, and two balls in the world's axes.
@@ -161,11 +154,11 @@ void resize_list(std::vector<Item>& list, std::size_t size) {
 }
 
 // How far a pair may move while its contacts follow it, m.
-double follow_window_of(const TouchBody& a, const TouchBody& b, bool is_whole) {
+double follow_travel_of(const CollisionSettings& settings, const TouchBody& a, const TouchBody& b, bool is_whole) {
     // A ball over a face is followed exactly; elsewhere its normal turns with every step.
     const bool is_exact = is_whole && (a.is_ball || b.is_ball);
-    if ((a.is_round || b.is_round) && !is_exact) return round_follow_window;
-    return is_whole ? follow_window : short_follow_window;
+    if ((a.is_round || b.is_round) && !is_exact) return settings.follow_travel_round;
+    return is_whole ? settings.follow_travel : settings.follow_travel_partial;
 }
 
 /// The contacts of one pair in the last step.
@@ -186,13 +179,12 @@ bool may_follow(const TouchAccess& world, const PairRecord& record, const PairNo
     if (record.version_a != a.version || record.version_b != b.version) return false;
     if (record.contact_count != now.old.size()) return false;
     if (now.margin + now.moved > record.margin) return false;
-    return now.old.empty() || now.moved <= follow_window_of(a, b, record.is_whole);
+    return now.old.empty() || now.moved <= follow_travel_of(collision_settings(world), a, b, record.is_whole);
 }
 
 // A contact with a mesh is named by a triangle, and another one comes under a sliding body all the time: what is new by
 // name goes on from an old contact of nearly the same normal that nobody else goes on from.
-void match_by_normal(OldContacts old, std::span<Contact> contacts, bool a_is_surface) {
-    constexpr double same_direction = 0.98;
+void match_by_normal(OldContacts old, std::span<Contact> contacts, bool a_is_surface, const SolverSettings& settings) {
     const auto piece_of = [&](const Contact& c) { return a_is_surface ? c.piece_b : c.piece_a; };
     const auto is_named = [](const Contact& c, std::span<const Contact> others) {
         return std::any_of(others.begin(), others.end(),
@@ -203,7 +195,7 @@ void match_by_normal(OldContacts old, std::span<Contact> contacts, bool a_is_sur
     for (std::size_t i = 0; i < count; ++i) taken |= std::uint64_t{is_named(old[i], contacts)} << i;
     for (Contact& contact : contacts) {
         if (is_named(contact, old)) continue;
-        double best = same_direction;
+        double best = settings.collision.same_normal_cosine;
         std::size_t chosen = count;
         for (std::size_t i = 0; i < count; ++i) {
             if ((taken >> i & 1u) != 0 || piece_of(old[i]) != piece_of(contact)) continue;
@@ -214,7 +206,7 @@ void match_by_normal(OldContacts old, std::span<Contact> contacts, bool a_is_sur
         }
         if (chosen == count) continue;
         taken |= std::uint64_t{1} << chosen;
-        match_points(old[chosen], contact);
+        match_points(old[chosen], contact, settings.constraint.contact);
     }
 }
 
@@ -236,7 +228,8 @@ void compare_pair(const TouchAccess& world, PairRecord& record, const PairNow& n
     if (!is_known) record.memory = {};
     worker.manifolds.clear();
     const TouchMemory& memory = world.contacts.touch;
-    const double searched = now.margin + within_ball(follow_window, memory.bodies[pair.a], memory.bodies[pair.b]);
+    const double searched = now.margin + within_ball(world, collision_settings(world).follow_travel,
+                                                     memory.bodies[pair.a], memory.bodies[pair.b]);
     collide(*a.shape, world.rigid.pose(pair.a), *b.shape, world.rigid.pose(pair.b), searched, record.memory,
             worker.manifolds);
     record.version_a = a.version;
@@ -253,7 +246,7 @@ void compare_pair(const TouchAccess& world, PairRecord& record, const PairNow& n
         return;
     }
     if (a.is_round || b.is_round) {
-        record.margin = std::min(searched, leave_out_unreachable(world, pair, base_margin, worker.manifolds));
+        record.margin = std::min(searched, leave_out_unreachable(world, pair, worker.manifolds));
     }
 
     const auto first = static_cast<std::ptrdiff_t>(worker.found.size());
@@ -275,12 +268,13 @@ void compare_pair(const TouchAccess& world, PairRecord& record, const PairNow& n
     for (auto contact = worker.found.begin() + first; contact != worker.found.end(); ++contact) {
         while (old_contact != old.end() && contact_key(*old_contact) < contact_key(*contact)) ++old_contact;
         if (old_contact != old.end() && contact_key(*old_contact) == contact_key(*contact)) {
-            match_points(*old_contact, *contact);
+            match_points(*old_contact, *contact, world.settings.solver.constraint.contact);
         }
     }
     const bool a_is_surface = a.reach == 0;
     if (!old.empty() && (a_is_surface || b.reach == 0)) {
-        match_by_normal(old, std::span(worker.found).subspan(static_cast<std::size_t>(first)), a_is_surface);
+        match_by_normal(old, std::span(worker.found).subspan(static_cast<std::size_t>(first)), a_is_surface,
+                        world.settings.solver);
     }
 }
 
@@ -304,7 +298,7 @@ FollowedPair followed_pair(const TouchAccess& world, const PairRecord& record, c
 // A bouncing contact whose load changes no velocity by more than rounding carries none: bodies that only touch, as the
 // balls of a rack do, are as free as those apart.
 void clear_rounding_load(const TouchAccess& world, Contact& contact) {
-    constexpr double slightest_load = 1e-6;  // m/s
+    constexpr double slightest_load = 1e-6;  // m/s; rounding leaves 1e-9, a step of gravity gives 0.16
     if (!contact.was_loaded || !contact.bounces) return;
     const double inverse_masses =
         world.rigid.motion[contact.a].inverse_mass + world.rigid.motion[contact.b].inverse_mass;
@@ -314,7 +308,7 @@ void clear_rounding_load(const TouchAccess& world, Contact& contact) {
 void write_summary(const TouchAccess& world, std::uint32_t index) {
     Contact& contact = world.contacts.list[index];
     clear_rounding_load(world, contact);
-    world.contacts.summaries[index] = summary_of(contact);
+    world.contacts.summaries[index] = summary_of(contact, world.settings.solver.constraint.contact.deep_penetration);
 }
 
 // Puts a pair's newly found contacts in the place of as many old ones.
@@ -442,7 +436,7 @@ void lay_out(const TouchAccess& world) {
 template <class Work>
 void parallel_for_pairs(const TouchAccess& world, Work work) {
     EMBODY_ZONE("compare near pairs");
-    constexpr std::size_t min_parallel_count = 200, pairs_in_range = 32;
+    constexpr std::size_t min_parallel_count = 200, pairs_in_range = 32;  // pairs; waking the workers costs as many
     const std::size_t count = world.contacts.touch.pairs.size();
     const int workers = world.workers.workers();
     if (count < min_parallel_count || workers == 1) return work(0, IndexRange{0, count});

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "physics/definitions/settings/setting_list.h"
+
+namespace embody::physics {
+
+/// How many parts a step of a fluid is solved in (src/physics/fluid/solver.cpp).
+struct FluidPartSettings {
+    /// Distance that particles move in a part of a step, and obstacles where the liquid catches up with them, cells.
+    /// Source: N. Foster, R. Fedkiw 2001 allow 5, for paths that nothing stops; here an obstacle's distances are known
+    /// for two cells around it. Test: Settings.AreNoticed.
+    double max_displacement = 1.5;
+    /// Parts of a step; what is faster is slowed and the report says so. Test: Settings.AreNoticed.
+    int max_parts = 16;
+    /// One particle in so many may be faster than the usual speed, which steps and sleep go by: a few drops do not cost
+    /// everything more parts. Test: Settings.AreNoticed.
+    std::size_t particles_per_outlier = 200;
+};
+
+template <>
+inline constexpr auto settings_of<FluidPartSettings> = std::tuple{
+    Setting{"max_displacement", &FluidPartSettings::max_displacement, 0.01, 4, "cells"},
+    Setting{"max_parts", &FluidPartSettings::max_parts, 1, 1000},
+    Setting{"particles_per_outlier", &FluidPartSettings::particles_per_outlier, 1, 1e9},
+};
+static_assert(setting_count<FluidPartSettings> == member_count<FluidPartSettings>(), "a setting is in no list");
+
+/// Which cells are worked on and which hold liquid (src/physics/fluid/grid).
+struct FluidCellSettings {
+    /// Room that obstacles leave of a cell's kernel, 0 … 1, below which the cell has no surface of its own: it takes it
+    /// from its neighbours. Test: Settings.AreNoticed.
+    float min_room = 0.3f;
+    /// Times that cells with less room look at such neighbours: twice reaches corners. Test: Settings.AreNoticed.
+    int narrow_passes = 2;
+    /// Particles in a tile of 128 cells from which on it has liquid without a closer look. Source: one and a half a
+    /// cell; liquid has eight. Test: Settings.AreNoticed.
+    std::uint32_t full_tile_particles = 192;
+    /// Share of a cell's room that is filled from which on it may soon be liquid. Source: liquid cells are half full
+    /// (height_of_surface in liquid_cells.cpp), and a part of a step moves what is nearly so. Test:
+    /// Settings.AreNoticed.
+    float wet_fraction = 0.45f;
+    /// Such cells in a tile that are still a few drops beside each other. Test: Settings.AreNoticed.
+    int max_drop_cells = 2;
+    /// Share of a cell's room that is filled from which on it is no drop, though it is alone. Test:
+    /// Settings.AreNoticed.
+    float full_fraction = 0.9f;
+    /// Cells of the grid's box for each particle; strays that would need more are given up. Source: a cell takes some
+    /// 110 bytes, so many of them 1.7 kB a particle. Test: Settings.AreNoticed.
+    std::size_t box_cells_per_particle = 16;
+    /// Cells that the box may have however few particles there are. Source: 0.2 GB at 110 bytes a cell. Test:
+    /// Settings.AreNoticed.
+    std::size_t min_box_cells = 2'000'000;
+};
+
+template <>
+inline constexpr auto settings_of<FluidCellSettings> = std::tuple{
+    Setting{"min_room", &FluidCellSettings::min_room, 0.01, 1},
+    Setting{"narrow_passes", &FluidCellSettings::narrow_passes, 0, 100},
+    Setting{"full_tile_particles", &FluidCellSettings::full_tile_particles, 1, 1e6},
+    Setting{"wet_fraction", &FluidCellSettings::wet_fraction, 0, 1},
+    Setting{"max_drop_cells", &FluidCellSettings::max_drop_cells, 0, 128},
+    Setting{"full_fraction", &FluidCellSettings::full_fraction, 0, 100},
+    Setting{"box_cells_per_particle", &FluidCellSettings::box_cells_per_particle, 1, 100},
+    Setting{"min_box_cells", &FluidCellSettings::min_box_cells, 1e5, 2e7},
+};
+static_assert(setting_count<FluidCellSettings> == member_count<FluidCellSettings>(), "a setting is in no list");
+
+}  // namespace embody::physics

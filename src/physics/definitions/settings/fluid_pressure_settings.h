@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "physics/definitions/settings/setting_list.h"
+
+namespace embody::physics {
+
+/// The pressure's equation, also where it moves liquid that catches up with a body (src/physics/fluid/pressure,
+/// solver.cpp, particles/catch_up.cpp).
+struct FluidPressureSettings {
+    /// Distance from a liquid cell's centre to the surface that the equation takes at least, cells: nearer surfaces
+    /// make the matrix stiff. Test: PressureSystem.GapIsTheShareOfTheWayToTheSurface.
+    float min_gap = 0.005f;
+    /// Change of a cell's volume in a part of a step that is left, of the volume. Test: Settings.AreNoticed.
+    double tolerance = 1e-4;
+    /// The same where the liquid is moved to catch up with a body: once, and not part for part. Test:
+    /// Settings.AreNoticed.
+    double catch_up_tolerance = 1e-3;
+    /// Iterations of a solve; the report says where they did not suffice. Test: Settings.AreNoticed.
+    int max_iterations = 300;
+    /// How far the incomplete Cholesky factor puts what it leaves out on the diagonal: 0 not, 1 wholly. Source: R.
+    /// Bridson, "Fluid Simulation for Computer Graphics", 2nd edition 2015, 5.8 (τ).
+    double cholesky_modification = 0.97;
+    /// Share of the diagonal below which the factor takes the diagonal itself. Source: R. Bridson 2015, 5.8 (σ).
+    double cholesky_safety = 0.25;
+};
+
+template <>
+inline constexpr auto settings_of<FluidPressureSettings> = std::tuple{
+    Setting{"min_gap", &FluidPressureSettings::min_gap, 1e-6, 1, "cells"},
+    Setting{"tolerance", &FluidPressureSettings::tolerance, 1e-12, 1},
+    Setting{"catch_up_tolerance", &FluidPressureSettings::catch_up_tolerance, 1e-12, 1},
+    Setting{"max_iterations", &FluidPressureSettings::max_iterations, 1, 1e6},
+    Setting{"cholesky_modification", &FluidPressureSettings::cholesky_modification, 0, 1},
+    Setting{"cholesky_safety", &FluidPressureSettings::cholesky_safety, 1e-3, 1},
+};
+static_assert(setting_count<FluidPressureSettings> == member_count<FluidPressureSettings>(), "a setting is in no list");
+
+/// Particles that are moved against clumping (FluidSolver::spread_out, after T. Kugelstadt and others 2019).
+struct FluidVolumeSettings {
+    /// Share of the density's error that a part of a step takes out. Test: Settings.AreNoticed.
+    double correction_fraction = 0.5;
+    /// Error of a cell's density that counts, of the liquid's. Test: Settings.AreNoticed.
+    double max_error = 0.5;
+    /// Error that the solve leaves, of the liquid's density. Test: Settings.AreNoticed.
+    double tolerance = 0.02;
+    /// Iterations; where they do not suffice the next part goes on. Test: Settings.AreNoticed.
+    int max_iterations = 40;
+};
+
+template <>
+inline constexpr auto settings_of<FluidVolumeSettings> = std::tuple{
+    Setting{"correction_fraction", &FluidVolumeSettings::correction_fraction, 1e-3, 1},
+    Setting{"max_error", &FluidVolumeSettings::max_error, 1e-3, 10},
+    Setting{"tolerance", &FluidVolumeSettings::tolerance, 1e-9, 1},
+    Setting{"max_iterations", &FluidVolumeSettings::max_iterations, 1, 1e6},
+};
+static_assert(setting_count<FluidVolumeSettings> == member_count<FluidVolumeSettings>(), "a setting is in no list");
+
+/// Viscosity and how far liquids stick to walls (src/physics/fluid/pressure/viscosity.cpp). ν dt/h², the diffusion
+/// number, tells how many cells far a velocity spreads in a part of a step, squared.
+struct FluidViscositySettings {
+    /// Diffusion number up to which viscosity is left out. Source: water on cells of 3 mm at 60 Hz has 2e-3 and on
+    /// cells of 1.5 cm 7e-5. Test: Settings.AreNoticed.
+    double min_diffusion_number = 1e-4;
+    /// Diffusion number of liquid that does not yield: more takes too many iterations, with less it creeps. Test:
+    /// FluidViscosity.AYieldStressSlowsTheFilmAsBinghamSaysAndHoldsItAboveTheStressAtTheGround.
+    double max_diffusion_number = 200;
+    /// Distance from a face to a wall that the shear takes at least, cells. Test: Settings.AreNoticed.
+    double min_wall_distance = 0.1;
+    /// Share of a control volume that is liquid: no face has less inertia, and cells in air with less have no
+    /// viscosity. Test: Viscosity.TakesEnergyButNoMomentum.
+    float min_fraction = 0.05f;
+    /// A cell's Reynolds number at which liquid sticks to walls by half: then the layer at the wall is as thick as a
+    /// cell or so. Test: Viscosity.ThickLayersStickAndThinOnesSlide.
+    double stick_reynolds = 4;
+    /// Speed that this number is told by at least, m/s. Test: Settings.AreNoticed.
+    double min_stick_speed = 1e-3;
+    /// Residual that is left, of the first one. Test: Settings.AreNoticed.
+    double tolerance = 1e-4;
+    /// Iterations; the report says where they did not suffice. Test: Settings.AreNoticed.
+    int max_iterations = 300;
+};
+
+template <>
+inline constexpr auto settings_of<FluidViscositySettings> = std::tuple{
+    Setting{"min_diffusion_number", &FluidViscositySettings::min_diffusion_number, 0, 1e6},
+    Setting{"max_diffusion_number", &FluidViscositySettings::max_diffusion_number, 1e-3, 1e6},
+    Setting{"min_wall_distance", &FluidViscositySettings::min_wall_distance, 1e-3, 1, "cells"},
+    Setting{"min_fraction", &FluidViscositySettings::min_fraction, 1e-3, 1},
+    Setting{"stick_reynolds", &FluidViscositySettings::stick_reynolds, 1e-6, 1e9},
+    Setting{"min_stick_speed", &FluidViscositySettings::min_stick_speed, 1e-9, 1e3, "m/s"},
+    Setting{"tolerance", &FluidViscositySettings::tolerance, 1e-12, 0.5},
+    Setting{"max_iterations", &FluidViscositySettings::max_iterations, 1, 1e6},
+};
+static_assert(setting_count<FluidViscositySettings> == member_count<FluidViscositySettings>(),
+              "a setting is in no list");
+
+/// Surface tension (src/physics/fluid/pressure/surface_tension.cpp).
+struct FluidTensionSettings {
+    /// Cell's edge from which on tension is left out, in capillary lengths √(σ/(ρ g)). Source: beside gravity a
+    /// curvature of a cell then has a quarter of its pressure. Test:
+    /// SurfaceTension.MattersOnCellsFinerThanTwiceTheCapillaryLength.
+    double max_cell_size = 2;
+    /// Weight of each neighbour where the density is smoothed along an axis. Source: waves of two cells are left by 1 −
+    /// 4 of it, a third; at 1/4 nothing holds them, and drops fall to pieces within seconds.
+    float smoothing_weight = 1.0f / 6;
+    /// Slope of the liquid's share, in 1/cells, below which there is no surface. Test: Settings.AreNoticed.
+    float min_slope = 0.02f;
+    /// Curvature, in 1/cells. Source: a ball of two cells radius; smaller ones the cells do not tell. Test:
+    /// SurfaceTension.ABallHasTwiceItsTensionByItsRadius.
+    float max_curvature = 1;
+    /// Distance out of the surface, cells, from which on particles are drawn back. Test:
+    /// SurfaceTension.ABallHasTwiceItsTensionByItsRadius.
+    float stray_distance = 0.1f;
+    /// Share of the distance beyond that by which a part of a step draws them back. Test:
+    /// SurfaceTension.ABallHasTwiceItsTensionByItsRadius.
+    float stray_rate = 0.2f;
+    /// Slope of the liquid's share, in 1/cells, below which they have no surface to be drawn to. Test:
+    /// Settings.AreNoticed.
+    float stray_min_slope = 0.01f;
+};
+
+template <>
+inline constexpr auto settings_of<FluidTensionSettings> = std::tuple{
+    Setting{"max_cell_size", &FluidTensionSettings::max_cell_size, 0, 1e3, "capillary lengths"},
+    Setting{"smoothing_weight", &FluidTensionSettings::smoothing_weight, 0, 0.25},
+    Setting{"min_slope", &FluidTensionSettings::min_slope, 1e-4, 10, "1/cells"},
+    Setting{"max_curvature", &FluidTensionSettings::max_curvature, 0, 100, "1/cells"},
+    Setting{"stray_distance", &FluidTensionSettings::stray_distance, 0, 2, "cells"},
+    Setting{"stray_rate", &FluidTensionSettings::stray_rate, 0, 1},
+    Setting{"stray_min_slope", &FluidTensionSettings::stray_min_slope, 1e-4, 10, "1/cells"},
+};
+static_assert(setting_count<FluidTensionSettings> == member_count<FluidTensionSettings>(), "a setting is in no list");
+
+}  // namespace embody::physics

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "physics/definitions/settings/ball_settings.h"
+#include "physics/definitions/settings/setting_list.h"
+
+namespace embody::physics {
+
+/// Bodies of revolution that roll on something flat (src/physics/constraint/rolling/rolling_body.cpp).
+struct RollingBodySettings {
+    /// Gap of the higher end of a line that touches along its length, m. Test: Settings.AreNoticed.
+    double side_gap = 5e-5;
+    /// Slip, over the speed of turning of the farthest point, that is stopped at the start of a step. Test:
+    /// Settings.AreNoticed.
+    double max_slip_fraction = 0.05;
+    /// Slip that is stopped besides, m/s. Test: Settings.AreNoticed.
+    double max_slip_speed = 0.01;
+    /// Sine of the angle between axis and normal below which the rim lies on the ground. Test: Settings.AreNoticed.
+    double min_lean = 0.005;
+    /// Turn of the axis in a step below which the contact solver loses nothing, rad. Test: Settings.AreNoticed.
+    double min_axis_turn = 1e-3;
+    /// Turn of the body in a step above which the contact solver's small turns are none, rad. Test:
+    /// Rolling.EveryRoundShapeKeepsItsSpeedOnEveryGround.
+    double min_turn = 0.5;
+    /// Turn in a part of the step, rad. Test: Rolling.SpunCoinGoesOnSpinning.
+    double part_turn = 0.08;
+    /// Parts of a step; what needs more is the contact solver's. Test:
+    /// Rolling.EveryRoundShapeKeepsItsSpeedOnEveryGround.
+    int max_parts = 400;
+    /// Share of the energy that Runge-Kutta may miss in a step; it is put right. Test: Settings.AreNoticed.
+    double max_energy_error = 1e-3;
+    /// Contacts of a body that may roll: what rolls on still faces has two rims on two neighbouring triangles. Test:
+    /// Settings.AreNoticed.
+    std::uint32_t max_contacts = 8;
+};
+
+template <>
+inline constexpr auto settings_of<RollingBodySettings> = std::tuple{
+    Setting{"side_gap", &RollingBodySettings::side_gap, 0, 0.01, "m"},
+    Setting{"max_slip_fraction", &RollingBodySettings::max_slip_fraction, 0, 1},
+    Setting{"max_slip_speed", &RollingBodySettings::max_slip_speed, 0, 10, "m/s"},
+    Setting{"min_lean", &RollingBodySettings::min_lean, 1e-6, 1},
+    Setting{"min_axis_turn", &RollingBodySettings::min_axis_turn, 0, 10, "rad"},
+    Setting{"min_turn", &RollingBodySettings::min_turn, 0, 10, "rad"},
+    Setting{"part_turn", &RollingBodySettings::part_turn, 1e-3, 1, "rad"},
+    Setting{"max_parts", &RollingBodySettings::max_parts, 1, 1e5},
+    Setting{"max_energy_error", &RollingBodySettings::max_energy_error, 0, 1},
+    Setting{"max_contacts", &RollingBodySettings::max_contacts, 1, 1e6},
+};
+static_assert(setting_count<RollingBodySettings> == member_count<RollingBodySettings>(), "a setting is in no list");
+
+/// What is taken along the ground by its own equations (src/physics/constraint/rolling).
+struct RollingSettings {
+    /// Gap beyond which a ball or a ring does not touch the ground, m. Test: Settings.AreNoticed.
+    double touch_gap = 2e-4;
+    /// Speed towards the ground above which what did not touch it has an impact, m/s. Test: Settings.AreNoticed.
+    double max_approach_speed = 0.05;
+    /// Speed of parting from the ground above which a ball leaves it, m/s. Test: Settings.AreNoticed.
+    double max_parting_speed = 1e-3;
+    BallPathSettings ball;
+    BallClusterSettings cluster;
+    RollingBodySettings body;
+};
+
+template <>
+inline constexpr auto settings_of<RollingSettings> = std::tuple{
+    Setting{"touch_gap", &RollingSettings::touch_gap, 1e-9, 0.1, "m"},
+    Setting{"max_approach_speed", &RollingSettings::max_approach_speed, 0, 10, "m/s"},
+    Setting{"max_parting_speed", &RollingSettings::max_parting_speed, 0, 10, "m/s"},
+    Setting{"ball", &RollingSettings::ball},
+    Setting{"cluster", &RollingSettings::cluster},
+    Setting{"body", &RollingSettings::body},
+};
+static_assert(setting_count<RollingSettings> == member_count<RollingSettings>(), "a setting is in no list");
+
+}  // namespace embody::physics
