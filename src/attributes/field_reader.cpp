@@ -16,11 +16,12 @@ namespace {
 
 std::string number_text(double value) { return json(value).dump(); }
 
-std::string range_text(Range range) {
-    if (range.low == positive.low && std::isinf(range.high)) return "greater than 0";
-    if (std::isinf(range.high)) return number_text(range.low) + " or more";
-    if (std::isinf(range.low)) return number_text(range.high) + " or less";
-    return "from " + number_text(range.low) + " to " + number_text(range.high);
+std::string range_text(NumberRange range) {
+    const std::string unit = *range.unit ? std::string(" ") + range.unit : std::string();
+    if (range.low == positive.low && std::isinf(range.high)) return "greater than 0" + unit;
+    if (std::isinf(range.high)) return number_text(range.low) + unit + " or more";
+    if (std::isinf(range.low)) return number_text(range.high) + unit + " or less";
+    return "from " + number_text(range.low) + " to " + number_text(range.high) + unit;
 }
 
 void keep_first(std::optional<Error>& error, std::string where, std::string why, std::string remedy = {}) {
@@ -51,7 +52,7 @@ const char* json_kind(const json& value) {
 std::string element_path(const std::string& list, std::size_t i) { return list + "[" + std::to_string(i) + "]"; }
 
 bool read_number(const json& value, const std::string& where, double& number, std::optional<Error>& error,
-                 Range range) {
+                 NumberRange range) {
     if (error) return false;
     if (!value.is_number()) {
         keep_first(error, where, std::string("must be a number, got ") + json_kind(value));
@@ -108,7 +109,8 @@ void FieldReader::refuse(std::string_view field, std::string why, std::string re
 }
 
 std::string FieldReader::path(std::string_view field) const {
-    return where_.empty() ? std::string(field) : where_ + "." + std::string(field);
+    if (where_.empty() || field.empty()) return where_ + std::string(field);
+    return where_ + "." + std::string(field);
 }
 
 const json* FieldReader::take(const char* name) {
@@ -130,12 +132,12 @@ void FieldReader::require(std::initializer_list<const char*> names) {
         if (!json_.contains(name)) refuse(name, "is missing");
 }
 
-bool FieldReader::number(const char* name, double& value, Range range) {
+bool FieldReader::number(const char* name, double& value, NumberRange range) {
     const json* field = take(name);
     return field && read_number(*field, path(name), value, error_, range);
 }
 
-bool FieldReader::number(const char* name, std::optional<double>& value, Range range) {
+bool FieldReader::number(const char* name, std::optional<double>& value, NumberRange range) {
     double read = 0;
     if (!number(name, read, range)) return false;
     value = read;
@@ -210,7 +212,7 @@ bool FieldReader::words(const char* name, std::vector<std::string>& value) {
     return true;
 }
 
-bool FieldReader::numbers(const char* name, std::span<double> values, Range range) {
+bool FieldReader::numbers(const char* name, std::span<double> values, NumberRange range) {
     const json* given = list(name);
     if (!given) return false;
     if (given->size() != values.size()) {
@@ -301,7 +303,7 @@ bool FieldReader::transform(const char* name, Transform& value) {
     return true;
 }
 
-bool FieldReader::choice(const char* name, std::size_t& value, std::initializer_list<const char*> words) {
+bool FieldReader::choice(const char* name, std::size_t& value, std::span<const char* const> words) {
     std::string word;
     if (!text(name, word)) return false;
     std::string list;
@@ -325,7 +327,8 @@ bool FieldReader::finish() {
         if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
         const std::string near = nearest_word(name, known_);
         std::string all;
-        for (const std::string& known : known_) all += (all.empty() ? "" : ", ") + known;
+        for (auto known = known_.begin(); known != known_.end(); ++known)
+            if (std::find(known_.begin(), known, *known) == known) all += (all.empty() ? "" : ", ") + *known;
         fail(path(name), "is not a field here",
              near.empty() ? "fields here: " + all : "did you mean \"" + near + "\"?");
         return false;

@@ -11,19 +11,11 @@
 #include <string_view>
 #include <vector>
 
+#include "attributes/number_range.h"
 #include "foundation/result.h"
 #include "math/transform.h"
 
 namespace embody::attributes {
-
-/// The valid range of a number; open where infinite.
-struct Range {
-    double low = -std::numeric_limits<double>::infinity();
-    double high = std::numeric_limits<double>::infinity();
-};
-inline constexpr Range any_number{};
-inline constexpr Range not_negative{0, std::numeric_limits<double>::infinity()};
-inline constexpr Range positive{std::numeric_limits<double>::min(), std::numeric_limits<double>::infinity()};
 
 /// Reads the fields of one JSON object strictly: the one reader of all JSON that people or programs write. Each
 /// function takes the field out of the object if it is there and leaves the value as it is if not; finish() refuses
@@ -46,8 +38,8 @@ public:
     /// Each of these must be there.
     void require(std::initializer_list<const char*> names);
 
-    bool number(const char* name, double& value, Range range = any_number);
-    bool number(const char* name, std::optional<double>& value, Range range = any_number);
+    bool number(const char* name, double& value, NumberRange range = any_number);
+    bool number(const char* name, std::optional<double>& value, NumberRange range = any_number);
     bool whole(const char* name, std::uint32_t& value, std::uint32_t low = 0,
                std::uint32_t high = std::numeric_limits<std::uint32_t>::max());
     bool whole(const char* name, int& value, int low, int high);
@@ -57,7 +49,7 @@ public:
     bool word(const char* name, std::string& value);
     bool words(const char* name, std::vector<std::string>& value);
     /// As many numbers as `values` has, all in the range.
-    bool numbers(const char* name, std::span<double> values, Range range = any_number);
+    bool numbers(const char* name, std::span<double> values, NumberRange range = any_number);
     bool vector(const char* name, Vec3& value);
     bool vector(const char* name, std::optional<Vec3>& value);
     /// A quaternion [x, y, z, w], stored as written but not zero, or {"axis": [x, y, z], "degrees": number}.
@@ -68,7 +60,10 @@ public:
     const nlohmann::json* list(const char* name);
     const nlohmann::json* object(const char* name);
     /// The index of the word in `words`.
-    bool choice(const char* name, std::size_t& value, std::initializer_list<const char*> words);
+    bool choice(const char* name, std::size_t& value, std::span<const char* const> words);
+    bool choice(const char* name, std::size_t& value, std::initializer_list<const char*> words) {
+        return choice(name, value, std::span(words.begin(), words.size()));
+    }
 
     /// Refuses fields that were not asked for. Returns whether all is well so far.
     bool finish();
@@ -78,7 +73,7 @@ public:
     void fail(const std::string& where, std::string why, std::string remedy = {});
     /// The same of a field of this object.
     void refuse(std::string_view field, std::string why, std::string remedy = {});
-    /// The path of a field of this object.
+    /// The path of a field of this object; of no name: of the object.
     [[nodiscard]] std::string path(std::string_view field) const;
     [[nodiscard]] std::optional<Error>& error() { return error_; }
 
@@ -93,7 +88,7 @@ private:
 
 /// Elements of arrays and single values, for what is not a field. Each fails with `where` and returns false.
 bool read_number(const nlohmann::json& json, const std::string& where, double& value, std::optional<Error>& error,
-                 Range range = any_number);
+                 NumberRange range = any_number);
 bool read_vector(const nlohmann::json& json, const std::string& where, Vec3& value, std::optional<Error>& error);
 bool read_array(const nlohmann::json& json, const std::string& where, std::optional<Error>& error);
 

@@ -5,7 +5,7 @@
 
 namespace embody::attributes {
 
-bool read_interval(FieldReader& reader, const char* name, Interval& value, Range range) {
+bool read_interval(FieldReader& reader, const char* name, Interval& value, NumberRange range) {
     std::array<double, 3> read{};
     if (!reader.numbers(name, read, range)) return false;
     if (read[0] > read[1] || read[1] > read[2]) {

@@ -92,7 +92,7 @@ void take_kind(FieldReader& reader, const std::string& text, PhysicalKind& kind)
 
 // Of the box and of the largest extent, m.
 void read_lengths(FieldReader& reader, CategoryData& category) {
-    constexpr Range length{1e-5, 1e4};
+    constexpr NumberRange length{1e-5, 1e4};
     std::array<double, 3> size{category.at_size.x, category.at_size.y, category.at_size.z};
     if (reader.numbers("at_size", size, length)) category.at_size = {size[0], size[1], size[2]};
     std::array<double, 2> usual{category.usual_low, category.usual_high};
