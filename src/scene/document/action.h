@@ -5,11 +5,12 @@
 #include <optional>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include "attributes/attribute.h"
 #include "math/bounds.h"
 #include "math/transform.h"
+#include "scene/document/entity.h"
+#include "scene/document/field_list.h"
 
 namespace embody::scene {
 
@@ -18,66 +19,155 @@ struct Target {
     enum class By : std::uint8_t { any, index, name, category } by = By::any;
     std::uint32_t index = 0;
     std::string word;
+    friend bool operator==(const Target&, const Target&) = default;
 };
 
 struct AtTime {
-    double time = 0;                     ///< s after the start
-    std::optional<double> repeat_every;  ///< s
+    double time = 0;
+    std::optional<double> repeat_every;
 };
+template <>
+inline constexpr auto fields_of<AtTime> = std::tuple{
+    always_saved("time", &AtTime::time, "after the start", {.low = 0, .unit = "s"}),
+    saved_when_set("repeat_every", &AtTime::repeat_every, "and then every so many; at most once a step",
+                   {1e-5, 1e9, "s"}),
+};
+
 struct OnContactBegin {
-    Target other;                     ///< the action's sender touches `other`
-    double least_approach_speed = 0;  ///< m/s
+    Target other;
+    double least_approach_speed = 0;
 };
+template <>
+inline constexpr auto fields_of<OnContactBegin> = std::tuple{
+    always_saved("other", &OnContactBegin::other, "whom the sender begins to touch"),
+    always_saved("least_approach_speed", &OnContactBegin::least_approach_speed, "slower ones do not count",
+                 {.low = 0, .unit = "m/s"}),
+};
+
 struct OnContactEnd {
     Target other;
 };
+template <>
+inline constexpr auto fields_of<OnContactEnd> = std::tuple{
+    always_saved("other", &OnContactEnd::other, "whom the sender ceases to touch"),
+};
+
+/// The sender's centre of mass comes into a box of the world; what starts inside has not entered.
 struct OnEnterVolume {
-    Bounds volume;  ///< world; entered by the sender's centre of mass
+    Bounds volume{{0, 0, 0}, {0, 0, 0}};
 };
+template <>
+inline constexpr auto fields_of<Bounds> = std::tuple{
+    always_needed("lower", &Bounds::lower, "the corner with the least coordinates", {.unit = "m"}),
+    always_needed("upper", &Bounds::upper, "the corner with the greatest coordinates", {.unit = "m"}),
+};
+template <>
+inline constexpr auto fields_of<OnEnterVolume> = std::tuple{saved_beside(&OnEnterVolume::volume)};
+
 struct OnFallAsleep {};
-/// A key ("k", "Space", …) or named button of the Studio, or a call of the API.
+
+/// A signal of the Studio or a call of the API: one of the two is set.
 struct OnSignal {
-    std::string key, button;  ///< one of the two is set
+    std::string key, button;
 };
+template <>
+inline constexpr auto fields_of<OnSignal> = std::tuple{
+    saved_when_set("key", &OnSignal::key, "of the Studio: \"k\", \"Space\", …"),
+    saved_when_set("button", &OnSignal::button, "of the Studio, by its name; instead of a key"),
+};
+
 using Trigger = std::variant<AtTime, OnContactBegin, OnContactEnd, OnEnterVolume, OnFallAsleep, OnSignal>;
+template <>
+inline constexpr std::array<const char*, 6> alternatives_of<Trigger> = {"time",         "contact_begin", "contact_end",
+                                                                        "enter_volume", "fall_asleep",   "signal"};
 
 struct SetAttribute {
     std::string name;
     attributes::AttributeValue value;
 };
+template <>
+inline constexpr auto fields_of<SetAttribute> = std::tuple{
+    always_needed("name", &SetAttribute::name, "an attribute's name"),
+    always_needed("value", &SetAttribute::value, "the attribute's new value for the rest of the run"),
+};
+
 struct ApplyImpulse {
-    Vec3 impulse;            ///< N s, world axes
-    std::optional<Vec3> at;  ///< world point; open: centre of mass
+    Vec3 impulse;
+    std::optional<Vec3> at;
 };
+template <>
+inline constexpr auto fields_of<ApplyImpulse> = std::tuple{
+    always_needed("impulse", &ApplyImpulse::impulse, "N s, [x, y, z], world axes"),
+    saved_when_set("at", &ApplyImpulse::at, "point of the world; without, the centre of mass", {.unit = "m"}),
+};
+
 struct ApplyForce {
-    Vec3 force;           ///< N, for `duration`
-    double duration = 0;  ///< s; 0: one step
+    Vec3 force;
+    double duration = 0;
 };
+template <>
+inline constexpr auto fields_of<ApplyForce> = std::tuple{
+    always_needed("force", &ApplyForce::force, "N, [x, y, z], world axes"),
+    always_saved("duration", &ApplyForce::duration, "at least one step", {.low = 0, .unit = "s"}),
+};
+
 struct SetVelocity {
     Vec3 linear, angular;
 };
-/// A new entity like the receiver (or like an entity of the document that is disabled), at `pose`.
+template <>
+inline constexpr auto fields_of<SetVelocity> = std::tuple{
+    always_saved("linear", &SetVelocity::linear, "of the centre of mass", {.unit = "m/s"}),
+    always_saved("angular", &SetVelocity::angular, "world axes", {.unit = "rad/s"}),
+};
+
+/// A new entity like the receiver (or like an entity of the document that is disabled).
 struct Spawn {
     Transform pose;
     Vec3 linear_velocity;
 };
+template <>
+inline constexpr auto fields_of<Spawn> = std::tuple{
+    always_saved("pose", &Spawn::pose, "where the new entity is"),
+    always_saved("linear_velocity", &Spawn::linear_velocity, "of its centre of mass", {.unit = "m/s"}),
+};
+
 struct Remove {};
+
 struct SetEnabled {
     bool enabled = true;
 };
+template <>
+inline constexpr auto fields_of<SetEnabled> = std::tuple{
+    always_saved("enabled", &SetEnabled::enabled, "whether the receiver moves and collides"),
+};
+
 struct Pause {};
+
 using Effect = std::variant<SetAttribute, ApplyImpulse, ApplyForce, SetVelocity, Spawn, Remove, SetEnabled, Pause>;
+template <>
+inline constexpr std::array<const char*, 8> alternatives_of<Effect> = {
+    "set_attribute", "apply_impulse", "apply_force", "set_velocity", "spawn", "remove", "set_enabled", "pause"};
 
 /// The paper's Action = {act_name, act_sender, act_receiver, act_id, act_param} (definition 6); the parameters are the
 /// trigger and the effect.
 struct Action {
     std::uint32_t id = 0;
     std::string name;
-    Target sender;    ///< whose doing triggers it
-    Target receiver;  ///< who is changed
+    Target sender;
+    Target receiver;
     Trigger trigger;
     Effect effect;
-    bool once = true;  ///< fires at most once a run
+    bool once = true;
+};
+template <>
+inline constexpr auto fields_of<Action> = std::tuple{
+    always_saved("id", &Action::id, "the action's number, once in a file", index_range),
+    always_saved("name", &Action::name, "what people call it"),
+    always_saved("sender", &Action::sender, "whose doing sets it off"),
+    always_saved("receiver", &Action::receiver, "who is changed"),
+    always_needed("trigger", &Action::trigger, "what sets the action off"),
+    always_needed("effect", &Action::effect, "what the action does"),
+    always_saved("once", &Action::once, "at most once a run; of what repeats false where nothing is said"),
 };
 
 }  // namespace embody::scene

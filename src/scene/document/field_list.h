@@ -1,29 +1,30 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <optional>
 #include <string_view>
 #include <tuple>
 #include <type_traits>
+#include <variant>
+
+#include "attributes/number_range.h"
 
 namespace embody::scene {
 
-// The members of a plain value, listed once. What goes over all of them (file, messages, undo, the tests of these)
-// follows the list, and a member that is in no list does not compile.
+// The members of a plain value, listed once. What goes over all of them (file, messages, undo, comparison, the
+// description of the format, the Studio's types, the tests of these) follows the list, and a member that is in no list
+// does not compile.
 
 /// When a scene file has the field.
 enum class Saved : std::uint8_t {
-    always,
+    needed,    ///< always, and a file without it is refused
+    always,    ///< what a file leaves out is as it would be anyway
     when_set,  ///< unless it is as it would be anyway
+    beside,    ///< not under a name: the fields of its value stand beside those of its owner
     never,     ///< of the machine or of a run, not of the scene
-};
-
-/// The valid range of a number, as scene files refuse it; open where infinite.
-struct FieldRange {
-    double low = -std::numeric_limits<double>::infinity();
-    double high = std::numeric_limits<double>::infinity();
 };
 
 /// One member, under the name that files and messages give it.
@@ -34,27 +35,50 @@ struct Field {
 
     const char* name;
     Value Owner::*member;
-    FieldRange range;
+    const char* meaning;            ///< for people: a line of the format's description
+    attributes::NumberRange range;  ///< of a number; of others its unit alone counts
 };
 
+using attributes::NumberRange;
+
 template <class Owner, class Value>
-constexpr Field<Owner, Value, Saved::always> always_saved(const char* name, Value Owner::*member,
-                                                          FieldRange range = {}) {
-    return {name, member, range};
+constexpr Field<Owner, Value, Saved::needed> always_needed(const char* name, Value Owner::*member, const char* meaning,
+                                                           NumberRange range = {}) {
+    return {name, member, meaning, range};
+}
+template <class Owner, class Value>
+constexpr Field<Owner, Value, Saved::always> always_saved(const char* name, Value Owner::*member, const char* meaning,
+                                                          NumberRange range = {}) {
+    return {name, member, meaning, range};
 }
 template <class Owner, class Value>
 constexpr Field<Owner, Value, Saved::when_set> saved_when_set(const char* name, Value Owner::*member,
-                                                              FieldRange range = {}) {
-    return {name, member, range};
+                                                              const char* meaning, NumberRange range = {}) {
+    return {name, member, meaning, range};
+}
+template <class Owner, class Value>
+constexpr Field<Owner, Value, Saved::beside> saved_beside(Value Owner::*member) {
+    return {"", member, "", {}};
 }
 template <class Owner, class Value>
 constexpr Field<Owner, Value, Saved::never> never_saved(const char* name, Value Owner::*member) {
-    return {name, member, {}};
+    return {name, member, "", {}};
 }
 
 /// A tuple of all fields of `Owner`; beside each type that has one.
 template <class Owner>
 inline constexpr auto fields_of = std::tuple{};
+
+/// The words of "type" that tell which alternative a variant holds, in its order; beside each variant that has them.
+template <class Variant>
+inline constexpr std::array<const char*, 0> alternatives_of{};
+
+template <class Value>
+concept Listed = std::tuple_size_v<std::remove_const_t<decltype(fields_of<Value>)>> >
+0;
+template <class Value>
+concept ListedVariant = alternatives_of<Value>
+.size() > 0;
 
 /// Stands for a value of any type where only its number counts.
 struct AnyValue {
@@ -79,7 +103,7 @@ constexpr void for_each_field(Visit&& visit) {
 
 template <class One, class Other>
 constexpr bool are_of_one_member(const One& one, const Other& other) {
-    if (std::string_view(one.name) == other.name) return true;
+    if (*one.name && std::string_view(one.name) == other.name) return true;
     if constexpr (std::is_same_v<decltype(one.member), decltype(other.member)>) return one.member == other.member;
     return false;
 }
@@ -93,6 +117,35 @@ constexpr bool lists_all_members() {
     });
     const std::size_t listed = std::tuple_size_v<std::remove_const_t<decltype(fields_of<Owner>)>>;
     return listed == count_members<Owner>() && same == listed;
+}
+
+template <class Value>
+inline constexpr bool is_optional = false;
+template <class Value>
+inline constexpr bool is_optional<std::optional<Value>> = true;
+
+/// Whether all that a scene saves of two values is the same.
+template <class Value>
+bool are_same(const Value& a, const Value& b) {
+    if constexpr (Listed<Value>) {
+        bool same = true;
+        for_each_field<Value>([&](const auto& field) {
+            if constexpr (std::remove_cvref_t<decltype(field)>::saved != Saved::never)
+                same = same && are_same(a.*field.member, b.*field.member);
+        });
+        return same;
+    } else if constexpr (is_optional<Value>) {
+        return a.has_value() == b.has_value() && (!a || are_same(*a, *b));
+    } else if constexpr (ListedVariant<Value>) {
+        const auto is_as_in_b = [&b](const auto& one) {
+            return are_same(one, std::get<std::remove_cvref_t<decltype(one)>>(b));
+        };
+        return a.index() == b.index() && std::visit(is_as_in_b, a);
+    } else if constexpr (std::is_empty_v<Value>) {
+        return true;
+    } else {
+        return a == b;
+    }
 }
 
 }  // namespace embody::scene

@@ -53,7 +53,7 @@ TEST(SceneFileRefuses, WrongFieldsByNameWithTheNearestKnownOne) {
         {"/entitees", json::array(), "did you mean \"entities\"?"},
         {"/settings", {{"gravty", {0, 0, 0}}}, "settings.gravty: is not a field here (did you mean \"gravity\"?)"},
         {"/settings", 3, "settings: must be an object {…}, got a number"},
-        {"/settings", {{"time_step", -1}}, "settings.time_step"},
+        {"/settings", {{"time_step", -1}}, "settings.time_step: must be from 1e-05 to 0.1 s, got -1"},
         {"/settings", {{"substeps", 2.5}}, "settings.substeps: must be a whole number"},
         {"/settings", {{"substeps", 1000}}, "settings.substeps: must be from 1"},
         {"/settings", {{"gravity", {0, 0}}}, "settings.gravity: must be three numbers"},
@@ -119,6 +119,45 @@ TEST(SceneFileRefuses, WrongFieldsByNameWithTheNearestKnownOne) {
         scene[json::json_pointer(wrong.pointer)] = wrong.value;
         EXPECT_NE(message_of(scene).find(wrong.says), std::string::npos)
             << wrong.pointer << " gave: " << message_of(scene) << "\nexpected: " << wrong.says;
+    }
+}
+
+// What follows from the lists of fields: the path, what is wrong, and what the field holds.
+TEST(SceneFileRefuses, FieldsOfPinsJointsAndActionsByTheirLists) {
+    const struct {
+        const char* list;
+        const char* item;
+        const char* says;
+    } cases[] = {
+        {"/entities/0/pins", R"({"radius": 1})", "pins[0].position: is missing: the place that is held"},
+        {"/entities/0/pins", R"({"position": [0, 0, 0], "radius": -1})",
+         "entities[0].pins[0].radius: must be from 0 to 10000 m, got -1"},
+        {"/entities/0/pins", R"({"position": [0, 0, 0], "too": 1})",
+         "entities[0].pins[0].too: is not a field here (did you mean \"to\"?)"},
+        {"/joints", R"({"entity_b": 1})", "joints[0].type: is missing: fixed, ball, hinge or slider"},
+        {"/joints", R"({"type": "ball"})", "joints[0].entity_b: is missing: the entity that the joint holds"},
+        {"/joints", R"({"type": "ball", "entity_b": 1.5})", "joints[0].entity_b: must be a whole number, got 1.5"},
+        {"/joints", R"({"type": "ball", "entity_b": 1, "axis": [1, 0, 0]})", "joints[0].axis: needs an anchor"},
+        {"/joints", R"({"type": "hinge", "entity_b": 1, "motor": {"speed": 1}})",
+         "joints[0].motor.max_force: is missing: N m of a hinge, N of a slider"},
+        {"/joints", R"({"type": "hinge", "entity_b": 1, "motor": {"max_force": -1}})",
+         "joints[0].motor.max_force: must be 0 or more, got -1"},
+        {"/joints", R"({"type": "hinge", "entity_b": 1, "limit": {"lower": 1, "uper": 0}})",
+         "joints[0].limit.upper: is missing: greatest angle or way"},
+        {"/actions", R"({"trigger": {"type": "time", "time": -1}, "effect": {"type": "pause"}})",
+         "actions[0].trigger.time: must be 0 s or more, got -1"},
+        {"/actions", R"({"trigger": {"type": "signal", "kye": "k"}, "effect": {"type": "pause"}})",
+         "actions[0].trigger.kye: is not a field here (did you mean \"key\"?)"},
+        {"/actions", R"({"trigger": {"type": "enter_volume", "lower": [0, 0, 0]}, "effect": {"type": "pause"}})",
+         "actions[0].trigger.upper: is missing: the corner with the greatest coordinates"},
+        {"/actions", R"({"trigger": {"type": "fall_asleep"}, "effect": {"typ": "pause"}})",
+         "actions[0].effect.type: is missing: set_attribute, apply_impulse"},
+    };
+    for (const auto& wrong : cases) {
+        json scene = minimal();
+        scene[json::json_pointer(wrong.list)] = json::array({json::parse(wrong.item)});
+        EXPECT_NE(message_of(scene).find(wrong.says), std::string::npos)
+            << wrong.item << " gave: " << message_of(scene) << "\nexpected: " << wrong.says;
     }
 }
 

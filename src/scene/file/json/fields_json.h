@@ -1,82 +1,159 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
+#include <variant>
 #include <vector>
 
-#include "scene/document/document.h"
+#include "scene/document/field_list.h"
 #include "scene/file/json/field_reader.h"
+#include "scene/file/json/field_values.h"
 
 namespace embody::scene {
 
-// The fields of a listed value (scene/document/field_list.h) to JSON and back. What follows has a pair for each type
-// that a field may have; a field of another type does not compile.
+// Listed values (scene/document/field_list.h) to JSON and back: their fields, and optional values, lists and listed
+// types under a name or beside their owner's fields. A field of a type that has no pair in field_values.h and is not
+// made of those that have does not compile.
 
-void write_value(nlohmann::json& object, const char* name, bool value);
-void write_value(nlohmann::json& object, const char* name, int value);
-void write_value(nlohmann::json& object, const char* name, std::uint32_t value);
-void write_value(nlohmann::json& object, const char* name, double value);
-void write_value(nlohmann::json& object, const char* name, const std::string& value);
-void write_value(nlohmann::json& object, const char* name, const Vec3& value);
-void write_value(nlohmann::json& object, const char* name, const Transform& value);
-void write_value(nlohmann::json& object, const char* name, const std::optional<std::array<double, 3>>& color);
-void write_value(nlohmann::json& object, const char* name, const std::optional<Camera>& camera);
-void write_value(nlohmann::json& object, const char* name, const std::vector<Pin>& pins);
-void write_value(nlohmann::json& object, const char* name,
-                 const std::map<std::string, attributes::AttributeValue>& attributes);
-void write_value(nlohmann::json& object, const char* name, const physics::WorldSettings& settings);
-/// A model's key or a shape, each under its own name.
-void write_value(nlohmann::json& object, const char* name, const Geometry& geometry);
+template <class Value>
+void check_value(FieldReader&, const Value&) {}
 
-// Each leaves the value as it is where the field is missing.
-void read_value(FieldReader& reader, const char* name, FieldRange range, bool& value);
-void read_value(FieldReader& reader, const char* name, FieldRange range, int& value);
-void read_value(FieldReader& reader, const char* name, FieldRange range, std::uint32_t& value);
-void read_value(FieldReader& reader, const char* name, FieldRange range, double& value);
-void read_value(FieldReader& reader, const char* name, FieldRange range, std::string& value);
-void read_value(FieldReader& reader, const char* name, FieldRange range, Vec3& value);
-void read_value(FieldReader& reader, const char* name, FieldRange range, Transform& value);
-void read_value(FieldReader& reader, const char* name, FieldRange range, std::optional<std::array<double, 3>>& color);
-void read_value(FieldReader& reader, const char* name, FieldRange range, std::optional<Camera>& camera);
-void read_value(FieldReader& reader, const char* name, FieldRange range, std::vector<Pin>& pins);
-void read_value(FieldReader& reader, const char* name, FieldRange range,
-                std::map<std::string, attributes::AttributeValue>& attributes);
-void read_value(FieldReader& reader, const char* name, FieldRange range, physics::WorldSettings& settings);
-void read_value(FieldReader& reader, const char* name, FieldRange range, Geometry& geometry);
+template <class Owner>
+void write_fields(nlohmann::json& object, const Owner& owner);
+template <class Owner>
+void read_fields(FieldReader& reader, Owner& owner);
+
+template <class Value>
+requires Listed<Value> || ListedVariant<Value>
+void write_value(nlohmann::json& object, const char* name, const Value& value) {
+    write_fields(add_object(object, name), value);
+}
+
+/// Null where there is none.
+template <class Value>
+void write_value(nlohmann::json& object, const char* name, const std::optional<Value>& value) {
+    if (value)
+        write_value(object, name, *value);
+    else
+        write_null(object, name);
+}
+
+template <Listed Item>
+void write_value(nlohmann::json& object, const char* name, const std::vector<Item>& items) {
+    nlohmann::json& list = add_list(object, name);
+    for (const Item& item : items) write_fields(append_object(list), item);
+}
+
+/// Checks a value whose fields were read, and those whose fields stand beside them.
+template <class Value>
+void check_fields(FieldReader& reader, const Value& value) {
+    if constexpr (ListedVariant<Value>) {
+        std::visit([&reader](const auto& alternative) { check_fields(reader, alternative); }, value);
+    } else {
+        for_each_field<Value>([&](const auto& field) {
+            if constexpr (std::remove_cvref_t<decltype(field)>::saved == Saved::beside)
+                check_fields(reader, value.*field.member);
+        });
+        check_value(reader, value);
+    }
+}
+
+/// The whole object; a slip in a field's name is told before what is wrong with all of it.
+template <class Value>
+void read_whole(FieldReader& reader, Value& value) {
+    Value read = value;
+    read_fields(reader, read);
+    if (reader.finish()) check_fields(reader, read);
+    if (reader.ok()) value = std::move(read);
+}
+
+template <class Value>
+requires Listed<Value> || ListedVariant<Value>
+void read_value(FieldReader& reader, const char* name, NumberRange, Value& value) {
+    const nlohmann::json* field = reader.take(name);
+    if (!field || !reader.ok()) return;
+    FieldReader inner(*field, reader.path(name), reader.error());
+    read_whole(inner, value);
+}
+
+template <class Value>
+void read_value(FieldReader& reader, const char* name, NumberRange range, std::optional<Value>& value) {
+    if (!reader.take(name) || !reader.ok()) return;
+    Value read{};
+    read_value(reader, name, range, read);
+    if (reader.ok()) value = std::move(read);
+}
+
+/// All of them at once.
+template <Listed Item>
+void read_value(FieldReader& reader, const char* name, NumberRange, std::vector<Item>& items) {
+    std::vector<Item> read;
+    if (read_items(reader, name, [&read](FieldReader& item) { read_whole(item, read.emplace_back()); }))
+        items = std::move(read);
+}
+
+template <class Owner, class OneField>
+void write_field(nlohmann::json& object, const OneField& field, const Owner& owner) {
+    if constexpr (OneField::saved == Saved::beside)
+        write_fields(object, owner.*field.member);
+    else if constexpr (OneField::saved != Saved::never)
+        write_value(object, field.name, owner.*field.member);
+}
+
+template <class Owner, class OneField>
+void read_field(FieldReader& reader, const OneField& field, Owner& owner) {
+    if constexpr (OneField::saved == Saved::needed) reader.need(field.name, field.meaning);
+    if constexpr (OneField::saved == Saved::beside)
+        read_fields(reader, owner.*field.member);
+    else if constexpr (OneField::saved != Saved::never)
+        read_value(reader, field.name, field.range, owner.*field.member);
+}
 
 /// As a scene file has it: what is as it would be anyway is not written.
 template <class Owner>
 void write_fields(nlohmann::json& object, const Owner& owner) {
-    static const Owner plain;
-    for_each_field<Owner>([&](const auto& field) {
-        constexpr Saved saved = std::remove_cvref_t<decltype(field)>::saved;
-        if constexpr (saved == Saved::when_set)
-            if (owner.*field.member == plain.*field.member) return;
-        if constexpr (saved != Saved::never) write_value(object, field.name, owner.*field.member);
-    });
+    if constexpr (ListedVariant<Owner>) {
+        write_value(object, "type", std::string(alternatives_of<Owner>[owner.index()]));
+        std::visit([&object](const auto& alternative) { write_fields(object, alternative); }, owner);
+    } else {
+        static const Owner plain{};
+        for_each_field<Owner>([&](const auto& field) {
+            if constexpr (std::remove_cvref_t<decltype(field)>::saved == Saved::when_set)
+                if (are_same(owner.*field.member, plain.*field.member)) return;
+            write_field(object, field, owner);
+        });
+    }
 }
 
 /// As a message has it that tells of a change: also what was taken away, as null or empty.
 template <class Owner>
 void write_all_fields(nlohmann::json& object, const Owner& owner) {
-    for_each_field<Owner>([&](const auto& field) {
-        if constexpr (std::remove_cvref_t<decltype(field)>::saved != Saved::never)
-            write_value(object, field.name, owner.*field.member);
-    });
+    for_each_field<Owner>([&](const auto& field) { write_field(object, field, owner); });
 }
 
-/// Lays the fields that are there over those of `owner`.
+template <std::size_t... alternative, class Variant>
+void set_alternative(Variant& value, std::size_t wanted, std::index_sequence<alternative...>) {
+    ((alternative == wanted ? void(value.template emplace<alternative>()) : void()), ...);
+}
+
+/// Lays the fields that are there over those of `owner`. Of a variant the word under "type" tells which it is.
 template <class Owner>
 void read_fields(FieldReader& reader, Owner& owner) {
-    for_each_field<Owner>([&](const auto& field) {
-        if constexpr (std::remove_cvref_t<decltype(field)>::saved != Saved::never)
-            read_value(reader, field.name, field.range, owner.*field.member);
-    });
+    if constexpr (ListedVariant<Owner>) {
+        constexpr std::size_t count = std::variant_size_v<Owner>;
+        static_assert(count == alternatives_of<Owner>.size(), "each alternative has a word of its own");
+        std::size_t type = 0;
+        if (!read_type(reader, alternatives_of<Owner>, type)) return;
+        set_alternative(owner, type, std::make_index_sequence<count>());
+        std::visit([&reader](auto& alternative) { read_fields(reader, alternative); }, owner);
+    } else {
+        static_assert(lists_all_members<Owner>(), "a member is in no list, or one is there twice");
+        for_each_field<Owner>([&](const auto& field) { read_field(reader, field, owner); });
+    }
 }
 
 }  // namespace embody::scene

@@ -29,10 +29,6 @@ Result<attributes::AttributeValue> attribute_from_json(const std::string& name, 
 Result<physics::ShapeDefinition> shape_from_json(const nlohmann::json& json, const std::string& where);
 nlohmann::json shape_to_json(const physics::ShapeDefinition& shape);
 
-Result<physics::WorldSettings> settings_from_json(const nlohmann::json& json, const std::string& where,
-                                                  const physics::WorldSettings& start);
-nlohmann::json settings_to_json(const physics::WorldSettings& settings);
-
 /// Entities are named by index or by a name that only one of `document` has. The index is 0 where the field is missing.
 Result<SceneJoint> joint_from_json(const nlohmann::json& json, const std::string& where, const Document& document);
 nlohmann::json joint_to_json(const SceneJoint& joint);

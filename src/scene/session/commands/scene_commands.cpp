@@ -141,28 +141,18 @@ Result<json> list(SessionState& state, const json& params) {
 
 // The fields of the document's heading and, beside them, those of its settings.
 Result<json> settings(SessionState& state, const json& params) {
-    json own = json::object(), world = params;
-    const auto take = [&](const char* name) {
-        if (!world.is_object() || !world.contains(name)) return;
-        own[name] = world[name];
-        world.erase(name);
-    };
-    take("merge");
+    std::optional<Error> error;
+    FieldReader reader(params, "", error);
+    Edit edit = state.start_edit("Change settings");
+    HeadingChange change{state.document, state.document};
     for_each_field<Heading>([&](const auto& field) {
         if constexpr (!std::is_same_v<typename std::remove_cvref_t<decltype(field)>::Member, physics::WorldSettings>)
-            take(field.name);
+            read_field(reader, field, change.after);
     });
-
-    HeadingChange change{state.document, state.document};
-    Result<physics::WorldSettings> read = settings_from_json(world, "", state.document.settings);
-    if (!read.ok()) return read.error();
-    change.after.settings = read.value();
-    std::optional<Error> error;
-    FieldReader reader(own, "", error);
-    Edit edit = state.start_edit("Change settings");
-    read_fields(reader, change.after);
+    read_fields(reader, change.after.settings);
     reader.text("merge", edit.merge);
-    if (!reader.finish()) return *error;
+    if (reader.finish()) check_value(reader, change.after.settings);
+    if (error) return *error;
     edit.changes.emplace_back(std::move(change));
     return done(state.commit(std::move(edit)));
 }

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "attributes/attribute.h"
+#include "math/transform.h"
+#include "physics/definitions/shape_definition.h"
+#include "scene/document/field_list.h"
+
+namespace embody::scene {
+
+/// Names an entity of a document for as long as the document lives; never used twice.
+using EntityIndex = std::uint32_t;
+/// Higher ones are for what actions spawn in a running simulation. Joints and actions have none higher either.
+inline constexpr EntityIndex last_document_index = 0x7FFFFFFF;
+inline constexpr NumberRange index_range{.low = 1, .high = last_document_index};
+
+/// A model of the database, by its key.
+struct ModelReference {
+    std::string key;
+    friend bool operator==(const ModelReference&, const ModelReference&) = default;
+};
+
+using Geometry = std::variant<ModelReference, physics::ShapeDefinition>;
+
+/// Where a thing that changes its form is held: its points within a distance of a place stay where they are, in the
+/// world or in another entity.
+struct Pin {
+    Vec3 position;
+    double radius = 0.01;
+    std::optional<EntityIndex> to;
+    bool clamped = false;
+    friend bool operator==(const Pin&, const Pin&) = default;
+};
+
+template <>
+inline constexpr auto fields_of<Pin> = std::tuple{
+    always_needed("position", &Pin::position, "the place that is held, in the entity's frame", {.unit = "m"}),
+    always_saved("radius", &Pin::radius, "the points so near to the place are held; where there are none, the nearest",
+                 {0, 1e4, "m"}),
+    saved_when_set("to", &Pin::to, "index of the entity that holds it; without, the world", index_range),
+    saved_when_set("clamped", &Pin::clamped, "of a rope: holds its direction and twist too"),
+};
+static_assert(lists_all_members<Pin>(), "a member of Pin is in no list, or one is there twice");
+
+/// The paper's VSEle = {index, GeomAttr, PhyAttr} (definition 2): what it looks like, what it is made of, where it is.
+struct Entity {
+    EntityIndex index = 0;
+    std::string name;
+    Geometry geometry;  ///< the paper's GeomAttr (definition 3)
+    /// Manual attributes of this entity by registry name; everything else comes from the model or the defaults
+    /// (definition 4, 5).
+    std::map<std::string, attributes::AttributeValue> attributes;
+    Transform pose;
+    Vec3 linear_velocity;   ///< m/s
+    Vec3 angular_velocity;  ///< rad/s
+    Vec3 force;             ///< N
+    Vec3 torque;            ///< N m
+    bool enabled = true;
+    bool start_asleep = false;
+    bool allow_sleep = true;
+    bool continuous = false;
+    std::string category;
+    std::optional<std::array<double, 3>> color;
+    double scale = 1;
+    std::vector<Pin> pins;
+};
+
+template <>
+inline constexpr auto fields_of<Entity> = std::tuple{
+    always_saved("index", &Entity::index, "the entity's number, once in a file", index_range),
+    always_saved("name", &Entity::name, "what people call it"),
+    saved_beside(&Entity::geometry),
+    saved_when_set("attributes", &Entity::attributes,
+                   "physical attributes by name that are set for this entity; the others are the model's or the "
+                   "default"),
+    always_saved("pose", &Entity::pose, "of the entity's origin. A model's origin is the centre of its base"),
+    saved_when_set("linear_velocity", &Entity::linear_velocity, "of the centre of mass at the start", {.unit = "m/s"}),
+    saved_when_set("angular_velocity", &Entity::angular_velocity, "at the start, world axes", {.unit = "rad/s"}),
+    saved_when_set("force", &Entity::force,
+                   "constant, world axes, at the centre of mass; nodes, grains and drops share it by mass",
+                   {.unit = "N"}),
+    saved_when_set("torque", &Entity::torque,
+                   "constant, world axes; it turns no nodes, grains and drops, which a message says", {.unit = "N m"}),
+    saved_when_set("enabled", &Entity::enabled, "`false`: neither moves nor collides; still a template for `spawn`"),
+    saved_when_set("start_asleep", &Entity::start_asleep, "whether it is asleep at the start"),
+    saved_when_set("allow_sleep", &Entity::allow_sleep, "whether it may fall asleep"),
+    saved_when_set("continuous", &Entity::continuous, "sweep fast motion against everything"),
+    saved_when_set("category", &Entity::category, "of a primitive; a model brings its own"),
+    saved_when_set("color", &Entity::color, "of a primitive, linear `[red, green, blue]`; null: the Studio's"),
+    saved_when_set("scale", &Entity::scale, "of a model, uniform; its mass grows with the cube", {1e-4, 1e4}),
+    saved_when_set("pins", &Entity::pins, "of a thing of kind `soft`, `cloth` or `rope`: where it is held"),
+};
+static_assert(lists_all_members<Entity>(), "a member of Entity is in no list, or one is there twice");
+
+}  // namespace embody::scene
