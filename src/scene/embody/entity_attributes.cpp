@@ -125,17 +125,16 @@ void complete_fineness(AttributeSet& set, const attributes::GeometryFacts& geome
     attributes::put_fineness(set, geometry, attributes::form_of(geometry, {0.5, 0.5, 0.5}));
 }
 
-// All that an entity's attributes follow from; empty: too much to be compared.
-std::string attributes_key(const Entity& entity) {
-    std::string key;
-    if (const auto* model = std::get_if<ModelReference>(&entity.geometry)) {
-        key = model->key + '\n' + nlohmann::json(entity.scale).dump();
-    } else {
-        key = short_text(std::get<physics::ShapeDefinition>(entity.geometry));
-        if (key.empty()) return key;
+// All that an entity's attributes follow from.
+GeometryKey attributes_key(const Entity& entity) {
+    GeometryKey key = key_of(entity.geometry);
+    if (!key.is_shared()) return key;
+    if (key.of == GeometryKey::Of::model) key.numbers.push_back(entity.scale);
+    key.words.push_back(entity.category);
+    for (const auto& [name, value] : entity.attributes) {
+        key.words.push_back(name);
+        key.words.push_back(attributes::to_json(value).dump());
     }
-    key += '\n' + entity.category;
-    for (const auto& [name, value] : entity.attributes) key += '\n' + name + '\t' + attributes::to_json(value).dump();
     return key;
 }
 
@@ -199,15 +198,15 @@ Result<AttributeSet> EntityAttributes::acting(const Entity& entity) {
 }
 
 Result<SharedAttributes> EntityAttributes::shared(const Entity& entity) {
-    const std::string key = attributes_key(entity);
-    if (const auto known = sets_.find(key); known != sets_.end() && !key.empty()) return known->second;
+    GeometryKey key = attributes_key(entity);
+    if (const auto known = sets_.find(key); key.is_shared() && known != sets_.end()) return known->second;
     Result<AttributeSet> made = acting(entity);
     if (!made.ok()) return made.error();
     SharedAttributes set = std::make_shared<const AttributeSet>(std::move(made).value());
-    if (key.empty()) return set;
+    if (!key.is_shared()) return set;
     // Who has one keeps it.
     if (sets_.size() >= most_shared_sets) sets_.clear();
-    sets_.emplace(key, set);
+    sets_.emplace(std::move(key), set);
     return set;
 }
 

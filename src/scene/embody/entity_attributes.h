@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "attributes/attribute.h"
@@ -50,7 +50,7 @@ private:
 
     KnownModels& models_;
     PrimitiveFacts primitives_;
-    std::unordered_map<std::string, SharedAttributes> sets_;  ///< by all that they follow from
+    std::map<GeometryKey, SharedAttributes> sets_;  ///< by all that they follow from
 };
 
 /// The value of an attribute of an entity that is drawn at `scale`, as the model itself has it.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene/embody/entity_body.h"
 
-#include <nlohmann/json.hpp>
-
 #include "attributes/physical_kind.h"
 #include "attributes/to_physics.h"
 #include "scene/document/document_field.h"
@@ -120,16 +118,14 @@ Result<physics::ShapeDefinition> shape_of(const Entity& entity, const AttributeS
     return shape;
 }
 
-std::string shape_key(const Entity& entity, const AttributeSet& attributes) {
-    if (const auto* model = std::get_if<ModelReference>(&entity.geometry)) {
-        const std::string shape = attributes.word("collision_shape", "");
-        std::string key = model->key + '\n' + shape + '\n' + nlohmann::json(entity.scale).dump();
-        if (shape != "decomposition") return key;
-        for (const char* limit : {"max_hulls", "hull_error"})
-            key += '\n' + nlohmann::json(attributes.number(limit, 0)).dump();
-        return key;
-    }
-    return short_text(std::get<physics::ShapeDefinition>(entity.geometry));
+GeometryKey shape_key(const Entity& entity, const AttributeSet& attributes) {
+    GeometryKey key = key_of(entity.geometry);
+    if (key.of != GeometryKey::Of::model) return key;
+    key.words.push_back(attributes.word("collision_shape", ""));
+    key.numbers.push_back(entity.scale);
+    if (key.words.back() == "decomposition")
+        for (const char* limit : {"max_hulls", "hull_error"}) key.numbers.push_back(attributes.number(limit, 0));
+    return key;
 }
 
 }  // namespace embody::scene

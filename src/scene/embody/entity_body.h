@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <string>
-
 #include "attributes/attribute.h"
 #include "foundation/result.h"
 #include "physics/definitions/body_definition.h"
 #include "physics/definitions/shape_definition.h"
 #include "scene/document/document.h"
+#include "scene/embody/geometry_key.h"
 #include "scene/embody/known_models.h"
 
 namespace embody::scene {
@@ -19,7 +18,7 @@ Result<physics::BodyDefinition> body_of(const Entity& entity, const attributes::
                                         const attributes::Taxonomy* taxonomy);
 Result<physics::ShapeDefinition> shape_of(const Entity& entity, const attributes::AttributeSet& attributes,
                                           KnownModels& models);
-/// Entities with the same key have the same shape; empty: nobody else has it.
-std::string shape_key(const Entity& entity, const attributes::AttributeSet& attributes);
+/// Entities with the same key have the same shape.
+GeometryKey shape_key(const Entity& entity, const attributes::AttributeSet& attributes);
 
 }  // namespace embody::scene

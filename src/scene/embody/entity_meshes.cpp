@@ -2,7 +2,6 @@
 #include "scene/embody/entity_meshes.h"
 
 #include "attributes/physical_kind.h"
-#include "scene/embody/entity_body.h"
 #include "scene/embody/shape_surface.h"
 
 namespace embody::scene {
@@ -21,10 +20,9 @@ int count_of(const attributes::AttributeSet& attributes) {
 }  // namespace
 
 Result<const catalog::SoftMesh*> EntityMeshes::soft_mesh(const Entity& entity) {
-    const auto* model = std::get_if<ModelReference>(&entity.geometry);
-    const std::string key = model ? model->key : shape_key(entity, {});
+    const GeometryKey key = key_of(entity.geometry);
     auto found = forms_->soft_meshes.find(key);
-    if (key.empty() || found == forms_->soft_meshes.end()) {
+    if (!key.is_shared() || found == forms_->soft_meshes.end()) {
         found = forms_->soft_meshes.insert_or_assign(key, make_soft_mesh(entity)).first;
         ++forms_->made;
     }
@@ -44,12 +42,11 @@ Result<catalog::SoftMesh> EntityMeshes::make_soft_mesh(const Entity& entity) {
 }
 
 Result<const ThinForm*> EntityMeshes::thin_form(const Entity& entity, const attributes::AttributeSet& attributes) {
-    const auto* model = std::get_if<ModelReference>(&entity.geometry);
-    const std::string key = model ? model->key : shape_key(entity, {});
+    const GeometryKey key = key_of(entity.geometry);
     const std::string own = to_text(kind_of(attributes)) + ' ' + std::to_string(count_of(attributes));
     auto& forms = forms_->thin_forms[key];
     auto found = forms.find(own);
-    if (key.empty() || found == forms.end()) {
+    if (!key.is_shared() || found == forms.end()) {
         found = forms.insert_or_assign(own, make_thin_form(entity, is_cloth(attributes), count_of(attributes))).first;
     }
     if (!found->second.ok()) return found->second.error();

@@ -26,8 +26,8 @@ public:
     Result<const ThinForm*> thin_form(const Entity& entity, const attributes::AttributeSet& attributes);
     /// Forgets those of a model.
     void forget(const std::string& key) {
-        forms_->soft_meshes.erase(key);
-        forms_->thin_forms.erase(key);
+        forms_->soft_meshes.erase(key_of_model(key));
+        forms_->thin_forms.erase(key_of_model(key));
     }
 
 private:

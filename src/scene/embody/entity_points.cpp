@@ -2,6 +2,7 @@
 #include "scene/embody/entity_points.h"
 
 #include <cmath>
+#include <initializer_list>
 
 #include "attributes/physical_kind.h"
 #include "scene/embody/entity_body.h"
@@ -14,30 +15,20 @@ namespace {
 
 const std::string rigid_because = "is simulated as rigid, because ";
 
-// Equal where geometry and size of the grains are.
-std::string grains_key(const Entity& entity, const attributes::AttributeSet& attributes) {
-    const std::string key = shape_key(entity, attributes);
-    if (key.empty()) return {};
-    return "granular\n" + key + '\n' + std::to_string(attributes.number("simulated_diameter", 0)) + '\n' +
-           std::to_string(attributes.number("grain_budget", 0));
-}
-
-// Equal where geometry and fineness of a liquid are.
-std::string liquid_key(const Entity& entity, const attributes::AttributeSet& attributes) {
-    const std::string key = shape_key(entity, attributes);
-    if (key.empty()) return {};
-    return "fluid\n" + key + '\n' + std::to_string(attributes.number("fluid_cell_size", 0)) + '\n' +
-           std::to_string(attributes.number("particle_budget", 0));
+// Equal where the shape is, the kind, and these attributes.
+GeometryKey points_key(const Entity& entity, const attributes::AttributeSet& attributes,
+                       std::initializer_list<const char*> names) {
+    GeometryKey key = shape_key(entity, attributes);
+    key.words.push_back(to_text(kind_of(attributes)));
+    for (const char* name : names) key.numbers.push_back(attributes.number(name, 0));
+    return key;
 }
 
 // Equal where the nodes of what changes its form are.
-std::string deformable_key(const Entity& entity, const attributes::AttributeSet& attributes) {
-    const std::string key = shape_key(entity, attributes);
-    if (key.empty()) return {};
-    std::string own = to_text(kind_of(attributes)) + '\n' + key + '\n' + std::to_string(entity.scale);
-    for (const char* count : {"cloth_nodes", "rope_segments"})
-        own += '\n' + std::to_string(attributes.number(count, 0));
-    return own;
+GeometryKey deformable_key(const Entity& entity, const attributes::AttributeSet& attributes) {
+    GeometryKey key = points_key(entity, attributes, {"cloth_nodes", "rope_segments"});
+    key.numbers.push_back(entity.scale);
+    return key;
 }
 
 }  // namespace
@@ -63,9 +54,9 @@ EntityForm EntityPoints::form(const Entity& entity, const attributes::AttributeS
         case PhysicalKind::visual:
             return {};
         case PhysicalKind::granular:
-            return {true, grains_key(entity, attributes), {}};
+            return {true, points_key(entity, attributes, {"simulated_diameter", "grain_budget"}), {}};
         case PhysicalKind::fluid:
-            return {true, liquid_key(entity, attributes), {}};
+            return {true, points_key(entity, attributes, {"fluid_cell_size", "particle_budget"}), {}};
         case PhysicalKind::soft:
             return soft_form(entity, attributes);
         case PhysicalKind::cloth:

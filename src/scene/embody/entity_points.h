@@ -9,6 +9,7 @@
 #include "foundation/result.h"
 #include "scene/document/document.h"
 #include "scene/embody/entity_meshes.h"
+#include "scene/embody/geometry_key.h"
 #include "scene/embody/known_models.h"
 #include "scene/embody/points_definition.h"
 
@@ -17,7 +18,7 @@ namespace embody::scene {
 /// Whether an entity is one body or points.
 struct EntityForm {
     bool has_points = false;
-    std::string points_key;  ///< the same, the same points; empty: nobody else has them
+    GeometryKey points_key;  ///< the same, the same points
     std::string note;        ///< what of its kind it is not simulated with, and why; empty: nothing
 };
 

@@ -7,10 +7,9 @@ namespace {
 
 constexpr std::size_t most_kept = 256;
 
-// The text of a primitive is an object of JSON; a model's key is not.
 template <class Forms>
 void keep_primitives(Forms& forms) {
-    std::erase_if(forms, [](const auto& item) { return item.first.empty() || item.first.front() != '{'; });
+    std::erase_if(forms, [](const auto& item) { return item.first.of != GeometryKey::Of::primitive; });
     if (forms.size() > most_kept) forms.clear();
 }
 

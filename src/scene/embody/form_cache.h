@@ -8,6 +8,7 @@
 
 #include "catalog/soft_mesh.h"
 #include "foundation/result.h"
+#include "scene/embody/geometry_key.h"
 #include "scene/embody/thin_form.h"
 
 namespace embody::scene {
@@ -15,11 +16,11 @@ namespace embody::scene {
 /// What a thing of kind cloth or rope is computed on.
 using ThinForm = std::variant<attributes::SheetMesh, LineForm>;
 
-/// What things that bend are computed on, by model or by the text of the primitive: made once, however often the scene
-/// is reset. Used by one thread.
+/// What things that bend are computed on: made once, however often the scene is reset. Used by one thread.
 struct FormCache {
-    std::map<std::string, Result<catalog::SoftMesh>> soft_meshes;               ///< "": the last without a short text
-    std::map<std::string, std::map<std::string, Result<ThinForm>>> thin_forms;  ///< the same; in it by kind and count
+    /// Without a key of its own: the last that nobody else has.
+    std::map<GeometryKey, Result<catalog::SoftMesh>> soft_meshes;
+    std::map<GeometryKey, std::map<std::string, Result<ThinForm>>> thin_forms;  ///< the same; in it by kind and count
     std::size_t made = 0;                                                       ///< soft meshes so far
 
     /// For a new simulation: models may have been imported again, and of primitives that were tried out no more are

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "scene/embody/primitive_facts.h"
 
-#include <nlohmann/json.hpp>
-
 #include "physics/definitions/mass_properties.h"
 #include "physics/definitions/shape_bounds.h"
-#include "scene/file/json/parts.h"
 
 namespace embody::scene {
 
@@ -27,11 +24,6 @@ void put_enclosed(const physics::MeshShape& mesh, attributes::GeometryFacts& for
 }
 
 }  // namespace
-
-std::string short_text(const physics::ShapeDefinition& shape) {
-    if (physics::is_static_only(shape) || std::holds_alternative<physics::CompoundShape>(shape)) return {};
-    return shape_to_json(shape).dump();
-}
 
 physics::ShapeDefinition hull_of(const physics::MeshShape& mesh) {
     physics::HullShape hull;
@@ -70,11 +62,11 @@ const ModelFacts& PrimitiveFacts::of_enclosed(const physics::MeshShape& mesh) {
 }
 
 const ModelFacts& PrimitiveFacts::of(const physics::ShapeDefinition& shape) {
-    const std::string text = short_text(shape);
-    if (text.empty()) return last_ = primitive_facts(shape);
-    const auto found = known_.find(text);
+    GeometryKey key = key_of(shape);
+    if (!key.is_shared()) return last_ = primitive_facts(shape);
+    const auto found = known_.find(key);
     if (found != known_.end()) return found->second;
-    return known_.emplace(text, primitive_facts(shape)).first->second;
+    return known_.emplace(std::move(key), primitive_facts(shape)).first->second;
 }
 
 }  // namespace embody::scene

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <map>
-#include <string>
 #include <utility>
 
 #include "attributes/model_facts.h"
 #include "physics/definitions/shape_definition.h"
+#include "scene/embody/geometry_key.h"
 
 namespace embody::scene {
 
@@ -16,9 +16,6 @@ attributes::ModelFacts primitive_facts(const physics::ShapeDefinition& shape);
 /// What a mesh that moves collides as.
 physics::ShapeDefinition hull_of(const physics::MeshShape& mesh);
 
-/// A shape in so few letters that others can be found by them; empty: it is large.
-std::string short_text(const physics::ShapeDefinition& shape);
-
 /// The same facts, found once for each primitive. What is returned is valid until the next call.
 class PrimitiveFacts {
 public:
@@ -27,8 +24,8 @@ public:
     const attributes::ModelFacts& of_enclosed(const physics::MeshShape& mesh);
 
 private:
-    std::map<std::string, attributes::ModelFacts> known_;              ///< by their text
-    attributes::ModelFacts last_;                                      ///< of one without a short text
+    std::map<GeometryKey, attributes::ModelFacts> known_;
+    attributes::ModelFacts last_;                                      ///< of one that nobody else has
     std::pair<physics::MeshShape, attributes::ModelFacts> last_mesh_;  ///< that moves
 };
 

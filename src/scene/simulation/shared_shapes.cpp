@@ -5,10 +5,10 @@ namespace embody::scene {
 
 using physics::ShapeHandle;
 
-Result<ShapeHandle> SharedShapes::take(const std::string& key,
+Result<ShapeHandle> SharedShapes::take(const GeometryKey& key,
                                        const std::function<Result<physics::ShapeDefinition>()>& make) {
     const auto known = shapes_.find(key);
-    if (!key.empty() && known != shapes_.end()) {
+    if (key.is_shared() && known != shapes_.end()) {
         ++known->second.users;
         return known->second.shape;
     }
@@ -16,13 +16,13 @@ Result<ShapeHandle> SharedShapes::take(const std::string& key,
     if (!definition.ok()) return definition.error();
     const Result<ShapeHandle> shape = world_.create_shape(definition.value());
     if (!shape.ok()) return Error{"shape: " + shape.error().where, shape.error().why, shape.error().remedy};
-    if (!key.empty()) shapes_[key] = {shape.value(), 1};
+    if (key.is_shared()) shapes_[key] = {shape.value(), 1};
     return shape;
 }
 
-void SharedShapes::give_back(const std::string& key, ShapeHandle shape) {
+void SharedShapes::give_back(const GeometryKey& key, ShapeHandle shape) {
     if (shape.is_null()) return;
-    if (const auto known = shapes_.find(key); !key.empty() && known != shapes_.end()) {
+    if (const auto known = shapes_.find(key); key.is_shared() && known != shapes_.end()) {
         if (--known->second.users > 0) return;
         shapes_.erase(known);
     }

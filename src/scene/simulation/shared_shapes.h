@@ -3,9 +3,9 @@
 
 #include <functional>
 #include <map>
-#include <string>
 
 #include "physics/inter/world.h"
+#include "scene/embody/geometry_key.h"
 
 namespace embody::scene {
 
@@ -15,11 +15,11 @@ public:
     /// `world` outlives them.
     explicit SharedShapes(physics::World& world) : world_(world) {}
 
-    /// The shape of this key, made where it is not there yet; one without a key is its taker's own.
-    Result<physics::ShapeHandle> take(const std::string& key,
+    /// The shape of this key, made where it is not there yet; one that is not shared is its taker's own.
+    Result<physics::ShapeHandle> take(const GeometryKey& key,
                                       const std::function<Result<physics::ShapeDefinition>()>& make);
     /// Only after the body that used it is gone or has another. A null shape is none.
-    void give_back(const std::string& key, physics::ShapeHandle shape);
+    void give_back(const GeometryKey& key, physics::ShapeHandle shape);
 
 private:
     struct Shared {
@@ -27,7 +27,7 @@ private:
         int users = 0;
     };
     physics::World& world_;
-    std::map<std::string, Shared> shapes_;
+    std::map<GeometryKey, Shared> shapes_;
 };
 
 }  // namespace embody::scene

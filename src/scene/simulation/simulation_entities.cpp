@@ -204,7 +204,7 @@ Result<void> Simulation::State::update(const Entity& entity, bool keep_motion) {
     if (!described.ok()) return of_entity(entity, described.error());
     LiveEntity& after = described.value();
     const bool both_bodies = !before->points && !after.form.has_points;
-    const bool same_points = before->points && after.form.has_points && !after.form.points_key.empty() &&
+    const bool same_points = before->points && after.form.has_points && after.form.points_key.is_shared() &&
                              after.form.points_key == before->form.points_key && keep_motion;
     const Result<void> updated = both_bodies   ? update_body(*before, after, keep_motion)
                                  : same_points ? update_points(*before, after)

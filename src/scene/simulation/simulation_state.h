@@ -28,7 +28,7 @@ struct LiveEntity {
     std::unique_ptr<MovingPoints> points;  ///< null: it is a body
     physics::BodyHandle body;              ///< null: it has points
     physics::ShapeHandle shape;            ///< the body's
-    std::string shape_key;
+    GeometryKey shape_key;
     Transform frame;  ///< of points that have no pose of their own: where they were put, or moved to by hand
 };
 
