@@ -63,10 +63,10 @@ def main() -> int:
     head = re.compile(r'"properties": \{\n').search(text, start).end()
     tail = text.index("\n      }\n", head)
     text = text[:head] + lines + text[tail:]
-    names = ",\n".join(f"                {json.dumps(a['name'])}" for a in registry)
-    start = text.index('"const": "set_attribute"')
+    names = ",\n".join(f"        {json.dumps(a['name'])}" for a in registry)
+    start = text.index('"attribute_name": {')
     head = text.index('"enum": [\n', start) + len('"enum": [\n')
-    tail = text.index("\n              ]", head)
+    tail = text.index("\n      ]", head)
     texts[file] = text[:head] + names + text[tail:]
     json.loads(texts[file])
 

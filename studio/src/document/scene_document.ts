@@ -1,20 +1,7 @@
 // SPDX-License-Identifier: MIT
 import type { DocumentChange, DocumentEvent, Hello } from "../connection/messages";
 import { Signal } from "../signal";
-import type { Action, Entity, Joint, Pose, Quaternion, Scene, SceneSettings, Vector } from "../connection/scene_types";
-
-export const DEFAULT_SETTINGS: SceneSettings = {
-  gravity: [0, -9.81, 0],
-  time_step: 1 / 60,
-  substeps: 4,
-  sleeping: true,
-  time_to_sleep: 0.5,
-  shock_propagation: true,
-  wind: [0, 0, 0],
-  gustiness: 0,
-  gust_time: 2,
-  air_density: 1.2,
-};
+import { type Action, type Camera, DEFAULT_SETTINGS, type Entity, type Joint, type Pose, type Quaternion, type Scene, type SceneSettings, type Vector } from "../connection/scene_types";
 
 /** What of the document is new after an event. */
 export interface Changed {
@@ -38,7 +25,7 @@ export class SceneDocument {
   readonly joints = new Map<number, Joint>();
   readonly actions = new Map<number, Action>();
   settings: SceneSettings = DEFAULT_SETTINGS;
-  camera: { position: Vector; target: Vector } | null = null;
+  camera: Camera | null = null;
   title = "";
   description = "";
   name = "";

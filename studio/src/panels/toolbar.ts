@@ -103,7 +103,7 @@ export class Toolbar {
   /** One for each named button that an action of the scene waits for. */
   private showSceneButtons(): void {
     const names = new Set<string>();
-    for (const { trigger } of this.parts.document.actions.values()) if (trigger?.button) names.add(trigger.button);
+    for (const { trigger } of this.parts.document.actions.values()) if (trigger.type === "signal" && trigger.button) names.add(trigger.button);
     this.sceneButtons.replaceChildren(
       ...[...names].map((button) =>
         element("button", { class: "scene-button", title: `A button of this scene: starts “${button}”`, "data-testid": `scene-button-${button}`, onclick: () => void this.trigger(button) }, button),

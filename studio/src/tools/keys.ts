@@ -42,7 +42,7 @@ export class Keyboard {
   /** While the scene plays, its own keys come first. */
   private triggerSceneAction(name: string, event: KeyboardEvent): boolean {
     if (!this.parts.playback.playing || event.repeat) return false;
-    const known = [...this.parts.document.actions.values()].map((action) => action.trigger?.key).find((key) => key?.toUpperCase() === name.toUpperCase());
+    const known = [...this.parts.document.actions.values()].map(({ trigger }) => (trigger.type === "signal" ? trigger.key : undefined)).find((key) => key?.toUpperCase() === name.toUpperCase());
     if (!known) return false;
     event.preventDefault();
     void this.parts.server.command("action.trigger", { key: known });
