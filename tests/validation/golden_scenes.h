@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <ostream>
 #include <span>
 
 #include "physics/inter/world.h"
@@ -17,6 +18,8 @@ struct GoldenScene {
 struct Golden {
     const char* name;
     GoldenScene (*build)();
+
+    friend std::ostream& operator<<(std::ostream& out, const Golden& golden) { return out << golden.name; }
 };
 
 /// Ten scenes of rigid bodies, of each kind of shape and joint. What builds them uses no library functions but square
