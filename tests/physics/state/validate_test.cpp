@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -181,6 +182,50 @@ TEST(ValidateWorld, NamesEachInvariantThatIsBroken) {
         ASSERT_GE(small.state.islands.list.size(), 2u);
         damage.make(small.state);
         EXPECT_EQ(broken(small.state).substr(0, std::string(damage.named).size()), damage.named) << broken(small.state);
+    }
+}
+
+// A body that left the finite numbers is switched off; its joints keep nothing of it, and hold again once it is back.
+TEST(ValidateWorld, HoldsWithJointsOfABodyThatWasFrozen) {
+    for (const bool with_contact : {false, true}) {
+        SCOPED_TRACE(with_contact);
+        WorldState world;
+        const ShapeHandle cube = add_shape(world, BoxShape{{0.5, 0.5, 0.5}});
+        if (with_contact) add_body(world, {.kind = BodyKind::static_body, .shape = add_shape(world, PlaneShape{})});
+        std::vector<BodyHandle> chain;
+        for (int i = 0; i < 3; ++i) {
+            chain.push_back(add_body(world, {.shape = cube, .position = {1.5 * i, 0.5, 0}, .allow_sleep = false}));
+            JointDefinition joint{.joint = BallJoint{}, .body_b = chain.back(), .frame_b = {{-0.75, 0, 0}, {}}};
+            if (i > 0) joint.body_a = chain[static_cast<std::size_t>(i) - 1];
+            joint.frame_a = i > 0 ? Transform{{0.75, 0, 0}, {}} : Transform{{-0.75, 0.5, 0}, {}};
+            add_joint(world, joint);
+        }
+        for (int i = 0; i < 3; ++i) step(world);
+        world.rigid.motion[chain[1].index].angular_velocity.x = nan;
+        step(world);
+        EXPECT_NE(world.report.limits & static_cast<std::uint32_t>(StepLimit::not_finite_body_frozen), 0u);
+        EXPECT_EQ(broken(world), "");
+        for (std::uint32_t slot = 0; slot < 3; ++slot) {
+            const Joint& joint = world.joints.records.at(slot).constraint;
+            EXPECT_TRUE(embody::is_finite(joint.total_linear) && embody::is_finite(joint.total_angular)) << slot;
+            for (const JointImpulses& phase : {joint.position_phase, joint.velocity_phase}) {
+                for (const double impulse : phase.rows) EXPECT_TRUE(std::isfinite(impulse)) << slot;
+            }
+        }
+        for (const BodyHandle body : chain) {
+            BodyDefinition back = world.rigid.record(body.index).definition;
+            const Transform pose = world.rigid.pose(body.index);
+            back.position = pose.position;
+            back.rotation = pose.rotation;
+            back.enabled = true;
+            lift_bodies(WakeAccess(world), {&body.index, 1});
+            place_body(WakeAccess(world), world.impacts, body.index, set_up_body(world.rigid, back).value());
+        }
+        for (int i = 0; i < 3; ++i) {
+            step(world);
+            EXPECT_EQ(world.report.limits & static_cast<std::uint32_t>(StepLimit::not_finite_body_frozen), 0u);
+            EXPECT_EQ(broken(world), "");
+        }
     }
 }
 

@@ -425,6 +425,11 @@ void add_to_totals(Joint& joint, SolvePhase phase) {
     joint.total_angular += angular - cross(joint.arm_b, linear);
 }
 
+void forget_impulses(Joint& joint) {
+    joint.position_phase = joint.velocity_phase = {};
+    joint.total_linear = joint.total_angular = {};
+}
+
 double joint_coordinate(const Joint& joint, std::span<const BodyState> bodies) {
     return coordinate_of(joint, frames_now(joint, bodies));
 }

@@ -117,6 +117,8 @@ void add_free_impulse(Joint& joint, SolvePhase phase, double change);
 
 /// Adds the phase's impulses to the totals; after the phase's last pass, before the rows are prepared anew.
 void add_to_totals(Joint& joint, SolvePhase phase);
+/// As if it had held nothing yet: neither totals nor a warm start.
+void forget_impulses(Joint& joint);
 
 /// Hinge angle in (−π, π] or slider displacement; 0 for the others.
 double joint_coordinate(const Joint& joint, std::span<const BodyState> bodies);

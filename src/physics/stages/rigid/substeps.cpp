@@ -347,6 +347,13 @@ void clear_traces_of_lost(const SubstepAccess& world) {
         contact.friction = contact.friction_total = {};
         contact.rolling = {};
     }
+
+    // Joints are solved together: what is no number in one is so in those beside it.
+    for (Joint& joint : world.joints.active) {
+        const bool is_of_lost = !world.rigid.record(joint.b).definition.enabled ||
+                                (!joint.a_is_world && !world.rigid.record(joint.a).definition.enabled);
+        if (is_of_lost || !is_finite(joint.total_linear) || !is_finite(joint.total_angular)) forget_impulses(joint);
+    }
 }
 
 bool is_lost(const BodyState& state) {
