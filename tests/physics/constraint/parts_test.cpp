@@ -282,6 +282,38 @@ TEST(JointSystem, SwingsWithoutLoss) {
     EXPECT_NEAR(fastest, std::sqrt(2 * 9.81 * 2 / 2.1), 0.05);
 }
 
+// A movable body that the list lacks (it sleeps) is held on to like an immovable one, whatever its slot.
+TEST(JointSystem, TakesABodyThatItsListLacksAsImmovable) {
+    for (const bool lacks_first : {true, false}) {
+        SCOPED_TRACE(lacks_first ? "the first slot" : "the last slot");
+        Bodies bodies;
+        std::uint32_t asleep = 0;
+        if (lacks_first) asleep = bodies.add(3, {0.2, 0.2, 0.2}, {0, 0, 0});
+        const std::uint32_t bob = bodies.add(2, {0.1, 0.1, 0.1}, {1, 0, 0});
+        if (!lacks_first) asleep = bodies.add(3, {0.2, 0.2, 0.2}, {0, 0, 0});
+        bodies.constants[bob].acceleration = {0, -9.81, 0};
+        std::vector<Joint> joints{joint_of(BallJoint{}, {}, {{-1, 0, 0}, {}})};
+        joints[0].a = asleep;
+        joints[0].b = bob;
+        const std::uint32_t list[] = {bob}, numbers[] = {0};
+        JointSystem system;
+        const JointSettings settings;
+        const JointSystem::View view{bodies.state, bodies.constants, joints, settings};
+        system.set({list, numbers}, view);
+        std::vector<std::pair<std::uint32_t, BodyState>> carriers;
+        system.list_carriers(view, carriers);
+        ASSERT_EQ(carriers.size(), 1u);
+        EXPECT_EQ(carriers[0].first, asleep);
+        for (int i = 0; i < 240; ++i) {
+            system.advance(1.0 / 240, view);
+            const BodyState& state = bodies.state[bob];
+            EXPECT_LT(length(state.center + rotate(state.rotation, {-1, 0, 0})), 1e-6);
+            EXPECT_EQ(bodies.state[asleep].center, Vec3{});
+            EXPECT_EQ(bodies.state[asleep].linear_velocity, Vec3{});
+        }
+    }
+}
+
 TEST(ImpactJoints, PassAnImpactOnAndKeepMomentumAndJoint) {
     Random random(5);
     for (int trial = 0; trial < 30; ++trial) {

@@ -40,9 +40,9 @@ void JointSystem::set(const JointedList& list, const View& view) {
     bodies_.resize(list.bodies.size());
     for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].slot = list.bodies[i];
     const auto number_of = [&](std::uint32_t slot) -> std::int32_t {
-        if (!(view.bodies[slot].inverse_mass > 0)) return -1;
-        return static_cast<std::int32_t>(std::lower_bound(list.bodies.begin(), list.bodies.end(), slot) -
-                                         list.bodies.begin());
+        const auto found = std::ranges::lower_bound(list.bodies, slot);
+        if (found == list.bodies.end() || *found != slot) return -1;
+        return static_cast<std::int32_t>(found - list.bodies.begin());
     };
     bool is_known = analysed_bodies_ == bodies_.size() && ends_.size() == list.joints.size();
     places_.resize(list.joints.size());

@@ -43,7 +43,8 @@ public:
     /// What becomes of the joints' errors in a motion. Kept: the way back leads to where it began.
     enum class Errors { corrected, kept };
 
-    /// Takes the list over. Bodies keep their slots and joints their places until the next call.
+    /// Takes the list over. Bodies keep their slots and joints their places until the next call. A joint's body that
+    /// the list lacks is taken as immovable.
     void set(const JointedList& list, const View& view);
     /// The joints' impulses are of no known time: the next phase takes none over.
     void start_cold() { impulse_time_ = 0; }
@@ -91,7 +92,7 @@ private:
     /// A joint's bodies and blocks.
     struct Place {
         std::uint32_t joint = 0;      // index
-        std::int32_t a = -1, b = -1;  // numbers of the bodies; −1: immovable
+        std::int32_t a = -1, b = -1;  // numbers of the bodies; −1: not in the list
         std::uint32_t edge_a = 0, edge_b = 0;
         bool is_held = false;  // its free row is part of the factors
         JointPose before, after;
@@ -129,7 +130,7 @@ private:
     void apply_solution(const View& view);
 
     std::vector<Body> bodies_;
-    std::vector<std::uint32_t> carriers_;  // slots of immovable bodies that joints hold on to
+    std::vector<std::uint32_t> carriers_;  // slots of bodies outside the list that joints hold on to
     std::vector<Place> places_;
     std::vector<std::array<std::int32_t, 2>> ends_;  // of the joints, as analysed
     std::size_t analysed_bodies_ = 0;
