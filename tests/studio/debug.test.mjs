@@ -58,6 +58,24 @@ describe("debug drawing in the Studio", { timeout: 300000 }, () => {
     assert.deepEqual(page.faults, []);
   });
 
+  it("tells how much a frame had no room for, as long as it has none", async () => {
+    // 180 × 180 samples have 96,839 edges; a frame has 60,000 lines.
+    const size = 180;
+    const heights = Array.from({ length: size * size }, (_, i) => 0.1 * ((i * 7919) % 11));
+    const shape = { type: "heightfield", columns: size, rows: size, cell_x: 1, cell_z: 1, heights };
+    await session.command("scene.load", { scene: { ...SCENE, entities: [...SCENE.entities, { index: 9, name: "Hills", shape, attributes: { kind: "static" } }] } });
+    await tick("shapes");
+    await page.getByTestId("view.options").click();
+    const told = page.getByTestId("debug-left-out");
+    await told.waitFor();
+    const edges = 2 * size * (size - 1) + (size - 1) ** 2;
+    const notDrawn = edges + 24 + 22 - 60000; // besides the two boxes' edges and the plane's grid
+    assert.equal(await told.textContent(), `${notDrawn.toLocaleString("en")} lines not drawn`);
+    await page.getByTestId("debug-shapes").click();
+    await told.waitFor({ state: "hidden" });
+    assert.deepEqual(page.faults, []);
+  });
+
   it("follows the simulation, and is there again after a reload", async () => {
     await tick("shapes");
     await page.waitForFunction((active) => window.embody.debugCounts()[active]?.lines === 24, ACTIVE);

@@ -10,6 +10,7 @@
 
 #include "physics/collision/shapes/outline.h"
 #include "physics/inter/debug_canvas.h"
+#include "physics/inter/debug_contacts.h"
 #include "physics/inter/world.h"
 #include "physics/state/world_state.h"
 
@@ -96,22 +97,37 @@ void draw_islands(const WorldState& world, DebugCanvas& canvas) {
         canvas.box(box, {DebugMeaning::island, short_number(number), world.activity.is_asleep(number)});
 }
 
-void draw_contacts(std::span<const ContactView> contacts, DebugCanvas& canvas) {
-    for (const ContactView& view : contacts) {
-        canvas.point(view.position, {DebugMeaning::contact});
-        canvas.line(view.position, view.position + canvas.options.mark_length * view.normal,
-                    {DebugMeaning::contact_normal});
+void draw_contacts(std::span<const DrawnContact> contacts, DebugCanvas& canvas) {
+    for (const DrawnContact& contact : contacts) {
+        const auto kind = static_cast<std::uint16_t>(contact.kind);
+        canvas.point(contact.position, {DebugMeaning::contact, kind});
+        canvas.line(contact.position, contact.position + canvas.options.mark_length * contact.normal,
+                    {DebugMeaning::contact_normal, kind});
     }
 }
 
-void draw_impulses(std::span<const ContactView> contacts, DebugCanvas& canvas) {
+void draw_impulses(std::span<const DrawnContact> contacts, std::span<const FluidPush> pushes, DebugCanvas& canvas) {
     double largest = 0;
-    for (const ContactView& view : contacts) largest = std::max(largest, length(view.impulse));
-    for (const ContactView& view : contacts) {
-        if (view.impulse == Vec3{}) continue;
-        canvas.arrow(view.position, view.position + canvas.options.longest_arrow / largest * view.impulse,
-                     {DebugMeaning::impulse});
-    }
+    for (const DrawnContact& contact : contacts) largest = std::max(largest, length(contact.impulse));
+    for (const FluidPush& push : pushes) largest = std::max(largest, length(push.impulse));
+    const auto draw = [&](Vec3 from, Vec3 impulse, TouchKind kind) {
+        if (impulse == Vec3{}) return;
+        canvas.arrow(from, from + canvas.options.longest_arrow / largest * impulse,
+                     {DebugMeaning::impulse, static_cast<std::uint16_t>(kind)});
+    };
+    for (const DrawnContact& contact : contacts) draw(contact.position, contact.impulse, contact.kind);
+    for (const FluidPush& push : pushes) draw(push.center, push.impulse, TouchKind::fluid);
+}
+
+// Between bodies first, then of what bends; particles are many, and come last.
+void draw_touches(const WorldState& world, std::span<const ContactView> views, DebugCanvas& canvas) {
+    std::vector<DrawnContact> contacts;
+    for (const ContactView& view : views) contacts.push_back({view.position, view.normal, view.impulse});
+    add_contacts_of_deformables(world, contacts);
+    if (canvas.is_wanted(DebugDrawFlag::impulses)) draw_impulses(contacts, pushes_of_fluids(world), canvas);
+    if (!canvas.is_wanted(DebugDrawFlag::contacts)) return;
+    add_contacts_of_particles(world, contacts);
+    draw_contacts(contacts, canvas);
 }
 
 void draw_trees(const WorldState& world, DebugCanvas& canvas) {
@@ -240,11 +256,8 @@ void draw_particles(const FluidParticles& fluid, DebugCanvas& canvas) {
 
 DebugDrawCount World::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const {
     DebugCanvas canvas(draw, options);
-    if (canvas.is_wanted(DebugDrawFlag::contacts) || canvas.is_wanted(DebugDrawFlag::impulses)) {
-        const std::vector<ContactView> views = contacts();
-        if (canvas.is_wanted(DebugDrawFlag::contacts)) draw_contacts(views, canvas);
-        if (canvas.is_wanted(DebugDrawFlag::impulses)) draw_impulses(views, canvas);
-    }
+    if (canvas.is_wanted(DebugDrawFlag::contacts) || canvas.is_wanted(DebugDrawFlag::impulses))
+        draw_touches(*state_, contacts(), canvas);
     if (canvas.is_wanted(DebugDrawFlag::joints)) draw_joints(*state_, canvas);
     if (canvas.is_wanted(DebugDrawFlag::masses)) draw_masses(*state_, canvas);
     if (canvas.is_wanted(DebugDrawFlag::islands)) draw_islands(*state_, canvas);

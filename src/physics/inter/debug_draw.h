@@ -17,9 +17,9 @@ enum class DebugMeaning : std::uint8_t {
     wants_to_sleep_shape,
     asleep_shape,
     bounds,          ///< of a body's shape
-    contact,         ///< point of a contact region
-    contact_normal,  ///< from the first body to the second
-    impulse,         ///< of a contact point on the second body, over the last step
+    contact,         ///< where two things touch; number: 0 bodies, 1 something soft, 2 a drop of a liquid
+    contact_normal,  ///< from the first to the second, to what is soft, to the drop; number: as of contact
+    impulse,         ///< of the last step on what the normal points to, of liquids on the body; number: as of contact
     island,          ///< number: of the island
     joint,           ///< from a centre of mass to the joint's frame
     joint_axis,      ///< number: 0, 1, 2 for X, Y, Z of a joint frame; that of the second body is dim
@@ -52,7 +52,7 @@ public:
 enum class DebugDrawFlag : std::uint32_t {
     shapes = 1u << 0,       ///< of bodies, as wires; coloured by island where these are asked for too
     bounds = 1u << 1,       ///< boxes around the shapes
-    contacts = 1u << 2,     ///< points and normals
+    contacts = 1u << 2,     ///< points and normals: of bodies, deformables and drops
     impulses = 1u << 3,     ///< arrows, as long as told by DebugDrawOptions::longest_arrow
     islands = 1u << 4,      ///< a box around each
     joints = 1u << 5,       ///< frames, axes, limits

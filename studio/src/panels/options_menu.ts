@@ -3,7 +3,7 @@ import { DEBUG_NAMES, type DebugName } from "../connection/debug_frame";
 import type { Parts } from "../parts";
 import type { UserAction } from "../tools/actions";
 import { openDialog } from "./dialogs";
-import { element } from "./element";
+import { element, setText, show } from "./element";
 import { numberField } from "./fields";
 import { userNameField } from "./user_name";
 
@@ -20,19 +20,34 @@ const DEBUG_LABELS: Record<DebugName, string> = {
   trees: "Broad phase",
 };
 
-/** What the solver sees: a box to tick for each. */
-function debugList({ preferences }: Pick<Parts, "preferences">): HTMLElement {
+/** Such as "1,234 lines and 56 points not drawn"; empty where all is. */
+function leftOutText({ lines, points }: { lines: number; points: number }): string {
+  const counted = (count: number, name: string) => (count === 0 ? [] : [`${count.toLocaleString("en")} ${name}${count === 1 ? "" : "s"}`]);
+  const parts = [...counted(lines, "line"), ...counted(points, "point")];
+  return parts.length === 0 ? "" : `${parts.join(" and ")} not drawn`;
+}
+
+/** What the solver sees: a box to tick for each, and how much of it a frame has no room for. */
+function debugList({ preferences, view }: Pick<Parts, "preferences" | "view">): { root: HTMLElement; end: () => void } {
   const line = (name: DebugName) => {
     const flip = () => preferences.set("debug", DEBUG_NAMES.filter((each) => preferences.get("debug").includes(each) !== (each === name)));
     const box = element("input", { type: "checkbox", "data-testid": `debug-${name}`, onchange: flip });
     box.checked = preferences.get("debug").includes(name);
     return element("label", { class: "option" }, box, element("span", {}, DEBUG_LABELS[name]));
   };
-  return element("fieldset", { class: "debug-options" }, element("legend", {}, "See inside the simulation"), ...DEBUG_NAMES.map(line));
+  const leftOut = element("p", { class: "note", "data-testid": "debug-left-out" });
+  const tell = () => {
+    const text = leftOutText(view.debug.leftOut);
+    setText(leftOut, text);
+    show(leftOut, text !== "");
+  };
+  tell();
+  const root = element("fieldset", { class: "debug-options" }, element("legend", {}, "See inside the simulation"), ...DEBUG_NAMES.map(line), leftOut);
+  return { root, end: view.debug.changed.on(tell) };
 }
 
 /** How the picture looks and how snapping works; kept in the browser. */
-export function openOptions(parts: Pick<Parts, "preferences" | "server">, actions: readonly UserAction[]): void {
+export function openOptions(parts: Pick<Parts, "preferences" | "server" | "view">, actions: readonly UserAction[]): void {
   const { preferences } = parts;
   const row = (label: string, field: HTMLElement) => element("label", { class: "option" }, field, element("span", {}, label));
   const flip = (id: string): HTMLElement | null => {
@@ -46,7 +61,8 @@ export function openOptions(parts: Pick<Parts, "preferences" | "server">, action
   const angle = numberField("Snap to", "°", (value) => value > 0 && preferences.set("snapAngle", value));
   step.set(preferences.get("snapLength"));
   angle.set(preferences.get("snapAngle"));
-  openDialog(
+  const inside = debugList(parts);
+  const dialog = openDialog(
     "View options",
     "options-dialog",
     element(
@@ -59,10 +75,11 @@ export function openOptions(parts: Pick<Parts, "preferences" | "server">, action
       flip("view.theme"),
       flip("view.quality"),
       flip("tool.snap"),
-      debugList(parts),
+      inside.root,
       row("Snapping step when moving", step.root),
       row("Snapping step when rotating", angle.root),
       row("Your name in the history of changes", userNameField(parts)),
     ),
   );
+  dialog.addEventListener("close", inside.end);
 }

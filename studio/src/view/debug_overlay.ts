@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineSegments, type Material, Points, PointsMaterial } from "three";
 import type { DebugBatch, DebugFrame } from "../connection/debug_frame";
+import { Signal } from "../signal";
 
 /** On the page, in pixels. */
 const POINT_SIZE = 5;
@@ -24,6 +25,10 @@ export class DebugOverlay {
   );
   /** Lines and points of each meaning that are drawn, for tests. */
   counts: Record<number, { lines: number; points: number }> = {};
+  /** What the frame left out, as a frame has a limit. */
+  leftOut = { lines: 0, points: 0 };
+  /** Another frame is drawn, or none. */
+  readonly changed = new Signal<void>();
 
   constructor() {
     for (const object of [this.lines, this.points]) {
@@ -47,6 +52,8 @@ export class DebugOverlay {
     }
     fill(this.lines, batches, ({ lines }) => lines);
     fill(this.points, batches, ({ points }) => points);
+    this.leftOut = { lines: frame?.linesLeftOut ?? 0, points: frame?.pointsLeftOut ?? 0 };
+    this.changed.emit();
   }
 }
 

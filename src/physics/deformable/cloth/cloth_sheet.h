@@ -66,6 +66,8 @@ public:
     [[nodiscard]] double elastic_energy() const;
     /// Contacts and attachments of the last substep.
     [[nodiscard]] std::span<const TouchSpring> springs() const { return springs_.springs(); }
+    /// Where it touched itself in the last substep.
+    [[nodiscard]] const ThinContacts& layer_contacts() const { return layer_contacts_; }
     /// True once a number was none: it stays where it last was.
     [[nodiscard]] bool is_frozen() const { return is_frozen_; }
     /// Rounds of conjugate gradients in the last substep, and solves.

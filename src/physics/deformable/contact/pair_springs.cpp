@@ -140,6 +140,7 @@ void PairSprings::add(const Search& search, const Found& found) {
     TouchSpring spring{.node = found.points.node, .weight = found.points.weight, .count = found.points.count};
     std::array<double, 2> mass{};
     const bool is_self = &search.a == &search.b;
+    Vec3 place;
     double compliance = 0, load = found.memory != nullptr && !is_self ? found.memory->carried : 0;
     for (int k = 0; k < found.points.count; ++k) {
         const auto at = static_cast<std::size_t>(k);
@@ -147,6 +148,7 @@ void PairSprings::add(const Search& search, const Found& found) {
         const std::uint32_t node = found.points.node[at];
         const double weight = found.points.weight[at];
         const std::size_t side = k < found.points.count_first ? 0 : 1;
+        if (side == 0) place += weight * member.surface.nodes->position[node];
         mass[side] += std::fabs(weight) * member.surface.nodes->mass[node];
         compliance += weight * weight * member.surface.nodes->inverse_mass[node];
         if (std::fabs(weight) > settings.min_load_weight) load = std::max(load, member.load[node]);
@@ -176,7 +178,9 @@ void PairSprings::add(const Search& search, const Found& found) {
                          {},
                          true,
                          spring.stiffness,
-                         found.memory != nullptr ? found.memory->carried : 0});
+                         found.memory != nullptr ? found.memory->carried : 0,
+                         place - search.first(found.candidate).surface.radius * found.normal,
+                         {}});
 }
 
 void PairSprings::begin(std::span<const ThinMember> members, std::span<const ThinPair> pairs,
@@ -244,6 +248,7 @@ void PairSprings::finish(std::span<const Vec3> moves, std::span<Vec3> given, Thi
             const Vec3 s = spring.lead(moves, {});
             const Vec3 force = spring.force(s);
             const double push = std::max(0.0, dot(force, spring.normal));
+            own.force = force;
             own.push = std::max(0.0, push + spring.stiffness * std::min(spring.gap, 0.0));
             own.carried = std::max(own.push / gravity, start_.settings.load_memory * own.carried);
             own.hold = held_stretch(spring, spring.hold + across(s, spring.normal), push, start_.h);

@@ -22,6 +22,8 @@ struct ThinContact {
     bool sticks = true;
     double stiffness = 0;  ///< N/m
     double carried = 0;    ///< what it has borne lately, as a mass, kg
+    Vec3 place;            ///< on the first, when the last substep began, world, m
+    Vec3 force;            ///< on the first in the last substep, friction too, N
 
     [[nodiscard]] auto key() const { return std::tuple(kind, is_swapped, first); }
 };
