@@ -93,7 +93,7 @@ TEST_P(GoldenHashes, AreTheSameForThreeWorkersAndFourLanes) { expect_golden(GetP
 TEST_P(GoldenHashes, AreTheSameForEightWorkersAndLanes) { expect_golden(GetParam(), 8, 8); }
 
 INSTANTIATE_TEST_SUITE_P(, GoldenHashes, testing::ValuesIn(golden_scenes().begin(), golden_scenes().end()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& one) { return std::string(one.param.name); });
 
 }  // namespace
 }  // namespace embody::physics
