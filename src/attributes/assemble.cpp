@@ -26,10 +26,7 @@ void put_number(AttributeSet& set, const char* name, double value, std::string s
 
 bool applies_to(std::string_view attribute, PhysicalKind kind) {
     const AttributeDescription* description = describe(attribute);
-    if (description == nullptr) return false;
-    const char letter = letter_of_kind(kind);
-    if (letter == '\0') return description->kind == "identity";
-    return description->applies_to.find(letter) != std::string::npos;
+    return description != nullptr && applies_to(*description, kind);
 }
 
 namespace {
@@ -56,13 +53,13 @@ void complete_for_kind(AttributeSet& set) {
     const PhysicalKind kind = kind_of(set);
     for (const AttributeDescription& description : registry()) {
         const AttributeEntry* held = set.find(description.name);
-        const bool concerns = applies_to(description.name, kind);
+        const bool concerns = applies_to(description, kind);
         if (held != nullptr && !concerns && held->level != AttributeLevel::manual) set.erase(description.name);
         if (held == nullptr && concerns) {
             set.put({description.name, description.standard, {}, {}, "default", AttributeLevel::standard});
         }
     }
-    if (kind == PhysicalKind::rope) put_twist_rigidity(set);
+    if (traits_of(kind).matter == Matter::line) put_twist_rigidity(set);
 }
 
 bool is_manual(const AttributeSet& set, std::string_view name) {
@@ -105,14 +102,21 @@ void put_mass_dependents(AttributeSet& set, const GeometryFacts& facts, const Fo
     put_number(set, "drag_area", (s.x * s.y + s.y * s.z + s.z * s.x) / 2, "mean projected area of the bounding box",
                level);
 
-    const PhysicalKind kind = kind_of(set);
-    if (kind == PhysicalKind::cloth)
-        put_number(set, "area_density", mass / form.face_area, "mass / largest face of the box", level);
-    if (kind == PhysicalKind::rope) {
-        put_number(set, "linear_density", mass / std::max({s.x, s.y, s.z}), "mass / largest extent", level);
+    const char* by_material = "density of the material";
+    switch (matter_of(set)) {
+        case Matter::none:
+        case Matter::body:
+        case Matter::solid:
+            return;
+        case Matter::sheet:
+            return put_number(set, "area_density", mass / form.face_area, "mass / largest face of the box", level);
+        case Matter::line:
+            return put_number(set, "linear_density", mass / std::max({s.x, s.y, s.z}), "mass / largest extent", level);
+        case Matter::liquid:
+            return put_number(set, "rest_density", density, by_material, level);
+        case Matter::grains:
+            return put_number(set, "grain_density", density, by_material, level);
     }
-    if (kind == PhysicalKind::fluid) put_number(set, "rest_density", density, "density of the material", level);
-    if (kind == PhysicalKind::granular) put_number(set, "grain_density", density, "density of the material", level);
 }
 
 namespace {
@@ -156,10 +160,19 @@ void put_fluid_cells(AttributeSet& set, double volume) {
 }  // namespace
 
 void put_fineness(AttributeSet& set, const GeometryFacts& facts, const Form& form) {
-    const PhysicalKind kind = kind_of(set);
     const double volume = facts.hull_volume > 0 && std::isfinite(facts.hull_volume) ? facts.hull_volume : form.volume;
-    if (kind == PhysicalKind::granular) put_simulated_grains(set, volume, form);
-    if (kind == PhysicalKind::fluid) put_fluid_cells(set, volume);
+    switch (matter_of(set)) {
+        case Matter::none:
+        case Matter::body:
+        case Matter::solid:
+        case Matter::sheet:
+        case Matter::line:
+            return;
+        case Matter::liquid:
+            return put_fluid_cells(set, volume);
+        case Matter::grains:
+            return put_simulated_grains(set, volume, form);
+    }
 }
 
 namespace {
@@ -203,14 +216,21 @@ void put_mass_by_volume(AttributeSet& set, double density, double volume, const 
 }  // namespace
 
 void put_mass_of_primitive(AttributeSet& set, const GeometryFacts& facts) {
-    const PhysicalKind kind = kind_of(set);
-    if (kind == PhysicalKind::cloth) put_mass_of_sheet(set, facts);
-    if (kind == PhysicalKind::rope) put_mass_of_line(set, facts);
-    if (kind == PhysicalKind::fluid)
-        put_mass_by_volume(set, set.number("rest_density", 998), facts.volume, "rest density × volume");
-    if (kind == PhysicalKind::granular)
-        put_mass_by_volume(set, set.number("grain_density", 2650) * loose_packing, facts.volume,
-                           "grain density × 0.55, as poured grains lie, × volume");
+    switch (matter_of(set)) {
+        case Matter::none:
+        case Matter::body:
+        case Matter::solid:
+            return;
+        case Matter::sheet:
+            return put_mass_of_sheet(set, facts);
+        case Matter::line:
+            return put_mass_of_line(set, facts);
+        case Matter::liquid:
+            return put_mass_by_volume(set, set.number("rest_density", 998), facts.volume, "rest density × volume");
+        case Matter::grains:
+            return put_mass_by_volume(set, set.number("grain_density", 2650) * loose_packing, facts.volume,
+                                      "grain density × 0.55, as poured grains lie, × volume");
+    }
 }
 
 }  // namespace embody::attributes

@@ -10,7 +10,7 @@
 
 namespace embody::attributes {
 
-/// Whether an attribute concerns things of this physical kind; things that are only drawn have the identity attributes.
+/// Of the attribute of this name; no attribute of another name concerns anything.
 bool applies_to(std::string_view attribute, PhysicalKind kind);
 
 /// Defaults for what concerns the set's kind and is missing; what does not concern it goes, unless a person set it. A

@@ -28,7 +28,7 @@ void check_entries(const AttributeSet& set, std::vector<Issue>& issues) {
     }
     const PhysicalKind kind = kind_of(set);
     for (const AttributeDescription& description : registry()) {
-        if (applies_to(description.name, kind) && set.find(description.name) == nullptr) {
+        if (applies_to(description, kind) && set.find(description.name) == nullptr) {
             issues.push_back({description.name, "is missing"});
         }
     }
@@ -77,7 +77,7 @@ std::vector<Issue> check(const AttributeSet& set, const ModelFacts& facts) {
     if (set.number("friction_dynamic", 0) > set.number("friction_static", 0)) {
         issues.push_back({"friction_dynamic", "exceeds the static friction"});
     }
-    if (set.word("collision_shape", "") == "trimesh" && kind_of(set) != PhysicalKind::static_body) {
+    if (set.word("collision_shape", "") == "trimesh" && !is_static(kind_of(set))) {
         issues.push_back({"collision_shape", "only static things collide with their triangles"});
     }
     return issues;

@@ -45,13 +45,13 @@ void explain_mass(AttributeSet& set) {
 
 // Of cloth by its area, of a rope by its length.
 bool spread_mass(AttributeSet& set, const Form& form) {
-    const bool is_cloth = kind_of(set) == PhysicalKind::cloth;
-    const char* name = is_cloth ? "area_density" : "linear_density";
+    const bool is_sheet = matter_of(set) == Matter::sheet;
+    const char* name = is_sheet ? "area_density" : "linear_density";
     if (!is_manual(set, name)) return false;
-    const double amount = is_cloth ? form.face_area : std::max({form.size.x, form.size.y, form.size.z});
+    const double amount = is_sheet ? form.face_area : std::max({form.size.x, form.size.y, form.size.z});
     const AttributeDescription& range = *describe("mass");
     put_derived(set, "mass", std::clamp(set.number(name, 1) * amount, *range.low, *range.high),
-                is_cloth ? "manual area density x largest face of the box" : "manual linear density x largest extent");
+                is_sheet ? "manual area density x largest face of the box" : "manual linear density x largest extent");
     return true;
 }
 
@@ -97,7 +97,7 @@ void order_friction(AttributeSet& set) {
 void update_collision_shape(AttributeSet& set, const GeometryFacts& facts, PhysicalKind kind_before) {
     const PhysicalKind kind = kind_of(set);
     if (kind == kind_before || set.find("collision_shape") == nullptr) return;
-    const ShapeChoice choice = choose_collision_shape(facts, kind == PhysicalKind::static_body);
+    const ShapeChoice choice = choose_collision_shape(facts, is_static(kind));
     replace(set, {"collision_shape", choice.shape, {}, {}, choice.source, choice.level});
 }
 

@@ -43,8 +43,8 @@ double largest_of(Vec3 size) { return std::max({size.x, size.y, size.z}); }
 
 // Cloth that lies folded or rolled: far smaller than such things are when they hang or lie open, and no sheet.
 bool is_folded(const CategoryData& category, const Form& form) {
-    return category.kind == PhysicalKind::cloth && category.scaling == MassScaling::area && form.size_known &&
-           largest_of(form.size) < 0.2 * largest_of(category.at_size) &&
+    return traits_of(category.kind).matter == Matter::sheet && category.scaling == MassScaling::area &&
+           form.size_known && largest_of(form.size) < 0.2 * largest_of(category.at_size) &&
            std::min({form.size.x, form.size.y, form.size.z}) > 0.005;
 }
 

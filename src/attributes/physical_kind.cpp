@@ -1,37 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The switches have no default, so that the compiler names each place that a new kind is missing in.
 #include "attributes/physical_kind.h"
 
 #include <algorithm>
 
 namespace embody::attributes {
 
-std::string to_text(PhysicalKind kind) {
-    switch (kind) {
-        case PhysicalKind::static_body:
-            return "static";
-        case PhysicalKind::rigid:
-            return "rigid";
-        case PhysicalKind::articulated:
-            return "articulated";
-        case PhysicalKind::soft:
-            return "soft";
-        case PhysicalKind::cloth:
-            return "cloth";
-        case PhysicalKind::rope:
-            return "rope";
-        case PhysicalKind::fluid:
-            return "fluid";
-        case PhysicalKind::granular:
-            return "granular";
-        case PhysicalKind::visual:
-            return "visual";
-    }
-    return {};
-}
+std::string to_text(PhysicalKind kind) { return std::string(traits_of(kind).text); }
 
 std::optional<PhysicalKind> kind_from_text(std::string_view text) {
-    const auto found = std::ranges::find_if(physical_kinds, [&](PhysicalKind kind) { return to_text(kind) == text; });
+    const auto found = std::ranges::find(physical_kinds, text, [](PhysicalKind kind) { return traits_of(kind).text; });
     return found == physical_kinds.end() ? std::nullopt : std::optional(*found);
 }
 
@@ -47,41 +24,21 @@ PhysicalKind kind_of(const AttributeSet& set) {
     return (held == nullptr ? std::nullopt : kind_from_value(held->value)).value_or(PhysicalKind::rigid);
 }
 
+Matter matter_of(const AttributeSet& set) { return traits_of(kind_of(set)).matter; }
+
+bool is_static(PhysicalKind kind) { return traits_of(kind).never_moves; }
+
 bool is_thin(PhysicalKind kind) {
-    switch (kind) {
-        case PhysicalKind::cloth:
-        case PhysicalKind::rope:
-            return true;
-        case PhysicalKind::static_body:
-        case PhysicalKind::rigid:
-        case PhysicalKind::articulated:
-        case PhysicalKind::soft:
-        case PhysicalKind::fluid:
-        case PhysicalKind::granular:
-        case PhysicalKind::visual:
-            return false;
-    }
-    return false;
+    const Matter matter = traits_of(kind).matter;
+    return matter == Matter::sheet || matter == Matter::line;
 }
+
+bool is_deformable(PhysicalKind kind) { return traits_of(kind).matter == Matter::solid || is_thin(kind); }
 
 bool flows(PhysicalKind kind) {
-    switch (kind) {
-        case PhysicalKind::fluid:
-        case PhysicalKind::granular:
-            return true;
-        case PhysicalKind::static_body:
-        case PhysicalKind::rigid:
-        case PhysicalKind::articulated:
-        case PhysicalKind::soft:
-        case PhysicalKind::cloth:
-        case PhysicalKind::rope:
-        case PhysicalKind::visual:
-            return false;
-    }
-    return false;
+    const Matter matter = traits_of(kind).matter;
+    return matter == Matter::liquid || matter == Matter::grains;
 }
-
-bool is_deformable(PhysicalKind kind) { return kind == PhysicalKind::soft || is_thin(kind); }
 
 bool changes_form(PhysicalKind kind) { return is_deformable(kind) || flows(kind); }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,26 +12,67 @@
 
 namespace embody::attributes {
 
-/// What a thing is to the simulation: the attribute "kind". Text is only in files, in the database and in messages.
-enum class PhysicalKind : std::uint8_t {
-    static_body,
-    rigid,
-    articulated,
-    soft,
-    cloth,
-    rope,
-    fluid,
-    granular,
-    visual,  ///< only drawn
+/// What a thing is to the simulation: the attribute "kind", in the order in which kinds are offered to people. Text is
+/// only in files, in the database and in messages. What a kind is like stands in traits_of.
+enum class PhysicalKind : std::uint8_t { static_body, rigid, articulated, soft, cloth, rope, fluid, granular, visual };
+
+/// What things of a kind are simulated as. Several kinds may have the same.
+enum class Matter : std::uint8_t { none, body, solid, sheet, line, liquid, grains };
+
+/// What all parts of the program ask of a kind.
+struct KindTraits {
+    std::string_view text = {};     ///< in files, databases and messages: it must not change
+    std::string_view meaning = {};  ///< for people, after the text: "rope is a line"
+    /// Of the attributes that concern such things, as in AttributeDescription::applies_to: the kind's own letter, then
+    /// those of kinds whose attributes it has too. Empty: only the attributes of identity concern it.
+    std::string_view letters = {};
+    Matter matter = Matter::body;
+    bool never_moves = false;
 };
 
-/// All, in the order in which they are offered to people.
-inline constexpr std::array physical_kinds{PhysicalKind::static_body, PhysicalKind::rigid,    PhysicalKind::articulated,
-                                           PhysicalKind::soft,        PhysicalKind::cloth,    PhysicalKind::rope,
-                                           PhysicalKind::fluid,       PhysicalKind::granular, PhysicalKind::visual};
-static_assert(physical_kinds.size() == static_cast<std::size_t>(PhysicalKind::visual) + 1);
+/// The table of kinds. The switch has no default, so that the compiler refuses a kind without a row.
+constexpr KindTraits traits_of(PhysicalKind kind) {
+    switch (kind) {
+        case PhysicalKind::static_body:
+            return {.text = "static", .meaning = "never moves", .letters = "S", .never_moves = true};
+        case PhysicalKind::rigid:
+            return {.text = "rigid", .meaning = "moves and keeps its form", .letters = "R"};
+        case PhysicalKind::articulated:
+            return {.text = "articulated", .meaning = "is one rigid body for now", .letters = "A"};
+        case PhysicalKind::soft:
+            return {.text = "soft",
+                    .meaning = "changes its form and springs back",
+                    .letters = "V",
+                    .matter = Matter::solid};
+        case PhysicalKind::cloth:
+            return {.text = "cloth", .meaning = "is a sheet", .letters = "C", .matter = Matter::sheet};
+        case PhysicalKind::rope:
+            return {.text = "rope", .meaning = "is a line", .letters = "P", .matter = Matter::line};
+        case PhysicalKind::fluid:
+            return {.text = "fluid", .meaning = "is liquid", .letters = "F", .matter = Matter::liquid};
+        case PhysicalKind::granular:
+            return {.text = "granular", .meaning = "is filled with grains", .letters = "G", .matter = Matter::grains};
+        case PhysicalKind::visual:
+            return {.text = "visual", .meaning = "is only drawn", .matter = Matter::none};
+    }
+    return {};
+}
 
-/// "static", "rigid", "articulated", "soft", "cloth", "rope", "fluid", "granular" or "visual".
+/// How many kinds there are: what has no row is none.
+inline constexpr std::size_t kind_count = [] {
+    std::size_t count = 0;
+    while (!traits_of(static_cast<PhysicalKind>(count)).text.empty()) ++count;
+    return count;
+}();
+
+/// All, in the order of the enumeration.
+inline constexpr auto physical_kinds = [] {
+    std::array<PhysicalKind, kind_count> kinds{};
+    for (std::size_t i = 0; i < kind_count; ++i) kinds[i] = static_cast<PhysicalKind>(i);
+    return kinds;
+}();
+
+/// "static", "rigid", …
 std::string to_text(PhysicalKind kind);
 /// Nothing for any other text.
 std::optional<PhysicalKind> kind_from_text(std::string_view text);
@@ -41,12 +83,16 @@ AttributeValue to_value(PhysicalKind kind);
 std::optional<PhysicalKind> kind_from_value(const AttributeValue& value);
 /// Of a thing with these attributes; rigid where they say nothing, as the registry's default is.
 PhysicalKind kind_of(const AttributeSet& set);
+/// What a thing with these attributes is simulated as.
+Matter matter_of(const AttributeSet& set);
 
-/// Whether such things are sheets or lines, which weigh by their area or length: cloth, rope.
+/// Whether such things never move.
+bool is_static(PhysicalKind kind);
+/// Whether such things are sheets or lines, which weigh by their area or length.
 bool is_thin(PhysicalKind kind);
-/// Whether such things keep their parts together and bend: soft, cloth, rope.
+/// Whether such things keep their parts together and bend: soft solids, sheets, lines.
 bool is_deformable(PhysicalKind kind);
-/// Whether such things flow and have the form of what holds them: fluid, granular.
+/// Whether such things flow and have the form of what holds them: liquids, grains.
 bool flows(PhysicalKind kind);
 /// Whether such things are no rigid body: those that bend or flow.
 bool changes_form(PhysicalKind kind);

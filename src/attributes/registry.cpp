@@ -160,35 +160,10 @@ const std::vector<AttributeDescription>& registry() {
     return rows;
 }
 
-char letter_of_kind(PhysicalKind kind) {
-    switch (kind) {
-        case PhysicalKind::static_body:
-            return 'S';
-        case PhysicalKind::rigid:
-            return 'R';
-        case PhysicalKind::articulated:
-            return 'A';
-        case PhysicalKind::soft:
-            return 'V';
-        case PhysicalKind::cloth:
-            return 'C';
-        case PhysicalKind::rope:
-            return 'P';
-        case PhysicalKind::fluid:
-            return 'F';
-        case PhysicalKind::granular:
-            return 'G';
-        case PhysicalKind::visual:
-            return '\0';
-    }
-    return '\0';
-}
-
-std::optional<PhysicalKind> kind_of_letter(char letter) {
-    for (const PhysicalKind kind : physical_kinds) {
-        if (letter != '\0' && letter_of_kind(kind) == letter) return kind;
-    }
-    return std::nullopt;
+bool applies_to(const AttributeDescription& attribute, PhysicalKind kind) {
+    const std::string_view letters = traits_of(kind).letters;
+    if (letters.empty()) return attribute.kind == "identity";
+    return attribute.applies_to.find_first_of(letters) != std::string::npos;
 }
 
 const AttributeDescription* describe(std::string_view name) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -27,17 +29,22 @@ struct AttributeDescription {
     std::optional<double> low, high;   ///< valid range of a number or of each component
     bool whole = false;                ///< a count or a set of bits: a number without fraction
     std::vector<std::string> choices;  ///< of a word; empty: any word
-    std::string applies_to;            ///< letters of the physical kinds: S R A V C P F G
+    std::string applies_to;            ///< letters of the physical kinds that it concerns, as in KindTraits
     std::string label;                 ///< for people, e.g. "Sliding friction"
     std::string help;                  ///< one sentence
 };
 
-/// Letters of all physical kinds, as in AttributeDescription::applies_to.
-inline constexpr std::string_view every_kind = "SRAVCPFG";
-/// 'R' for rigid; '\0' for visual.
-char letter_of_kind(PhysicalKind kind);
-/// Rigid for 'R'; nothing for what is no such letter.
-std::optional<PhysicalKind> kind_of_letter(char letter);
+/// Own letters of all physical kinds that have one, for AttributeDescription::applies_to; ends with a zero.
+inline constexpr auto every_kind = [] {
+    std::array<char, kind_count + 1> letters{};
+    std::size_t count = 0;
+    for (const PhysicalKind kind : physical_kinds)
+        if (!traits_of(kind).letters.empty()) letters[count++] = traits_of(kind).letters.front();
+    return letters;
+}();
+
+/// Whether an attribute concerns things of this physical kind; things that are only drawn have the identity attributes.
+bool applies_to(const AttributeDescription& attribute, PhysicalKind kind);
 
 /// All attributes in the order in which they are shown.
 const std::vector<AttributeDescription>& registry();

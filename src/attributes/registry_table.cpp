@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The vocabulary: a superset of KHR_physics_rigid_bodies, UsdPhysics with its PhysX and OmniPhysics schemas, MJCF and
-// SDFormat. Letters of the physical kinds: S static, R rigid, A articulated, V soft volume, C cloth, P rope, F fluid, G
-// granular. Things that are only drawn have the identity attributes.
+// SDFormat. Which kinds a row concerns is said by their letters in the table of kinds (traits_of); things that are only
+// drawn have the identity attributes.
 #include "attributes/registry_table.h"
 
 #include "attributes/model_facts.h"
@@ -20,6 +20,13 @@ std::vector<std::string> names_of_kinds() {
     std::vector<std::string> names;
     for (const PhysicalKind kind : physical_kinds) names.push_back(to_text(kind));
     return names;
+}
+
+std::string help_of_kinds() {
+    std::string meanings;
+    for (const PhysicalKind kind : physical_kinds)
+        meanings += (meanings.empty() ? "" : ", ") + to_text(kind) + " " + std::string(traits_of(kind).meaning);
+    return "What the thing is for physics: " + meanings + ".";
 }
 
 using Rows = std::vector<AttributeDescription>;
@@ -41,6 +48,9 @@ struct Group {
     Rows& rows;
     const char* kind;
     bool simulated = true;
+
+    /// For what is kept, shown and exported, but does not yet change the simulation.
+    [[nodiscard]] Group unsimulated() const { return {rows, kind, false}; }
 
     void number(const Text& text, const char* unit, double standard, double low, double high) const {
         AttributeDescription row = start(text, ValueType::number, unit, standard);
@@ -89,8 +99,8 @@ private:
 
 void add_identity(Rows& rows) {
     const Group group{rows, "identity"};
-    group.word({"kind", all_kinds, "Physical kind", "What the thing is for physics; static things never move."},
-               to_text(PhysicalKind::rigid), names_of_kinds());
+    const std::string help = help_of_kinds();
+    group.word({"kind", all_kinds, "Physical kind", help.c_str()}, to_text(PhysicalKind::rigid), names_of_kinds());
     group.word({"category", all_kinds, "Category", "What the thing is, from the taxonomy."}, "object", {});
     group.word({"subcategory", all_kinds, "Subcategory", "What it is more exactly, where known."}, "", {});
     group.word({"synset", all_kinds, "WordNet synset", "Meaning in WordNet 3.0, such as chair.n.01, where known."}, "",
@@ -188,7 +198,7 @@ void add_motion(Rows& rows) {
                 4294967295.0, 0, 4294967295.0);
     group.number({"drag_coefficient", "RAC", "Drag coefficient", "Of the drag of the air."}, "1", 1, 0, 3);
     group.number({"drag_area", "RA", "Drag area", "Area that meets the air."}, "m²", 0, 0, 1e8);
-    const Group later{rows, "motion", false};
+    const Group later = group.unsimulated();
     later.number({"break_impulse", "RA", "Breaking impulse", "An impulse above this breaks it."}, "N s", infinity, 0,
                  infinity);
     later.number({"break_energy", "RA", "Breaking energy", "An impact energy above this breaks it."}, "J", infinity, 0,
@@ -221,7 +231,7 @@ void add_soft_and_cloth(Rows& rows) {
     cloth.whole({"cloth_nodes", "C", "Nodes",
                  "Points that the sheet is computed with: more fold finer and cost more. Not its real threads."},
                 1000, 20, 20000);
-    const Group cloth_later{rows, "cloth", false};
+    const Group cloth_later = cloth.unsimulated();
     cloth_later.number({"tear_strength", "C", "Tear strength", "Tension that tears it."}, "N/m", infinity, 0, infinity);
 }
 
@@ -272,8 +282,8 @@ void add_fluid(Rows& rows) {
                   "Against air; walls are met at a right angle. Simulated where fluid_cell_size is less than twice the "
                   "capillary length √(σ/(ρ g)), of water 5.4 mm: on coarser cells gravity is all that shows."},
                  "N/m", 0.072, 0, 10);
-    const Group unsimulated{rows, "fluid", false};
-    unsimulated.number({"contact_angle", "F", "Contact angle", "On a solid wall."}, "deg", 60, 0, 180);
+    const Group later = fluid.unsimulated();
+    later.number({"contact_angle", "F", "Contact angle", "On a solid wall."}, "deg", 60, 0, 180);
 }
 
 void add_grain(Rows& rows) {
@@ -293,8 +303,8 @@ void add_grain(Rows& rows) {
                   "Slope at which a poured heap comes to rest; from 7 to 49 degrees; what is flatter or steeper is "
                   "simulated as these."},
                  "deg", 34, 0, 80);
-    const Group unsimulated{rows, "grain", false};
-    unsimulated.number({"cohesion", "G", "Cohesion", "Shear strength without load."}, "Pa", 0, 0, 1e7);
+    const Group later = grain.unsimulated();
+    later.number({"cohesion", "G", "Cohesion", "Shear strength without load."}, "Pa", 0, 0, 1e7);
 }
 
 }  // namespace

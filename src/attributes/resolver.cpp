@@ -104,7 +104,7 @@ void put_form(AttributeSet& set, const ModelFacts& facts, const std::vector<Mate
     const CenterAndInertia moments = center_and_inertia(facts.geometry, form, mass, spread_over(parts, mass));
     set.put({"center_of_mass", moments.center, {}, {}, moments.source, moments.level});
     set.put({"inertia", moments.inertia, {}, {}, moments.source, moments.level});
-    const ShapeChoice shape = choose_collision_shape(facts.geometry, kind_of(set) == PhysicalKind::static_body);
+    const ShapeChoice shape = choose_collision_shape(facts.geometry, is_static(kind_of(set)));
     set.put({"collision_shape", shape.shape, {}, {}, shape.source, shape.level});
 }
 

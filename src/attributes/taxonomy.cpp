@@ -86,8 +86,7 @@ bool is_stuff(const CategoryData& category) { return flows(category.kind) || is_
 void take_kind(FieldReader& reader, const std::string& text, PhysicalKind& kind) {
     check_choice(reader, "kind", text);
     kind = kind_from_text(text).value_or(kind);
-    if (kind == PhysicalKind::static_body)
-        reader.refuse("kind", "must say what it is when it moves; static is \"movable\": false");
+    if (is_static(kind)) reader.refuse("kind", "must say what it is when it moves; static is \"movable\": false");
 }
 
 // Of the box and of the largest extent, m.

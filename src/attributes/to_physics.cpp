@@ -172,13 +172,13 @@ double area_of(const SheetMesh& sheet) {
 
 Result<physics::BodyDefinition> body_from_attributes(const AttributeSet& attributes, const Taxonomy* taxonomy) {
     const PhysicalKind kind = kind_of(attributes);
-    if (kind == PhysicalKind::visual) {
+    if (traits_of(kind).matter == Matter::none) {
         return Error{"kind", "a thing that is only drawn has no body", "set kind to rigid or static"};
     }
     physics::BodyDefinition body;
     body.kind = physics::BodyKind::dynamic_body;
     if (attributes.truth("kinematic", false)) body.kind = physics::BodyKind::kinematic_body;
-    if (kind == PhysicalKind::static_body) body.kind = physics::BodyKind::static_body;
+    if (is_static(kind)) body.kind = physics::BodyKind::static_body;
     body.mass = mass_from(attributes);
     body.material = material_from(attributes, taxonomy);
     body.linear_damping = number_or_standard(attributes, "linear_damping");
@@ -196,7 +196,7 @@ Result<physics::ShapeDefinition> shape_from_attributes(const AttributeSet& attri
                                                        ModelGeometry& geometry) {
     const std::string shape = attributes.word("collision_shape", "convex_hull");
     if (shape == "trimesh") {
-        if (kind_of(attributes) != PhysicalKind::static_body) {
+        if (!is_static(kind_of(attributes))) {
             return Error{"collision_shape", "only static things collide with their triangles",
                          "set kind to static or collision_shape to convex_hull"};
         }

@@ -280,7 +280,7 @@ void Catalog::prepare_shape(const ChangeReport& report) const {
         return;
     const auto set = attributes(report.models.front().id);
     if (!set) return;
-    if (attributes::kind_of(*set) == attributes::PhysicalKind::soft) (void)soft_mesh(report.models.front().id);
+    if (attributes::matter_of(*set) == attributes::Matter::solid) (void)soft_mesh(report.models.front().id);
     if (set->word("collision_shape", "") != "decomposition") return;
     // What fails here fails again where the shape is needed, and is told there.
     const geometry::DecompositionParameters usual;

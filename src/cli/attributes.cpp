@@ -37,12 +37,12 @@ std::string default_text(const AttributeDescription& description) {
     return attributes::to_text(description.standard);
 }
 
-// S static, R rigid … in full.
+// Of those whose letters its description has.
 std::string kinds_text(const AttributeDescription& description) {
-    if (description.applies_to == attributes::every_kind) return "all";
+    if (description.applies_to == attributes::every_kind.data()) return "all";
     std::string text;
-    for (const char letter : description.applies_to)
-        text += (text.empty() ? "" : ", ") + to_text(*attributes::kind_of_letter(letter));
+    for (const attributes::PhysicalKind kind : attributes::physical_kinds)
+        if (applies_to(description, kind)) text += (text.empty() ? "" : ", ") + to_text(kind);
     return text;
 }
 

@@ -63,7 +63,7 @@ void print_parts(const catalog::ConvexParts& parts) {
 // What a soft thing is computed on, or why it cannot be soft. Made now where the import has not made it.
 std::optional<Result<catalog::SoftMesh>> soft_mesh(const catalog::Catalog& catalog, std::int64_t id,
                                                    const attributes::AttributeSet& set) {
-    if (kind_of(set) != attributes::PhysicalKind::soft) return std::nullopt;
+    if (matter_of(set) != attributes::Matter::solid) return std::nullopt;
     return catalog.soft_mesh(id);
 }
 

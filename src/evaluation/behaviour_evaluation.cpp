@@ -232,7 +232,7 @@ Result<BehaviourEvaluation> evaluate_behaviour(catalog::Catalog& catalog, std::s
             const auto attributes = catalog.attributes(model.id);
             if (!attributes) return attributes.error();
             const PhysicalKind kind = kind_of(*attributes);
-            if (kind == PhysicalKind::static_body || kind == PhysicalKind::visual) continue;
+            if (is_static(kind) || traits_of(kind).matter == attributes::Matter::none) continue;
             auto behaviour = behaviour_of(catalog, model, *attributes);
             if (behaviour)
                 evaluation.models.push_back(std::move(*behaviour));

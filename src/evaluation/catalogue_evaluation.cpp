@@ -26,7 +26,7 @@ void compare_movable(const attributes::Taxonomy& taxonomy, ModelFacts facts, con
     facts.door_or_window = false;
     const AttributeSet set = resolve(taxonomy, facts);
     ++evaluation.flagged;
-    if ((kind_of(set) != attributes::PhysicalKind::static_body) != catalogue_says) {
+    if (!is_static(kind_of(set)) != catalogue_says) {
         evaluation.disagreements.push_back({key, facts.name, found_category(set), catalogue_says});
     }
 }

@@ -45,18 +45,18 @@ TEST(PhysicalKind, OfASetIsRigidWhereItSaysNothing) {
 TEST(PhysicalKind, HasALetterOfItsOwnUnlessItIsOnlyDrawn) {
     std::set<char> letters;
     for (const PhysicalKind kind : physical_kinds) {
-        const char letter = letter_of_kind(kind);
-        letters.insert(letter);
+        const std::string_view own = traits_of(kind).letters;
         if (kind == PhysicalKind::visual) {
-            EXPECT_EQ(letter, '\0');
-            EXPECT_FALSE(kind_of_letter(letter));
-        } else {
-            EXPECT_NE(every_kind.find(letter), std::string_view::npos);
-            EXPECT_EQ(kind_of_letter(letter), kind);
+            EXPECT_TRUE(own.empty());
+            continue;
         }
+        ASSERT_FALSE(own.empty()) << to_text(kind);
+        EXPECT_TRUE(letters.insert(own.front()).second) << to_text(kind);
     }
-    EXPECT_EQ(letters.size(), physical_kinds.size());
-    EXPECT_FALSE(kind_of_letter('X'));
+    // What it has of others are letters of theirs.
+    EXPECT_EQ(std::string(every_kind.data()).size(), letters.size());
+    for (const PhysicalKind kind : physical_kinds)
+        for (const char letter : traits_of(kind).letters) EXPECT_TRUE(letters.contains(letter)) << to_text(kind);
 }
 
 TEST(PhysicalKind, BendsOrFlowsOrKeepsItsForm) {

@@ -77,8 +77,7 @@ TEST(PanelMass, IsTheSolversForRealModels) {
         ASSERT_TRUE(page.ok()) << page.error().message();
         if (page->models.empty()) break;
         const catalog::ModelSummary& model = page->models.front();
-        if (changes_form(model.physical_kind) || model.physical_kind == PhysicalKind::static_body ||
-            model.physical_kind == PhysicalKind::visual)
+        if (traits_of(model.physical_kind).matter != attributes::Matter::body || is_static(model.physical_kind))
             continue;
         for (const double scale : {1.0, 0.37}) {
             Document document = samples::floor_and_box(1);

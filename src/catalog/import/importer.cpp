@@ -417,10 +417,9 @@ Result<Importer::Stored> Importer::store(const ImportItem& item, const PreparedM
     if (!id) return id.error();
     source.model = *id;
     if (auto stored = store_convex_parts(*id, prepared.convex_parts); !stored) return stored.error();
-    if (auto stored = store_soft_mesh(
-            *id, attributes::kind_from_text(row.physical_kind) == attributes::PhysicalKind::soft, prepared);
-        !stored)
-        return stored.error();
+    const auto physical_kind = attributes::kind_from_text(row.physical_kind);
+    const bool is_soft = physical_kind && attributes::traits_of(*physical_kind).matter == attributes::Matter::solid;
+    if (auto stored = store_soft_mesh(*id, is_soft, prepared); !stored) return stored.error();
     if (auto forgotten = imports_.forget_other_preparations(*id, source.prepare_hash); !forgotten) {
         return forgotten.error();
     }

@@ -17,6 +17,7 @@ namespace embody::scene {
 using attributes::AttributeEntry;
 using attributes::AttributeLevel;
 using attributes::AttributeSet;
+using attributes::Matter;
 using attributes::ModelFacts;
 using attributes::PhysicalKind;
 
@@ -90,7 +91,7 @@ std::optional<PhysicalKind> own_kind(const Entity& entity) {
 // What a person makes of triangles that would be static otherwise.
 bool is_moved(const Entity& entity) {
     const auto own = own_kind(entity);
-    return own ? *own != PhysicalKind::static_body : !category_of(entity).empty();
+    return own ? !is_static(*own) : !category_of(entity).empty();
 }
 
 // A primitive that no category makes soft or the like is solid, of the default density, and its form is known exactly.
@@ -211,11 +212,11 @@ Result<SharedAttributes> EntityAttributes::shared(const Entity& entity) {
 }
 
 bool EntityAttributes::is_liquid(const Entity& entity) {
-    if (const auto own = own_kind(entity)) return *own == PhysicalKind::fluid;
+    if (const auto own = own_kind(entity)) return traits_of(*own).matter == Matter::liquid;
     const bool is_primitive = std::holds_alternative<physics::ShapeDefinition>(entity.geometry);
     if (is_primitive && category_of(entity).empty()) return false;
     const Result<AttributeSet> automatic = this->automatic(entity);
-    return automatic.ok() && kind_of(automatic.value()) == PhysicalKind::fluid;
+    return automatic.ok() && matter_of(automatic.value()) == Matter::liquid;
 }
 
 Result<std::vector<attributes::Issue>> EntityAttributes::contradictions(const Entity& entity) {

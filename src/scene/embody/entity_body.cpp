@@ -11,7 +11,7 @@ namespace embody::scene {
 using attributes::AttributeEntry;
 using attributes::AttributeLevel;
 using attributes::AttributeSet;
-using attributes::PhysicalKind;
+using attributes::Matter;
 
 namespace {
 
@@ -61,7 +61,7 @@ private:
 Result<physics::BodyDefinition> body_of(const Entity& entity, const AttributeSet& attributes,
                                         const attributes::Taxonomy* taxonomy) {
     physics::BodyDefinition body;
-    if (kind_of(attributes) == PhysicalKind::visual) {
+    if (matter_of(attributes) == Matter::none) {
         body.kind = physics::BodyKind::static_body;
         body.enabled = false;
     } else {
@@ -106,7 +106,7 @@ Result<physics::ShapeDefinition> shape_of(const Entity& entity, const AttributeS
     if (const auto* shape = std::get_if<physics::ShapeDefinition>(&entity.geometry)) {
         // Triangles have no inside that could move; a mesh that is made movable collides as its convex hull.
         const auto* mesh = std::get_if<physics::MeshShape>(shape);
-        if (!mesh || kind_of(attributes) == PhysicalKind::static_body) return *shape;
+        if (!mesh || is_static(kind_of(attributes))) return *shape;
         return hull_of(*mesh);
     }
     const Result<const KnownModel*> model = models.find(std::get<ModelReference>(entity.geometry).key);

@@ -8,12 +8,10 @@ namespace embody::scene {
 
 namespace {
 
-bool is_cloth(const attributes::AttributeSet& attributes) {
-    return kind_of(attributes) == attributes::PhysicalKind::cloth;
-}
+bool is_sheet(const attributes::AttributeSet& attributes) { return matter_of(attributes) == attributes::Matter::sheet; }
 
 int count_of(const attributes::AttributeSet& attributes) {
-    return static_cast<int>(is_cloth(attributes) ? attributes.number("cloth_nodes", 1000)
+    return static_cast<int>(is_sheet(attributes) ? attributes.number("cloth_nodes", 1000)
                                                  : attributes.number("rope_segments", 50));
 }
 
@@ -47,15 +45,15 @@ Result<const ThinForm*> EntityMeshes::thin_form(const Entity& entity, const attr
     auto& forms = forms_->thin_forms[key];
     auto found = forms.find(own);
     if (!key.is_shared() || found == forms.end()) {
-        found = forms.insert_or_assign(own, make_thin_form(entity, is_cloth(attributes), count_of(attributes))).first;
+        found = forms.insert_or_assign(own, make_thin_form(entity, is_sheet(attributes), count_of(attributes))).first;
     }
     if (!found->second.ok()) return found->second.error();
     return &found->second.value();
 }
 
-Result<ThinForm> EntityMeshes::make_thin_form(const Entity& entity, bool is_cloth, int count) {
+Result<ThinForm> EntityMeshes::make_thin_form(const Entity& entity, bool is_sheet, int count) {
     const auto of = [&](const auto& geometry) -> Result<ThinForm> {
-        if (!is_cloth) {
+        if (!is_sheet) {
             Result<LineForm> line = line_of(geometry, count);
             if (!line.ok()) return line.error();
             return ThinForm(std::move(line).value());

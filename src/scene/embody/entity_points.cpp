@@ -9,6 +9,7 @@
 
 namespace embody::scene {
 
+using attributes::Matter;
 using attributes::PhysicalKind;
 
 namespace {
@@ -45,22 +46,21 @@ EntityForm EntityPoints::soft_form(const Entity& entity, const attributes::Attri
 
 EntityForm EntityPoints::form(const Entity& entity, const attributes::AttributeSet& attributes, bool is_held_as_body) {
     const PhysicalKind kind = kind_of(attributes);
-    if (is_held_as_body && (is_deformable(kind) || kind == PhysicalKind::fluid))
+    const Matter matter = traits_of(kind).matter;
+    if (is_held_as_body && (is_deformable(kind) || matter == Matter::liquid))
         return {false, {}, rigid_because + "a joint or a pin holds on to it"};
-    switch (kind) {
-        case PhysicalKind::static_body:
-        case PhysicalKind::rigid:
-        case PhysicalKind::articulated:
-        case PhysicalKind::visual:
+    switch (matter) {
+        case Matter::none:
+        case Matter::body:
             return {};
-        case PhysicalKind::granular:
+        case Matter::grains:
             return {true, points_key(entity, attributes, {"simulated_diameter", "grain_budget"}), {}};
-        case PhysicalKind::fluid:
+        case Matter::liquid:
             return {true, points_key(entity, attributes, {"fluid_cell_size", "particle_budget"}), {}};
-        case PhysicalKind::soft:
+        case Matter::solid:
             return soft_form(entity, attributes);
-        case PhysicalKind::cloth:
-        case PhysicalKind::rope: {
+        case Matter::sheet:
+        case Matter::line: {
             const Result<const ThinForm*> thin = meshes_.thin_form(entity, attributes);
             if (!thin.ok()) return {false, {}, rigid_because + thin.error().why};
             return {true, deformable_key(entity, attributes), {}};
@@ -74,19 +74,18 @@ Result<PointsDefinition> EntityPoints::definition(const Entity& entity, const at
         if (!made.ok()) return made.error();
         return PointsDefinition(std::move(made).value());
     };
-    switch (kind_of(attributes)) {
-        case PhysicalKind::granular:
+    switch (matter_of(attributes)) {
+        case Matter::grains:
             return as_points(grains(entity, attributes));
-        case PhysicalKind::fluid:
+        case Matter::liquid:
             return as_points(liquid(entity, attributes));
-        case PhysicalKind::soft:
-        case PhysicalKind::cloth:
-        case PhysicalKind::rope:
-            return as_points(deformable(entity, attributes));
-        case PhysicalKind::static_body:
-        case PhysicalKind::rigid:
-        case PhysicalKind::articulated:
-        case PhysicalKind::visual:
+        case Matter::solid:
+            return as_points(placed(entity, soft(entity, attributes)));
+        case Matter::sheet:
+        case Matter::line:
+            return as_points(placed(entity, thin(entity, attributes)));
+        case Matter::none:
+        case Matter::body:
             break;
     }
     return Error{"attributes.kind", "a " + to_text(kind_of(attributes)) + " thing is one body, not points"};

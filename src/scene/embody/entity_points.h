@@ -45,7 +45,8 @@ private:
     Result<physics::DeformableDefinition> soft(const Entity& entity, const attributes::AttributeSet& attributes);
     Result<physics::DeformableDefinition> thin(const Entity& entity, const attributes::AttributeSet& attributes);
     /// With pose, velocities and what its pins hold in the world.
-    Result<physics::DeformableDefinition> deformable(const Entity& entity, const attributes::AttributeSet& attributes);
+    static Result<physics::DeformableDefinition> placed(const Entity& entity,
+                                                        Result<physics::DeformableDefinition> made);
 
     KnownModels& models_;
     EntityMeshes meshes_;

@@ -41,10 +41,8 @@ Result<physics::DeformableDefinition> EntityPoints::soft(const Entity& entity,
     return soft;
 }
 
-Result<physics::DeformableDefinition> EntityPoints::deformable(const Entity& entity,
-                                                               const attributes::AttributeSet& attributes) {
-    Result<physics::DeformableDefinition> made =
-        kind_of(attributes) == attributes::PhysicalKind::soft ? soft(entity, attributes) : thin(entity, attributes);
+Result<physics::DeformableDefinition> EntityPoints::placed(const Entity& entity,
+                                                           Result<physics::DeformableDefinition> made) {
     if (!made.ok()) return made.error();
     physics::DeformableDefinition deformable = std::move(made).value();
     deformable.pose = entity.pose;

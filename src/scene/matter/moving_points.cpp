@@ -15,15 +15,21 @@ Result<std::unique_ptr<MovingPoints>> made(Result<std::unique_ptr<Points>> point
     return std::unique_ptr<MovingPoints>(std::move(points).value());
 }
 
+// One overload for each definition: one without does not compile.
+struct Maker {
+    physics::World& world;
+    Liquids& liquids;
+
+    auto operator()(const GrainDefinition& grains) const { return made(GrainBodies::create(world, grains)); }
+    auto operator()(const LiquidDefinition& liquid) const { return made(FluidBody::create(world, liquids, liquid)); }
+    auto operator()(const physics::DeformableDefinition& soft) const { return made(SoftNodes::create(world, soft)); }
+};
+
 }  // namespace
 
 Result<std::unique_ptr<MovingPoints>> make_points(physics::World& world, Liquids& liquids,
                                                   const PointsDefinition& definition) {
-    if (const auto* grains = std::get_if<GrainDefinition>(&definition))
-        return made(GrainBodies::create(world, *grains));
-    if (const auto* liquid = std::get_if<LiquidDefinition>(&definition))
-        return made(FluidBody::create(world, liquids, *liquid));
-    return made(SoftNodes::create(world, std::get<physics::DeformableDefinition>(definition)));
+    return std::visit(Maker{world, liquids}, definition);
 }
 
 }  // namespace embody::scene

@@ -178,7 +178,7 @@ Result<void> Simulation::State::replace(LiveEntity& before, LiveEntity& after, b
     }
     // Liquid fills only what is free and joins liquid that is there, so what it was is not there meanwhile.
     const bool hides =
-        before.definition.enabled && (!before.points || kind_of(*before.attributes) == attributes::PhysicalKind::fluid);
+        before.definition.enabled && (!before.points || matter_of(*before.attributes) == attributes::Matter::liquid);
     const auto show = [&](bool shown) {
         return before.points ? before.points->set_enabled(shown) : world->set_enabled(before.body, shown);
     };

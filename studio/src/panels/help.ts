@@ -24,7 +24,7 @@ const STATES: readonly (readonly [string, string, string])[] = [
 
 const MATTER: readonly (readonly [string, string])[] = [
   ["Add one", "cloth, rope, water, sand and a cushion are among the primitives on the left"],
-  ["Physical kind", "in the panel on the right makes any thing rigid, soft, cloth, rope, fluid or granular, also while it plays"],
+  ["Physical kind", "in the panel on the right makes any thing what its list offers, such as soft, cloth or fluid, also while it plays"],
   ["Category", "of a primitive, such as honey, curtain, gravel: it takes kind and numbers of that"],
   ["Pins", "hold edges, corners, ends or a place you click on; by the world or by another thing"],
   ["Wind", "and gusts are under Air, with nothing selected"],

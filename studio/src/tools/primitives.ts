@@ -15,7 +15,7 @@ function primitive(label: string, drawing: string, shape: Shape): Primitive {
 }
 
 /** A primitive whose kind says how it behaves. */
-function ofKind(name: string, kind: "cloth" | "rope" | "fluid", label: string, drawing: string, shape: Shape, pose?: Pose): Primitive {
+function ofKind(name: string, kind: string, label: string, drawing: string, shape: Shape, pose?: Pose): Primitive {
   return { name, label, drawing, entity: () => ({ name: label, shape, attributes: { kind }, ...(pose ? { pose } : {}) }) };
 }
 

@@ -148,7 +148,7 @@ Result<json> tell_collision_shape(SessionState& state, const json& params) {
     const Result<ActingEntity> found = acting_entity(state, index);
     if (!found.ok()) return found.error();
     const auto& [entity, acting] = found.value();
-    if (kind_of(acting) == attributes::PhysicalKind::visual) return json{{"shape", nullptr}};
+    if (matter_of(acting) == attributes::Matter::none) return json{{"shape", nullptr}};
     const Result<physics::ShapeDefinition> shape = shape_of(*entity, acting, state.definitions.models);
     if (!shape.ok()) return shape.error();
     return json{{"shape", physics::is_static_only(shape.value()) ? json(nullptr) : shape_to_json(shape.value())}};
