@@ -23,10 +23,12 @@ struct AttributeDescription {
     std::string name;  ///< e.g. "friction_dynamic"
     std::string
         kind;  ///< the paper's attr_kind: identity, mass, shape, surface, motion, soft, cloth, rope, fluid, grain
+    std::string kind_label;  ///< of that, for people: "Soft body"
     ValueType type = ValueType::number;
     std::string unit;                  ///< SI, "1" for a pure number, "" for words
     AttributeValue standard;           ///< default value
     std::optional<double> low, high;   ///< valid range of a number or of each component
+    int size_power = 0;                ///< of a thing's size that it grows with; 0: it is the material's
     bool whole = false;                ///< a count or a set of bits: a number without fraction
     std::vector<std::string> choices;  ///< of a word; empty: any word
     std::string applies_to;            ///< letters of the physical kinds that it concerns, as in KindTraits

@@ -47,10 +47,11 @@ std::string with_note(const char* help, bool simulated) {
 struct Group {
     Rows& rows;
     const char* kind;
+    const char* label;
     bool simulated = true;
 
     /// For what is kept, shown and exported, but does not yet change the simulation.
-    [[nodiscard]] Group unsimulated() const { return {rows, kind, false}; }
+    [[nodiscard]] Group unsimulated() const { return {rows, kind, label, false}; }
 
     void number(const Text& text, const char* unit, double standard, double low, double high) const {
         AttributeDescription row = start(text, ValueType::number, unit, standard);
@@ -80,6 +81,8 @@ struct Group {
         row.high = high;
         rows.push_back(std::move(row));
     }
+    /// The row before: with this power of the thing's size.
+    void grows_with_size(int power) const { rows.back().size_power = power; }
 
 private:
     [[nodiscard]] AttributeDescription start(const Text& text, ValueType type, const char* unit,
@@ -87,6 +90,7 @@ private:
         AttributeDescription row;
         row.name = text.name;
         row.kind = kind;
+        row.kind_label = label;
         row.type = type;
         row.unit = unit;
         row.standard = std::move(standard);
@@ -98,7 +102,7 @@ private:
 };
 
 void add_identity(Rows& rows) {
-    const Group group{rows, "identity"};
+    const Group group{rows, "identity", "What it is"};
     const std::string help = help_of_kinds();
     group.word({"kind", all_kinds, "Physical kind", help.c_str()}, to_text(PhysicalKind::rigid), names_of_kinds());
     group.word({"category", all_kinds, "Category", "What the thing is, from the taxonomy."}, "object", {});
@@ -117,9 +121,10 @@ void add_identity(Rows& rows) {
 }
 
 void add_mass(Rows& rows) {
-    const Group group{rows, "mass"};
+    const Group group{rows, "mass", "Mass"};
     group.number({"mass", "SRAVCPG", "Mass", "Mass of the whole thing; of a static one, what it would weigh if freed."},
                  "kg", 1, 1e-6, 1e9);
+    group.grows_with_size(3);
     group.number({"density", "SRAVFG", "Material density", "Density of the material itself, without hollows."}, "kg/m³",
                  1000, 0.1, 22600);
     // The lower ends of these two leave room for models that are kilometres long by mistake.
@@ -128,17 +133,21 @@ void add_mass(Rows& rows) {
     group.number({"fill_fraction", "SRAV", "Fill", "Share of the volume that material takes up; the rest is hollow."},
                  "1", 0.3, 1e-12, 1);
     group.number({"volume", "SRAVFG", "Volume", "Volume inside the surface."}, "m³", 1, 1e-12, 1e12);
+    group.grows_with_size(3);
     group.number({"wall_thickness", "SRA", "Wall thickness", "Mean thickness of the walls of a hollow thing."}, "m",
                  0.003, 1e-4, 0.5);
+    group.grows_with_size(1);
     group.vector(
         {"center_of_mass", "SRAV", "Centre of mass", "In the model's frame: origin at the centre of its base, Y up."},
         "m", -1e4, 1e4);
+    group.grows_with_size(1);
     group.tensor({"inertia", "SRAV", "Moments of inertia", "About the centre of mass, in the model's axes."}, "kg m²",
                  -1e18, 1e18);
+    group.grows_with_size(5);
 }
 
 void add_shape(Rows& rows) {
-    const Group group{rows, "shape"};
+    const Group group{rows, "shape", "Collision shape"};
     group.word(
         {"collision_shape", "SRAVCPFG", "Collision shape",
          "What collides: a primitive that fits, the convex hull, several hulls for a hollow thing (decomposition), or "
@@ -148,10 +157,11 @@ void add_shape(Rows& rows) {
     group.number({"hull_error", "SRA", "Decomposition error",
                   "Depth of hollows that the hulls of a decomposition may fill, where the limit on them allows."},
                  "m", usual_hull_error, 1e-4, 1);
+    group.grows_with_size(1);
 }
 
 void add_surface(Rows& rows) {
-    const Group group{rows, "surface"};
+    const Group group{rows, "surface", "Surface"};
     group.word(
         {"surface_material", all_kinds, "Surface material", "Material outside; density and friction follow from it."},
         "generic", {});
@@ -182,7 +192,7 @@ void add_surface(Rows& rows) {
 }
 
 void add_motion(Rows& rows) {
-    const Group group{rows, "motion"};
+    const Group group{rows, "motion", "Motion"};
     group.number({"linear_damping", "RA", "Linear damping", "Share of the velocity lost a second."}, "1/s", 0, 0, 100);
     group.number({"angular_damping", "RA", "Angular damping", "Share of the spin lost a second."}, "1/s", 0.05, 0, 100);
     group.number({"gravity_factor", "RAVCP", "Gravity factor", "1 falls, 0 floats, -1 rises."}, "1", 1, -10, 10);
@@ -198,6 +208,7 @@ void add_motion(Rows& rows) {
                 4294967295.0, 0, 4294967295.0);
     group.number({"drag_coefficient", "RAC", "Drag coefficient", "Of the drag of the air."}, "1", 1, 0, 3);
     group.number({"drag_area", "RA", "Drag area", "Area that meets the air."}, "m²", 0, 0, 1e8);
+    group.grows_with_size(2);
     const Group later = group.unsimulated();
     later.number({"break_impulse", "RA", "Breaking impulse", "An impulse above this breaks it."}, "N s", infinity, 0,
                  infinity);
@@ -206,7 +217,7 @@ void add_motion(Rows& rows) {
 }
 
 void add_soft_and_cloth(Rows& rows) {
-    const Group soft{rows, "soft"};
+    const Group soft{rows, "soft", "Soft body"};
     soft.number({"youngs_modulus", "VC", "Young's modulus", "Stiffness of the material."}, "Pa", 1e5, 1e2, 1e12);
     soft.number({"poisson_ratio", "VC", "Poisson's ratio",
                  "Sideways shrinking when stretched; simulated within -0.9 and 0.495."},
@@ -218,7 +229,7 @@ void add_soft_and_cloth(Rows& rows) {
     soft.number({"internal_pressure", "V", "Internal pressure",
                  "Of gas inside, above that of the air around; its form is the one that it has under this pressure."},
                 "Pa", 0, 0, 1e8);
-    const Group cloth{rows, "cloth"};
+    const Group cloth{rows, "cloth", "Cloth"};
     cloth.number({"area_density", "C", "Area density", "Mass of a square metre."}, "kg/m²", 0.2, 1e-4, 1e3);
     cloth.number({"thickness", "C", "Thickness", "Of the cloth: its layers stay that far apart."}, "m", 5e-4, 1e-6,
                  0.1);
@@ -236,7 +247,7 @@ void add_soft_and_cloth(Rows& rows) {
 }
 
 void add_rope(Rows& rows) {
-    const Group rope{rows, "rope"};
+    const Group rope{rows, "rope", "Rope"};
     rope.number({"linear_density", "P", "Linear density", "Mass of a metre."}, "kg/m", 0.07, 1e-6, 1e4);
     rope.number({"axial_stiffness", "P", "Axial stiffness EA", "Force per unit strain."}, "N", 1e4, 1e-3, 1e12);
     rope.number({"bend_rigidity", "P", "Bend rigidity EI", "Moment per curvature."}, "N m²", 1e-3, 1e-12, 1e9);
@@ -251,7 +262,7 @@ void add_rope(Rows& rows) {
 }
 
 void add_fluid(Rows& rows) {
-    const Group fluid{rows, "fluid"};
+    const Group fluid{rows, "fluid", "Fluid"};
     fluid.number({"rest_density", "F", "Rest density", "Density of the liquid at rest; simulated as 1 or more."},
                  "kg/m³", 998, 0.01, 22600);
     fluid.number({"dynamic_viscosity", "F", "Viscosity", "Dynamic viscosity; simulated up to 10,000."}, "Pa s", 1e-3,
@@ -287,7 +298,7 @@ void add_fluid(Rows& rows) {
 }
 
 void add_grain(Rows& rows) {
-    const Group grain{rows, "grain"};
+    const Group grain{rows, "grain", "Grains"};
     grain.number({"grain_density", "G", "Grain density", "Density of a single grain."}, "kg/m³", 2650, 0.1, 22600);
     grain.number({"grain_diameter", "G", "Grain diameter", "Median diameter of a grain."}, "m", 0.002, 1e-6, 1);
     grain.whole(

@@ -37,14 +37,6 @@ Result<std::vector<AttributeEntry>> own_entries(const Entity& entity) {
     return entries;
 }
 
-// Attributes that grow with a power of the size; the others are the material's.
-struct Power {
-    const char* name;
-    int power;
-};
-constexpr Power powers[] = {{"mass", 3},           {"volume", 3},    {"center_of_mass", 1}, {"inertia", 5},
-                            {"wall_thickness", 1}, {"drag_area", 2}, {"hull_error", 1}};
-
 attributes::AttributeValue multiplied(attributes::AttributeValue value, double factor) {
     if (auto* number = std::get_if<double>(&value)) *number *= factor;
     if (auto* vector = std::get_if<Vec3>(&value)) *vector *= factor;
@@ -52,19 +44,25 @@ attributes::AttributeValue multiplied(attributes::AttributeValue value, double f
     return value;
 }
 
+// 0 of what the registry does not know.
+int size_power(const std::string& name) {
+    const attributes::AttributeDescription* description = attributes::describe(name);
+    return description ? description->size_power : 0;
+}
+
 // The same material in another size.
 AttributeSet scaled(const AttributeSet& set, double s) {
     AttributeSet out = set;
-    for (const Power& row : powers) {
-        const AttributeEntry* held = set.find(row.name);
-        if (!held) continue;
-        AttributeEntry entry = *held;
-        const double factor = std::pow(s, row.power);
+    for (const AttributeEntry& held : set.entries()) {
+        const int power = size_power(held.name);
+        if (power == 0) continue;
+        AttributeEntry entry = held;
+        const double factor = std::pow(s, power);
         entry.value = multiplied(std::move(entry.value), factor);
         if (entry.low) *entry.low *= factor;
         if (entry.high) *entry.high *= factor;
         entry.source += ", scaled";
-        out.erase(row.name);
+        out.erase(entry.name);
         out.put(std::move(entry));
     }
     return out;
@@ -143,9 +141,8 @@ GeometryKey attributes_key(const Entity& entity) {
 
 attributes::AttributeValue value_of_model(const std::string& name, const attributes::AttributeValue& value,
                                           double scale) {
-    for (const Power& row : powers)
-        if (name == row.name) return multiplied(value, std::pow(scale, -row.power));
-    return value;
+    const int power = size_power(name);
+    return power == 0 ? value : multiplied(value, std::pow(scale, -power));
 }
 
 const ModelFacts& EntityAttributes::facts_of(const Entity& entity, const physics::ShapeDefinition& shape) {

@@ -29,6 +29,7 @@ export type AttributeValue = number | string | boolean | number[];
 export interface AttributeEntry {
   name: string;
   kind: string;
+  kind_label: string;
   label: string;
   value: AttributeValue;
   unit: string;

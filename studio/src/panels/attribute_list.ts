@@ -8,18 +8,6 @@ import { openApply } from "./apply_dialog";
 import { element, setText, show } from "./element";
 
 const REFRESH_DELAY_MS = 60;
-const KIND_TITLES: Record<string, string> = {
-  identity: "What it is",
-  mass: "Mass",
-  shape: "Collision shape",
-  surface: "Surface",
-  motion: "Motion",
-  soft: "Soft body",
-  cloth: "Cloth",
-  rope: "Rope",
-  fluid: "Fluid",
-  grain: "Grains",
-};
 
 /** The physical attributes of what is selected, or of the model picked in the catalogue, grouped by kind. */
 export class AttributeList implements AttributeEdits {
@@ -113,7 +101,7 @@ export class AttributeList implements AttributeEdits {
       this.rows.set(entry.name, row);
       let group = groups.get(entry.kind);
       if (!group) {
-        group = this.makeGroup(entry.kind);
+        group = this.makeGroup(entry.kind, entry.kind_label);
         groups.set(entry.kind, group);
       }
       group.append(row.root);
@@ -122,8 +110,8 @@ export class AttributeList implements AttributeEdits {
   }
 
   /** A group of attributes, open or closed as its user left the last one of that kind. */
-  private makeGroup(kind: string): HTMLElement {
-    const group = element("details", { class: "group", open: !this.closed.has(kind) }, element("summary", {}, KIND_TITLES[kind] ?? kind));
+  private makeGroup(kind: string, title: string): HTMLElement {
+    const group = element("details", { class: "group", open: !this.closed.has(kind) }, element("summary", {}, title));
     group.addEventListener("toggle", () => (group.open ? this.closed.delete(kind) : this.closed.add(kind)));
     return group;
   }

@@ -350,8 +350,8 @@ TEST_F(SessionTest, ShowsAttributesWithTheirOrigin) {
     const json rows = run("entity.attributes", {{"index", box}})["attributes"];
     bool found = false;
     for (const json& row : rows) {
-        for (const char* field : {"name", "kind", "label", "value", "unit", "low", "high", "source", "level", "help",
-                                  "type", "choices", "range", "automatic", "overridden"})
+        for (const char* field : {"name", "kind", "kind_label", "label", "value", "unit", "low", "high", "source",
+                                  "level", "help", "type", "choices", "range", "automatic", "overridden"})
             EXPECT_TRUE(row.contains(field)) << field << " of " << row.value("name", "?");
         if (row["name"] != "friction_static") continue;
         found = true;

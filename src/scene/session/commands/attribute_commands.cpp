@@ -30,6 +30,7 @@ json attribute_rows(const AttributeSet& acting, const AttributeSet& automatic, c
         // What the panel needs to edit it, and to go back.
         const AttributeDescription* description = attributes::describe(entry.name);
         if (description) {
+            row["kind_label"] = description->kind_label;
             row["type"] = type_names[static_cast<std::size_t>(description->type)];
             row["choices"] = description->choices;
             row["range"] = nullptr;
