@@ -9,12 +9,23 @@ export interface Pose {
   rotation?: Quaternion;
 }
 
-/** Lengths in metres; round shapes have their axis along Y and are centred on the origin. */
-export type ConvexShape =
-  | { type: "sphere"; radius: number }
-  | { type: "box"; half_extents: Vector }
-  | { type: "capsule" | "cylinder" | "cone"; radius: number; half_height: number }
-  | { type: "hull"; points: Vector[] };
+interface RoundLengths {
+  radius: number;
+  half_height: number;
+}
+
+/** Shapes that are no more than their lengths, in metres; round ones have their axis along Y and are centred on the origin. */
+export interface ShapeLengths {
+  box: { half_extents: Vector };
+  sphere: { radius: number };
+  capsule: RoundLengths;
+  cylinder: RoundLengths;
+  cone: RoundLengths;
+}
+
+export type ShapeOfLengths = { [Type in keyof ShapeLengths]: { type: Type } & ShapeLengths[Type] }[keyof ShapeLengths];
+
+export type ConvexShape = ShapeOfLengths | { type: "hull"; points: Vector[] };
 
 export type Shape =
   | ConvexShape

@@ -2,9 +2,10 @@
 import { Color, Euler, Matrix4, Quaternion, Vector3 } from "three";
 import type { NewEntity, PoseEdit } from "../connection/messages";
 import { nameOf } from "../document/scene_document";
-import type { Entity, Shape, Vector } from "../connection/scene_types";
+import type { Entity, Shape, ShapeOfLengths, Vector } from "../connection/scene_types";
 import type { Parts } from "../parts";
 import { colorOf } from "../view/entity_view";
+import { fieldsOf, isOfLengths, shownLength, withShownLength } from "../view/shapes_of_lengths";
 import { element, show } from "./element";
 import { type Field, numberField, textField, truthField, vectorField } from "./fields";
 import { modelCard } from "./model_card";
@@ -105,32 +106,18 @@ export class EntityFields {
 
   /** The lengths of a primitive, as whole widths and heights. */
   private shapeRows(shape: Shape): Row[] {
-    const put = (next: Shape) => this.change({ shape: next });
-    const length = (label: string, read: (shape: never) => number, write: (shape: never, value: number) => Shape): Row => {
-      const present = () => this.entities()[0]?.shape ?? shape;
-      const field = numberField(label, "m", (value) => put(write(present() as never, value)), 0.01);
-      return { root: row(label, field.root), update: ([entity]) => field.set(read(entity!.shape as never)) };
-    };
-    type Round = Extract<Shape, { radius: number; half_height: number }>;
-    type Ball = Extract<Shape, { type: "sphere" }>;
-    type Box = Extract<Shape, { type: "box" }>;
-    const radius = length("Radius", (round: Ball) => round.radius, (round: Ball, value) => ({ ...round, radius: value }));
-    switch (shape.type) {
-      case "sphere":
-        return [radius];
-      case "capsule":
-      case "cylinder":
-      case "cone": {
-        const label = shape.type === "capsule" ? "Straight part" : "Height";
-        return [radius, length(label, (round: Round) => 2 * round.half_height, (round: Round, value) => ({ ...round, half_height: value / 2 }))];
+    if (!isOfLengths(shape)) return [];
+    return fieldsOf(shape).map((length) => {
+      const present = () => (this.entities()[0]?.shape ?? shape) as ShapeOfLengths;
+      const put = (shown: number | Vector) => this.change({ shape: withShownLength(present(), length, shown) });
+      const shown = (entity: Entity) => shownLength(entity.shape as ShapeOfLengths, length);
+      if (length.each) {
+        const field = vectorField(length.each, "m", (value) => put(value as Vector), 0.01);
+        return { root: row(length.label, field.root), update: ([entity]) => field.set(shown(entity!) as Vector) };
       }
-      case "box": {
-        const field = vectorField(["Width", "Height", "Depth"], "m", (value) => put({ type: "box", half_extents: value.map((each) => each / 2) as Vector }), 0.01);
-        return [{ root: row("Size", field.root), update: ([entity]) => field.set((entity!.shape as Box).half_extents.map((half) => 2 * half)) }];
-      }
-      default:
-        return [];
-    }
+      const field = numberField(length.label, "m", put, 0.01);
+      return { root: row(length.label, field.root), update: ([entity]) => field.set(shown(entity!) as number) };
+    });
   }
 
   private scaleRow(): Row {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 import { Matrix4, Object3D, Vector3 } from "three";
 import { TransformControls } from "three/examples/jsm/controls/TransformControls.js";
-import type { Shape } from "../connection/scene_types";
+import type { Shape, Vector } from "../connection/scene_types";
 import { Signal } from "../signal";
 import type { Parts } from "../parts";
+import { isOfLengths, scaledLengths } from "../view/shapes_of_lengths";
 import { PoseDrag } from "./poses";
 
 export type Tool = "select" | "move" | "rotate" | "scale";
@@ -141,19 +142,7 @@ export class Gizmo {
 
 /** A primitive of another size; undefined for what cannot be scaled, such as planes. */
 export function scaledShape(shape: Shape, factor: number): Shape | undefined {
-  const times = (vector: readonly number[]) => vector.map((number) => number * factor) as [number, number, number];
-  switch (shape.type) {
-    case "sphere":
-      return { ...shape, radius: shape.radius * factor };
-    case "box":
-      return { ...shape, half_extents: times(shape.half_extents) };
-    case "capsule":
-    case "cylinder":
-    case "cone":
-      return { ...shape, radius: shape.radius * factor, half_height: shape.half_height * factor };
-    case "hull":
-      return { ...shape, points: shape.points.map(times) };
-    default:
-      return undefined;
-  }
+  if (isOfLengths(shape)) return scaledLengths(shape, factor);
+  if (shape.type !== "hull") return undefined;
+  return { ...shape, points: shape.points.map((point) => point.map((number) => number * factor) as Vector) };
 }

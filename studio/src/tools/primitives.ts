@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import type { NewEntity } from "../connection/messages";
-import type { Pose, Shape } from "../connection/scene_types";
+import type { Pose, Shape, ShapeOfLengths } from "../connection/scene_types";
+import { SHAPES_OF_LENGTHS } from "../view/shapes_of_lengths";
 
 export interface Primitive {
   name: string;
@@ -26,11 +27,7 @@ function ofCategory(category: string, label: string, drawing: string, shape: Sha
 
 /** The analytical models, at the size of things one holds in two hands. */
 export const PRIMITIVES: readonly Primitive[] = [
-  primitive("Box", "M6 11l10-5 10 5v11l-10 5-10-5zM6 11l10 5 10-5M16 16v11", { type: "box", half_extents: [0.2, 0.2, 0.2] }),
-  primitive("Sphere", "M16 6a10 10 0 1 0 0 20 10 10 0 0 0 0-20zM6 16c4 4.5 16 4.5 20 0", { type: "sphere", radius: 0.2 }),
-  primitive("Capsule", "M10 12a6 6 0 0 1 12 0v8a6 6 0 0 1-12 0zM10 12c2 2.5 10 2.5 12 0M10 20c2 2.5 10 2.5 12 0", { type: "capsule", radius: 0.12, half_height: 0.15 }),
-  primitive("Cylinder", "M8 9c0-4 16-4 16 0v14c0 4-16 4-16 0zM8 9c0 4 16 4 16 0", { type: "cylinder", radius: 0.2, half_height: 0.2 }),
-  primitive("Cone", "M16 5l9 18c0 4-18 4-18 0zM7 23c0-3.5 18-3.5 18 0", { type: "cone", radius: 0.2, half_height: 0.25 }),
+  ...Object.entries(SHAPES_OF_LENGTHS).map(([type, { label, drawing, offered }]) => primitive(label, drawing, { type, ...offered } as ShapeOfLengths)),
   ofKind("cloth", "cloth", "Cloth", "M4 11c5-4 8 3 12 0s7-3 12 0l-2 13c-4-3-7 3-10 0s-7-3-12 0z", { type: "box", half_extents: [0.6, 0.001, 0.6] }),
   ofKind("round-cloth", "cloth", "Round cloth", "M4 14c0-8 24-8 24 0 0 3-2 8-4 10-2-3-4 2-8 0s-6 3-8 0c-2-2-4-7-4-10z", { type: "cylinder", radius: 0.6, half_height: 0.001 }),
   ofKind("rope", "rope", "Rope", "M4 9c4 0 4 14 12 14s8-14 12-14M4 12c3 0 4 14 12 14s9-14 12-14", { type: "capsule", radius: 0.01, half_height: 0.75 }, {

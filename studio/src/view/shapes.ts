@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: MIT
 import {
-  BoxGeometry,
   BufferAttribute,
   BufferGeometry,
-  CapsuleGeometry,
-  ConeGeometry,
-  CylinderGeometry,
   Matrix4,
   MeshStandardMaterial,
   PlaneGeometry,
   Quaternion,
-  SphereGeometry,
   Vector3,
 } from "three";
 import { ConvexGeometry } from "three/examples/jsm/geometries/ConvexGeometry.js";
@@ -18,6 +13,7 @@ import { toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.j
 import { positionOf, rotationOf } from "../document/scene_document";
 import type { Shape } from "../connection/scene_types";
 import { type Drawable, type DrawablePart, drawable } from "./drawable";
+import { drawingOf, isOfLengths } from "./shapes_of_lengths";
 
 /** Half the side of the square that stands for an endless plane, m. */
 const PLANE_REACH = 500;
@@ -25,16 +21,10 @@ const PLANE_REACH = 500;
 const CREASE = 0.75;
 const UP = new Vector3(0, 1, 0);
 const ONE = new Vector3(1, 1, 1);
-const NONE = new Vector3();
-const UNTURNED = new Quaternion();
 
 /** The colour comes with each instance, so that all primitives share materials. */
 function material(): MeshStandardMaterial {
   return new MeshStandardMaterial({ color: 0xffffff, roughness: 0.75, metalness: 0 });
-}
-
-function scaled(x: number, y: number, z: number): Matrix4 {
-  return new Matrix4().compose(NONE, UNTURNED, new Vector3(x, y, z));
 }
 
 function part(geometry: BufferGeometry, matrix = new Matrix4()): DrawablePart {
@@ -53,19 +43,11 @@ export function shapeKey(shape: Shape): string {
 }
 
 function shapeParts(shape: Shape): DrawablePart[] {
+  if (isOfLengths(shape)) {
+    const { geometry, size } = drawingOf(shape);
+    return [part(geometry, new Matrix4().makeScale(...size))];
+  }
   switch (shape.type) {
-    case "sphere":
-      return [part(new SphereGeometry(1, 32, 20), scaled(shape.radius, shape.radius, shape.radius))];
-    case "box": {
-      const [x, y, z] = shape.half_extents;
-      return [part(new BoxGeometry(2, 2, 2), scaled(x, y, z))];
-    }
-    case "capsule":
-      return [part(new CapsuleGeometry(shape.radius, 2 * shape.half_height, 10, 24, 1))];
-    case "cylinder":
-      return [part(new CylinderGeometry(1, 1, 2, 40), scaled(shape.radius, shape.half_height, shape.radius))];
-    case "cone":
-      return [part(new ConeGeometry(1, 2, 40), scaled(shape.radius, shape.half_height, shape.radius))];
     case "hull":
       return [part(toCreasedNormals(new ConvexGeometry(shape.points.map((point) => new Vector3(...point))), CREASE))];
     case "plane":
