@@ -2,6 +2,7 @@
 #include "scene/sample_documents.h"
 
 #include "attributes/physical_kind.h"
+#include "physics/every_shape.h"
 
 namespace embody::scene::samples {
 
@@ -48,6 +49,7 @@ void add_shapes(Document& document) {
     CompoundShape compound;
     compound.children.push_back({SphereShape{0.1}, {{0, 0.5, 0}, {}}});
     compound.children.push_back({BoxShape{{0.2, 0.2, 0.2}}, {{0, 0, 0}, from_axis_angle({0, 1, 0}, 0.7)}});
+    for_each_shape_of_lengths<ConvexShape>([&](const auto& shape) { compound.children.push_back({shape, {}}); });
     add(document, "Compound", compound, {7, 1, 0});
     document.entities.push_back({});
     document.entities.back().index = document.next_index++;

@@ -27,8 +27,8 @@ struct Solid {
     Result<MassProperties> operator()(const ConvexShape& shape) const {
         return mass_properties(shape);
     }
-    Result<MassProperties> operator()(const HullShape& shape) const {
-        const auto hull = geometry::build_convex_hull(shape.points, max_hull_vertices);
+    Result<MassProperties> operator()(const HasCorners auto& shape) const {
+        const auto hull = geometry::build_convex_hull(shape.corners(), max_hull_vertices);
         if (!hull) return Error{"points", hull.error().why, hull.error().remedy};
         return mass_properties(*hull);
     }

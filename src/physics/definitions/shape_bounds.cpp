@@ -29,8 +29,8 @@ struct Extent {
         add_disc(-cone.half_height, cone.radius);
         all.add(transform_point(pose, {0, cone.half_height, 0}));
     }
-    void operator()(const HullShape& hull) const {
-        for (const Vec3 point : hull.points) all.add(transform_point(pose, point));
+    void operator()(const HasCorners auto& hull) const {
+        for (const Vec3 point : hull.corners()) all.add(transform_point(pose, point));
     }
     void operator()(const PlaneShape&) const {}
     void operator()(const HeightfieldShape& field) const {

@@ -37,20 +37,20 @@ Result<void> check_point(const std::string& field, Vec3 p) {
                             ", " + to_text(p.z) + ")"};
 }
 
-Result<void> check(const SphereShape& s) { return check_size("radius", s.radius); }
-
-Result<void> check(const BoxShape& s) {
-    if (auto r = check_size("half_extents.x", s.half_extents.x); !r) return r;
-    if (auto r = check_size("half_extents.y", s.half_extents.y); !r) return r;
-    return check_size("half_extents.z", s.half_extents.z);
+Result<void> check_size(const char* field, Vec3 sizes) {
+    const std::string name(field);
+    if (auto r = check_size((name + ".x").c_str(), sizes.x); !r) return r;
+    if (auto r = check_size((name + ".y").c_str(), sizes.y); !r) return r;
+    return check_size((name + ".z").c_str(), sizes.z);
 }
 
-// Capsule, cylinder and cone have the same two numbers.
-template <class RoundShape>
-requires requires(RoundShape s) { s.half_height; }
-Result<void> check(const RoundShape& s) {
-    if (auto r = check_size("radius", s.radius); !r) return r;
-    return check_size("half_height", s.half_height);
+Result<void> check(const HasLengths auto& shape) {
+    Result<void> checked;
+    const auto check_next = [&](const char* field, const auto& length, const char*) {
+        if (checked) checked = check_size(field, length);
+    };
+    shape.lengths(shape, check_next);
+    return checked;
 }
 
 Result<void> check(const HullShape& s) {
@@ -136,10 +136,7 @@ Result<void> validate(const ShapeDefinition& definition) {
 }
 
 const char* shape_name(const ShapeDefinition& definition) {
-    static constexpr const char* names[] = {"sphere", "box",   "capsule",     "cylinder", "cone",
-                                            "hull",   "plane", "heightfield", "mesh",     "compound"};
-    static_assert(std::size(names) == std::variant_size_v<ShapeDefinition>);
-    return names[definition.index()];
+    return std::visit([](const auto& shape) { return shape.name; }, definition);
 }
 
 bool is_static_only(const ShapeDefinition& definition) {

@@ -16,7 +16,6 @@ using physics::CompoundChild;
 using physics::CompoundShape;
 using physics::ConeShape;
 using physics::CylinderShape;
-using physics::HullShape;
 using physics::SphereShape;
 
 // Whether a ball about p lies within, in the region's own frame.
@@ -58,8 +57,8 @@ Vec3 half_of(const ConeShape& s) { return {s.radius, s.half_height, s.radius}; }
 
 template <class Primitive>
 Result<FilledRegion::Part> FilledRegion::part_of(const Primitive& primitive, const Transform& pose) {
-    if constexpr (std::is_same_v<Primitive, HullShape>) {
-        Result<geometry::ConvexHull> hull = geometry::build_convex_hull(primitive.points);
+    if constexpr (physics::HasCorners<Primitive>) {
+        Result<geometry::ConvexHull> hull = geometry::build_convex_hull(primitive.corners());
         if (!hull.ok()) return hull.error();
         const Bounds bounds = transformed(pose, geometry::bounds(hull.value()));
         return Part{std::move(hull).value(), pose, bounds};

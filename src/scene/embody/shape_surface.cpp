@@ -59,7 +59,7 @@ std::vector<Vec3> corners(const physics::ConeShape& s) {
     points.push_back({0, s.half_height, 0});
     return points;
 }
-std::vector<Vec3> corners(const physics::HullShape& s) { return s.points; }
+std::vector<Vec3> corners(const physics::HasCorners auto& s) { return s.corners(); }
 
 // A convex shape is the hull of its corners.
 template <class Convex>

@@ -8,6 +8,7 @@
 
 #include "physics/collision/collision_probe.h"
 #include "physics/collision/shapes/collision_shape_data.h"
+#include "physics/every_shape.h"
 
 namespace embody::physics::collision {
 namespace {
@@ -24,10 +25,14 @@ std::vector<Solid> all_solids() {
         const Vec3 d = random_direction(random);
         hull.points.push_back({0.6 * d.x, 0.4 * d.y, 0.5 * d.z});
     }
-    return {{"sphere", SphereShape{0.4}},         {"box", BoxShape{{0.5, 0.3, 0.2}}},
-            {"capsule", CapsuleShape{0.2, 0.4}},  {"cylinder", CylinderShape{0.4, 0.3}},
-            {"cone", ConeShape{0.5, 0.4}},        {"hull", hull},
-            {"needle", CylinderShape{0.01, 0.8}}, {"tile", BoxShape{{0.6, 0.005, 0.6}}}};
+    std::vector<Solid> solids{{"sphere", SphereShape{0.4}},         {"box", BoxShape{{0.5, 0.3, 0.2}}},
+                              {"capsule", CapsuleShape{0.2, 0.4}},  {"cylinder", CylinderShape{0.4, 0.3}},
+                              {"cone", ConeShape{0.5, 0.4}},        {"hull", hull},
+                              {"needle", CylinderShape{0.01, 0.8}}, {"tile", BoxShape{{0.6, 0.005, 0.6}}}};
+    for_each_shape_of_lengths<ConvexShape>([&]<class Shape>(const Shape& shape) {
+        if constexpr (HasCorners<Shape>) solids.push_back({shape.name, shape});
+    });
+    return solids;
 }
 
 // Largest separation over directions: a fine sample of the sphere, then closer and closer around the best of it.
@@ -215,9 +220,10 @@ TEST_P(ConvexFuzz, moved_apart_by_their_depth_they_just_touch) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(EachWithAll, ConvexFuzz, testing::Range(0, 8), [](const auto& chosen) {
-    return std::string(all_solids()[static_cast<std::size_t>(chosen.param)].name);
-});
+INSTANTIATE_TEST_SUITE_P(EachWithAll, ConvexFuzz, testing::Range(0, static_cast<int>(all_solids().size())),
+                         [](const auto& chosen) {
+                             return std::string(all_solids()[static_cast<std::size_t>(chosen.param)].name);
+                         });
 
 }  // namespace
 }  // namespace embody::physics::collision

@@ -136,8 +136,8 @@ struct Builder {
     }
 
 private:
-    Result<void> add_piece(const HullShape& shape, const Transform& local) const {
-        const auto hull = geometry::build_convex_hull(shape.points, max_hull_vertices);
+    Result<void> add_piece(const HasCorners auto& shape, const Transform& local) const {
+        const auto hull = geometry::build_convex_hull(shape.corners(), max_hull_vertices);
         if (!hull) return Error{"points", hull.error().why, hull.error().remedy};
         return add_piece(*hull, local);
     }

@@ -43,8 +43,8 @@ struct Finder {
         features.push_back({{0, cone.half_height, 0}, 0});
         add_rim(cone.radius, -cone.half_height, features);
     }
-    void operator()(const HullShape& hull) const {
-        for (const Vec3 point : hull.points) features.push_back({point, 0});
+    void operator()(const HasCorners auto& hull) const {
+        for (const Vec3 point : hull.corners()) features.push_back({point, 0});
     }
     void operator()(const CompoundShape& compound) const {
         for (const CompoundChild& child : compound.children) {

@@ -5,6 +5,7 @@
 #include "scene/document/document_field.h"
 #include "scene/file/json/field_reader.h"
 #include "scene/file/json/parts.h"
+#include "scene/file/json/read_alternative.h"
 
 namespace embody::scene {
 
@@ -13,18 +14,19 @@ using namespace embody::physics;
 
 namespace {
 
-// Types in the order of ShapeDefinition's alternatives.
-constexpr std::initializer_list<const char*> shape_types = {"sphere", "box",   "capsule",     "cylinder", "cone",
-                                                            "hull",   "plane", "heightfield", "mesh",     "compound"};
-
-bool need_number(FieldReader& reader, const char* name, double& value) {
-    const json* field = reader.need(name, "a length in metres");
-    return field && read_number(*field, reader.path(name), value, reader.error(), positive);
+void read_length(const json& field, const std::string& where, double& length, std::optional<Error>& error) {
+    read_number(field, where, length, error, positive);
 }
 
-void read_round(FieldReader& reader, double& radius, double& half_height) {
-    need_number(reader, "radius", radius);
-    need_number(reader, "half_height", half_height);
+void read_length(const json& field, const std::string& where, Vec3& lengths, std::optional<Error>& error) {
+    read_vector(field, where, lengths, error);
+}
+
+void read_fields(FieldReader& reader, HasLengths auto& shape) {
+    shape.lengths(shape, [&](const char* name, auto& length, const char* expected) {
+        if (const json* field = reader.need(name, expected))
+            read_length(*field, reader.path(name), length, reader.error());
+    });
 }
 
 void read_points(FieldReader& reader, const char* name, std::vector<Vec3>& points) {
@@ -35,19 +37,25 @@ void read_points(FieldReader& reader, const char* name, std::vector<Vec3>& point
         if (!read_vector((*list)[i], element_path(reader.path(name), i), points[i], reader.error())) return;
 }
 
-HeightfieldShape read_heightfield(FieldReader& reader) {
-    HeightfieldShape field;
+void read_fields(FieldReader& reader, HullShape& hull) { read_points(reader, "points", hull.points); }
+
+void read_fields(FieldReader& reader, PlaneShape& plane) {
+    reader.vector("normal", plane.normal);
+    reader.number("offset", plane.offset);
+}
+
+void read_fields(FieldReader& reader, HeightfieldShape& field) {
     reader.whole("columns", field.columns, 2, 1 << 15);
     reader.whole("rows", field.rows, 2, 1 << 15);
     reader.number("cell_x", field.cell_x, positive);
     reader.number("cell_z", field.cell_z, positive);
     const json* list = reader.need("heights", "columns × rows numbers, row by row");
-    if (!list || !read_array(*list, reader.path("heights"), reader.error())) return field;
+    if (!list || !read_array(*list, reader.path("heights"), reader.error())) return;
     if (list->size() != static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows)) {
         reader.fail(reader.path("heights"),
                     "must have columns × rows = " + std::to_string(static_cast<long long>(field.columns) * field.rows) +
                         " numbers, has " + std::to_string(list->size()));
-        return field;
+        return;
     }
     field.heights.resize(list->size());
     for (std::size_t i = 0; i < field.heights.size(); ++i) {
@@ -56,7 +64,6 @@ HeightfieldShape read_heightfield(FieldReader& reader) {
             break;
         field.heights[i] = static_cast<float>(height);
     }
-    return field;
 }
 
 void read_triangles(FieldReader& reader, MeshShape& mesh) {
@@ -79,85 +86,16 @@ void read_triangles(FieldReader& reader, MeshShape& mesh) {
     }
 }
 
-MeshShape read_mesh(FieldReader& reader) {
-    MeshShape mesh;
+void read_fields(FieldReader& reader, MeshShape& mesh) {
     std::vector<Vec3> positions;
     read_points(reader, "positions", positions);
-    if (!reader.ok()) return mesh;
+    if (!reader.ok()) return;
     mesh.positions.reserve(positions.size());
     for (const Vec3& position : positions) mesh.positions.push_back(to_vec3f(position));
     read_triangles(reader, mesh);
-    return mesh;
 }
 
-void read_children(FieldReader& reader, CompoundShape& compound);
-
-ShapeDefinition read_shape(FieldReader& reader, std::size_t type) {
-    switch (type) {
-        case 0: {
-            SphereShape sphere;
-            need_number(reader, "radius", sphere.radius);
-            return sphere;
-        }
-        case 1: {
-            BoxShape box;
-            if (const json* field = reader.need("half_extents", "half the lengths of the edges, [x, y, z]"))
-                read_vector(*field, reader.path("half_extents"), box.half_extents, reader.error());
-            return box;
-        }
-        case 2: {
-            CapsuleShape capsule;
-            read_round(reader, capsule.radius, capsule.half_height);
-            return capsule;
-        }
-        case 3: {
-            CylinderShape cylinder;
-            read_round(reader, cylinder.radius, cylinder.half_height);
-            return cylinder;
-        }
-        case 4: {
-            ConeShape cone;
-            read_round(reader, cone.radius, cone.half_height);
-            return cone;
-        }
-        case 5: {
-            HullShape hull;
-            read_points(reader, "points", hull.points);
-            return hull;
-        }
-        case 6: {
-            PlaneShape plane;
-            reader.vector("normal", plane.normal);
-            reader.number("offset", plane.offset);
-            return plane;
-        }
-        case 7:
-            return read_heightfield(reader);
-        case 8:
-            return read_mesh(reader);
-        default: {
-            CompoundShape compound;
-            read_children(reader, compound);
-            return compound;
-        }
-    }
-}
-
-// The convex alternatives of a shape as a compound's child holds them.
-struct AsChild {
-    template <class Shape>
-    bool operator()(const Shape& shape) const {
-        if constexpr (std::is_assignable_v<decltype(child.shape)&, const Shape&>) {
-            child.shape = shape;
-            return true;
-        } else {
-            return false;
-        }
-    }
-    CompoundChild& child;
-};
-
-void read_children(FieldReader& reader, CompoundShape& compound) {
+void read_fields(FieldReader& reader, CompoundShape& compound) {
     const json* list = reader.need("children", "a list of convex shapes, each with an optional position and rotation");
     if (!list || !read_array(*list, reader.path("children"), reader.error())) return;
     for (std::size_t i = 0; i < list->size(); ++i) {
@@ -165,38 +103,36 @@ void read_children(FieldReader& reader, CompoundShape& compound) {
         CompoundChild child;
         child_reader.vector("position", child.local.position);
         child_reader.rotation("rotation", child.local.rotation);
-        std::size_t type = 0;
         child_reader.need("type", "the kind of shape");
         // Only convex shapes may be children; the wrong ones are not even in the list.
-        if (!child_reader.choice("type", type, {"sphere", "box", "capsule", "cylinder", "cone", "hull"})) return;
-        std::visit(AsChild{child}, read_shape(child_reader, type));
+        if (!read_alternative(child_reader, child.shape)) return;
+        std::visit([&](auto& shape) { read_fields(child_reader, shape); }, child.shape);
         if (!child_reader.finish()) return;
         compound.children.push_back(std::move(child));
     }
 }
 
-// Writers, one an alternative.
+// Writers of the alternatives.
 struct ShapeWriter {
-    json operator()(const SphereShape& s) const { return {{"type", "sphere"}, {"radius", s.radius}}; }
-    json operator()(const BoxShape& s) const {
-        return {{"type", "box"}, {"half_extents", vector_to_json(s.half_extents)}};
+    json operator()(const HasLengths auto& s) const {
+        json written = {{"type", s.name}};
+        s.lengths(s,
+                  [&](const char* name, const auto& length, const char*) { written[name] = length_to_json(length); });
+        return written;
     }
-    json operator()(const CapsuleShape& s) const { return round("capsule", s.radius, s.half_height); }
-    json operator()(const CylinderShape& s) const { return round("cylinder", s.radius, s.half_height); }
-    json operator()(const ConeShape& s) const { return round("cone", s.radius, s.half_height); }
     json operator()(const HullShape& s) const {
         json points = json::array();
         for (const Vec3& point : s.points) points.push_back(vector_to_json(point));
-        return {{"type", "hull"}, {"points", std::move(points)}};
+        return {{"type", s.name}, {"points", std::move(points)}};
     }
     json operator()(const PlaneShape& s) const {
-        return {{"type", "plane"}, {"normal", vector_to_json(s.normal)}, {"offset", s.offset}};
+        return {{"type", s.name}, {"normal", vector_to_json(s.normal)}, {"offset", s.offset}};
     }
     json operator()(const HeightfieldShape& s) const {
         json heights = json::array();
         for (const float height : s.heights) heights.push_back(float_to_json(height));
-        return {{"type", "heightfield"}, {"columns", s.columns}, {"rows", s.rows},
-                {"cell_x", s.cell_x},    {"cell_z", s.cell_z},   {"heights", std::move(heights)}};
+        return {{"type", s.name},     {"columns", s.columns}, {"rows", s.rows},
+                {"cell_x", s.cell_x}, {"cell_z", s.cell_z},   {"heights", std::move(heights)}};
     }
     json operator()(const MeshShape& s) const {
         json positions = json::array();
@@ -204,7 +140,7 @@ struct ShapeWriter {
             positions.push_back(json::array({float_to_json(p.x), float_to_json(p.y), float_to_json(p.z)}));
         json triangles = json::array();
         for (const auto& t : s.triangles) triangles.push_back(json::array({t[0], t[1], t[2]}));
-        return {{"type", "mesh"}, {"positions", std::move(positions)}, {"triangles", std::move(triangles)}};
+        return {{"type", s.name}, {"positions", std::move(positions)}, {"triangles", std::move(triangles)}};
     }
     json operator()(const CompoundShape& s) const {
         json children = json::array();
@@ -214,11 +150,10 @@ struct ShapeWriter {
             written["rotation"] = rotation_to_json(child.local.rotation);
             children.push_back(std::move(written));
         }
-        return {{"type", "compound"}, {"children", std::move(children)}};
+        return {{"type", s.name}, {"children", std::move(children)}};
     }
-    static json round(const char* type, double radius, double half_height) {
-        return {{"type", type}, {"radius", radius}, {"half_height", half_height}};
-    }
+    static json length_to_json(double length) { return length; }
+    static json length_to_json(Vec3 lengths) { return vector_to_json(lengths); }
 };
 
 }  // namespace
@@ -226,10 +161,9 @@ struct ShapeWriter {
 Result<ShapeDefinition> shape_from_json(const json& value, const std::string& where) {
     std::optional<Error> error;
     FieldReader reader(value, where, error);
-    std::size_t type = 0;
     ShapeDefinition shape;
     reader.need("type", "the kind of shape, e.g. \"box\"");
-    if (reader.choice("type", type, shape_types)) shape = read_shape(reader, type);
+    if (read_alternative(reader, shape)) std::visit([&](auto& one) { read_fields(reader, one); }, shape);
     reader.finish();
     if (error) return *error;
 
