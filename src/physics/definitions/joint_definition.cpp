@@ -37,15 +37,17 @@ Result<void> validate(const JointDefinition& definition) {
     auto frames = first_error(check_frame("frame_a", definition.frame_a), check_frame("frame_b", definition.frame_b));
     if (!frames) return frames;
 
-    // A hinge's angle is known within one turn only, so its limits lie in ±π.
+    // An angle is known within one turn only, so its limits lie in ±π.
     constexpr double half_turn = 3.14159265358979323846;
-    if (const auto* hinge = std::get_if<HingeJoint>(&definition.joint)) {
-        return check_limit_and_motor(hinge->limit, hinge->motor, half_turn, largest_angular_speed);
-    }
-    if (const auto* slider = std::get_if<SliderJoint>(&definition.joint)) {
-        return check_limit_and_motor(slider->limit, slider->motor, largest_coordinate, largest_linear_speed);
-    }
-    return {};
+    return std::visit(
+        []<class Kind>(const Kind& kind) -> Result<void> {
+            if constexpr (HasCoordinate<Kind>) {
+                return check_limit_and_motor(kind.limit, kind.motor, Kind::turns ? half_turn : largest_coordinate,
+                                             Kind::turns ? largest_angular_speed : largest_linear_speed);
+            }
+            return {};
+        },
+        definition.joint);
 }
 
 }  // namespace embody::physics

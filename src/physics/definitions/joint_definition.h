@@ -20,23 +20,59 @@ struct JointMotor {
     double max_force = 0;
 };
 
+// `name` is the joint's in scene files. A joint with a limit and a motor has a free coordinate on the X axis of the
+// joint frames; `turns` says whether that is an angle about it or a displacement along it.
+
 /// No relative motion.
-struct FixedJoint {};
+struct FixedJoint {
+    static constexpr const char* name = "fixed";
+};
 /// Three rotations free about the common point.
-struct BallJoint {};
+struct BallJoint {
+    static constexpr const char* name = "ball";
+};
 /// One rotation free about the X axis of the joint frames.
 struct HingeJoint {
+    static constexpr const char* name = "hinge";
+    static constexpr bool turns = true;
     std::optional<JointLimit> limit;
     std::optional<JointMotor> motor;
 };
 /// One translation free along the X axis of the joint frames.
 struct SliderJoint {
+    static constexpr const char* name = "slider";
+    static constexpr bool turns = false;
     std::optional<JointLimit> limit;
     std::optional<JointMotor> motor;
 };
+using JointKind = std::variant<FixedJoint, BallJoint, HingeJoint, SliderJoint>;
+
+template <class Kind>
+concept HasCoordinate = requires(Kind kind) {
+    kind.limit;
+    kind.motor;
+};
+
+/// Null where the kind has none.
+inline const std::optional<JointLimit>* limit_of(const JointKind& joint) {
+    return std::visit(
+        []<class Kind>(const Kind& kind) -> const std::optional<JointLimit>* {
+            if constexpr (HasCoordinate<Kind>) return &kind.limit;
+            return nullptr;
+        },
+        joint);
+}
+inline const std::optional<JointMotor>* motor_of(const JointKind& joint) {
+    return std::visit(
+        []<class Kind>(const Kind& kind) -> const std::optional<JointMotor>* {
+            if constexpr (HasCoordinate<Kind>) return &kind.motor;
+            return nullptr;
+        },
+        joint);
+}
 
 struct JointDefinition {
-    std::variant<FixedJoint, BallJoint, HingeJoint, SliderJoint> joint;
+    JointKind joint;
     BodyHandle body_a;            ///< null: the world
     BodyHandle body_b;            ///< not null, not body_a
     Transform frame_a;            ///< joint frame in body_a's frame (in the world, where body_a is null)

@@ -156,24 +156,31 @@ void draw_masses(const WorldState& world, DebugCanvas& canvas) {
     }
 }
 
-// A hinge's limits as a sector about X, in which Y of the second frame is; a slider's as a line along X.
-void draw_limit(const JointDefinition& joint, const Transform& frame, DebugCanvas& canvas) {
+// Angles as a sector about X, in which Y of the second frame is.
+void draw_angles(const JointLimit& limit, const Transform& frame, DebugCanvas& canvas) {
     constexpr int arc_lines = 12;  // of a whole range of angles
     const double radius = canvas.options.mark_length;
-    if (const auto* hinge = std::get_if<HingeJoint>(&joint.joint); hinge && hinge->limit) {
-        const double range = std::min(hinge->limit->upper - hinge->limit->lower, 2 * std::numbers::pi);
-        const auto at = [&](int i) {
-            const double angle = hinge->limit->lower + range * i / arc_lines;
-            return transform_point(frame, {0, radius * std::cos(angle), radius * std::sin(angle)});
-        };
-        canvas.line(frame.position, at(0), {DebugMeaning::joint_limit});
-        for (int i = 0; i < arc_lines; ++i) canvas.line(at(i), at(i + 1), {DebugMeaning::joint_limit});
-        canvas.line(at(arc_lines), frame.position, {DebugMeaning::joint_limit});
-    }
-    if (const auto* slider = std::get_if<SliderJoint>(&joint.joint); slider && slider->limit) {
-        canvas.line(transform_point(frame, {slider->limit->lower, 0, 0}),
-                    transform_point(frame, {slider->limit->upper, 0, 0}), {DebugMeaning::joint_limit});
-    }
+    const double range = std::min(limit.upper - limit.lower, 2 * std::numbers::pi);
+    const auto at = [&](int i) {
+        const double angle = limit.lower + range * i / arc_lines;
+        return transform_point(frame, {0, radius * std::cos(angle), radius * std::sin(angle)});
+    };
+    canvas.line(frame.position, at(0), {DebugMeaning::joint_limit});
+    for (int i = 0; i < arc_lines; ++i) canvas.line(at(i), at(i + 1), {DebugMeaning::joint_limit});
+    canvas.line(at(arc_lines), frame.position, {DebugMeaning::joint_limit});
+}
+
+// Displacements as a line along X.
+void draw_limit(const JointDefinition& joint, const Transform& frame, DebugCanvas& canvas) {
+    const auto draw = [&]<class Kind>(const Kind& kind) {
+        if constexpr (HasCoordinate<Kind>) {
+            if (!kind.limit) return;
+            if constexpr (Kind::turns) return draw_angles(*kind.limit, frame, canvas);
+            canvas.line(transform_point(frame, {kind.limit->lower, 0, 0}),
+                        transform_point(frame, {kind.limit->upper, 0, 0}), {DebugMeaning::joint_limit});
+        }
+    };
+    std::visit(draw, joint.joint);
 }
 
 void draw_axes(const Transform& frame, bool is_dim, DebugCanvas& canvas) {

@@ -73,6 +73,12 @@ inline constexpr auto fields_of = std::tuple{};
 template <class Variant>
 inline constexpr std::array<const char*, 0> alternatives_of{};
 
+/// The `name` of each alternative, where these have one.
+template <class... Alternatives>
+constexpr std::array<const char*, sizeof...(Alternatives)> names_of(const std::variant<Alternatives...>*) {
+    return {Alternatives::name...};
+}
+
 template <class Value>
 concept Listed = std::tuple_size_v<std::remove_const_t<decltype(fields_of<Value>)>> >
 0;

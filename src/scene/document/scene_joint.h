@@ -44,9 +44,8 @@ inline constexpr auto fields_of<physics::SliderJoint> = std::tuple{
 };
 
 /// What a joint leaves free.
-using JointKind = decltype(physics::JointDefinition::joint);
 template <>
-inline constexpr std::array<const char*, 4> alternatives_of<JointKind> = {"fixed", "ball", "hinge", "slider"};
+inline constexpr auto alternatives_of<physics::JointKind> = names_of(static_cast<const physics::JointKind*>(nullptr));
 
 template <>
 inline constexpr auto fields_of<physics::JointDefinition> = std::tuple{

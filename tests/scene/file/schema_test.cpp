@@ -15,6 +15,7 @@
 
 #include "attributes/registry.h"
 #include "folders.h"
+#include "physics/every_shape.h"
 #include "scene/document/document.h"
 #include "scene/file/scene_file.h"
 #include "scene/sample_documents.h"
@@ -30,6 +31,11 @@ const fs::path data = source_folder() / "data";
 json read_json(const fs::path& file) {
     std::ifstream in(file);
     return json::parse(in);
+}
+
+std::string read_text(const fs::path& of_the_sources) {
+    std::ifstream in(source_folder() / of_the_sources);
+    return {std::istreambuf_iterator<char>(in), {}};
 }
 
 class SceneSchema : public testing::Test {
@@ -82,6 +88,37 @@ TEST_F(SceneSchema, SettingsHaveTheRangesOfThePhysics) {
         }
     });
     EXPECT_EQ(ranges, 8);
+}
+
+TEST_F(SceneSchema, NamesEveryShape) {
+    const auto names = names_of(static_cast<const physics::ShapeDefinition*>(nullptr));
+    const std::set<std::string> known(names.begin(), names.end());
+    std::set<std::string> named;
+    for (const json& shape : text_["definitions"]["shape"]["anyOf"])
+        named.insert(shape["properties"]["type"]["const"].get<std::string>());
+    EXPECT_EQ(named, known);
+    const std::string format = read_text("docs/scene-format.md");
+    for (const std::string& name : known)
+        EXPECT_NE(format.find("| `" + name + "` |"), std::string::npos) << name << " is not in docs/scene-format.md";
+
+    // The Studio draws what is no more than its lengths by a table.
+    const std::string table = read_text("studio/src/view/shapes_of_lengths.ts");
+    physics::for_each_shape_of_lengths<physics::ShapeDefinition>([&](const auto& shape) {
+        EXPECT_NE(table.find("\n  " + std::string(shape.name) + ": {"), std::string::npos)
+            << shape.name << " is not in shapes_of_lengths.ts";
+    });
+}
+
+TEST_F(SceneSchema, NamesEveryJoint) {
+    const auto names = names_of(static_cast<const physics::JointKind*>(nullptr));
+    const std::set<std::string> known(names.begin(), names.end());
+    std::set<std::string> named;
+    for (const json& joint : text_["definitions"]["joint"]["anyOf"])
+        named.insert(joint["properties"]["type"]["const"].get<std::string>());
+    EXPECT_EQ(named, known);
+    const std::string format = read_text("docs/scene-format.md");
+    for (const std::string& name : known)
+        EXPECT_NE(format.find('`' + name + '`'), std::string::npos) << name << " is not in docs/scene-format.md";
 }
 
 TEST_F(SceneSchema, AllowsWhatTheReaderAllows) {

@@ -50,11 +50,6 @@ Frames frames_after_drift(const Joint& joint, double time, std::span<const BodyS
     return {a * joint.local_a, after_drift(bodies[joint.b], time) * joint.local_b};
 }
 
-template <class Kind>
-bool is(const Joint& joint) {
-    return std::holds_alternative<Kind>(joint.kind);
-}
-
 Vec3 axis_of(const Transform& frame, int i) {
     return rotate(frame.rotation, i == 0 ? Vec3{1, 0, 0} : i == 1 ? Vec3{0, 1, 0} : Vec3{0, 0, 1});
 }
@@ -65,17 +60,31 @@ Vec3 rotation_error(const Frames& frames) {
     return Vec3{q.x, q.y, q.z} * (q.w < 0 ? -2.0 : 2.0);
 }
 
-// C(pose), one number a row, in the order of set_rows().
-std::array<double, max_joint_rows> constraint_errors(const Joint& joint, const Frames& frames) {
+// C(pose) of each kind, one number a row, in the order of rows_of().
+using RowErrors = std::array<double, max_joint_rows>;
+
+RowErrors errors_of(const FixedJoint&, const Frames& frames) {
+    const Vec3 gap = frames.b.position - frames.a.position, turn = rotation_error(frames);
+    return {gap.x, gap.y, gap.z, turn.x, turn.y, turn.z};
+}
+
+RowErrors errors_of(const BallJoint&, const Frames& frames) {
     const Vec3 gap = frames.b.position - frames.a.position;
-    if (is<BallJoint>(joint)) return {gap.x, gap.y, gap.z};
-    if (is<HingeJoint>(joint)) {
-        const Vec3 axis_b = axis_of(frames.b, 0);
-        return {gap.x, gap.y, gap.z, -dot(axis_of(frames.a, 2), axis_b), dot(axis_of(frames.a, 1), axis_b)};
-    }
-    const Vec3 turn = rotation_error(frames);
-    if (is<FixedJoint>(joint)) return {gap.x, gap.y, gap.z, turn.x, turn.y, turn.z};
+    return {gap.x, gap.y, gap.z};
+}
+
+RowErrors errors_of(const HingeJoint&, const Frames& frames) {
+    const Vec3 gap = frames.b.position - frames.a.position, axis_b = axis_of(frames.b, 0);
+    return {gap.x, gap.y, gap.z, -dot(axis_of(frames.a, 2), axis_b), dot(axis_of(frames.a, 1), axis_b)};
+}
+
+RowErrors errors_of(const SliderJoint&, const Frames& frames) {
+    const Vec3 gap = frames.b.position - frames.a.position, turn = rotation_error(frames);
     return {dot(axis_of(frames.a, 1), gap), dot(axis_of(frames.a, 2), gap), turn.x, turn.y, turn.z};
+}
+
+RowErrors constraint_errors(const Joint& joint, const Frames& frames) {
+    return std::visit([&](const auto& kind) { return errors_of(kind, frames); }, joint.kind);
 }
 
 JointGeometry geometry_of(const Frames& frames, Vec3 center_a, Vec3 center_b) {
@@ -84,11 +93,22 @@ JointGeometry geometry_of(const Frames& frames, Vec3 center_a, Vec3 center_b) {
             axis_of(frames.b, 0)};
 }
 
-double coordinate_of(const Joint& joint, const Frames& frames) {
-    if (is<SliderJoint>(joint)) return dot(axis_of(frames.a, 0), frames.b.position - frames.a.position);
-    if (!is<HingeJoint>(joint)) return 0;
+double angle_about_x(const Frames& frames) {
     const Quat q = conjugate(frames.a.rotation) * frames.b.rotation;
     return 2 * (q.w < 0 ? arc_tangent(-q.x, -q.w) : arc_tangent(q.x, q.w));
+}
+
+double coordinate_of(const Joint& joint, const Frames& frames) {
+    return std::visit(
+        [&]<class Kind>(const Kind&) -> double {
+            if constexpr (!HasCoordinate<Kind>)
+                return 0;
+            else if constexpr (Kind::turns)
+                return angle_about_x(frames);
+            else
+                return dot(axis_of(frames.a, 0), frames.b.position - frames.a.position);
+        },
+        joint.kind);
 }
 
 Vec3 angular_effect(const BodyState& body, Vec3 row) { return body.inverse_inertia * row; }
@@ -142,18 +162,6 @@ std::array<double, max_joint_rows> solve_block(const Joint& joint, std::array<do
     return x;
 }
 
-const std::optional<JointLimit>* limit_of(const Joint& joint) {
-    if (const auto* hinge = std::get_if<HingeJoint>(&joint.kind)) return &hinge->limit;
-    if (const auto* slider = std::get_if<SliderJoint>(&joint.kind)) return &slider->limit;
-    return nullptr;
-}
-
-const std::optional<JointMotor>* motor_of(const Joint& joint) {
-    if (const auto* hinge = std::get_if<HingeJoint>(&joint.kind)) return &hinge->motor;
-    if (const auto* slider = std::get_if<SliderJoint>(&joint.kind)) return &slider->motor;
-    return nullptr;
-}
-
 void change_free_impulse(Joint& joint, double& impulse, double value, double sign, std::span<BodyState> bodies) {
     const double change = value - impulse;
     impulse = value;
@@ -161,7 +169,7 @@ void change_free_impulse(Joint& joint, double& impulse, double value, double sig
 }
 
 void solve_motor(Joint& joint, const JointPhase& phase, std::span<BodyState> bodies) {
-    const auto* motor = motor_of(joint);
+    const auto* motor = motor_of(joint.kind);
     if (!motor || !*motor) return;
     double& impulse = impulses_of(joint, phase.phase).motor;
     const double largest = (*motor)->max_force * phase.substep / 2;
@@ -239,7 +247,7 @@ void solve_bound(Joint& joint, const JointPhase& phase, const Bound& bound, std:
 void solve_free_row(Joint& joint, const JointPhase& phase, std::span<BodyState> bodies) {
     if (joint.free_mass == 0) return;
     solve_motor(joint, phase, bodies);
-    const auto* limit = limit_of(joint);
+    const auto* limit = limit_of(joint.kind);
     if (!limit || !*limit) return;
     for (const Bound& bound : bounds_of(**limit)) solve_bound(joint, phase, bound, bodies);
 }
@@ -258,30 +266,45 @@ JointPose pose_joint(const Joint& joint, const Transform& a, const Transform& b)
     return {geometry_of(frames, a.position, b.position), constraint_errors(joint, frames)};
 }
 
+namespace {
+
+constexpr Vec3 world_x{1, 0, 0}, world_y{0, 1, 0}, world_z{0, 0, 1};
+
+JointRow point_row(const JointGeometry& g, Vec3 d) { return {d, cross(g.arm_a, d), cross(g.arm_b, d)}; }
+JointRow slide_row(const JointGeometry& g, Vec3 d) { return {d, cross(g.reach_a, d), cross(g.arm_b, d)}; }
+JointRow turn_row(Vec3 d) { return {{}, d, d}; }
+
+JointRows rows_of(const FixedJoint&, const JointGeometry& g) {
+    return {6,
+            {point_row(g, world_x), point_row(g, world_y), point_row(g, world_z), turn_row(world_x), turn_row(world_y),
+             turn_row(world_z)},
+            {}};
+}
+
+JointRows rows_of(const BallJoint&, const JointGeometry& g) {
+    return {3, {point_row(g, world_x), point_row(g, world_y), point_row(g, world_z)}, {}};
+}
+
+JointRows rows_of(const HingeJoint&, const JointGeometry& g) {
+    return {5,
+            {point_row(g, world_x), point_row(g, world_y), point_row(g, world_z), turn_row(cross(g.z, g.axis_b)),
+             turn_row(cross(g.axis_b, g.y))},
+            turn_row(g.x)};
+}
+
+JointRows rows_of(const SliderJoint&, const JointGeometry& g) {
+    return {5,
+            {slide_row(g, g.y), slide_row(g, g.z), turn_row(world_x), turn_row(world_y), turn_row(world_z)},
+            slide_row(g, g.x)};
+}
+
+}  // namespace
+
 // With the mean geometry of two poses these are discrete gradients: the rows times the way between the poses are the
 // difference of the errors, exactly so for points and hinges, whose errors are bilinear in what the bodies carry, and
 // for directions that turn together.
-JointRows make_rows(const Joint& joint, const JointGeometry& g) {
-    const auto point_row = [&](Vec3 d) { return JointRow{d, cross(g.arm_a, d), cross(g.arm_b, d)}; };
-    const auto slide_row = [&](Vec3 d) { return JointRow{d, cross(g.reach_a, d), cross(g.arm_b, d)}; };
-    const auto turn_row = [](Vec3 d) { return JointRow{{}, d, d}; };
-    constexpr Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-    if (is<SliderJoint>(joint)) {
-        return {5, {slide_row(g.y), slide_row(g.z), turn_row(x), turn_row(y), turn_row(z)}, slide_row(g.x)};
-    }
-    JointRows rows{3, {point_row(x), point_row(y), point_row(z)}, {}};
-    if (is<HingeJoint>(joint)) {
-        rows.rows[3] = turn_row(cross(g.z, g.axis_b));
-        rows.rows[4] = turn_row(cross(g.axis_b, g.y));
-        rows.count = 5;
-        rows.free_row = turn_row(g.x);
-    } else if (is<FixedJoint>(joint)) {
-        rows.rows[3] = turn_row(x);
-        rows.rows[4] = turn_row(y);
-        rows.rows[5] = turn_row(z);
-        rows.count = 6;
-    }
-    return rows;
+JointRows make_rows(const Joint& joint, const JointGeometry& geometry) {
+    return std::visit([&](const auto& kind) { return rows_of(kind, geometry); }, joint.kind);
 }
 
 void set_rows(Joint& joint, const JointGeometry& geometry) {
@@ -293,12 +316,12 @@ void set_rows(Joint& joint, const JointGeometry& geometry) {
 }
 
 bool has_motor(const Joint& joint) {
-    const auto* motor = motor_of(joint);
+    const auto* motor = motor_of(joint.kind);
     return motor && *motor;
 }
 
 bool has_limit(const Joint& joint) {
-    const auto* limit = limit_of(joint);
+    const auto* limit = limit_of(joint.kind);
     return limit && *limit;
 }
 
@@ -371,7 +394,7 @@ double choose_free_hold(Joint& joint, const JointPhase& phase, bool is_first, st
     double excess = 0;
 
     // Limits.
-    const auto* limit = limit_of(joint);
+    const auto* limit = limit_of(joint.kind);
     if (limit && *limit) {
         for (const Bound& bound : bounds_of(**limit)) {
             const FreeHold side = bound.sign > 0 ? FreeHold::lower : FreeHold::upper;
@@ -391,7 +414,7 @@ double choose_free_hold(Joint& joint, const JointPhase& phase, bool is_first, st
     }
 
     // Motor. What a bound holds it only pushes.
-    const auto* motor = motor_of(joint);
+    const auto* motor = motor_of(joint.kind);
     if (!motor || !*motor) return excess;
     const double largest = (*motor)->max_force * phase.substep / 2;
     const double too_fast = row_speed(joint, joint.free_row, bodies) - (*motor)->speed;

@@ -39,7 +39,7 @@ struct JointImpulses {
 /// A joint between two bodies, or between the world and a body, as up to six rows that are solved as one block, and one
 /// row along its free coordinate for limits and motor.
 struct Joint {
-    std::variant<FixedJoint, BallJoint, HingeJoint, SliderJoint> kind;
+    JointKind kind;
     bool a_is_world = false;
     std::uint32_t a = 0, b = 0;  ///< body slots; a is meaningless for the world
     Transform local_a, local_b;  ///< joint frames relative to the centres of mass, body axes (world for the world)
