@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "catalog/catalog.h"
+#include "catalog/import/find_models.h"
 #include "cli/output.h"
 #include "foundation/version.h"
 
@@ -115,8 +116,7 @@ private:
             add<ImportArguments>("import", "Bring models into the database: files, folders, Sweet Home 3D catalogues",
                                  "embody import chair.glb ~/models /usr/share/sweethome3d/furniture/Scopia.sh3f");
         add_database(c);
-        c.app->add_option("paths", c.into->paths,
-                          "Files (.glb .gltf .obj .stl .ply .dae .ac .wrl .sh3f .jar .zip) and folders");
+        c.app->add_option("paths", c.into->paths, "Files (" + catalog::readable_extensions() + ") and folders");
         c.app->add_option(
             "--collection", c.into->collection,
             "Take the files as those of a collection (its unit, axes, licence), or without paths all that "

@@ -2,6 +2,7 @@
 #include "interchange/read_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <exception>
 #include <new>
@@ -14,6 +15,44 @@
 
 namespace embody::interchange {
 
+namespace {
+
+/// A format that is read: a line a file name extension.
+struct Format {
+    std::string_view extension;
+    std::string_view name;
+    Result<RawScene> (*read)(const FileSource& source, const std::string& path);
+};
+constexpr std::array<Format, 8> formats{{{".glb", "glTF", read_by_assimp},
+                                         {".gltf", "glTF", read_by_assimp},
+                                         {".obj", "OBJ", read_by_assimp},
+                                         {".stl", "STL", read_by_assimp},
+                                         {".ply", "PLY", read_ply},
+                                         {".dae", "COLLADA", read_by_assimp},
+                                         {".ac", "AC3D", read_by_assimp},
+                                         {".wrl", "VRML 2.0", read_vrml}}};
+
+const Format* format_of(const std::filesystem::path& file) {
+    const std::string extension = extension_of(file);
+    const auto found = std::ranges::find(formats, extension, &Format::extension);
+    return found == formats.end() ? nullptr : &*found;
+}
+
+// "glTF, OBJ … or VRML 2.0"
+std::string names_of_formats() {
+    std::string list;
+    std::string_view last;
+    for (const Format& format : formats) {
+        if (format.name == last) continue;
+        last = format.name;
+        if (!list.empty()) list += last == formats.back().name ? " or " : ", ";
+        list += last;
+    }
+    return list;
+}
+
+}  // namespace
+
 std::string extension_of(const std::filesystem::path& file) {
     std::string extension = file.extension().string();
     for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -21,19 +60,19 @@ std::string extension_of(const std::filesystem::path& file) {
 }
 
 const std::vector<std::string>& model_extensions() {
-    static const std::vector<std::string> extensions{".obj", ".stl", ".ply", ".dae", ".gltf", ".glb", ".ac", ".wrl"};
+    static const std::vector<std::string> extensions = [] {
+        std::vector<std::string> all;
+        for (const Format& format : formats) all.emplace_back(format.extension);
+        return all;
+    }();
     return extensions;
 }
 
-bool is_model_file(const std::filesystem::path& file) {
-    const auto& known = model_extensions();
-    return std::find(known.begin(), known.end(), extension_of(file)) != known.end();
-}
+bool is_model_file(const std::filesystem::path& file) { return format_of(file) != nullptr; }
 
 Result<void> can_read(const std::filesystem::path& file) {
     if (!is_model_file(file)) {
-        return Error{file.string(), "is of a format that is not read",
-                     "use glTF, OBJ, STL, PLY, COLLADA, AC3D or VRML 2.0"};
+        return Error{file.string(), "is of a format that is not read", "use " + names_of_formats()};
     }
     if (extension_of(file) == ".wrl") return can_read_vrml();
     return {};
@@ -53,10 +92,7 @@ Result<RawScene> read_model(const FileSource& source, const std::string& path) {
     const std::string found = source.find(path);
     if (found.empty()) return Error{where, "no such file"};
     try {
-        const std::string extension = extension_of(path);
-        if (extension == ".wrl") return read_vrml(source, found);
-        if (extension == ".ply") return read_ply(source, found);
-        return read_by_assimp(source, found);
+        return format_of(path)->read(source, found);
     } catch (const std::bad_alloc&) {
         return out_of_memory(where);
     } catch (const std::exception& problem) {

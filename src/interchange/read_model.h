@@ -12,7 +12,7 @@ namespace embody::interchange {
 
 /// Lower case, with the dot: ".obj" of "Chair.OBJ".
 std::string extension_of(const std::filesystem::path& file);
-/// File name extensions of the formats that are read: .obj .stl .ply .dae .gltf .glb .ac .wrl.
+/// File name extensions of the formats that are read, with the dot.
 const std::vector<std::string>& model_extensions();
 /// Whether the file's extension, in any case, is one of model_extensions().
 bool is_model_file(const std::filesystem::path& file);

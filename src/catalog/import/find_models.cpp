@@ -25,14 +25,6 @@ bool is_archive(const fs::path& path) {
            archive_extensions.end();
 }
 
-/// "readable are .obj .stl … .zip"
-std::string what_is_readable() {
-    std::string list = "readable are";
-    for (const std::string& extension : interchange::model_extensions()) list += " " + extension;
-    for (const std::string_view extension : archive_extensions) list += " " + std::string(extension);
-    return list;
-}
-
 // "office_chair-2.obj" → "office chair 2".
 std::string name_of(const fs::path& path) {
     std::string name = path.stem().string();
@@ -224,7 +216,7 @@ struct Walk {
         }
         if (failure) fail(folder, "cannot be read: " + failure.message());
         if (files.empty() && !stopped && found.failures.size() == failures) {
-            fail(folder, "holds no model files", what_is_readable());
+            fail(folder, "holds no model files", "readable are " + readable_extensions());
         }
         return files;
     }
@@ -260,11 +252,19 @@ struct Walk {
         if (!fs::is_regular_file(path, failure)) return fail(typed, "is neither a file nor a folder");
         if (interchange::is_model_file(path)) return add_file(path);
         if (is_archive(path)) return add_archive(path, true);
-        fail(typed, "is not a kind of file that can be imported", what_is_readable());
+        fail(typed, "is not a kind of file that can be imported", "readable are " + readable_extensions());
     }
 };
 
 }  // namespace
+
+std::string readable_extensions() {
+    std::string list;
+    for (const std::string& extension : interchange::model_extensions()) list += extension + " ";
+    for (const std::string_view extension : archive_extensions) list += std::string(extension) + " ";
+    list.pop_back();
+    return list;
+}
 
 FoundModels find_models(const std::vector<fs::path>& paths, const std::optional<Collection>& collection,
                         const std::function<bool()>& go_on) {

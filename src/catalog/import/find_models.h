@@ -24,6 +24,9 @@ struct FoundModels {
     std::vector<ImportFailure> failures;  ///< paths that hold nothing to import, and why
 };
 
+/// Of models and of the archives that they come in: ".glb .gltf … .zip".
+std::string readable_extensions();
+
 /// Walks files, folders and catalogues; without paths, the folders of the collection. Reads the lists of archives, but
 /// no model. A file of the collection's extensions has its unit, axes, licence and author; below a folder of the
 /// collection also a key of its own, e.g. "kicad:Relay_THT.3dshapes/Relay_SPDT.wrl", the first folder's name as its
