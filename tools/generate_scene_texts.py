@@ -78,7 +78,7 @@ def plain(value: object) -> object:
 
 
 def number(value: float) -> str:
-    return f"{value:.0f}" if float(value).is_integer() and abs(value) < 1e15 else f"{value:.4g}"
+    return f"{value:.0f}" if float(value).is_integer() and abs(value) < 1e15 else f"{value:.6g}"
 
 
 def typescript_field(owner: str, field: dict) -> str:

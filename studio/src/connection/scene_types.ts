@@ -291,7 +291,7 @@ export interface Action {
   trigger: Trigger;
   /** what the action does */
   effect: Effect;
-  /** at most once a run; what repeats does not unless this says so */
+  /** at most once a run; of what repeats false where nothing is said */
   once?: boolean;
 }
 
