@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "physics/definitions/grain_material.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <initializer_list>
+
+#include "physics/definitions/material.h"
+
+namespace embody::physics {
+namespace {
+
+// docs/physics/grains.md: frictions that were measured to give a slope.
+TEST(GrainMaterial, IsTheMeasuredOneAtItsSlopeAndBetweenTwoOfThemElsewhere) {
+    constexpr double diameter = 0.01, rounding = 1e-12;
+    for (const auto& [angle, sliding, rolling] :
+         {std::array{6.5, 0.1, 0.005}, {20.5, 0.4, 0.005}, {32.5, 0.6, 0.035}}) {
+        const Material material = grain_material(angle, diameter);
+        EXPECT_NEAR(material.friction_static, sliding, rounding) << angle;
+        EXPECT_NEAR(material.friction_rolling, rolling * diameter, rounding) << angle;
+    }
+    const Material between = grain_material((13.1 + 17.5) / 2, diameter);
+    EXPECT_NEAR(between.friction_dynamic, 0.25, rounding);
+}
+
+TEST(GrainMaterial, OfASteeperHeapResistsAtLeastAsMuch) {
+    for (const double diameter : {1e-4, 0.01, 1.0, 100.0}) {
+        Material before = grain_material(0, diameter);
+        for (double angle = -10; angle < 120; angle += 0.5) {
+            const Material material = grain_material(angle, diameter);
+            ASSERT_TRUE(validate(material)) << angle << " " << diameter;
+            EXPECT_GE(material.friction_static, before.friction_static) << angle;
+            EXPECT_GE(material.friction_rolling, before.friction_rolling) << angle;
+            before = material;
+        }
+    }
+}
+
+TEST(GrainSubsteps, AreMoreForSmallerGrainsAndNeverFewerThanTheSettingsSay) {
+    const WorldSettings settings;
+    int before = 1000;
+    for (const double diameter : {1e-4, 1e-3, 0.01, 0.1, 1.0, 10.0}) {
+        const int substeps = substeps_for_grains(diameter, settings);
+        EXPECT_LE(substeps, before) << diameter;
+        EXPECT_GE(substeps, settings.substeps) << diameter;
+        before = substeps;
+    }
+    EXPECT_EQ(substeps_for_grains(1e-9, settings), 16);
+    EXPECT_EQ(substeps_for_grains(1e-9, {.substeps = 40}), 40);
+    // Where nothing falls there is still a number.
+    EXPECT_EQ(substeps_for_grains(1, {.gravity = {0, 0, 0}}), WorldSettings{}.substeps);
+    // A fall of one diameter takes as long where both are 16 times as large.
+    EXPECT_EQ(substeps_for_grains(0.16, {.gravity = {0, -160, 0}}),
+              substeps_for_grains(0.01, {.gravity = {0, -10, 0}}));
+}
+
+}  // namespace
+}  // namespace embody::physics
