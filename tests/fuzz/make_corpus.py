@@ -77,6 +77,35 @@ def scenes():
             put("scene", file.name, file.read_bytes())
 
 
+def worlds():
+    """Programs of tests/fuzz/targets/world.cpp: a byte for each call, as they are listed there, then its choices."""
+    step, shape, body, joint, deform, pour, place, push, change, several, switch, destroy, destroy_else = 0, 1, 2, 4, 5, 6, 8, 9, 10, 11, 12, 13, 14
+    change_joint, change_deformable, hold, nodes, change_fluid, move_fluid, settings, ask, ground = range(15, 24)
+    run = [step, 7] * 3
+    ball, box, hull = [shape, 4, 0, 60], [shape, 4, 1, 80, 40, 80], [shape, 4, 5, 3] + [0, 0, 0, 239, 0, 0, 0, 239, 0, 0, 0, 239, 200, 200, 200, 120, 120, 10]
+    at = lambda x, y, z: [body, 0, 1, 1, x, y, z]
+    sheet, disc, rope, solid = [deform, 0, 90, 90, 0], [deform, 1, 60, 0], [deform, 2, 120, 8, 0], [deform, 3, 40, 40, 40, 1, 1, 1, 0]
+    water = [pour, 180, 0, 60, 130, 60, 150, 100, 150, 0]
+    programs = {
+        "stack": [ground, 3] + run * 2 + [ask, 120, 239, 120, 120, 0, 120, 0, 239] + run + [destroy, 1, 1] + run,
+        "shapes": [ground, 0] + ball + at(100, 200, 120) + box + at(140, 200, 120) + hull + at(120, 239, 140) +
+                  [shape, 4, 2, 20, 40] + at(60, 200, 120) + [shape, 4, 3, 40, 20] + at(180, 200, 120) + [shape, 4, 4, 60, 60] + at(120, 220, 60) + run * 3,
+        "field": [shape, 1, 4, 4, 100, 100] + [120, 10] * 8 + [body, 0, 2, 0, 0, 1, 0, 0, 0] + ball + at(160, 200, 160) + run * 2,
+        "compound": [ground, 0] + [shape, 3, 2, 0, 60, 60, 120, 120, 0, 0, 0, 0, 1, 40, 40, 40, 180, 120, 120, 0, 0, 0, 0] + at(120, 200, 120) + run * 2,
+        "chain": ball + at(120, 200, 120) + at(160, 200, 120) + [joint, 255, 1, 1, 4, 120, 200, 120, 0, 0, 0, 0] + [joint, 0, 1, 2, 2, 1, 60, 200, 1, 200, 100, 5, 60, 120, 120, 0, 0, 0, 0] +
+                 run + [change_joint, 0, 0, 0, 1, 3, 1, 0, 239, 0] + run + [push, 0, 2, 200, 10, 100, 120, 120, 120, 1] + run,
+        "sheet": [ground, 2] + sheet + [0] + run + [hold, 0, 0, 3, 0, 120, 120, 120] + run + [nodes, 0, 0, 1, 3, 120, 239, 120, 200, 120, 120] + run,
+        "rope": [ground, 1] + rope + [1, 0, 0, 0, 120, 120, 120] + run + [change_deformable, 0, 0, 1, 0, 6, 1] + run,
+        "ties": solid + [0] + disc + [1, 2, 100, 120, 160, 0, 4] + run * 2,
+        "water": [ground, 2] + water + [1, 0, 0] + run + ball + at(120, 200, 120) + run + [move_fluid, 0, 2, 255, 10, 100] + run + [move_fluid, 0, 0, 3] + [120, 150, 120] * 3 + run,
+        "storm": [settings, 3, 200, 100, 50, 1, settings, 4, 120, 1] + sheet + [0, change_deformable, 0, 0, 1, 1, 0] + run + [settings, 1, 239, 0] + run,
+        "asleep": [ground, 1] + [settings, 8, 0, 0] + run * 2 + [switch, 0, 1] + run + [place, 0, 120, 200, 120, 0, 0, 0, 0] + run + [several, 2, 0, 1, 1, 4, 120, 239, 120, 1, 3, 120, 120, 120] + run,
+        "refused": [body, 7, 0] + ball + [body, 0, 1, 1, 253, 0, 0] + at(120, 120, 120) + [push, 0, 0, 253, 254, 255, 0, 0, 0, 0] + [destroy_else, 0, 0] + [change, 0, 3, 1, 5, 1, 248] + [change_fluid, 0, 2, 0] + run,
+    }
+    for name, program in programs.items():
+        put("world", name, bytes([1] + program))
+
+
 def stored(embody: str):
     with tempfile.TemporaryDirectory() as folder:
         models = pathlib.Path(folder) / "models"
@@ -121,6 +150,7 @@ def main() -> int:
     put("ac3d", "textured.ac", samples.ac3d("wood.png"))
     put("glb", "picture.glb", samples.glb(samples.gltf_document(None, samples.png())))
     scenes()
+    worlds()
     stored(embody)
     return 0
 
