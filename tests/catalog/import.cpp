@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "catalog/import_fixture.h"
+#include "end_child.h"
 
 namespace embody::catalog {
 namespace {
@@ -288,7 +289,7 @@ TEST_F(ImportTest, TwoImportsAtOnceMakeEachModelOnceWhileOthersRead) {
         ASSERT_GE(children.back(), 0);
         if (children.back() == 0) {
             const auto report = import();
-            _exit(report && report->failures.empty() ? 0 : 1);
+            test::end_child(report && report->failures.empty() ? 0 : 1);
         }
     }
     // Two readers see a growing, always whole catalogue and are never turned away.

@@ -8,6 +8,7 @@
 #include "attributes/physical_kind.h"
 #include "catalog/catalog.h"
 #include "catalog/import_fixture.h"
+#include "end_child.h"
 
 namespace embody::catalog {
 namespace {
@@ -48,7 +49,7 @@ protected:
         if (child != 0) return child;
         auto own = Catalog::open(database(), taxonomy_folder);
         if (own) act(**own);
-        _exit(own ? 0 : 1);
+        test::end_child(own ? 0 : 1);
     }
     static int end_of(pid_t child) {
         int status = 0;

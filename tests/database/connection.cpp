@@ -14,6 +14,7 @@
 #include "database/model_schema.h"
 #include "database/temporary_folder.h"
 #include "database/transaction.h"
+#include "end_child.h"
 
 namespace embody::database {
 namespace {
@@ -359,7 +360,7 @@ TEST(Migrations, TwoProcessesCreateOneDatabaseTogether) {
     for (int i = 0; i < 4; ++i) {
         children.push_back(fork());
         ASSERT_GE(children.back(), 0);
-        if (children.back() == 0) _exit(open_model_database(folder / "models.sqlite") ? 0 : 1);
+        if (children.back() == 0) test::end_child(open_model_database(folder / "models.sqlite") ? 0 : 1);
     }
     for (const pid_t child : children) {
         int status = 0;

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "end_child.h"
 #include "interchange/read_model.h"
 #include "interchange/scratch_files.h"
 
@@ -130,7 +131,7 @@ std::optional<Error> read_apart(const std::filesystem::path& file) {
         setrlimit(RLIMIT_CPU, &processor_time);
         const auto read = read_model(file);
         const std::string told = read ? "" : read.error().where + '\n' + read.error().why;
-        _exit(write(ends[1], told.data(), told.size()) == static_cast<ssize_t>(told.size()) ? 0 : 1);
+        test::end_child(write(ends[1], told.data(), told.size()) == static_cast<ssize_t>(told.size()) ? 0 : 1);
     }
     close(ends[1]);
     std::string told;

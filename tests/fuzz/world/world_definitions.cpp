@@ -30,7 +30,7 @@ HeightfieldShape read_heightfield(ByteReader& bytes) {
     field.cell_z = bytes.number(small, 2);
     const auto count = static_cast<std::size_t>(field.columns * field.rows);
     for (std::size_t i = 0; i < count; ++i) field.heights.push_back(static_cast<float>(bytes.number(-large, large)));
-    if (bytes.is_one_of(16)) field.heights.pop_back();
+    if (count > 0 && bytes.is_one_of(16)) field.heights.pop_back();
     return field;
 }
 
