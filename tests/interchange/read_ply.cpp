@@ -153,6 +153,49 @@ TEST(ReadPly, AllEncodingsAndLineEndsGiveTheSame) {
     }
 }
 
+// A vertex whose x has this type and that value, beside y and z of 0: what is read of x.
+template <class T>
+float read_as(const std::string& type, T value, bool big) {
+    std::string file = std::string("ply\nformat binary_") + (big ? "big" : "little") +
+                       "_endian 1.0\nelement vertex 3\nproperty " + type + " x\nproperty float y\nproperty float z\n" +
+                       face_header + "end_header\n";
+    for (const float height : {0.f, 1.f, 0.f}) {
+        file += binary(value, big) + binary(height, big) + binary(height == 0 ? 0.f : 2.f, big);
+    }
+    file += '\3';
+    for (const std::int32_t index : {0, 1, 2}) file += binary(index, big);
+    const auto scene = read(file);
+    EXPECT_TRUE(scene) << type << ": " << scene.error().message();
+    return scene ? scene->meshes[0].positions[1].x : 0;
+}
+
+TEST(ReadPly, NumbersOfEveryTypeKeepTheirValueAndSign) {
+    for (const bool big : {false, true}) {
+        for (const char* type : {"char", "int8"}) EXPECT_EQ(read_as<std::int8_t>(type, -100, big), -100);
+        for (const char* type : {"uchar", "uint8"}) EXPECT_EQ(read_as<std::uint8_t>(type, 200, big), 200);
+        for (const char* type : {"short", "int16"}) EXPECT_EQ(read_as<std::int16_t>(type, -30'000, big), -30'000);
+        for (const char* type : {"ushort", "uint16"}) EXPECT_EQ(read_as<std::uint16_t>(type, 60'000, big), 60'000);
+        for (const char* type : {"int", "int32"}) EXPECT_EQ(read_as<std::int32_t>(type, -70'000, big), -70'000);
+        for (const char* type : {"uint", "uint32"})
+            EXPECT_EQ(read_as<std::uint32_t>(type, 3'000'000'000u, big), 3'000'000'000.f);
+        for (const char* type : {"float", "float32"}) EXPECT_EQ(read_as<float>(type, -0.375f, big), -0.375f);
+        for (const char* type : {"double", "float64"}) EXPECT_EQ(read_as<double>(type, 1e-3, big), 1e-3f);
+    }
+}
+
+TEST(ReadPly, RefusesVerticesTwiceFacesWithoutAListAndStripsBeyondTheVertices) {
+    const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n";
+    EXPECT_EQ(refusal(ascii(vertex_header + vertex_header, vertices + vertices)), "element vertex: is there twice");
+    EXPECT_EQ(refusal(ascii(vertex_header + "element face 1\nproperty int vertex_indices\n", vertices + "1\n")),
+              "element face: has no list of vertex_indices");
+    EXPECT_EQ(refusal(ascii(vertex_header + "element tristrips 1\nproperty list int int vertex_indices\n",
+                            vertices + "4 0 1 2 3\n")),
+              "element tristrips 0, line 13: refers to vertex 3, which does not exist");
+    EXPECT_EQ(refusal(ascii(triangle_header, vertices + "3 0 1 1.5\n")),
+              "element face 0, line 13: refers to vertex 1.5, which does not exist");
+    EXPECT_EQ(refusal(ascii(vertex_header, vertices)), "holds no triangles");
+}
+
 TEST(ReadPly, HasNormalsTextureAndColour) {
     const ScratchFolder scratch;
     const auto png = encode_png({1, 1, {255, 0, 0, 255}});
