@@ -15,7 +15,7 @@ namespace embody::physics::linear {
 /// Lᵀ.
 class BandCholesky {
 public:
-    /// All zero, of that many block rows.
+    /// Sets the matrix to zero, with that many block rows.
     void reset(std::size_t blocks);
     /// Adds to block (i, k), |i - k| <= 2; only i >= k are kept, so give each pair once.
     void add(std::size_t i, std::size_t k, const Mat3& block);
@@ -25,7 +25,7 @@ public:
     void fix(std::size_t i);
     /// False where the matrix is not positive definite or not finite.
     bool factorize();
-    /// In place.
+    /// Solves for one right side, in place.
     void solve(std::span<Vec3> rhs) const;
 
 private:

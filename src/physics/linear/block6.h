@@ -9,7 +9,7 @@
 
 namespace embody::physics::linear {
 
-/// Six numbers of a body: of its linear, then of its angular motion.
+/// Six numbers of a body: three of its linear motion, then three of its angular motion.
 struct alignas(16) Vec6 {
     double value[6] = {};
     [[nodiscard]] Vec3 linear() const { return {value[0], value[1], value[2]}; }

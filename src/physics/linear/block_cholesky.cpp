@@ -39,7 +39,7 @@ void BlockCholesky::solve(std::span<Vec6> x) const {
         const auto [first, last] = pattern_.column(place);
         double* y = work_[place].value;
         for (int p = 0; p < 5; ++p) {
-            // The part of L above its diagonal is not zero: only what comes after p is taken.
+            // Numbers of L's blocks above the diagonal are not zero: only the rows after p are used.
             for (int r = p + 1; r < 6; ++r) y[r] -= diagonal_[place].column[p][r] * y[p];
         }
         for (std::size_t k = first; k < last; ++k) {

@@ -30,8 +30,8 @@ public:
     Block6& off_diagonal(std::size_t edge) { return blocks_[pattern_.block_of(edge)]; }
     [[nodiscard]] int row_end(std::size_t edge) const { return pattern_.row_end(edge); }
 
-    /// Replaces the matrix by its factors. A pivot that rounding made zero or negative is replaced by a huge one: what
-    /// it stands for then does not move.
+    /// Replaces the matrix by its factors. A pivot that rounding made zero or negative is replaced by a huge one: its
+    /// unknown then does not move.
     void factor(const BlockKernels& kernels = widest_kernels<BlockKernels>());
     /// Solves for one right side, in place; by node.
     void solve(std::span<Vec6> x) const;

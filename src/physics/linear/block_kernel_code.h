@@ -44,7 +44,7 @@ void factor_pivot(double* pivot, double* inverse_pivots) {
     }
 }
 
-// A block below the pivot times L⁻ᵀ.
+// Multiplies a block below the pivot by L⁻ᵀ.
 void solve_block(double* block, const double* pivot) {
     Column columns[6];
     for (int c = 0; c < 6; ++c) columns[c] = load_column(block, c);
@@ -73,7 +73,7 @@ void factor(const BlockFactors& matrix) {
         const std::size_t first = matrix.first[place], last = matrix.first[place + 1];
         for (std::size_t k = first; k < last; ++k) solve_block(below(k), pivot);
 
-        // What it does to the others: block (i, k) −= Lᵢ D⁻¹ L_kᵀ.
+        // The column changes the others: block (i, k) −= Lᵢ D⁻¹ L_kᵀ.
         const std::uint32_t* target = matrix.target + matrix.first_target[place];
         for (std::size_t k = first; k < last; ++k) {
             alignas(64) double scaled[block_stride];

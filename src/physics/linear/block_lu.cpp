@@ -12,11 +12,11 @@ namespace {
 
 constexpr double stuck_pivot = 1e100;  // in the place of a pivot of 0: its row does not move; no other is as large
 
-// Gauss and Jordan, in place.
+// Gauss-Jordan elimination, in place.
 void invert(Block6& matrix) {
     auto& m = matrix.column;
     for (int p = 0; p < 6; ++p) {
-        // The pivot's column becomes the factors, the others lose their part of it.
+        // The pivot's column becomes the factors; they are eliminated from the other columns.
         const double inverse = m[p][p] != 0 ? 1 / m[p][p] : 1 / stuck_pivot;
         m[p][p] = 0;
         const Column6 factors = Column6::of(m[p]);

@@ -29,7 +29,7 @@ public:
     Block6& upper(std::size_t edge) { return upper_[pattern_.block_of(edge)]; }
     [[nodiscard]] int row_end(std::size_t edge) const { return pattern_.row_end(edge); }
 
-    /// Replaces the matrix by its factors. What has no pivot does not move.
+    /// Replaces the matrix by its factors. An unknown without a pivot does not move.
     void factor();
     /// Solves for one right side, in place; by node.
     void solve(std::span<Vec6> x);

@@ -14,8 +14,8 @@ void BlockPattern::analyse(std::size_t nodes, std::span<const Edge> edges, std::
     place_blocks(edges);
 }
 
-// Least degree first; among equals the one whose elimination tree is lowest, so that a chain goes from both ends at
-// once and the processor has two independent columns to work on.
+// The node of least degree first; among equals the one whose elimination tree is lowest, so that a chain is eliminated
+// from both ends at once and the processor has two independent columns to work on.
 void BlockPattern::find_order(std::size_t nodes, std::span<const Edge> edges, std::size_t first_multiplier) {
     const std::size_t words = (nodes + 63) / 64;
     columns_.assign(nodes, {});
@@ -50,7 +50,7 @@ void BlockPattern::find_order(std::size_t nodes, std::span<const Edge> edges, st
         position_[best] = static_cast<std::uint16_t>(place);
         node_at_[place] = static_cast<std::uint16_t>(best);
 
-        // Its neighbours become each other's.
+        // The neighbours of an eliminated node become each other's neighbours.
         for (std::size_t node = 0; node < nodes; ++node) {
             if (!(neighbours[best][node / 64] >> (node % 64) & 1)) continue;
             for (std::size_t word = 0; word < words; ++word) {
@@ -64,7 +64,7 @@ void BlockPattern::find_order(std::size_t nodes, std::span<const Edge> edges, st
 }
 
 void BlockPattern::place_blocks(std::span<const Edge> edges) {
-    // What a node's column had when it was eliminated lies below its diagonal.
+    // The neighbours that a node had when it was eliminated are the blocks below its diagonal.
     const std::size_t nodes = position_.size();
     first_.assign(1, 0);
     below_.clear();
@@ -81,7 +81,7 @@ void BlockPattern::place_blocks(std::span<const Edge> edges) {
         first_.push_back(static_cast<std::uint32_t>(below_.size()));
     }
 
-    // Two blocks of a column change the block in the row of the one and the column of the other.
+    // Two blocks of a column change the block in the row of one and the column of the other.
     targets_.clear();
     first_target_.clear();
     for (std::size_t place = 0; place < nodes; ++place) {

@@ -12,9 +12,9 @@
 
 namespace embody::physics::linear {
 
-/// In which order the nodes of a graph are eliminated from a sparse matrix, one row of blocks a node and one block an
-/// edge, and which blocks that takes. Source: A. George, J. Liu, "Computer solution of large sparse positive definite
-/// systems", 1981 (least degree).
+/// The order in which the nodes of a graph are eliminated from a sparse matrix, one row of blocks a node and one block
+/// an edge, and the blocks that the elimination needs. Source: A. George, J. Liu, "Computer solution of large sparse
+/// positive definite systems", 1981 (least degree).
 class BlockPattern {
 public:
     static constexpr std::size_t max_nodes =
@@ -38,11 +38,11 @@ public:
     }
     /// Place of the row that a block lies in.
     [[nodiscard]] std::size_t row_of(std::size_t block) const { return below_[block]; }
-    /// Blocks that the pairs (i, k), i > k, of a column's blocks change: k by k, the rising i of each.
+    /// Blocks that the pairs (i, k), i > k, of a column's blocks change: for each k in order, by ascending i.
     [[nodiscard]] const std::uint32_t* targets(std::size_t place) const {
         return targets_.data() + first_target_[place];
     }
-    /// All of these in one list each: by place, by block, by place.
+    /// The lists behind these functions: by place, by block, by place.
     [[nodiscard]] const std::uint32_t* first_blocks() const { return first_.data(); }
     [[nodiscard]] const std::uint16_t* rows() const { return below_.data(); }
     [[nodiscard]] const std::uint32_t* first_targets() const { return first_target_.data(); }

@@ -90,7 +90,8 @@ void subtract_scaled(double* a, const double* column, double factor, std::size_t
     for (; i < count; ++i) a[i] -= column[i] * factor;
 }
 
-// What the forces on node j do to the nodes of a tile, and what forces on these do to j, as far as `back` collects it.
+// Movements of the nodes of a tile by the forces on node j, and of j by the forces on these, as far as `back` collects
+// it.
 template <bool is_bidirectional>
 EMBODY_WIDE_INLINE void add_tile_moves(float* moves, const float* compliance, const float* forces, std::size_t stride,
                                        const Wide by[3], Sum back[3]) {

@@ -14,7 +14,7 @@
 // - x begins with the last solution (warm start).
 // - What must not move has z = 0, so that x keeps its value there, and r is not driven to zero (D. Baraff, A. Witkin,
 //   "Large steps in cloth simulation", 1998, 5.3, the filter).
-// - Several workers run the loop side by side, each for its share of the vectors. Functions of the system wait for all
+// - Several workers run the loop side by side, each on its part of the vectors. Functions of the system wait for all
 //   workers before they return a sum, which is taken in one order: all workers see the same numbers, take the same
 //   branches, and any number of them comes to the same bits.
 #pragma once
@@ -27,13 +27,13 @@
 
 namespace embody::physics::linear {
 
-/// What is left of the equations.
+/// What is left of the equations: the residual.
 struct GradientResidual {
     double product = 0;  ///< r·z
-    double size = 0;     ///< what the limits speak of: r·z, or a norm of r
+    double size = 0;     ///< what the limits apply to: r·z, or a norm of r
 };
 
-/// What a system does with its vectors, for a worker.
+/// What a system does with its vectors, called by each worker.
 template <class System>
 concept GradientSystem = requires(System& system, double alpha, double beta) {
     { system.begin() } -> std::same_as<GradientResidual>;         // r = b − A x, z = M⁻¹ r
@@ -42,7 +42,8 @@ concept GradientSystem = requires(System& system, double alpha, double beta) {
     { system.advance(alpha) } -> std::same_as<GradientResidual>;  // x += α p, r −= α q, z = M⁻¹ r
 };
 
-/// It ends where the residual's size is no more than both: `absolute`, and `relative` of the size at the beginning.
+/// The loop ends where the residual's size is at most `absolute`, and at most `relative` times the size at the
+/// beginning.
 struct GradientLimits {
     int iterations = 0;
     double absolute = 0, relative = 0;
@@ -52,7 +53,7 @@ enum class GradientEnd {
     converged,
     iteration_limit,
     indefinite,  ///< p·q is not positive, or r·z is negative: A or M is not positive definite, or only rounding is left
-    not_finite  ///< x is of no use
+    not_finite  ///< x is not usable
 };
 
 struct GradientResult {

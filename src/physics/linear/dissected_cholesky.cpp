@@ -16,7 +16,7 @@ std::size_t stride_of(const Front& front) {
     return (3 * front.size() + column_multiple - 1) / column_multiple * column_multiple;
 }
 
-// The first row of a column that kernels begin with, so that the rest is a multiple.
+// The row at which kernels begin a column: the last multiple of column_multiple that is not below the diagonal.
 std::size_t first_row(std::size_t column) { return column / column_multiple * column_multiple; }
 
 // Right-looking elimination of the first `own` of `size` columns (lower triangle, column by column).
@@ -135,7 +135,7 @@ void DissectedCholesky::gather_children(std::uint32_t index, float* local) const
     }
 }
 
-// L y = b of the own numbers of a front, three columns at a time; what the others are left with.
+// Solves L y = b for a front's own numbers, three columns at a time, and keeps what is left for its parent.
 void DissectedCholesky::eliminate_down(const Front& front, float* w) const {
     const auto subtract_columns = widest_kernels<ColumnKernels>().subtract_columns;
     const std::size_t stride = stride_of(front);
@@ -199,7 +199,7 @@ void DissectedCholesky::solve_up(std::uint32_t index) {
     }
 }
 
-// Subtrees of about equal work, largest first to the worker that has least.
+// Subtrees of about equal work, the largest first, each to the worker that has the least work so far.
 void DissectedCholesky::find_parallel_subtrees(int workers) {
     if (parallel_workers_ == workers) return;
     parallel_workers_ = workers;
@@ -215,7 +215,7 @@ void DissectedCholesky::find_parallel_subtrees(int workers) {
         if (front.parent != f) work[front.parent] += work[f];
     }
 
-    // Roots of subtrees: the largest fronts below which there is no more than a share of the work.
+    // Roots of subtrees: the largest fronts whose work is no more than this fraction of the whole.
     const std::size_t most = workers == 1 ? all : all / (static_cast<std::size_t>(workers) * 2) + 1;
     std::vector<std::uint32_t> root_of(fronts), roots;
     constexpr std::uint32_t none = 0xFFFFFFFF;
@@ -290,7 +290,7 @@ DissectedCholesky::Columns DissectedCholesky::columns(std::uint32_t node) const 
 }
 
 Mat3 DissectedCholesky::inverse_block(const Columns& i, const Columns& j) const {
-    // Both reach the fronts from the first that they share to the last.
+    // Both columns have numbers from the first front that they have in common to the last.
     std::uint32_t f = i.front, g = j.front;
     while (f != g) {
         std::uint32_t& earlier = f < g ? f : g;

@@ -18,14 +18,14 @@ public:
     /// Finds the order of elimination for nodes at these places. Each edge once.
     void analyse(std::span<const Vec3> positions, std::span<const Edge> edges);
     /// Replaces the factor by that of a matrix: its diagonal blocks by node, and the blocks in row edge[0] and column
-    /// edge[1] by edge. A pivot that rounding made zero or negative is replaced by a huge one: what it stands for then
+    /// edge[1] by edge. A pivot that rounding made zero or negative is replaced by a huge one: its unknown then
     /// does not move.
     void factor(std::span<const Mat3> diagonal, std::span<const Edge> edges, std::span<const Mat3> blocks);
     /// Solves for one right side, in place; by node.
     void solve(std::span<Vec3f> x, TaskPool& workers);
 
     /// The three columns L⁻¹ E of a node, E its columns of the unit matrix; only along the fronts that the node
-    /// reaches, the last front's numbers first: column by column, `length` numbers each.
+    /// reaches, the numbers of the last front first: column by column, `length` numbers each.
     struct Columns {
         std::uint32_t front = 0;
         std::size_t length = 0;

@@ -42,7 +42,7 @@ private:
         const std::size_t half = nodes.size() / 2;
         sort_along_longest_side(nodes);
 
-        // The separator: those of the upper half that see the lower one.
+        // The separator: nodes of the upper half that have a neighbour in the lower half.
         ++mark_;
         for (std::size_t i = 0; i < half; ++i) side_[nodes[i]] = mark_;
         std::vector<std::uint32_t> lower(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(half)), upper,
@@ -80,8 +80,8 @@ private:
         result_.fronts.push_back(std::move(front));
     }
 
-    // What the front reaches: neighbours of its own nodes, and what its children reach, after its own. Its parent is
-    // the front of the first of these, since that is eliminated next.
+    // Rows that the front reaches: neighbours of its own nodes and rows of its children, both after its own places. Its
+    // parent is the front of the first of these rows, since that one is eliminated next.
     void find_rows(std::uint32_t index) {
         Front& front = result_.fronts[index];
         for (std::uint32_t place = front.first; place < front.last; ++place) {

@@ -11,10 +11,10 @@
 
 namespace embody::physics::linear {
 
-/// A piece of a graph that is eliminated at once: a separator, or what is left between separators.
+/// A piece of a graph that is eliminated at once: a separator, or the nodes that separators leave.
 struct Front {
     std::uint32_t first = 0, last = 0;     ///< places in the order of elimination: its own, from first to last - 1
-    std::uint32_t parent = 0;              ///< front that is eliminated after it and that it reaches; itself: none
+    std::uint32_t parent = 0;              ///< next front to be eliminated that it reaches; itself: none
     std::vector<std::uint32_t> rows;       ///< places after its own that it reaches, ascending
     std::vector<std::uint32_t> in_parent;  ///< for each of `rows`: which of the parent's own and rows it is
     std::vector<std::uint32_t> children;   ///< fronts, ascending
@@ -31,7 +31,7 @@ struct NestedDissection {
     std::vector<std::uint32_t> front_of;  ///< by place
 };
 
-/// `edges` join nodes; each once or more often, both ends differ.
+/// `edges` join nodes; an edge may be repeated, its two ends differ.
 NestedDissection dissect(std::span<const Vec3> positions, std::span<const std::array<std::uint32_t, 2>> edges);
 
 }  // namespace embody::physics::linear
