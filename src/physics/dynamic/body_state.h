@@ -6,8 +6,9 @@
 
 namespace embody::physics::dynamic {
 
-/// What moves: the paper's state vector (q, R, v, ω) of section III.A, and what the constraints need to know about the
-/// body's inertia. One a body, indexed by the body's slot. Immovable and kinematic bodies have zero inverse masses.
+/// The state of motion: the paper's state vector (q, R, v, ω) of section III.A, and what the constraints need to know
+/// about the body's inertia. One a body, indexed by the body's slot. Immovable and kinematic bodies have zero inverse
+/// masses.
 struct BodyState {
     Vec3 center;            ///< of mass, world, m
     Quat rotation;          ///< of the body's axes
@@ -17,18 +18,18 @@ struct BodyState {
     double inverse_mass = 0;              ///< 1/kg
     Mat3 inverse_inertia = Mat3::zero();  ///< world axes, at `rotation`, 1/(kg m²)
 
-    Vec3 start_center;  ///< when the contacts of this step were found; separations are told by the motion since
+    Vec3 start_center;  ///< centre when this step's contacts were found; separations follow from the motion since
     Quat start_rotation;
-    Quat turn;  ///< rotation since then: rotation · start_rotation⁻¹
+    Quat turn;  ///< rotation since the contacts were found: rotation · start_rotation⁻¹
 
     Vec3 hidden_momentum;  ///< angular momentum that the midpoint velocity does not carry during a drift (see drift())
-    double hidden_energy = 0;  ///< the energy that it does not carry, J
+    double hidden_energy = 0;  ///< kinetic energy that the midpoint velocity does not carry, J
 };
 
-/// Neither fixed nor led by the user: contacts and joints can move it.
+/// Neither fixed nor moved by the user: contacts and joints can move it.
 inline bool is_movable(const BodyState& body) { return body.inverse_mass > 0; }
 
-/// What does not move with the body; touched once a half step.
+/// What stays constant while the body moves; read once a half step.
 struct BodyConstants {
     double mass = 0;              ///< kg; 0 for bodies that forces do not move
     Vec3 local_center;            ///< centre of mass in the body's frame, m

@@ -9,7 +9,7 @@
 //     L₁ = L₀ + h L_m × ω_m,   L_m = (L₀ + L₁)/2 = I ω_m       (implicit midpoint: keeps |L| and the energy)
 //     R₁ = R₀ cay(h ω_m)                                        (keeps R L, the momentum seen from the world)
 // The two belong together: cay(hω) = (1 − hω̂/2)⁻¹(1 + hω̂/2) gives R₁ L₁ = R₀ L₀ exactly. So during a drift the world
-// momentum stands still and only the inertia turns; and cay leaves ω_m itself fixed, so that R₀ω_m = R₁ω_m is the one
+// momentum is constant and only the inertia turns; and cay leaves ω_m itself fixed, so that R₀ω_m = R₁ω_m is the one
 // mean angular velocity for which constraints can be solved between the kick and the drift.
 #include "physics/dynamic/equations_of_motion.h"
 
@@ -57,8 +57,8 @@ Vec3 solve_midpoint(const Mat3& inertia, Vec3 start_momentum, Vec3 guess, double
     return omega;
 }
 
-// The time of one Cayley turn that equals `parts` of them by time / parts each; 0 beyond five twelfths of a circle.
-// tan(n a) is told by the powers of 1 + i tan(a), without a library function.
+// Time of the one Cayley turn that equals `parts` turns of time / parts each; 0 beyond five twelfths of a circle.
+// tan(n a) follows from the powers of 1 + i tan(a), without a library function.
 double time_of_one_turn(double speed, double time, int parts) {
     const double tangent = speed * time / (2 * parts);
     if (tangent == 0) return time;
@@ -72,7 +72,7 @@ double time_of_one_turn(double speed, double time, int parts) {
     return 2 * imaginary / (real * speed);
 }
 
-// Gives the body the mean velocity (body axes) and keeps the rest of its momentum aside.
+// Gives the body the mean velocity (body axes) and stores the rest of its momentum separately.
 void hide_momentum(BodyState& state, const BodyConstants& constants, Vec3 mean) {
     const Vec3 omega = rotate_inverse(state.rotation, state.angular_velocity);
     const Vec3 momentum = constants.inertia * omega, mean_momentum = constants.inertia * mean;
@@ -97,7 +97,7 @@ void split_gyroscopic_of_turns(BodyState& state, const BodyConstants& constants,
     const Vec3 omega = rotate_inverse(state.rotation, state.angular_velocity);
     const Vec3 momentum = constants.inertia * omega;
 
-    // The time of the one turn depends on the mean velocity that it is solved for, but weakly.
+    // The time of the one turn depends, weakly, on the mean velocity that is being solved for.
     constexpr int iterations = 3;
     Vec3 mean = omega;
     for (int i = 0; i < iterations; ++i) {
@@ -116,8 +116,8 @@ void finish_turn(BodyState& state, const BodyConstants& constants, Quat turn) {
     const bool has_hidden = state.hidden_momentum != Vec3{};
     if (constants.is_isotropic) return;
 
-    // In the body's axes: the momentum before, and after the turn what the world holds fast: that momentum, or without
-    // the split the velocity.
+    // In the body's axes: the momentum before the turn, and what is constant in the world during the turn: the
+    // momentum, or without the split the velocity.
     const Vec3 mean = rotate_inverse(before, state.angular_velocity), mean_momentum = constants.inertia * mean;
     const Vec3 momentum = mean_momentum + rotate_inverse(before, state.hidden_momentum);
     const Vec3 velocity = has_hidden
@@ -145,13 +145,13 @@ void drift(BodyState& state, const BodyConstants& constants, double time) {
     state.turn = state.rotation * conjugate(state.start_rotation);
     refresh_inertia(state, constants);
 
-    // The same momentum in the turned body is another angular velocity.
+    // The same momentum gives the turned body another angular velocity.
     if (!constants.is_isotropic) state.angular_velocity = state.inverse_inertia * momentum;
 }
 
 namespace {
 
-// Velocity after `time` of an acceleration and of damping, as kick() does it; a negative time takes it back.
+// Velocity after `time` of an acceleration and of damping, as in kick(); a negative time undoes it.
 Vec3 kicked(Vec3 velocity, Vec3 acceleration, double damping, double time) {
     if (time < 0) return velocity * (1 - time * damping) + acceleration * time;
     return (velocity + acceleration * time) * (1 / (1 + time * damping));

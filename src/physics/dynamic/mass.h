@@ -9,8 +9,8 @@
 
 namespace embody::physics::dynamic {
 
-/// Mass, centre and inertia in `constants`: those of body_mass(), and the inverse that the solver needs. Fails as that
-/// does, and where the inertia is too small to be inverted.
+/// Sets mass, centre and inertia in `constants` to those of body_mass(), and the inverse that the solver needs. Fails
+/// where body_mass() fails, and where the inertia is too small to be inverted.
 Result<void> resolve_mass(const MassDefinition& definition, const geometry::MassProperties& solid,
                           BodyConstants& constants);
 

@@ -61,7 +61,7 @@ Vec3 Wind::at(Vec3 position) const {
     if (!is_gusty()) return mean;
     const double speed = length(mean), size = speed * gust_time;
     const Vec3 along = mean / speed;
-    // Across and level where the wind is not vertical.
+    // One axis across the wind is horizontal where the wind is not vertical.
     const Vec3 side = normalized(cross(Vec3{0, 1, 0}, along), {1, 0, 0});
     const Vec3 up = cross(along, side);
     const Vec3 gust{time / gust_time - dot(position, along) / size, dot(position, side) / (width * size),
