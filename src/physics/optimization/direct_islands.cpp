@@ -18,7 +18,7 @@ struct Level {
 };
 using Levels = std::span<const Level>;
 
-// From the ground up; what nothing connects with the ground comes last. Valid until the next call.
+// Levels from the ground up; bodies without a connection to the ground come last. Valid until the next call.
 Levels count_levels(const Island& island, const Islands& islands, std::span<const BodyState> bodies) {
     thread_local std::vector<Level> levels;
     levels.assign(island.deepest_level + 3, {});
@@ -33,7 +33,7 @@ Levels count_levels(const Island& island, const Islands& islands, std::span<cons
     return levels;
 }
 
-// An upper bound of what elimination level by level takes.
+// An upper bound of the block products that elimination level by level needs.
 std::size_t block_products(Levels levels) {
     std::size_t sum = 0;
     for (std::size_t i = 0; i + 1 < levels.size(); ++i) {
@@ -43,7 +43,7 @@ std::size_t block_products(Levels levels) {
     return sum;
 }
 
-// The heaviest body above another one, over that one.
+// The largest ratio of a body's mass to that of a body below it.
 double mass_ratio(Levels levels) {
     double ratio = 1, min_inverse_above = 1e300;
     for (std::size_t i = levels.size(); i-- > 0;) {
@@ -55,7 +55,7 @@ double mass_ratio(Levels levels) {
     return ratio;
 }
 
-// All that lies above a body, over that one.
+// The largest ratio of the mass of all levels above a body to the body's own mass.
 double load_ratio(Levels levels) {
     double ratio = 0, above = 0;
     for (std::size_t i = levels.size(); i-- > 0;) {
@@ -67,8 +67,8 @@ double load_ratio(Levels levels) {
     return ratio;
 }
 
-// Whether movable bodies touch each other as the branches of a tree do: from its leaves inwards nothing fills in. A box
-// with balls on it is one, whatever its number of balls.
+// Whether movable bodies touch each other like the branches of a tree: eliminated from the leaves inwards, a tree has
+// no fill-in. A box with balls on it is a tree, whatever the number of balls.
 bool is_tree(const Island& island, const Islands& islands, std::span<const Contact> contacts,
              std::span<const BodyState> bodies) {
     std::uint32_t links = 0;

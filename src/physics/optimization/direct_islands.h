@@ -13,7 +13,7 @@ namespace embody::physics::optimization {
 /// When an island's contacts should be solved directly (docs/physics/direct-solver.md).
 enum class DirectUse {
     never,       ///< too large, has joints, or lies on a moving kinematic body
-    while_slow,  ///< at rest, where one solve serves for long
+    while_slow,  ///< at rest, where one solve serves many steps
     always,      ///< tall and thin, or heavy on light: sweeps would tremble or fail
 };
 DirectUse direct_use_of(const Island& island, const Islands& islands, std::span<const Contact> contacts,

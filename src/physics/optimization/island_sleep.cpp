@@ -6,9 +6,9 @@
 // once.
 //
 // Rest is a balance of forces, not slowness: a pendulum at its turning point and a ball that begins to roll are slow.
-// The net force is told by what it does: a body under the acceleration a leaves each place that it was slow at by at
-// least a T²/8 in the time T, so what stays within a sixtieth of the way that its threshold allows is in balance to
-// 8/60 v/T (0.008 m/s² by default).
+// The net force is measured by its effect: a body under the acceleration a leaves each place at which it was slow by at
+// least a T²/8 in the time T, so a body that stays within a sixtieth of the travel that its threshold allows is in
+// balance to 8/60 v/T (0.008 m/s² by default).
 #include "physics/optimization/island_sleep.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace embody::physics::optimization {
 
 namespace {
 
-// Whether a surface point has moved farther than `way` since the quiet time began.
+// Whether a surface point has moved farther than `travel` since the quiet time began.
 bool has_moved_on(const SleepRecord& record, const BodyState& state, double reach, double travel) {
     const Quat turn = state.rotation * conjugate(record.quiet_rotation);
     const double chord = 2 * length(Vec3{turn.x, turn.y, turn.z}) * reach;

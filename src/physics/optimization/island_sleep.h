@@ -12,18 +12,18 @@
 
 namespace embody::physics::optimization {
 
-/// A body's way to sleep.
+/// A body's progress towards sleep.
 struct SleepRecord {
     SleepState state = SleepState::active;
-    double quiet_time = 0;  ///< s in which the body was below its threshold, and about in one place, without a break
-    Vec3 quiet_center;      ///< where it was when that began
+    double quiet_time = 0;  ///< time below its threshold and about in one place without a break, s
+    Vec3 quiet_center;      ///< centre of mass when the quiet time began
     Quat quiet_rotation;
     double threshold = 0;  ///< J/kg
     bool allowed = true;
-    std::uint32_t group = 0;  ///< of sleepers; only where asleep
+    std::uint32_t group = 0;  ///< group of sleepers; only while asleep
 };
 
-/// How long a quiet body must stay how near to one place.
+/// How long a body must stay quiet before it sleeps, and within what distance.
 struct QuietRules {
     double time_step = 0;      ///< s
     double time_to_sleep = 0;  ///< s
@@ -31,8 +31,8 @@ struct QuietRules {
     bool may_move_on = false;  ///< slow is enough: for what lies on soft things, whose contacts creep
 };
 
-/// Follows one body: below the threshold it becomes quiet, above it active again. What is slow, but moves on, is not at
-/// rest: its quiet time begins anew. `reach` is its farthest surface point, m.
+/// Follows one body: below the threshold it becomes quiet, above it active again. A body that is slow, but moves on, is
+/// not at rest: its quiet time begins anew. `reach` is the distance of its farthest surface point, m.
 void track_quietness(SleepRecord& record, const BodyState& state, const BodyConstants& constants, double reach,
                      const QuietRules& rules);
 

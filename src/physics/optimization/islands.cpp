@@ -41,7 +41,7 @@ void find_levels(std::span<const BodyState> bodies, std::span<const ContactSumma
                  std::vector<std::uint32_t>& level) {
     level.assign(bodies.size(), no_level);
 
-    // Neighbours of each body by counting sort.
+    // Lists the neighbours of each body by counting sort.
     std::vector<std::uint32_t>&first = memory.first, &next = memory.next, &neighbour = memory.neighbour;
     std::vector<std::uint32_t>& front = memory.front;
     first.assign(bodies.size() + 1, 0);
@@ -98,7 +98,7 @@ void distribute(std::size_t count, std::vector<Island>& list, std::vector<std::u
     }
 }
 
-// By counting; keeps the order of equals.
+// Sorts by counting; keeps the order of equals.
 template <class LevelOf>
 void sort_by_level(std::span<std::uint32_t> contacts, LevelOf level_of) {
     thread_local std::vector<std::uint32_t> unsorted, first_of_level;
@@ -186,7 +186,7 @@ void build_islands(std::span<const std::uint32_t> awake, std::span<const BodySta
     }
     const auto contact_level = [&](std::uint32_t i) {
         const std::uint32_t level = std::min(islands.level[contacts[i].a], islands.level[contacts[i].b]);
-        return std::min(level, deepest + 1);  // what nothing connects with the ground comes last
+        return std::min(level, deepest + 1);  // bodies without a connection to the ground come last
     };
     for (Island& island : islands.list) {
         sort_by_level(std::span(islands.contacts).subspan(island.first_contact, island.contact_count), contact_level);

@@ -20,25 +20,25 @@ struct Island {
     std::uint32_t deepest_level = 0;  ///< levels of the contact graph above the ground
 };
 
-/// What islands are cut from.
+/// The graph that islands are cut from.
 struct ContactGraph {
     using Ends = std::array<std::uint32_t, 2>;
     std::vector<std::uint32_t> bodies;   ///< movable ones
-    std::vector<Ends> contacts, joints;  ///< of joints with the world one end is 0xFFFFFFFF, of idle contacts both
+    std::vector<Ends> contacts, joints;  ///< 0xFFFFFFFF: one end of joints with the world, both ends of idle contacts
     friend bool operator==(const ContactGraph&, const ContactGraph&) = default;
 };
 
-/// The contact graph cut into islands, and the order in which each is solved: from the ground up. Equal inputs give
-/// equal orders.
+/// The contact graph cut into islands, and the order in which each island is solved: from the ground up. Equal inputs
+/// give equal orders.
 struct Islands {
     std::vector<Island> list;
     std::vector<std::uint32_t> bodies;    ///< slots, island by island, ascending
     std::vector<std::uint32_t> contacts;  ///< indices, island by island, lowest level first
     std::vector<std::uint32_t> joints;    ///< indices, island by island
     std::vector<std::uint32_t> level;     ///< by body slot: steps through contacts to an immovable body; 0 is immovable
-    ContactGraph graph, last_graph;       ///< that all this was made of, and the one before: memory only
+    ContactGraph graph, last_graph;       ///< the graph that this was built from, and the one before: memory only
 
-    /// Of the search, so that a graph that changes allocates nothing. By slot, but `neighbour` by contact.
+    /// Memory of the search, so that a changing graph allocates nothing. By slot, but `neighbour` by contact.
     struct Memory {
         std::vector<std::uint32_t> parent, island_of_root, first, next, neighbour, front;
     };
@@ -47,8 +47,8 @@ struct Islands {
 
 inline constexpr std::uint32_t no_level = 0xFFFFFFFFu;  ///< hangs in the air
 
-/// `awake` lists the movable bodies, ascending; every contact and joint must touch at least one of them. Where the
-/// graph is still the one that the islands were built of, they stay.
+/// `awake` lists the movable bodies, ascending; every contact and joint must touch at least one of them. The islands
+/// stay as they are while the graph is the one that they were built from.
 void build_islands(std::span<const std::uint32_t> awake, std::span<const BodyState> bodies,
                    std::span<const ContactSummary> contacts, std::span<const Joint> joints, Islands& islands);
 

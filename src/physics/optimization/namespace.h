@@ -7,7 +7,7 @@ namespace dynamic {}
 }  // namespace embody::physics
 
 /// The paper's Optimization module: contact graph, islands, sleeping, shock propagation, order and choice of solver.
-/// Computes no impulse.
+/// It computes no impulse.
 namespace embody::physics::optimization {
 
 // The rooms that it may see (docs/architecture.md).

@@ -4,8 +4,8 @@
 // it until the phase ends. Sources: E. Guendelman, R. Bridson, R. Fedkiw, "Nonconvex rigid bodies with stacking", 2003;
 // K. Erleben, "Velocity-based shock propagation for multibody dynamics animation", 2007.
 // Departure: taken literally, in the velocities, the upper bodies would no longer load the lower ones and a stack could
-// not tip. So the velocities are solved with true masses, and only what is left of the penetration is taken out this
-// way.
+// not tip. So the velocities are solved with true masses, and only the rest of the penetration is taken out by shock
+// propagation.
 #include "physics/optimization/shock_propagation.h"
 
 #include <algorithm>
@@ -30,7 +30,8 @@ void propagate_shock(const Island& island, const Islands& islands, std::span<con
         const std::uint32_t level_a = islands.level[contact.a], level_b = islands.level[contact.b];
         if (level_a == level_b || level_a == no_level || level_b == no_level || !is_pressed(contact)) continue;
 
-        // The deepest point tells how far the upper body has to go; it only shifts, so that nothing starts to turn.
+        // The deepest point gives the displacement of the upper body; the body is only shifted, so that nothing starts
+        // to turn.
         double depth = 0;
         for (int i = 0; i < contact.count; ++i) {
             const ContactPoint& point = contact.points[static_cast<std::size_t>(i)];

@@ -15,8 +15,8 @@ namespace {
 constexpr std::uint32_t max_points = Manifold::max_points;
 constexpr std::uint32_t widest_batch = 16;  // contacts; whatever the processor has, so that the order is the same
 
-// The lowest colour that neither body has, of those with a batch to fill if there are any; what finds none is left for
-// another round of 64 colours.
+// The lowest colour that neither body has, of colours with a batch to fill if there are any; contacts without a colour
+// are left for another iteration of 64 colours.
 std::uint32_t colour_stages(std::span<const std::uint32_t> order, std::span<const ContactSummary> contacts,
                             std::span<const BodyState> bodies, SolveSchedule& s) {
     constexpr std::uint32_t colours = 64, no_stage = 0xFFFFFFFFu;
@@ -55,7 +55,7 @@ void build_schedule(std::span<const std::uint32_t> order, std::span<const Contac
     s.stage_of.resize(order.size());
     const std::uint32_t stages = colour_stages(order, contacts, bodies, s);
 
-    // By stage, in it what carried a load before what did not, and by falling number of points: one counting sort.
+    // By stage, in a stage contacts that carried a load first, and by falling number of points: one counting sort.
     constexpr std::uint32_t kinds = 2 * max_points;
     const auto key_of = [&](std::size_t k) {
         const ContactSummary& contact = contacts[order[k]];
@@ -67,7 +67,7 @@ void build_schedule(std::span<const std::uint32_t> order, std::span<const Contac
     s.contacts.resize(order.size());
     for (std::size_t k = 0; k < order.size(); ++k) s.contacts[s.first_of_key[key_of(k)]++] = order[k];
 
-    // Each stage cut into batches. After the sort a key's entry tells where the next one begins.
+    // Each stage is cut into batches. After the sort a key's entry is the index at which the next key begins.
     s.batches.clear();
     s.stages.clear();
     std::uint32_t first = 0;

@@ -10,14 +10,14 @@
 
 namespace embody::physics::optimization {
 
-/// In which order contacts are solved, and which of them at once (docs/physics/wide-solver.md).
+/// The order in which contacts are solved, and the contacts that are solved at once (docs/physics/wide-solver.md).
 struct SolveSchedule {
     /// Contacts of different movable bodies, solved by one instruction each.
     struct Batch {
         std::uint32_t first = 0;             ///< into `contacts`
-        std::uint8_t count = 0, points = 0;  ///< contacts; most points among them
+        std::uint8_t count = 0, points = 0;  ///< number of contacts; maximum of their points
     };
-    /// Batches that touch different movable bodies: any order, or any thread, gives the same.
+    /// Batches that touch different movable bodies: any order, on any thread, gives the same result.
     struct Stage {
         std::uint32_t first_batch = 0, batch_count = 0;
     };
@@ -25,7 +25,7 @@ struct SolveSchedule {
     std::vector<Batch> batches;           ///< stage by stage
     std::vector<Stage> stages;            ///< in the order of the sweep upwards
 
-    // Scratch of build_schedule, kept for its memory.
+    // Scratch of build_schedule; members only to keep its memory.
     std::vector<std::uint32_t> stage_of, first_of_key;
     std::vector<std::uint64_t> colours;
 };
