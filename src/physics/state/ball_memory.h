@@ -12,23 +12,23 @@ namespace embody::physics::state {
 
 /// Memory of the stage that rolls balls: nothing in it outlives a step.
 struct BallMemory {
-    /// A ball that touches nothing but still ground and other such balls, as far as known.
+    /// A ball that, as far as known, touches nothing but immovable ground and other such balls.
     struct Candidate {
         std::uint32_t body = 0;
         bool is_free = true;       ///< touches nothing else
-        bool has_company = false;  ///< another one is near
+        bool has_company = false;  ///< has a pair with another candidate
         bool has_rolled = false;
         std::vector<std::uint32_t> contacts;  ///< with the ground
         BallSurroundings surroundings;
         RolledBall rolled;
-        std::uint32_t parent = 0;  ///< union-find over the balls that are near each other: candidates
+        std::uint32_t parent = 0;  ///< union-find over pairs: candidates
 
-        // Beside other balls.
+        // Only of balls in pairs.
         std::optional<BallPath> path;
         BallPlace at, next;
-        Vec3 received;  ///< of the other balls, N s
+        Vec3 received;  ///< impulses of the other balls, N s
     };
-    /// Two of them.
+    /// Two balls with a contact region, touching or within the margin.
     struct Pair {
         std::uint32_t contact = 0, a = 0, b = 0;  ///< candidates
         Vec3 impulse;                             ///< on b, N s
@@ -38,7 +38,7 @@ struct BallMemory {
     std::vector<Candidate> candidates;
     std::size_t count = 0;               ///< of candidates in use
     std::vector<std::uint32_t> of_body;  ///< candidate + 1, by body
-    std::vector<Pair> pairs;             ///< by the root of their balls
+    std::vector<Pair> pairs;             ///< sorted by the root of their balls
     std::vector<std::uint32_t> members;  ///< of the present cluster: candidates, ascending
     std::vector<RolledBall> rolled;      ///< ascending by body
 };

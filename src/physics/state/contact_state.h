@@ -11,14 +11,14 @@
 
 namespace embody::physics::state {
 
-/// A body that has left the bounds that the broad phase knows of it.
+/// A body that has left the bounds that the broad phase has for it.
 struct LeavingBody {
     std::uint32_t body = 0;
-    Bounds bounds;  ///< of its way in this step
+    Bounds bounds;  ///< bounds of its path in this step
     Vec3 motion;    ///< m, in this step
 };
 
-/// Which bodies are near each other, and which touch.
+/// Which bodies may touch, and which do touch.
 struct ContactState {
     BroadPhase broad_phase;                                // find pairs
     std::vector<std::vector<LeavingBody>> leaving;         // find pairs: memory only, by worker

@@ -9,7 +9,7 @@ namespace embody::physics::state {
 
 namespace {
 
-// Segments of ropes collide as capsules of their length at rest; equal lengths share one.
+// Segments of ropes collide as capsules of their length at rest; segments of equal length use one capsule.
 Result<void> make_capsules(DeformableRecord& record) {
     const DeformableDefinition& definition = record.definition;
     const double stretch = 1 + std::get<Rope>(definition.matter).slack;

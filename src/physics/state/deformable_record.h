@@ -13,25 +13,25 @@
 
 namespace embody::physics::state {
 
-/// What a node of a sheet or rope pushes a triangle of a solid.
+/// The force of a sheet's or rope's node on a triangle of a solid.
 struct SurfacePush {
-    std::uint32_t slot = 0, node = 0;         ///< the solid's, the sheet's
+    std::uint32_t slot = 0, node = 0;         ///< of the solid; node of the sheet
     std::array<std::uint32_t, 3> triangle{};  ///< nodes of the solid
-    std::array<double, 3> weight{};           ///< of these where it touches
+    std::array<double, 3> weight{};           ///< weights of these nodes at the contact
     Vec3 force;                               ///< on the solid, N
 };
 
-/// A deformable with what its contacts and its sleep need.
+/// A deformable with the data for its contacts and its sleep.
 struct DeformableRecord {
     DeformableDefinition definition;
     std::variant<std::unique_ptr<SolidDeformable>, std::unique_ptr<ClothSheet>, std::unique_ptr<RopeLine>> matter;
     std::unique_ptr<CollisionShape> node_ball;              ///< of its contact radius
     std::vector<std::unique_ptr<CollisionShape>> capsules;  ///< of a rope's segments at rest, one a length
     std::vector<std::uint32_t> segment_capsule;             ///< by segment: index of its capsule
-    std::vector<SolidContact> contacts;                     ///< a solid's of the last step
-    std::vector<std::uint32_t> touched_bodies;              ///< slots: those that it pushed in the last step
+    std::vector<SolidContact> contacts;                     ///< a solid's contacts of the last step
+    std::vector<std::uint32_t> touched_bodies;              ///< slots of bodies that it pushed in the last step
     std::vector<std::uint32_t> touched_deformables;         ///< slots
-    /// A body that it pushed, as it then was.
+    /// The state of a body that it pushed, at that time.
     struct Support {
         BodyHandle body;
         std::uint32_t version = 0;
@@ -39,13 +39,13 @@ struct DeformableRecord {
     std::vector<Support> supports;
     std::vector<SurfacePush> surface_pushes;  ///< a sheet's or rope's, of its last substep
     std::vector<Vec3> tie_pulls;              ///< by tie: of the last substep, on its node, N
-    std::uint32_t slot = 0;                   ///< its own, while it moves
+    std::uint32_t slot = 0;                   ///< its own slot, while it moves
     double quiet_time = 0;                    ///< s
-    std::vector<Vec3> quiet_places;           ///< of a sheet's or rope's nodes when that began
+    std::vector<Vec3> quiet_places;           ///< places of a sheet's or rope's nodes when the quiet time began
     bool is_asleep = false;
-    std::vector<Vec3> last_positions;  ///< last finite ones, to freeze it at
+    std::vector<Vec3> last_positions;  ///< last finite positions, to freeze it at
 
-    // The matter where it is of that kind; else null.
+    // The matter as that kind; null where it is of another kind.
     [[nodiscard]] SolidDeformable* solid() const { return of_kind<SolidDeformable>(); }
     [[nodiscard]] ClothSheet* cloth() const { return of_kind<ClothSheet>(); }
     [[nodiscard]] RopeLine* rope() const { return of_kind<RopeLine>(); }
@@ -54,18 +54,18 @@ struct DeformableRecord {
     [[nodiscard]] Bounds bounds() const;
     [[nodiscard]] bool is_finite() const;
     [[nodiscard]] Conserved conserved(Vec3 gravity) const;
-    /// What gravity (m/s², the world's) and its constant force give each node, m/s².
+    /// Acceleration of each node by gravity (m/s², the world's) and its constant force, m/s².
     [[nodiscard]] Vec3 acceleration(Vec3 gravity) const;
     /// Whether both are solids of the same tetrahedra.
     [[nodiscard]] bool has_tetrahedra_of(const DeformableRecord& other) const;
-    /// Not far from how the whole is turned.
+    /// Approximate rotation of the whole.
     [[nodiscard]] Quat rotation() const;
     /// Puts its nodes to places (m) with velocities (m/s), one a node; `rotation` as above. Pinned ones get no
     /// velocity.
     void set_motion(std::span<const Vec3> positions, std::span<const Vec3> velocities, Quat rotation);
-    /// Takes all velocities away.
+    /// Sets all velocities to zero.
     void rest();
-    /// Takes it back to where its nodes were, at rest.
+    /// Puts its nodes at these positions, at rest.
     void stop_at(std::span<const Vec3> positions);
 
 private:
@@ -76,7 +76,7 @@ private:
     }
 };
 
-/// Of a valid definition. Fails where a shape for its contacts cannot be made.
+/// Makes the record of a valid definition. Fails where a shape for its contacts cannot be made.
 Result<DeformableRecord> make_deformable_record(const DeformableDefinition& definition);
 
 }  // namespace embody::physics::state

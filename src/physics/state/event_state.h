@@ -15,7 +15,7 @@ struct TouchingPair {
     friend auto operator<=>(const TouchingPair&, const TouchingPair&) = default;
 };
 
-/// What users read of a step after it.
+/// What users read about a step after it.
 struct EventState {
     std::vector<TouchingPair> touching;       // report, wake: awake pairs that touch, sorted
     std::vector<TouchingPair> touching_now;   // report: memory only

@@ -12,7 +12,7 @@
 
 namespace embody::physics::state {
 
-/// A body as a fluid last saw it.
+/// A body's state when a fluid last met it.
 struct SeenBody {
     std::uint32_t version = 0;
     Transform pose;
@@ -27,21 +27,21 @@ struct FluidRecord {
     double fastest = 0;  ///< m/s
     std::vector<Vec3f> positions, velocities;
     std::vector<std::uint32_t> ids;
-    std::map<std::uint32_t, SeenBody> seen;  ///< by slot: bodies near it in the last step
+    std::map<std::uint32_t, SeenBody> seen;  ///< by slot: bodies within its reach in the last step
     double quiet_time = 0;                   ///< s
-    double quiet_height = 0;                 ///< of its middle when that began, m
+    double quiet_height = 0;                 ///< mean height when the quiet time began, m
     bool is_asleep = false, is_frozen = false;
-    std::uint64_t version = 0;  ///< of what is read
+    std::uint64_t version = 0;  ///< counts changes of what users read
     std::uint64_t lost = 0;     ///< particles that flew out of reach
 };
 
-/// A dynamic body in a fluid: what the next step expects of its contacts and joints (docs/physics/fluids.md).
+/// A dynamic body in a fluid: forces that the next step expects of its contacts and joints (docs/physics/fluids.md).
 struct FluidTouch {
-    std::uint64_t step = 0;                  ///< last one in which a fluid saw it
+    std::uint64_t step = 0;                  ///< last step in which a fluid touched it
     Vec3 linear_velocity, angular_velocity;  ///< when that step began
-    Vec3 acceleration, torque;               ///< in that step, with the fluids'
-    Vec3 force_asleep;                       ///< of the fluids in that step, the last one before it fell asleep, N
-    double carried = 0;                      ///< force of the fluids in that step and the one before, the lesser one, N
+    Vec3 acceleration, torque;               ///< in that step, including the fluids'
+    Vec3 force_asleep;                       ///< force of the fluids in the last step before it fell asleep, N
+    double carried = 0;                      ///< force of the fluids in that step or the one before, the smaller one, N
 };
 
 }  // namespace embody::physics::state

@@ -18,7 +18,7 @@ struct JointRecord {
     Joint constraint;  ///< written by substeps; sleeps with its bodies
 };
 
-/// The joints, and those of them that a step solves.
+/// The joints, and the joints that a step solves.
 struct JointState {
     HandleTable<struct JointTag, JointRecord> records;                // face; impulses: substeps
     std::set<std::pair<std::uint32_t, std::uint32_t>> jointed_pairs;  // face: slots whose bodies must not collide

@@ -3,8 +3,8 @@
 // docs/physics/energy.md. Over a stage each body has the mean velocities
 //     v̄ = (v₀ + v₁)/2,   ω̄ = I⁻¹ (L₀ + L₁)/2   with the inertia I of the rotation halfway,
 // and an impulse P with the moment τ about the centre of mass does the work P·v̄ + τ·ω̄. For the sum of all that acts on
-// a body this is the change of its kinetic energy: m (v₁ − v₀)·v̄ exactly, (L₁ − L₀)·ω̄ but for what the turning of the
-// inertia makes of it, which is of the second order in the angle of the step.
+// a body this is the change of its kinetic energy: m (v₁ − v₀)·v̄ exactly, (L₁ − L₀)·ω̄ apart from the turning of the
+// inertia, which is of the second order in the angle of the step.
 #include "physics/state/ledger.h"
 
 #include <algorithm>
@@ -43,7 +43,7 @@ Quat halfway(const Quat& p, const Quat& q) {
     return normalized(Quat{p.x + sign * q.x, p.y + sign * q.y, p.z + sign * q.z, p.w + sign * q.w});
 }
 
-// What acts on a body evenly, N and N m.
+// Forces that act on a body evenly over its mass, N and N m.
 struct SteadyForces {
     Vec3 user, user_torque, air, coupling, coupling_torque;
 };
@@ -63,7 +63,7 @@ void Ledger::add(StepCause cause, double work, Vec3 linear, Vec3 angular) {
     entry.angular_impulse += angular;
 }
 
-// A stage in which nothing else happens: what it did is the difference that it made.
+// A stage with one cause: its effect is the difference of the sums before and after it.
 void Ledger::measure(StepCause cause) {
     const Conserved now = sum_of_bodies(world_);
     add(cause, now.energy() - last_.energy(), now.linear_momentum - last_.linear_momentum,
@@ -90,7 +90,7 @@ void Ledger::remember_totals(std::uint32_t contact) {
     to.friction = {from.friction_total.along_1, from.friction_total.along_2, from.friction_total.twist};
 }
 
-// Of all bodies: those at rest lend their velocities, zero, to what touches them.
+// Records all bodies: the zero velocities of those at rest are needed for the contacts with them.
 void Ledger::begin_impacts() {
     motions_.resize(world_.rigid.bodies.slot_count());
     for (std::uint32_t body = 0; body < world_.rigid.bodies.slot_count(); ++body) {
@@ -121,8 +121,8 @@ void Ledger::note_impact(std::span<const ImpactSite> sites, double energy_change
     }
 }
 
-// Bodies that collide start the step elsewhere, on the path that leads through the impact. What flew had the forces'
-// work on both ways; what was carried went without them and only changed its place.
+// Bodies that collide start the step elsewhere, on the path that leads through the impact. On a body in flight the
+// forces did work along both paths; a body that was carried was moved without forces and only changed its place.
 void Ledger::add_displaced(std::uint32_t body) {
     const BodyState& state = world_.rigid.motion[body];
     const Vec3 displacement = state.center - motions_[body].center;
@@ -138,8 +138,8 @@ void Ledger::add_displaced(std::uint32_t body) {
     add(StepCause::coupling, dot(forces.coupling, displacement), {}, {});
 }
 
-// What a joint passed on in the impacts. That is no work between bodies in free motion, but an impulse where it leads
-// to the ground, and work where that moves: a carrier goes straight on, whatever the joint does to it.
+// The impulse that a joint passed on in the impacts. Between bodies in free motion it does no work; but it is an
+// impulse where the joint leads to the ground, and work where the ground moves: a kinematic carrier goes straight on.
 void Ledger::note_blow(const Joint& joint) {
     joint_totals_.push_back({joint.total_linear, joint.total_angular});
     const bool ends_at_a = joint.a_is_world || world_.rigid.motion[joint.a].inverse_mass == 0;
@@ -175,7 +175,7 @@ void Ledger::set_means(std::uint32_t body) {
     const BodyConstants& constants = world_.rigid.constants[body];
     Motion& motion = motions_[body];
     motion.mean_center = (motion.center + state.center) / 2;
-    // What rolls goes along a curve: as far as it came, not as the mean of the ends says.
+    // A rolling body moves along a curve: its mean velocity is its displacement over time, not the mean of the ends.
     motion.mean_velocity =
         motion.rolls ? (state.center - motion.center) / time_ : (motion.velocity + state.linear_velocity) / 2;
     motion.mean_spin = (motion.spin + state.angular_velocity) / 2;
@@ -221,7 +221,7 @@ void Ledger::add_damping(std::uint32_t body) {
 }
 
 void Ledger::note_scaled(std::uint32_t body, double fraction) {
-    // What was stopped whole tells nothing of its velocity; that was all energy which the joints had no right to.
+    // A body that was stopped whole has no velocity to measure; all that energy is booked to the joints.
     if (!(fraction > 0)) return;
     const BodyState& state = world_.rigid.motion[body];
     const BodyConstants& constants = world_.rigid.constants[body];
@@ -238,7 +238,7 @@ void Ledger::add_scaling(std::uint32_t body) {
         cross(motion.mean_center, impulse) + moment);
 }
 
-// The way that no mean velocity tells: it lifts, and carries the momentum along.
+// A displacement that no mean velocity accounts for: it lifts the body, and carries its momentum along.
 void Ledger::add_correction(std::uint32_t body) {
     const Motion& motion = motions_[body];
     const double mass = world_.rigid.constants[body].mass;
@@ -269,7 +269,8 @@ void Ledger::add_push(const Push& push, StepCause cause) {
     }
 }
 
-// The impulses of the substeps, each at its own place. Of rolling resistance a contact knows the last part's.
+// The impulses of the substeps, each at its own place. A contact stores the rolling resistance of the last substep
+// only.
 template <class Visit>
 void Ledger::for_each_push(const Island& island, Visit visit) const {
     const int parts = island.joint_count > 0 ? 1
@@ -301,7 +302,8 @@ void Ledger::for_each_push(const Island& island, Visit visit) const {
     }
 }
 
-// Contacts alone are solved with the inertia that each body has at the start, in the mean velocity of its free turning.
+// Islands with contacts only are solved with each body's inertia at the start, in the mean velocity of its free
+// rotation.
 void Ledger::set_spins(const Island& island) {
     if (island.joint_count > 0) return;
     for_each_push(island, [&](const Push& push) {
@@ -326,8 +328,8 @@ void Ledger::set_spins(const Island& island) {
     }
 }
 
-// Where it holds, its bodies have one velocity before and after, not in the mean of a turning arm: so the mean of both
-// ends is taken.
+// At a joint its bodies have one velocity before and after the step, but not in the mean of a turning arm: so the mean
+// of both ends is taken.
 void Ledger::add_joint(std::uint32_t index) {
     const Joint& joint = world_.joints.active[index];
     const Vec3 force = joint.total_linear - joint_totals_[index].linear;
@@ -372,7 +374,7 @@ void Ledger::close_island(const Island& island, double time) {
     for_each_push(island, [&](const Push& push) { add_push(push, StepCause::contacts); });
     if (island.joint_count == 0) return;
 
-    // On to the next substep.
+    // Copies the totals for the next substep.
     for (const std::uint32_t joint : std::span(world_.islands.joints).subspan(island.first_joint, island.joint_count)) {
         add_joint(joint);
     }
@@ -387,7 +389,7 @@ void Ledger::close_substeps() {
         if (island.joint_count == 0) close_island(island, world_.settings.time_step);
     }
 
-    // What was shifted since the last substep.
+    // Adds the position changes since the last substep.
     time_ = 0;
     for (const Island& island : world_.islands.list) {
         if (island.joint_count == 0) continue;
@@ -420,7 +422,7 @@ StepAccount Ledger::finish() {
     account_.unexplained_angular_momentum = after.angular_momentum - before.angular_momentum;
     for (std::size_t i = 0; i < account_.entries.size(); ++i) {
         const StepAccount::Entry& entry = account_.entries[i];
-        // Gravity's work only moves energy from potential to kinetic.
+        // The work of gravity only moves energy from potential to kinetic.
         if (static_cast<StepCause>(i) != StepCause::gravity) account_.unexplained_energy -= entry.work;
         account_.unexplained_linear_momentum -= entry.linear_impulse;
         account_.unexplained_angular_momentum -= entry.angular_impulse;

@@ -17,8 +17,8 @@ namespace embody::physics::state {
 
 struct WorldState;
 
-/// Keeps the account of energy and momenta of one step after the other, by double entry: what the stages say of their
-/// forces and impulses, and what became of the bodies' states (docs/physics/energy.md). Reads the world, changes
+/// Keeps the account of energy and momenta of one step after the other, by double entry: forces and impulses as the
+/// stages report them, and the changes of the bodies' states (docs/physics/energy.md). It reads the world and changes
 /// nothing. The steps of a world call these in the order of its stages.
 class Ledger {
 public:
@@ -28,14 +28,14 @@ public:
     void begin();
     void close_wake();
     void begin_impacts();
-    /// A group that eq. (3) has solved, its bodies at the place and time of the impact.
+    /// Adds a group of sites that eq. (3) has solved, its bodies at the place and time of the impact.
     void note_impact(std::span<const ImpactSite> sites, double energy_change);
     void close_impacts();
-    /// Of the impulses that its contacts report, the share that a body was given.
+    /// The fraction of the impulses reported by its contacts that a body was given.
     void note_kept_fraction(std::uint32_t body, double fraction) { motions_[body].kept_fraction = fraction; }
-    /// Its velocities were scaled to this share, which keeps energy from growing.
+    /// The body's velocities were scaled by this fraction, which keeps energy from growing.
     void note_scaled(std::uint32_t body, double fraction);
-    /// It was taken through the step by the equations of pure rolling.
+    /// The body was moved through the step by the equations of pure rolling.
     void note_rolled(std::uint32_t body) { motions_[body].rolls = true; }
     /// An island was solved through the next `time`, s: a substep where there are joints, else the step.
     void close_island(const Island& island, double time);
@@ -48,7 +48,7 @@ public:
 
 private:
     const WorldState& world_;
-    /// Of a body, when the running stage began, and its means over the stage.
+    /// A body's state when the running stage began, and its means over the stage.
     struct Motion {
         Vec3 center, velocity, spin;
         Quat rotation;
@@ -56,9 +56,9 @@ private:
         Vec3 moment;                         ///< of its contacts over the stage, about the centre of mass, N m s
         Vec3 scaled_impulse, scaled_moment;  ///< by note_scaled(), N s, N m s
         double kept_fraction = 1;            ///< of its contacts' impulses
-        bool rolls = false;                  ///< purely, through the whole step: its contacts do no work
+        bool rolls = false;                  ///< pure rolling through the whole step: its contacts do no work
     };
-    /// What contacts and joints had done before the running part of the step.
+    /// Work and impulses of contacts and joints before the running part of the step.
     struct ContactTotals {
         std::array<float, 4> normal{};
         std::array<float, 3> friction{};

@@ -10,7 +10,7 @@ namespace collision {}
 namespace dynamic {}
 }  // namespace embody::physics
 
-/// All that a world remembers, and the memory of its stages. Only stages, step and the face see it.
+/// The state of a world between steps, and the memory of its stages. Only stages, step and the face may include it.
 namespace embody::physics::state {
 
 // The rooms that it may see (docs/architecture.md).

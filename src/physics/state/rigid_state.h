@@ -19,26 +19,26 @@ struct ShapeRecord {
     std::uint32_t users = 0;
 };
 
-/// What a body was told to be. Pose and velocities in it are stale: BodyState has them.
+/// A body as its user defined it. Its pose and velocities are out of date: BodyState has the present ones.
 struct BodyRecord {
     BodyDefinition definition;
     const CollisionShape* shape = nullptr;  ///< nullptr: none
     double reach = 0;                       ///< farthest surface point from the centre of mass, m
-    bool is_round = false;                  ///< rolls: its contacts do not stay where they are on it
-    bool is_ball = false;                   ///< a sphere about its centre of mass: turning changes nothing
-    std::uint32_t version = 0;     ///< another one after each change of the body's shape, kind or pose by the user
+    bool is_round = false;                  ///< rolls: its contacts move over its surface
+    bool is_ball = false;                   ///< a sphere about its centre of mass: rotation changes nothing
+    std::uint32_t version = 0;              ///< changes with each change of the body's shape, kind or pose by the user
     double inner_radius = 0;       ///< half the thinnest extent: a body that moves farther in a step may tunnel, m
     Vec3 next_force, next_torque;  ///< for the next step only, cleared by report; N, N m about the centre of mass
     Vec3 start_linear_velocity, start_angular_velocity;  ///< when the step began, where there are deformables
     Vec3 deformable_force, deformable_torque;            ///< pushes of deformables in the last step, N, N m
-    Vec3 late_force, late_torque;                        ///< of these, those of sheets that take the step as a whole
+    Vec3 late_force, late_torque;                        ///< the part of these by sheets that take the step as a whole
     Vec3 drag;                                           ///< of the air in this step, or when it fell asleep, N
     Vec3 fluid_force, fluid_torque;                      ///< of fluids in this step, N, N m
     Vec3 last_center;                                    ///< last finite pose, to freeze the body at
     Quat last_rotation;
 };
 
-/// The bodies: what users made of them, and how they move. The arrays are indexed by the body's slot.
+/// The bodies: their definitions by users, and their motion. The arrays are indexed by the body's slot.
 struct RigidState {
     SurfacePairs surface_pairs;                        // face
     HandleTable<struct ShapeTag, ShapeRecord> shapes;  // face

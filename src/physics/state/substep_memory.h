@@ -18,15 +18,15 @@
 
 namespace embody::physics::state {
 
-/// Islands by the solver that takes them through the substeps (docs/physics/wide-solver.md).
+/// Islands by the solver that solves them in the substeps (docs/physics/wide-solver.md).
 struct IslandsBySolver {
-    /// Islands of contacts only that share a plan.
+    /// Islands with contacts only that are solved by one plan.
     struct Wide {
         ContactPlan plan;
         std::vector<Island> islands;  ///< empty: the plan was used in an earlier step
     };
     std::vector<std::uint32_t> free;  ///< bodies that nothing holds
-    std::vector<Island> one_by_one;   ///< joints and contacts, or too many joints
+    std::vector<Island> one_by_one;   ///< islands of joints and contacts, or of too many joints
     std::vector<Island> jointed;      ///< joints only, all at once
     std::vector<Wide> wide;           ///< contacts only; the finest plan first
 
@@ -45,14 +45,14 @@ struct IslandsBySolver {
     }
 };
 
-/// When the last impulses of a body's island held it where it was.
+/// The step in which the last impulses of a body's island held it in place.
 struct HeldRecord {
     std::uint64_t step = 0;
     std::uint32_t contacts = 0;  ///< of the island
 };
 
-/// The solvers of the substeps and their memory, so that a steady step allocates nothing. Of the last step they know
-/// what was held, which islands the direct solver gave up, and the joints' systems.
+/// The solvers of the substeps and their memory, so that a steady step allocates nothing. From the last step they keep
+/// the impulses that held bodies, the islands that the direct solver gave up, and the joints' systems.
 struct SubstepMemory {
     WideContactSolver wide_solver{widest_kernels<ContactKernels>()};
     DirectContactSolver direct_solver;
@@ -63,13 +63,13 @@ struct SubstepMemory {
     std::vector<Vec3> kicked_velocity;  ///< linear velocity before the constraints, m/s
     IslandsBySolver islands;
 
-    // Of the islands that the wide solver takes together.
+    // Lists of the islands that the wide solver solves together.
     std::vector<std::uint32_t> wide_contacts, wide_bodies, wide_carriers;
     std::vector<WideContactSolver::Group> wide_groups;
 
-    std::vector<std::pair<std::uint32_t, BodyState>> carriers;  ///< of one jointed island, at the step's start
+    std::vector<std::pair<std::uint32_t, BodyState>> carriers;  ///< kinematic; of one jointed island, at step start
 
-    /// What an island of joints and contacts may have of kinetic energy, J, and to mend its joints.
+    /// Bound of the kinetic energy of an island of joints and contacts, J, and of the energy to correct its joints.
     struct EnergyBound {
         Island island;
         const JointSystem* system;
@@ -77,7 +77,7 @@ struct SubstepMemory {
     };
     std::vector<EnergyBound> energy_bounds;
 
-    /// What joints hold, at the step's start.
+    /// Bodies that joints hold, at the step's start.
     struct HeldStart {
         std::uint32_t body;
         Vec3 linear_velocity, angular_velocity;

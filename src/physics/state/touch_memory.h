@@ -13,42 +13,42 @@
 
 namespace embody::physics::state {
 
-/// What the touch stage must know of a body besides its state, in one cache line.
+/// A body as the touch stage needs it besides its state, in one cache line.
 struct alignas(64) TouchBody {
-    Vec3 acceleration;   ///< 0 of what forces do not move, m/s²
+    Vec3 acceleration;   ///< 0 where forces do not move the body, m/s²
     double turning = 0;  ///< of the fastest surface point about the centre of mass, m/s; 0 of balls
     double size = 0;     ///< BodyRecord::reach; planes and meshes, which have none, count as larger than all else, m
-    double path = 0;     ///< no surface point has gone farther since there is a body in the slot, m
+    double path = 0;     ///< upper bound of any surface point's travel since the slot has a body, m
     std::uint32_t version = 0;          ///< BodyRecord::version
     std::uint32_t group = 0, mask = 0;  ///< of collision
     bool is_round = false, is_ball = false;
-    bool yields = false;  ///< can answer an impulse
-    bool stands = false;  ///< has neither moved nor been pushed since the last step began, and has no velocity
+    bool yields = false;  ///< an impulse can move it
+    bool stands = false;  ///< was neither moved nor pushed since the last step began, and has no velocity
 };
 static_assert(sizeof(TouchBody) == 64);
 
-/// What the touch stage asks of every pair in every step: little, since most pairs are apart and stay so.
+/// What the touch stage reads of every pair in every step: little, since most pairs are apart and stay apart.
 struct PairWatch {
     BroadPhase::Pair pair;
-    double next_check_travel = 0;  ///< the pair has no contacts before both bodies' paths together are as long, m
+    double next_check_travel = 0;  ///< the pair has no contacts until the sum of both bodies' paths reaches this, m
     std::uint32_t record = 0;      ///< in TouchMemory::records
     std::uint32_t count = 0;       ///< of its contacts
 };
 static_assert(sizeof(PairWatch) == 24);
 
-/// What the touch stage remembers of a pair that it has looked at.
+/// What the touch stage keeps of a pair that it has checked.
 struct alignas(64) PairRecord {
     std::uint32_t version_a = 0, version_b = 0;  ///< of the bodies when last compared; 0: never
     std::uint32_t contact_count = 0;             ///< found then
-    bool is_whole = false;                       ///< the contacts are all corners within the margin, then
-    double margin = 0;                           ///< nothing else was as near then, m
-    Vec3 relative_center;                        ///< of the smaller body seen from the larger one, then
+    bool is_whole = false;                       ///< the contacts are all corners within the margin, at that time
+    double margin = 0;                           ///< nothing else was within this distance at that time, m
+    Vec3 relative_center;                        ///< of the smaller body seen from the larger one, at that time
     Quat relative_rotation;
     PairMemory memory;
 };
 static_assert(sizeof(PairRecord) == 128);
 
-/// What a pair that is looked at has in a step: contacts that lie where they did, or others.
+/// The contacts of a checked pair in a step: those at the same places as before, or new ones.
 struct PairTouch {
     std::uint32_t watch = 0;
     std::uint32_t first = 0, count = 0;            ///< its contacts as they lie now
@@ -67,13 +67,13 @@ struct TouchMemory {
     std::vector<TouchBody> bodies;
     std::vector<double> path_bounds;  ///< by body: its path at the end of the step, if nothing hits it, m
     std::vector<PairWatch> watches;   ///< one for each pair of the broad phase, in its order
-    std::vector<PairRecord> records;  ///< where watches tell; those between them are free
+    std::vector<PairRecord> records;  ///< indexed by watches; entries between are free
     std::vector<std::uint32_t> free_records;
-    std::uint64_t watches_version = 0;  ///< pairs_version that watches was made of
+    std::uint64_t watches_version = 0;  ///< pairs_version that watches was built from
     std::vector<std::uint32_t> live;    ///< while any body sleeps: pairs in which one is awake, ascending
-    std::uint64_t live_version = 0, awake_version = 0;  ///< pairs_version and awake_version that live was listed of
-    std::vector<PairTouch> pairs;                       ///< those that are looked at in this step
-    bool is_laid_out = false;  ///< contacts lie as watches tells; cleared by whoever adds or removes some
+    std::uint64_t live_version = 0, awake_version = 0;  ///< pairs_version and awake_version that live was built from
+    std::vector<PairTouch> pairs;                       ///< the pairs that are checked in this step
+    bool is_laid_out = false;  ///< contacts lie as watches says; cleared by whoever adds or removes contacts
     std::vector<Worker> workers;
 };
 

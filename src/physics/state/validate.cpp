@@ -47,7 +47,7 @@ Result<void> validate_motion(const WorldState& world, std::uint32_t body) {
     return {};
 }
 
-// Where its contacts were looked for: for a body that moved, when the step began.
+// The pose at which a body's contacts were looked for: for a body that moved, the pose at the step's start.
 Transform pose_in_broad_phase(const WorldState& world, std::uint32_t body) {
     const bool moves = world.rigid.record(body).definition.kind != BodyKind::static_body;
     if (!moves || world.activity.is_asleep(body)) return world.rigid.pose(body);
@@ -85,7 +85,7 @@ Result<void> validate_awake(const WorldState& world) {
     if (std::adjacent_find(awake.begin(), awake.end(), std::greater_equal<>()) != awake.end()) {
         return Error{"awake", "is not ascending"};
     }
-    // Where it is to be listed anew, bodies have fallen asleep or were frozen since.
+    // Where the list is due to be made anew, bodies have fallen asleep or were frozen since it was made.
     for (std::uint32_t body = 0; body < world.rigid.bodies.slot_count(); ++body) {
         const bool is_listed = std::binary_search(awake.begin(), awake.end(), body);
         const bool moves =
@@ -104,7 +104,7 @@ Result<void> validate_contact(const WorldState& world, const Contact& contact, c
     if (contact.a >= contact.b) return Error{where, "is not between a body and one of a higher slot"};
     if (!rigid.is_used(contact.a) || !rigid.is_used(contact.b)) return Error{where, "is of a body that is not there"};
     if (!is_enabled(rigid, contact.a) || !is_enabled(rigid, contact.b)) {
-        // One that was frozen in this step leaves its contacts with the next.
+        // A body that was frozen in this step loses its contacts in the next step.
         constexpr auto frozen = static_cast<std::uint32_t>(StepLimit::not_finite_body_frozen);
         if ((world.report.limits & frozen) != 0) return {};
         return Error{where, "is of a disabled body"};

@@ -8,10 +8,11 @@ namespace embody::physics::state {
 
 struct WorldState;
 
-/// What holds of a world's state after each step, whatever happens in it: numbers are finite, rotations have length
-/// one, lists are sorted and name what there is, sleepers are in exactly one group, islands are disjoint, the broad
-/// phase holds what may collide. The first of these that is broken: `where` is the element, e.g. "bodies[3].rotation".
-/// Between steps users change what the next step brings in order. It walks through everything: EMBODY_VALIDATE.
+/// Checks what holds for a world's state after each step, whatever happens in it: numbers are finite, rotations have
+/// length one, lists are sorted and name existing elements, sleepers are in exactly one group, islands are disjoint,
+/// the broad phase holds all pairs that may collide. Returns the first error: `where` is the element, e.g.
+/// "bodies[3].rotation". Between steps users make changes that the next step takes in. It visits everything:
+/// EMBODY_VALIDATE.
 Result<void> validate(const WorldState& world);
 
 }  // namespace embody::physics::state

@@ -22,8 +22,9 @@
 
 namespace embody::physics::state {
 
-/// Everything a world remembers, in parts. A stage of the step is given those that it may touch (stages/access.h). Each
-/// array of a part names the stage that writes it; "face" is World, between steps.
+/// Everything a world remembers, in parts. Each stage of the step is given the parts that it may touch
+/// (stages/access.h).
+/// Each array of a part names the stage that writes it; "face" is World, between steps.
 struct WorldState {
     WorldSettings settings;
     std::unique_ptr<TaskPool> workers = std::make_unique<TaskPool>(1);
@@ -41,7 +42,7 @@ struct WorldState {
     BallMemory balls;
     SubstepMemory substeps;
 
-    // What is told of a step.
+    // Events and reports of a step.
     EventState events;
     StepReport report;               // all
     std::unique_ptr<Ledger> ledger;  // face; all: what changed energy and momenta; null: not asked for
