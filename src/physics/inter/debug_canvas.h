@@ -6,7 +6,7 @@
 
 namespace embody::physics {
 
-/// What the parts of debug_draw.cpp draw on: counts lines and points, and leaves out what is too much.
+/// The canvas of the parts of debug_draw.cpp: it counts lines and points, and leaves out those beyond the limits.
 class DebugCanvas {
 public:
     DebugCanvas(DebugDraw& draw, const DebugDrawOptions& wanted) : options(wanted), draw_(draw) {}
@@ -27,9 +27,9 @@ public:
         ++count_.points;
         draw_.point(at, color);
     }
-    /// Its twelve edges; nothing of an empty box.
+    /// Draws the box's twelve edges; nothing of an empty box.
     void box(const Bounds& box, DebugColor color);
-    /// A line with a head of two.
+    /// Draws a line with a head of two lines.
     void arrow(Vec3 from, Vec3 to, DebugColor color);
 
     [[nodiscard]] const DebugDrawCount& count() const { return count_; }

@@ -24,7 +24,7 @@ constexpr std::uint32_t no_island = 0xFFFFFFFFu;
 
 std::uint16_t short_number(std::uint32_t number) { return static_cast<std::uint16_t>(number); }
 
-// Of each body the lowest slot in its island, of those that are awake as the last step found them.
+// For each body the lowest slot in its island, for bodies that the last step found awake.
 std::vector<std::uint32_t> islands_of_bodies(const WorldState& world) {
     std::vector<std::uint32_t> island(world.rigid.bodies.slot_count(), no_island);
     const auto add = [&](std::span<const std::uint32_t> bodies, bool is_asleep) {
@@ -57,7 +57,7 @@ DebugColor color_of(const WorldState& world, std::uint32_t body, std::span<const
     return {wants_to_sleep ? DebugMeaning::wants_to_sleep_shape : DebugMeaning::active_shape, 0, !definition.enabled};
 }
 
-// Moving bodies first: a large ground may be more than the lines allow.
+// Moving bodies first: a large ground alone may exceed the number of lines.
 void draw_shapes(const WorldState& world, DebugCanvas& canvas) {
     std::vector<std::uint32_t> islands;
     if (canvas.is_wanted(DebugDrawFlag::islands)) islands = islands_of_bodies(world);

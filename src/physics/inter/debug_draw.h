@@ -9,7 +9,7 @@
 
 namespace embody::physics {
 
-/// What a line or point stands for. Whoever draws it chooses the colour. The numbers are part of docs/protocol.md.
+/// What a line or point stands for. The user of DebugDraw chooses its colour. The numbers are part of docs/protocol.md.
 enum class DebugMeaning : std::uint8_t {
     static_shape,
     kinematic_shape,
@@ -23,24 +23,24 @@ enum class DebugMeaning : std::uint8_t {
     island,          ///< number: of the island
     joint,           ///< from a centre of mass to the joint's frame
     joint_axis,      ///< number: 0, 1, 2 for X, Y, Z of a joint frame; that of the second body is dim
-    joint_limit,     ///< where the joint's coordinate may be
+    joint_limit,     ///< range of the joint's coordinate
     center_of_mass,
-    inertia_axis,  ///< number: 0, 1, 2, the least moment first
+    inertia_axis,  ///< number: 0, 1, 2, the smallest moment first
     particle,      ///< of a fluid
     node,          ///< of a deformable; number: 1 where it is pinned
     edge,          ///< between two nodes
-    attachment,    ///< from a node to what holds it
+    attachment,    ///< from a node to the body or node that holds it
     tree,          ///< box of the broad phase; number: depth, 0 the topmost
     count
 };
 
 struct DebugColor {
     DebugMeaning meaning = DebugMeaning::bounds;
-    std::uint16_t number = 0;  ///< where the meaning tells of one; of more than there are numbers for, the rest
+    std::uint16_t number = 0;  ///< where the meaning has one; modulo 65,536
     bool is_dim = false;       ///< asleep, disabled, or less important
 };
 
-/// Draws what World::debug_draw() tells it. Places are in the world, m.
+/// Receives the drawing of World::debug_draw(). Positions are in the world, m.
 class DebugDraw {
 public:
     virtual ~DebugDraw() = default;
@@ -50,7 +50,7 @@ public:
 
 /// What can be drawn, as bits.
 enum class DebugDrawFlag : std::uint32_t {
-    shapes = 1u << 0,       ///< of bodies, as wires; coloured by island where these are asked for too
+    shapes = 1u << 0,       ///< of bodies, as wires; coloured by island if `islands` is set too
     bounds = 1u << 1,       ///< boxes around the shapes
     contacts = 1u << 2,     ///< points and normals: of bodies, deformables and drops
     impulses = 1u << 3,     ///< arrows, as long as told by DebugDrawOptions::longest_arrow
@@ -58,10 +58,10 @@ enum class DebugDrawFlag : std::uint32_t {
     joints = 1u << 5,       ///< frames, axes, limits
     masses = 1u << 6,       ///< centres, and axes of the box of equal mass and inertia
     particles = 1u << 7,    ///< of fluids
-    deformables = 1u << 8,  ///< nodes, edges and what holds them
+    deformables = 1u << 8,  ///< nodes, edges and attachments
     trees = 1u << 9,        ///< boxes of the broad phase
 };
-/// Their names: of bit i the one at i.
+/// Names of the flags: element i is the name of bit i.
 inline constexpr std::array debug_draw_names{"shapes", "bounds", "contacts",  "impulses",    "islands",
                                              "joints", "masses", "particles", "deformables", "trees"};
 
@@ -70,12 +70,12 @@ struct DebugDrawOptions {
     double mark_length = 0.1;         ///< of normals and joint axes, m
     double longest_arrow = 0.5;       ///< of the largest impulse; others in proportion, m
     double plane_half_size = 10;      ///< of the square that shows an endless plane, m
-    std::size_t max_lines = 100'000;  ///< what comes after is left out: shapes come last, static ones at the end
+    std::size_t max_lines = 100'000;  ///< lines beyond this are left out: shapes come last, static ones at the end
     std::size_t max_points = 200'000;
 };
 
 struct DebugDrawCount {
-    std::size_t lines = 0, points = 0;                    ///< that were drawn
+    std::size_t lines = 0, points = 0;                    ///< number drawn
     std::size_t lines_left_out = 0, points_left_out = 0;  ///< beyond what the options allow
 };
 

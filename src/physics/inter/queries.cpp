@@ -30,7 +30,7 @@ std::vector<BodyHandle> overlap_box(const WorldState& world, const Bounds& box) 
     std::vector<BodyHandle> found;
     if (box.is_empty() || !is_finite(box.lower) || !is_finite(box.upper)) return found;
 
-    // A thin box is given a little thickness: the narrow phase wants a solid.
+    // A thin box is made a little thicker: the narrow phase needs a solid.
     constexpr double thinnest = 1e-6;
     const Vec3 half = max(box.half_extents(), Vec3{thinnest, thinnest, thinnest});
     const auto solid = CollisionShape::create(BoxShape{half});
@@ -45,7 +45,7 @@ std::vector<BodyHandle> overlap_box(const WorldState& world, const Bounds& box) 
 
 namespace {
 
-// Conservative advancement straight down: the gap to the other body bounds how far the body can go.
+// Conservative advancement straight down: the gap to the other body bounds the distance that the body can move.
 std::optional<double> drop_onto(const WorldState& world, std::uint32_t body, std::uint32_t other, double limit) {
     constexpr double touch = 1e-6;       // m
     constexpr int max_iterations = 256;  // of conservative advancement; the body stays above the ground then

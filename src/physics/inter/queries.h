@@ -16,7 +16,7 @@ std::optional<RayHit> cast_ray(const state::WorldState& world, Vec3 origin, Vec3
 /// Bodies whose shapes overlap the box; see World::overlap_box().
 std::vector<BodyHandle> overlap_box(const state::WorldState& world, const Bounds& box);
 
-/// How far a body can move down; see World::drop_distance().
+/// The distance that a body can move down; see World::drop_distance().
 std::optional<double> drop_distance(const state::WorldState& world, std::uint32_t body, double max_distance,
                                     const std::function<bool(BodyHandle)>& ignores);
 

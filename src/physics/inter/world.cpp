@@ -31,7 +31,7 @@ Result<void> World::set_settings(const WorldSettings& settings) {
     if (workers != state_->workers->workers()) state_->workers = std::make_unique<TaskPool>(workers);
     state_->settings = settings;
 
-    // Another gravity, wind or no sleeping moves everything.
+    // A change of gravity, wind or sleeping affects everything.
     for (std::uint32_t body = 0; body < state_->rigid.bodies.slot_count(); ++body) wake_later(state_->activity, body);
     for (const DeformableHandle deformable : deformables()) {
         if (auto woken = wake(deformable); !woken) return woken;
@@ -75,7 +75,7 @@ Result<JointHandle> World::create_joint(const JointDefinition& definition) {
     const JointHandle handle = state_->joints.records.insert({definition, std::move(joint).value()});
     add_jointed_pair(state_->joints, definition);
 
-    // What other joints hold lies in the group of one of the two.
+    // A body that other joints hold lies in the group of one of the two bodies.
     wake_touching(WakeAccess(*state_), definition.body_b.index);
     if (!definition.body_a.is_null()) wake_later(state_->activity, definition.body_a.index);
     return handle;
@@ -128,7 +128,7 @@ double World::joint_coordinate(JointHandle joint) const {
     return record ? constraint::joint_coordinate(record->constraint, state_->rigid.motion) : 0;
 }
 
-// Stepping and what came of it.
+// Stepping and its results.
 
 const StepReport& World::step() {
     step::step(*state_);
@@ -148,7 +148,7 @@ std::span<const SleepEvent> World::sleep_events() const { return state_->events.
 std::vector<ContactView> World::contacts() const {
     std::vector<ContactView> views;
     const auto add = [&](const Contact& contact) {
-        // The region's friction is shown at its points by their share of the load.
+        // The region's friction is distributed over its points by their fraction of the load.
         double load = 0;
         for (int i = 0; i < contact.count; ++i) load += contact.points[static_cast<std::size_t>(i)].total;
         const Vec3 friction = friction_force(contact, contact.friction_total);

@@ -30,9 +30,9 @@ namespace state {
 struct WorldState;
 }
 
-/// The paper's Inter module: how a user and every other part talk to the physics. Owns shapes, bodies, joints and
-/// advances them. One thread at a time; several worlds are independent. Setters that are given a bad number or a stale
-/// handle refuse it with the field's name and change nothing.
+/// The paper's Inter module: the interface of the physics for users and all other parts. Owns shapes, bodies, joints
+/// and advances them. One thread at a time; several worlds are independent. Setters that are given a bad number or a
+/// stale handle refuse it with the field's name and change nothing.
 class World {
 public:
     static Result<std::unique_ptr<World>> create(const WorldSettings& settings = {});
@@ -55,17 +55,17 @@ public:
 
     // Bodies.
     Result<BodyHandle> create_body(const BodyDefinition& definition);
-    /// Its joints go with it.
+    /// Destroys its joints too.
     Result<void> destroy_body(BodyHandle body);
-    /// The same for many, each named once: as quick as for one. All or none.
+    /// As destroy_body() for many bodies, each named once, in the time of one. All or none.
     Result<void> destroy_bodies(std::span<const BodyHandle> bodies);
     [[nodiscard]] bool contains(BodyHandle body) const;
     [[nodiscard]] std::vector<BodyHandle> bodies() const;
-    /// The definition as it stands now: pose, velocities and everything that was set since; std::nullopt if stale.
+    /// The present definition: pose, velocities and everything that was set since; std::nullopt if stale.
     [[nodiscard]] std::optional<BodyDefinition> body(BodyHandle body) const;
-    /// Replaces everything but the handle (kind, shape, mass, material, pose, …) and wakes what it touches.
+    /// Replaces everything but the handle (kind, shape, mass, material, pose, …) and wakes the bodies that it touches.
     Result<void> set_body(BodyHandle body, const BodyDefinition& definition);
-    /// The same for many, each named once: `change` is given each one's definition as it stands now. All or none.
+    /// As set_body() for many, each named once: `change` is given each one's present definition. All or none.
     Result<void> change_bodies(std::span<const BodyHandle> bodies, const std::function<void(BodyDefinition&)>& change);
     /// Cheap reads for streaming; identity, zero and asleep for a stale handle.
     [[nodiscard]] Transform pose(BodyHandle body) const;
@@ -105,76 +105,78 @@ public:
     Result<DeformableHandle> create_deformable(const DeformableDefinition& definition);
     Result<void> destroy_deformable(DeformableHandle deformable);
     [[nodiscard]] std::vector<DeformableHandle> deformables() const;
-    /// As it was defined; nullptr if stale.
+    /// Its definition; nullptr if stale.
     [[nodiscard]] const DeformableDefinition* deformable(DeformableHandle deformable) const;
     /// World positions (m) and velocities (m/s) of its nodes; empty if stale. Valid until the next step or change.
     [[nodiscard]] std::span<const Vec3> node_positions(DeformableHandle deformable) const;
     [[nodiscard]] std::span<const Vec3> node_velocities(DeformableHandle deformable) const;
     [[nodiscard]] std::span<const double> node_masses(DeformableHandle deformable) const;  ///< kg
-    /// Where its frame would be if it had kept its form: the rigid motion nearest to that of its nodes, by mass.
+    /// The pose of its frame by the rigid motion nearest to that of its nodes, weighted by mass.
     [[nodiscard]] Transform pose(DeformableHandle deformable) const;
     [[nodiscard]] double mass(DeformableHandle deformable) const;  ///< kg, pinned nodes too
     [[nodiscard]] Vec3 center_of_mass(DeformableHandle deformable) const;
     [[nodiscard]] bool is_asleep(DeformableHandle deformable) const;
     Result<void> wake(DeformableHandle deformable);
-    /// Places and moves all of its nodes, as many as it has, and wakes it. Pinned ones rest where they are placed.
+    /// Sets the positions and velocities of all its nodes, as many as it has, and wakes it. Pinned ones stay at rest.
     Result<void> set_nodes(DeformableHandle deformable, std::span<const Vec3> positions,
                            std::span<const Vec3> velocities);
-    /// Other matter, pins, friction and the like, of the same nodes and elements; these stay where they are and go on
-    /// as they move, whatever the definition says of pose and velocity. Wakes it.
+    /// Sets matter, pins, friction and the like for the same nodes and elements; the nodes keep their positions and
+    /// velocities, whatever the definition says of pose and velocity. Wakes it.
     Result<void> set_deformable(DeformableHandle deformable, const DeformableDefinition& definition);
-    /// The attachments, ties and a rope's clamps alone: costs nothing. Between clamps that stay, a rope stays twisted.
+    /// Sets only the attachments, ties and a rope's clamps: costs nothing. Between clamps that stay, a rope stays
+    /// twisted.
     Result<void> set_attachments(DeformableHandle deformable, const std::vector<Attachment>& attachments,
                                  const std::vector<Clamp>& clamps = {}, const std::vector<Tie>& ties = {});
     /// For `node` of a sheet or rope: a tie to the point of the other's surface or line that is nearest to the place
     /// (m); nothing if stale or broken all over.
     [[nodiscard]] std::optional<Tie> nearest_tie(std::uint32_t node, DeformableHandle other, Vec3 place) const;
-    /// Of each segment of a rope, from node k to k + 1, N; below zero: pressed; 0 where it is broken. Empty for what is
-    /// no rope. Valid until the next step or change.
+    /// Tension of each segment of a rope, from node k to k + 1, N; below zero: pressed; 0 where it is broken. Empty for
+    /// other deformables. Valid until the next step or change.
     [[nodiscard]] std::span<const double> rope_tensions(DeformableHandle rope) const;
-    /// Of each span between two of a rope's clamps, in the last step. Empty for what is no rope or has none. Valid
-    /// until the next step or change.
+    /// Twist of each span between two of a rope's clamps, in the last step. Empty where there are none, and for other
+    /// deformables. Valid until the next step or change.
     [[nodiscard]] std::span<const RopeTwist> rope_twists(DeformableHandle rope) const;
-    /// Segments that are broken, ascending.
+    /// Indices of broken segments, ascending.
     [[nodiscard]] std::vector<std::uint32_t> broken_segments(DeformableHandle rope) const;
 
     // Fluids.
     Result<FluidHandle> create_fluid(const FluidDefinition& definition);
     Result<void> destroy_fluid(FluidHandle fluid);
     [[nodiscard]] std::vector<FluidHandle> fluids() const;
-    /// As it was defined or last set; nullptr if stale.
+    /// Its definition, or the one last set; nullptr if stale.
     [[nodiscard]] const FluidDefinition* fluid(FluidHandle fluid) const;
-    /// Another density, viscosity, yield stress, …; where the liquid is does not change, and cell_size must not.
+    /// Sets density, viscosity, yield stress, …; the places of its particles do not change, and cell_size must not.
     Result<void> set_fluid(FluidHandle fluid, const FluidDefinition& definition);
-    /// More of the same liquid: particles of its particle_volume at these places (m), less what solids fill, at rest.
-    /// Their ids follow each other; an error where none fits in.
+    /// Adds particles of its particle_volume at these places (m), except those inside solids, at rest.
+    /// Their ids are consecutive; an error where there is room for none.
     Result<FluidIds> add_to_fluid(FluidHandle fluid, std::span<const Vec3> places);
-    /// Calls `change` for each particle with an id of these; what returns false goes. Wakes the fluid.
+    /// Calls `change` for each particle with one of these ids; those for which it returns false are removed. Wakes the
+    /// fluid.
     Result<void> change_fluid(FluidHandle fluid, FluidIds ids, const FluidChange& change);
-    /// The particles with these ids go on as they are in another fluid of equal particles and cell_size; without one,
-    /// in a new fluid of the same matter. Both wake. Returns them there, in the order of their ids.
+    /// Moves the particles with these ids into another fluid of equal particles and cell_size; without one, into a new
+    /// fluid of the same matter. Both wake. Returns their ids there, in the order of the old ids.
     Result<FluidPart> move_between_fluids(FluidHandle from, FluidIds ids, FluidHandle to = {});
-    /// Empty if stale.
+    /// Its particles; empty if stale.
     [[nodiscard]] FluidParticles fluid_particles(FluidHandle fluid) const;
-    /// At a world point, Pa above the air's; 0 outside the liquid.
+    /// Pressure at a world point, Pa above the air's; 0 outside the liquid.
     [[nodiscard]] double fluid_pressure(FluidHandle fluid, Vec3 point) const;
-    /// Of all fluids on a dynamic or kinematic body; on static ones it is not measured.
+    /// Force of all fluids on a dynamic or kinematic body; on static ones it is not measured.
     [[nodiscard]] FluidForce fluid_force(BodyHandle body) const;
     Result<void> wake(FluidHandle fluid);
 
     /// Advances by settings().time_step.
     const StepReport& step();
     [[nodiscard]] const StepReport& last_report() const;
-    /// Whether each report says what changed the energy and momenta of the rigid bodies (docs/physics/energy.md).
-    /// Changes no state; off, it costs nothing.
+    /// Whether each report has the account of the energy and momenta of the rigid bodies by cause
+    /// (docs/physics/energy.md). Changes no state; off, it costs nothing.
     void keep_account(bool is_wanted);
-    // What happened in the last step; valid until the next call that changes the world.
+    // Events of the last step; valid until the next call that changes the world.
     [[nodiscard]] std::span<const ContactEvent> contact_events() const;
     [[nodiscard]] std::span<const SleepEvent> sleep_events() const;
     [[nodiscard]] std::span<const RopeBreakEvent> rope_break_events() const;
     [[nodiscard]] std::vector<ContactView> contacts() const;
     [[nodiscard]] Conserved conserved() const;
-    /// Draws what the options ask for (debug_draw.h), as it is now; changes nothing.
+    /// Draws what the options select (debug_draw.h) in its present state; changes nothing.
     DebugDrawCount debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const;
 
     // Queries.
@@ -185,8 +187,9 @@ public:
     [[nodiscard]] std::vector<BodyHandle> overlap_box(const Bounds& box) const;
     /// World bounds of a body's shape; empty for a body without one.
     [[nodiscard]] Bounds bounds(BodyHandle body) const;
-    /// How far the body can move down (-Y) until it touches another; std::nullopt if it meets nothing in
-    /// `max_distance`. The body may overlap nothing at its start. It passes through what `ignores` (if given) names.
+    /// The distance that the body can move down (-Y) until it touches another; std::nullopt if it meets none within
+    /// `max_distance`. The body may overlap nothing at its start. It passes through the bodies that `ignores` (if
+    /// given) names.
     [[nodiscard]] std::optional<double> drop_distance(BodyHandle body, double max_distance,
                                                       const std::function<bool(BodyHandle)>& ignores = {}) const;
     /// Equal iff the states of all bodies are bit for bit equal.

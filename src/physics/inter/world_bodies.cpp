@@ -27,7 +27,7 @@ Result<std::vector<std::uint32_t>> slots_of(const WorldState& world, std::span<c
     return slots;
 }
 
-// Counts who uses a shape, so that it is not destroyed under a body.
+// Counts the users of a shape, so that it is not destroyed while a body has it.
 void change_users(WorldState& world, ShapeHandle shape, int change) {
     if (ShapeRecord* record = world.rigid.shapes.find(shape)) record->users += static_cast<std::uint32_t>(change);
 }

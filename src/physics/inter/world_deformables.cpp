@@ -26,7 +26,7 @@ Result<void> check_attachments(const World& world, const std::vector<Attachment>
     return {};
 }
 
-// `own`: null for one that is not there yet.
+// `own`: null for a deformable that is not yet created.
 Result<void> check_ties(const World& world, DeformableHandle own, const std::vector<Tie>& ties) {
     for (std::size_t i = 0; i < ties.size(); ++i) {
         const std::string where = "ties[" + std::to_string(i) + "]";
@@ -82,7 +82,7 @@ Transform nearest_rigid_motion(const DeformableRecord& record) {
     return {center - rotate(rotation, rest_center), rotation};
 }
 
-// As everything that is done to it from outside.
+// Called by everything that changes a deformable from outside.
 void wake_up(DeformableRecord& record) {
     record.is_asleep = false;
     record.quiet_time = 0;
@@ -183,7 +183,7 @@ Result<void> World::set_nodes(DeformableHandle deformable, std::span<const Vec3>
         if (!std::ranges::all_of(values, [](Vec3 v) { return is_finite(v); }))
             return Error{field, "must be finite numbers"};
     }
-    // Placed first: the turn of the whole follows from where the nodes are.
+    // Positions first: the rotation of the whole follows from them.
     record->set_motion(positions, velocities, record->definition.pose.rotation);
     record->set_motion(positions, velocities, nearest_rigid_motion(*record).rotation);
     record->last_positions = record->nodes().position;

@@ -14,7 +14,7 @@ using namespace stages;
 
 namespace {
 
-// Volumes of particles that differ by no more are equal: a mean of as many as there are.
+// Volumes of particles that differ by no more than this are equal: rounding of a mean over the particles.
 constexpr double same_volume = 1e-9;
 
 }  // namespace
