@@ -19,7 +19,7 @@ std::uint64_t user_data_of(const RigidState& rigid, BodyHandle body) {
     return record ? record->definition.user_data : 0;
 }
 
-// Where, along what normal and how fast a pair began to touch: by its first touching region and its fastest one.
+// Place, normal and speed at which a pair began to touch: of its first touching region and its fastest one.
 ContactEvent begin_event(const ReportAccess& world, const TouchingPair& pair) {
     const std::array<std::uint32_t, 5> key{pair.a.index, pair.b.index, 0, 0, 0};
     auto contact = std::lower_bound(world.contacts.list.begin(), world.contacts.list.end(), key,
@@ -54,7 +54,7 @@ void list_touching(const ReportAccess& world, std::vector<TouchingPair>& pairs) 
 }
 
 void end_touching(const ReportAccess& world, const TouchingPair& pair) {
-    // Pairs that fell asleep touch on, without an event.
+    // Pairs that fell asleep still touch, without an event.
     const auto sleeps = [&](BodyHandle body) {
         return world.rigid.bodies.contains(body) && world.activity.is_asleep(body.index);
     };
@@ -83,7 +83,7 @@ void write_contact_events(const ReportAccess& world) {
 }
 
 void count_bodies(const ReportAccess& world) {
-    // Those that slept at the step's start still do, or were listed as awake since.
+    // Bodies that slept at the step's start still sleep, or were listed as awake since.
     world.report.bodies_asleep = world.activity.asleep_when_gathered;
     for (const std::uint32_t body : world.activity.awake) {
         if (!world.rigid.is_dynamic(body) || !world.rigid.record(body).definition.enabled) continue;

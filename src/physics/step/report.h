@@ -6,7 +6,7 @@
 
 namespace embody::physics::step {
 
-/// The last stage: contact events, counts and energies of the step. What was told for one step only is forgotten.
+/// The last stage: contact events, counts and energies of the step. Commands for one step only are cleared.
 void write_report(const ReportAccess& world);
 
 }  // namespace embody::physics::step

@@ -23,7 +23,8 @@ void run(WorldState& world, StepStage stage, const char* name, void (*work)(cons
     world.report.stage_milliseconds[static_cast<std::size_t>(stage)] += zone.finish();
 }
 
-// All that moves bodies; nothing to do while all sleep. Workers are kept awake if the step is going to be a long one.
+// All stages that move bodies; nothing to do while all sleep. Workers are kept awake if the step is expected to be
+// long.
 void advance(WorldState& world, bool is_long) {
     std::optional<TaskPool::StayAwake> stay_awake;
     if (is_long) stay_awake.emplace(*world.workers);
@@ -33,7 +34,7 @@ void advance(WorldState& world, bool is_long) {
     };
     run(world, StepStage::find_pairs, "find pairs", find_pairs);   // broad phase
     run(world, StepStage::touch, "find contacts", find_contacts);  // narrow phase → contact regions, warm start
-    run(world, StepStage::touch, "roll balls", roll_balls);  // balls alone on still ground: their way through the step
+    run(world, StepStage::touch, "roll balls", roll_balls);  // balls alone on immovable ground: their path in the step
     run(world, StepStage::islands, "list joints", list_active_joints);
     account(&Ledger::begin_impacts);
     run(world, StepStage::impact, "solve impacts", solve_impacts);  // new, fast contacts by eq. (3)
@@ -45,7 +46,7 @@ void advance(WorldState& world, bool is_long) {
     run(world, StepStage::continuous, "stop tunnelling", stop_tunnelling);  // bodies that would pass through others
     account(&Ledger::close_continuous);
     run(world, StepStage::deformables, "advance deformables",
-        advance_deformables);  // nodes and elements, and what they push
+        advance_deformables);  // nodes and elements, and their forces on bodies
     account(&Ledger::close_deformables);
     run(world, StepStage::sleep, "put to sleep", put_to_sleep);  // quiet islands leave the awake set
     account(&Ledger::close_sleep);
@@ -66,7 +67,7 @@ void step(WorldState& world) {
     if (world.ledger) world.ledger->close_wake();
     if (!world.activity.awake.empty() || !world.contacts.list.empty() || world.deformables.records.count() > 0)
         advance(world, is_long);
-    run(world, StepStage::fluids, "settle fluids", settle_fluids);  // liquids follow bodies to where these came to
+    run(world, StepStage::fluids, "settle fluids", settle_fluids);  // liquids follow the bodies to their new places
     {
         EMBODY_ZONE("write report");
         write_report(ReportAccess(world));  // events, counts
