@@ -28,7 +28,7 @@ std::uint64_t spread(std::uint64_t v) {
     return (v | v << 2) & 0x1249249249249249ull;
 }
 
-// Boxes of about a size together, 16 classes by factors of four: one large box would make all above it large.
+// Groups boxes by size in 16 classes by factors of four: one large box would make all boxes above it large.
 std::uint64_t size_class(const FloatBox& b) {
     float size = 0;
     for (int k = 0; k < 3; ++k) size = std::max(size, b.upper[k] - b.lower[k]);
@@ -36,7 +36,7 @@ std::uint64_t size_class(const FloatBox& b) {
     return static_cast<std::uint64_t>(std::clamp((exponent + 12) / 2, 0, 15));
 }
 
-/// Where a box lies on the curve through the space that holds all their centres.
+/// The position of a box along the curve through the space that holds all their centres.
 class Curve {
 public:
     explicit Curve(const std::vector<FloatBox>& boxes) {
@@ -66,7 +66,7 @@ private:
     float scale_ = 1;
 };
 
-// By key, equal ones in their old order; digits of 11 bits, those that all share are left out.
+// Sorts by key, equal ones in their old order; by digits of 11 bits, without digits that are the same in all keys.
 template <class Entry>
 void sort_by_key(std::vector<Entry>& entries, std::vector<Entry>& scratch) {
     constexpr int bits = 11;  // 2048 counters stay in the first cache
@@ -116,7 +116,7 @@ void BoxTree::set_slot(std::uint32_t slot, const FloatBox& box) {
 void BoxTree::insert(std::uint32_t value, const FloatBox& box) {
     if (value >= slots_.size()) slots_.resize(value + 1, none);
     EMBODY_ASSERT(slots_[value] == none);
-    // Boxes that are taken out and put back again and again, with no query between, leave gaps behind.
+    // Boxes that are removed and inserted again and again, with no query between, leave gaps behind.
     constexpr std::uint32_t max_gaps = 4, fewest_slots = 64;
     if (leaf_count() * lanes > max_gaps * used_ + fewest_slots) sort();
 
@@ -164,7 +164,7 @@ void BoxTree::change_all() {
     }
 }
 
-// Where many boxes wait, many have gone, or the sorted leaves have grown by half.
+// Sort when many boxes wait, many were removed, or the sorted leaves have grown by half.
 bool BoxTree::wants_sorting() const {
     const std::uint32_t waiting = leaf_count() - sorted_leaves_;
     return waiting > 8 + sorted_leaves_ / 16 || used_ < sorted_used_ / 2 || total_area_ > 1.5 * sorted_area_;
@@ -177,7 +177,7 @@ void BoxTree::refresh() {
     if (wants_sorting()) sort();
 }
 
-// Tells the changes of the leaves upwards.
+// Propagates the changes of the leaves upwards.
 void BoxTree::join_levels() {
     for (std::uint32_t node = 0; node < sorted_leaves_; ++node) {
         if (!stale_[node]) continue;

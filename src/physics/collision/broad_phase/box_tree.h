@@ -41,7 +41,7 @@ struct FloatBox {
     [[nodiscard]] Bounds bounds() const { return {{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}}; }
 };
 
-/// Eight boxes side by side: what one comparison of a query looks at.
+/// Eight boxes side by side: one comparison of a query reads all of them.
 struct alignas(32) BoxNode {
     static constexpr std::uint32_t lanes = 8;
     float lower[3][lanes], upper[3][lanes];
@@ -64,7 +64,7 @@ struct alignas(32) BoxNode {
         }
     }
     [[nodiscard]] FloatBox box(std::uint32_t lane) const;
-    /// The box around those of the mask's lanes.
+    /// The box around the boxes of the mask's lanes.
     [[nodiscard]] FloatBox joined(std::uint32_t mask = 0xFF) const;
     /// Bit i: box i overlaps `box`.
     [[nodiscard]] std::uint32_t overlap_mask(const FloatBox& box) const;
@@ -84,7 +84,7 @@ public:
     /// Brings the upper levels in step with the boxes; to be called after changes and before queries.
     void refresh();
 
-    /// Leaf nodes, and which of their boxes are new or have changed since forget_changes().
+    /// Leaf nodes, and a mask of their boxes that are new or have changed since forget_changes().
     [[nodiscard]] std::uint32_t leaf_count() const { return static_cast<std::uint32_t>(leaves_.size()); }
     [[nodiscard]] const BoxNode& leaf(std::uint32_t node) const { return leaves_[node]; }
     [[nodiscard]] std::uint32_t changed_mask(std::uint32_t node) const { return changed_[node]; }
@@ -101,7 +101,7 @@ public:
     void query(const FloatBox& box, Visit&& visit, std::uint32_t first = 0) const {
         walk([&box](const BoxNode& node) { return node.overlap_mask(box); }, visit, first);
     }
-    /// The same for boxes of which `meets(node)` gives the mask.
+    /// As above, for boxes in the mask that `meets(node)` returns.
     template <class Meets, class Visit>
     void walk(Meets&& meets, Visit&& visit, std::uint32_t first = 0) const {
         struct Place {
@@ -162,7 +162,7 @@ private:
     void set_slot(std::uint32_t slot, const FloatBox& box);
 
     std::vector<BoxNode> leaves_;                // sorted ones, then those with new boxes
-    std::vector<std::uint8_t> changed_, stale_;  // by leaf: bits of its boxes; its parents do not know it yet
+    std::vector<std::uint8_t> changed_, stale_;  // by leaf: bits of its boxes; bits that its parents do not have yet
     std::vector<std::uint32_t> values_;          // by slot, 8 a leaf
     std::vector<std::uint32_t> slots_;           // by value
     std::vector<std::vector<BoxNode>> levels_;   // above the sorted leaves, upwards

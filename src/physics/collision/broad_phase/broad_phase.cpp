@@ -19,7 +19,7 @@ constexpr double widest_in_tree = 1e7;
 constexpr double max_margin = 0.05;
 // Worlds with fewer changed bodies look for pairs on one thread.
 constexpr std::uint32_t min_parallel_count = 500;
-// As many pairs are always kept; beyond, as many as a body may have partners.
+// Room for this many pairs is always kept; beyond, for as many as a body may have partners.
 constexpr std::size_t always_kept_pairs = 100000;
 
 double margin_of(const Bounds& bounds) {
@@ -41,7 +41,7 @@ bool is_wide(const Bounds& b) {
 
 std::uint32_t lowest_lane(std::uint32_t mask) { return static_cast<std::uint32_t>(std::countr_zero(mask)); }
 
-// Where the ray enters the box, `never` if not before `max_distance`; m along the direction.
+// The distance along the ray at which it enters the box, `never` if not before `max_distance`; m along the direction.
 constexpr double never = 1e300;
 double entry_of(const Bounds& box, Vec3 origin, Vec3 direction, double max_distance) {
     double enter = 0, leave = max_distance;
@@ -64,7 +64,7 @@ struct BroadPhase::State {
         FloatBox fat;
         bool used = false, movable = false, wide = false;
     };
-    /// One worker's share of the new pairs.
+    /// The new pairs that one worker finds.
     struct Finder {
         std::vector<Pair> pairs;
         std::vector<std::uint32_t> partners, movable_leaves, immovable_leaves;  ///< scratch
@@ -77,7 +77,7 @@ struct BroadPhase::State {
     std::vector<Pair> pairs;
     std::uint64_t version = 0;  ///< of pairs
     bool too_many = false;
-    bool all_changed = false;  ///< all movable ones, in this update
+    bool all_changed = false;  ///< whether all movable ones changed, in this update
     std::vector<Finder> finders;
     std::vector<Pair> kept, found, sorted;  ///< scratch of update, as is the next
     std::vector<std::uint32_t> first_of_a;
@@ -149,8 +149,9 @@ void add_pair(std::vector<BroadPhase::Pair>& pairs, std::uint32_t a, std::uint32
 
 }  // namespace
 
-// The changed boxes of one leaf against all others: first all of them together, then each against the leaves that they
-// meet. Of two movable boxes that changed, the earlier one finds the pair.
+// Tests the changed boxes of one leaf against all others: first all of them together, then each against the leaves
+// found.
+// Of two movable boxes that changed, the earlier one finds the pair.
 void BroadPhase::State::find_pairs_of_leaf(std::uint32_t leaf, Finder& finder) const {
     const std::uint32_t mine = movable.changed_mask(leaf);
     if (mine == 0) return;
@@ -181,7 +182,7 @@ void BroadPhase::State::find_pairs_of_leaf(std::uint32_t leaf, Finder& finder) c
     }
 }
 
-// Movable boxes that changed have found theirs with the immovable ones.
+// Movable boxes that changed have already found their pairs with the immovable ones.
 void BroadPhase::State::find_pairs_of_immovable_leaf(std::uint32_t leaf, Finder& finder) const {
     for (std::uint32_t mine = immovable.changed_mask(leaf); mine != 0; mine &= mine - 1) {
         const std::uint32_t lane = lowest_lane(mine), body = immovable.value(leaf, lane);
@@ -196,7 +197,7 @@ void BroadPhase::State::find_pairs_of_immovable_leaf(std::uint32_t leaf, Finder&
     }
 }
 
-// What has changed in the trees has found its pairs with the wide bodies.
+// Changed boxes in the trees have already found their pairs with the wide bodies.
 void BroadPhase::State::find_pairs_of_wide(std::uint32_t body, Finder& finder) const {
     const Proxy& proxy = proxies[body];
     const auto add_unchanged_of = [&](const BoxTree& tree) {
@@ -289,7 +290,7 @@ void BroadPhase::State::sort_found() {
         for (const Pair& pair : finder.pairs) found[first_of_a[pair.a]++] = pair;
     }
 
-    // After the distribution an entry tells where the next body's pairs begin.
+    // After the distribution an entry is the index at which the next body's pairs begin.
     std::uint32_t begin = 0;
     for (std::size_t a = 0; a + 1 < first_of_a.size(); ++a) {
         const std::uint32_t end = first_of_a[a];
@@ -314,7 +315,7 @@ void BroadPhase::insert(std::uint32_t body, const Bounds& bounds, bool movable) 
     s.place(body, enlarged_for(bounds, {}));
 }
 
-// Its pairs go with the next update, also if a new body has its index by then.
+// The body's pairs are removed by the next update, also if a new body has its index by then.
 void BroadPhase::remove(std::uint32_t body) {
     State& s = *state_;
     EMBODY_ASSERT(body < s.proxies.size() && s.proxies[body].used);
@@ -322,7 +323,8 @@ void BroadPhase::remove(std::uint32_t body) {
     s.proxies[body].used = false;
 }
 
-// Kept while it still holds the body and has not become far too large (after a fast move came to rest).
+// The enlarged bounds are kept while they still hold the body and are not far too large (after a fast move came to
+// rest).
 bool BroadPhase::holds(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion) const {
     const FloatBox& fat = state_->proxies[body].fat;
     const Bounds largest = enlarged(enlarged_for(bounds, expected_motion), 4 * margin_of(bounds));
@@ -423,7 +425,7 @@ void BroadPhase::query_ray(Vec3 origin, Vec3 direction, double max_distance,
         });
     }
 
-    // The nearest first: what lies behind a hit need not be looked at.
+    // The nearest first: boxes behind a hit need no test.
     std::sort(met.begin(), met.end());
     for (const Met& m : met) {
         if (m.entry > max_distance) break;

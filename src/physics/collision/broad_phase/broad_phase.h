@@ -13,7 +13,8 @@
 namespace embody::physics::collision {
 
 /// Finds the pairs of bodies whose bounds overlap. Bounds are kept enlarged by a margin, so that a body that moves
-/// little costs nothing; pairs persist until their enlarged bounds part. Movable and immovable bodies have a tree each.
+/// little costs nothing; pairs persist until their enlarged bounds separate. Movable and immovable bodies have a tree
+/// each.
 class BroadPhase {
 public:
     BroadPhase();
@@ -22,8 +23,8 @@ public:
     /// `body` is the caller's index, unique among the proxies. Two immovable bodies are never a pair.
     void insert(std::uint32_t body, const Bounds& bounds, bool movable);
     void remove(std::uint32_t body);
-    /// Tells new bounds; cheap while they stay within the enlarged ones. `expected_motion` (m, of the next step) says
-    /// where to enlarge them.
+    /// Sets new bounds; cheap while they stay within the enlarged ones. `expected_motion` (m, of the next step) gives
+    /// the direction in which to enlarge them.
     void move(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion);
     /// Whether move() would change nothing. May be asked by several threads.
     [[nodiscard]] bool holds(std::uint32_t body, const Bounds& bounds, Vec3 expected_motion) const;
@@ -38,12 +39,12 @@ public:
     /// All pairs with overlapping enlarged bounds, sorted; each once, whatever the number of workers.
     const std::vector<Pair>& update_pairs(TaskPool& workers);
 
-    /// Whether more bodies lie in each other than pairs may be: then each movable body keeps pairs with `max_partners`
+    /// Whether more bodies overlap than there may be pairs: then each movable body keeps pairs with `max_partners`
     /// movable and `max_immovable_partners` immovable ones, those of the lowest indices above its own.
     [[nodiscard]] bool has_too_many_pairs() const;
     static constexpr std::size_t max_partners = 32, max_immovable_partners = 256;  // of a body
 
-    /// Another number after each change of the pairs.
+    /// Changes with each change of the pairs.
     [[nodiscard]] std::uint64_t pairs_version() const;
 
     /// Calls `visit` for each body whose enlarged bounds overlap `box`, in ascending order of index.
@@ -53,8 +54,8 @@ public:
     void query_ray(Vec3 origin, Vec3 direction, double max_distance,
                    const std::function<double(std::uint32_t, double)>& visit) const;
 
-    /// Calls `visit` for the boxes of both trees, those around others first, from depth 0 downwards; for a look from
-    /// outside. Bodies too wide for a tree are in neither.
+    /// Calls `visit` for the boxes of both trees, those around others first, from depth 0 downwards; for debugging.
+    /// Bodies too wide for a tree are in neither.
     void visit_boxes(const std::function<void(const Bounds&, int depth)>& visit) const;
 
 private:

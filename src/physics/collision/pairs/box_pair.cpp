@@ -81,7 +81,7 @@ struct EdgeAxis {
 };
 
 // Cross products of axis i of a (a unit vector) and axis j of b. Nearly parallel edges have no axis of their own: a
-// face tells as much.
+// face has nearly the same.
 EdgeAxis best_edge(const BoxView& v, double least) {
     EdgeAxis best;
     best.separation = least;
@@ -148,7 +148,7 @@ void clip_side(const ClipPolygon& from, double sign, double limit, std::uint32_t
     }
 }
 
-/// A reference face and what of the other box faces it.
+/// A reference face and the face of the other box that faces it.
 struct FaceContact {
     std::size_t axis = 0, across = 0, up = 0;  ///< of the reference box: normal, x and y of the plane
     double side = 1;
@@ -184,7 +184,7 @@ void place_incident(const BoxView& v, FaceContact& f) {
     f.polygon.count = 4;
 }
 
-// By those of the four sides that something lies beyond; a tiny slack keeps corners that lie on a side.
+// Clips by those of the four sides that a corner lies beyond; a tiny slack keeps corners that lie on a side.
 void clip_incident(const BoxView& v, FaceContact& f) {
     const double half_x = v.half_a[f.across], half_y = v.half_a[f.up];
     const double slack = 2e-9 * (half_x + half_y);
@@ -218,7 +218,7 @@ FaceCorner deepest_corner(const BoxView& v, const FaceContact& f, double separat
     return c;
 }
 
-/// Points of a region on the reference face, and what they are called.
+/// Points of a region on the reference face, and their names.
 struct FaceRegion {
     std::array<FlatPoint, max_corners + 2> points;
     std::array<std::uint32_t, max_corners + 2> names{};
@@ -228,7 +228,7 @@ struct FaceRegion {
         points[static_cast<std::size_t>(count)] = {c.x, c.y, c.height};
         names[static_cast<std::size_t>(count++)] = name;
     }
-    // Four corners of which none is near the line of its neighbours: the whole region is kept as it is.
+    // Four corners, none of them close to the line of its neighbours: the whole region is kept as it is.
     [[nodiscard]] bool is_proper_quad(double size) const {
         if (count != 4) return false;
         for (std::size_t i = 0; i < 4; ++i) {
@@ -253,7 +253,7 @@ void fill_face_manifold(const BoxView& v, const FaceAxis& face, bool is_face_of_
     place_incident(v, f);
     clip_incident(v, f);
 
-    // What is near enough, and the deepest corner.
+    // Corners within the margin, and the deepest corner.
     FaceRegion region;
     bool has_deepest = face.separation >= 0;
     for (int i = 0; i < f.polygon.count; ++i) {
@@ -264,7 +264,7 @@ void fill_face_manifold(const BoxView& v, const FaceAxis& face, bool is_face_of_
     }
     if (!has_deepest) region.add(deepest_corner(v, f, face.separation), box_tag);
 
-    // At most four of them, midway between the two surfaces.
+    // Adds at most four points, midway between the two surfaces.
     const auto put = [&](int i) {
         const FlatPoint& p = region.points[static_cast<std::size_t>(i)];
         Triple at{};
@@ -284,8 +284,8 @@ void fill_face_manifold(const BoxView& v, const FaceAxis& face, bool is_face_of_
     }
 }
 
-// Where two edges cross; false where they run side by side, or pass each other beyond an end and something else is
-// nearer.
+// The point where two edges cross; false where they are parallel, or pass each other beyond an end and another feature
+// is nearer.
 bool fill_edge_manifold(const BoxView& v, const EdgeAxis& edge, const ConvexPair& pair, Manifold& manifold) {
     // The edge of each box that lies farthest along the normal, through these middles.
     const Triple n = triple(edge.normal);
@@ -324,7 +324,7 @@ bool fill_edge_manifold(const BoxView& v, const EdgeAxis& edge, const ConvexPair
     return true;
 }
 
-// The face of the box at home in this view that an edge's normal (its own axes, towards the other) is next to, if that
+// The face of the view's own box whose normal an edge's normal (own axes, towards the other) is close to, if that
 // edge lies nearly flat on it: then it crosses two of the face's sides (round_features.h: span_face).
 std::optional<FaceAxis> flat_face(Vec3 normal) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -335,7 +335,7 @@ std::optional<FaceAxis> flat_face(Vec3 normal) {
     return std::nullopt;
 }
 
-// Sees the face's region along the edges' normal; whether it tells the depth that they do, at more than one point.
+// Builds the face's region along the edges' normal; true if it has the depth of the edges, at more than one point.
 bool spans(const EdgeAxis& edge, Vec3 normal, Manifold& manifold) {
     const double cosine = std::fabs(dot(manifold.normal, normal));
     double deepest = 1e300;
@@ -348,7 +348,7 @@ bool spans(const EdgeAxis& edge, Vec3 normal, Manifold& manifold) {
     return manifold.count > 1 && is_span(deepest, edge.separation);
 }
 
-// How far a direction parts the boxes.
+// The gap between the boxes along a direction.
 double gap_along(const BoxView& v, Vec3 direction) {
     const Triple n = triple(direction);
     double gap = n[0] * v.place[0] + n[1] * v.place[1] + n[2] * v.place[2];
@@ -374,7 +374,7 @@ BoxMeeting collide_boxes(const ConvexPair& pair, double margin, PairMemory& memo
         if (memory.gap > margin) return BoxMeeting::none;
     }
 
-    // Faces of a, faces of b, then edges that part the boxes more than these.
+    // Faces of a, faces of b, then edges with a larger gap than these.
     const FaceAxis face_a = best_face(v);
     if (face_a.separation > margin) {
         memory.part_along(axis_of(face_a), face_a.separation);
@@ -386,7 +386,7 @@ BoxMeeting collide_boxes(const ConvexPair& pair, double margin, PairMemory& memo
         memory.part_along(pair.turn * -axis_of(face_b), face_b.separation);
         return BoxMeeting::none;
     }
-    // Faces are preferred by a little: they give a region, and the choice does not flicker by rounding.
+    // Faces are preferred by a small bias: they give a region, and the choice does not flicker by rounding.
     const double bias = 1e-4 *
                         std::min(std::min(v.half_a[0], std::min(v.half_a[1], v.half_a[2])),
                                  std::min(v.half_b[0], std::min(v.half_b[1], v.half_b[2]))) *

@@ -8,11 +8,11 @@
 
 namespace embody::physics::collision {
 
-/// How two boxes met.
+/// The result of a test of two boxes.
 enum class BoxMeeting {
     none,      ///< nowhere within the margin
     region,    ///< the manifold is filled
-    undecided  ///< no face or edge tells; they may still be near at a corner
+    undecided  ///< no face or edge separates them or gives a region; they may still be close at a corner
 };
 
 /// Contact of two boxes in world axes with the origin at a's.

@@ -29,7 +29,7 @@ double distance_squared(const FlatPoint& a, const FlatPoint& b) {
     return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y);
 }
 
-/// The points and what is known of the whole region.
+/// The points and the extents of the whole region.
 struct Choice {
     const FlatPoint* points;
     int count;
@@ -37,7 +37,7 @@ struct Choice {
     FlatPoint middle{0, 0, 0};
     double lowest = std::numeric_limits<double>::infinity();
     double size = 0;
-    double no_length = 0;  ///< extents up to this count as none
+    double no_length = 0;  ///< extents up to this count as zero
 
     // Keeps the point of the highest score, unless all are unfit.
     template <class Score>
@@ -73,7 +73,7 @@ ChosenPoints choose_four(const FlatPoint* points, int count) {
         return choice.chosen;
     }
 
-    // Middle, depth and size of the whole.
+    // Centre, depth and size of the whole region.
     for (int i = 0; i < count; ++i) {
         choice.middle.x += points[i].x;
         choice.middle.y += points[i].y;
@@ -128,7 +128,7 @@ bool leaves_unseen(const FlatPoint* points, int count, const ChosenPoints& chose
         const FlatPoint& p = points[i];
         if (chosen.holds(i)) continue;
 
-        // The highest of the planes that leave out one of four: on any three of them the body may come to stand.
+        // The highest of the planes through three of the four points: the body may come to rest on any three of them.
         double expected = std::numeric_limits<double>::lowest();
         for (int out = chosen.count == 4 ? 0 : 3; out < 4; ++out) {
             const int a = out == 0 ? 1 : 0, b = out <= 1 ? 2 : 1, c = out <= 2 ? 3 : 2;

@@ -12,7 +12,7 @@ struct FlatPoint {
     double x, y, separation;
 };
 
-/// Which points of a region to keep, by index.
+/// Indices of the points of a region to keep.
 struct ChosenPoints {
     int count = 0;
     std::array<int, 4> index{};
@@ -26,11 +26,13 @@ struct ChosenPoints {
 };
 
 /// At most four of the points: the deepest, then deep ones that span a large area (paper, III.B); points that add no
-/// area (twins, or inner ones of a line) go. Ties by a hair go to the earlier point, so that rounding does not choose.
+/// area (twins, or inner ones of a line) are left out. Nearly equal scores go to the earlier point, so that rounding
+/// does not choose.
 ChosenPoints choose_four(const FlatPoint* points, int count);
 
-/// Whether a point that was not chosen is nearer than the planes through the chosen ones tell, by more than `tolerance`
-/// m: it would sink unseen before they do.
+/// Whether a point that was not chosen lies lower than the planes through the chosen ones, by more than `tolerance`
+/// (m):
+/// it would penetrate undetected before they do.
 bool leaves_unseen(const FlatPoint* points, int count, const ChosenPoints& chosen, double tolerance);
 
 }  // namespace embody::physics::collision

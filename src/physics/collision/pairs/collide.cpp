@@ -43,7 +43,7 @@ Bounds bounds_in_frame(const PlacedConvex& convex) {
     return {c - e, c + e};
 }
 
-// Of world axes with that origin to the frame of the pose; somewhat wider, for rounding.
+// Transforms bounds in world axes with that origin to the frame of the pose; somewhat wider, for rounding.
 Bounds in_frame_of(const Transform& pose, Vec3 origin, const Bounds& box) {
     const Mat3 r = to_matrix(pose.rotation);
     const Vec3 h = box.half_extents(), c = box.center() - (pose.position - origin);
@@ -69,7 +69,8 @@ void find_region(const ConvexPair& pair, double margin, PairMemory& memory, Cont
     collide_round(pair.placed_a(), pair.placed_b(), margin, memory, region);
 }
 
-// Whether the balls around two pieces' inner points are farther apart than the margin: most pairs whose boxes overlap.
+// Whether the balls around two pieces' inner points are farther apart than the margin: true of most pairs whose boxes
+// overlap.
 bool balls_are_apart(const PlacedConvex& a, const PlacedConvex& b, double margin, PairMemory& memory) {
     const double reach = a.shape->reach + b.shape->reach;
     const Vec3 displacement = interior_point(b) - interior_point(a);
@@ -121,7 +122,7 @@ void collide_compounds(const CollisionShape::Data& a, const Transform& pose_a, c
         const Bounds bounds_a = enlarged(bounds_in_frame(placed_a), margin);
         const Bounds seen_from_b = in_frame_of(pose_b, pose_a.position, bounds_a);
         for (std::uint32_t j = 0; j < placed_b.size(); ++j) {
-            // Most are told apart by boxes that need no placing.
+            // Most pieces are ruled out by boxes that need no placing.
             if (!overlaps(seen_from_b, b.piece_bounds[j])) continue;
             Placed& other = placed_b[j];
             if (!other.is_known) {
@@ -139,7 +140,7 @@ void collide_compounds(const CollisionShape::Data& a, const Transform& pose_a, c
             }
         }
     }
-    memory.gap = 0;  // of two pieces only
+    memory.gap = 0;  // a gap is known for two single pieces only
 }
 
 void collide_pieces(const CollisionShape::Data& a, const Transform& pose_a, const CollisionShape::Data& b,
@@ -183,7 +184,7 @@ void collide(const CollisionShape& a, const Transform& pose_a, const CollisionSh
              double margin, PairMemory& memory, std::vector<Manifold>& manifolds) {
     const CollisionShape::Data &data_a = a.data(), &data_b = b.data();
     EMBODY_ASSERT(!(data_a.pieces.empty() && data_b.pieces.empty()));
-    // A convex or compound comes first, what is only static second.
+    // A convex or compound comes first, a shape for static bodies only second.
     if (data_a.pieces.empty()) {
         const std::size_t before = manifolds.size();
         collide(b, pose_b, a, pose_a, margin, memory, manifolds);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Clipping: I. Sutherland, G. Hodgman, "Reentrant polygon clipping", 1974, with the edges' names carried along so that
-// a corner of the region is known again in the next step.
+// Clipping: I. Sutherland, G. Hodgman, "Reentrant polygon clipping", 1974. The edges' names are carried along so that
+// the next step recognises a corner of the region.
 #include "physics/collision/pairs/contact_region.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace embody::physics::collision {
 namespace {
 
 constexpr std::uint32_t reference_edge_tag = 0x8000u;
-// Polygons with more corners are looked at for high ones first.
+// Of polygons with more corners, high corners are removed first.
 constexpr std::uint32_t few_corners = 8;
 
 /// Two axes of the reference's plane, and its origin there.
@@ -30,7 +30,7 @@ struct ReferencePlane {
     }
 };
 
-/// A side of the reference: what lies beyond it is cut off. Heights over it are in units of its length.
+/// A side of the reference: points beyond it are cut off. Heights over it are in units of its length.
 struct Side {
     double x, y, along_x, along_y, slack;
 
@@ -83,7 +83,7 @@ bool nearest_on_lines(Vec3 p, Vec3 u, Vec3 q, Vec3 v, double& s, double& t) {
     return true;
 }
 
-// Whether a point lies where one of the others does, but for rounding.
+// Whether a point lies at the place of one of the others, up to rounding.
 bool is_known(const ManifoldPoint& point, std::span<const ManifoldPoint> others) {
     constexpr double same_place = 1e-9;  // m
     return std::any_of(others.begin(), others.end(), [&](const ManifoldPoint& other) {
@@ -115,7 +115,7 @@ void clip_to_region(const ContactFeature& reference, const ContactFeature& incid
     const auto is_low = [&](std::uint32_t i) { return plane.height(incident.points[i]) <= lift + margin; };
     bool was_low = is_low(n - 1), now_low = is_low(0);
     for (std::uint32_t i = 0; i < n; ++i) {
-        // Of a tilted rim most is too high to count: between two high corners next to high ones all is.
+        // Most of a tilted rim is too high to count: between two high corners next to high ones, all is high.
         const bool next_low = i + 1 < n ? is_low(i + 1) : is_low(0);
         if (n <= few_corners || was_low || now_low || next_low)
             corners.push_back(plane.flatten(incident.points[i], (i + n - 1) % n, i));
@@ -131,7 +131,7 @@ void clip_to_region(const ContactFeature& reference, const ContactFeature& incid
         if (clip_by_side(corners, closed, side, name, region.clipped)) std::swap(corners, region.clipped);
     }
 
-    // What is near enough, with its height over the reference's plane.
+    // Points within the margin, with their height over the reference's plane.
     const std::size_t known = region.points.size();
     for (const ClipCorner& corner : corners) {
         const double separation = corner.height - lift;
@@ -209,7 +209,7 @@ void cross_segments(const ContactFeature& a, const ContactFeature& b, double rad
 
 namespace {
 
-// What may lie lower than the chosen points tell, m: less than this a body does not feel.
+// Points that were not chosen may lie lower than the chosen ones predict by this, m: a body is not affected by less.
 constexpr double unseen = 2e-5;
 
 // Moves the four chosen points to a manifold.
@@ -261,7 +261,7 @@ void append_manifolds(ContactRegion& region, const Mat3& turn, Vec3 origin, std:
         const ChosenPoints chosen = choose_four(region.flat.data(), count);
         append_chosen(region, turn, origin, part, chosen, manifolds);
         if (!leaves_unseen(region.flat.data(), count, chosen, unseen)) {
-            // All there is, or all that matters.
+            // All points, or all that matter.
             const bool is_whole = chosen.count == count;
             for (std::size_t i = first; i < manifolds.size(); ++i) manifolds[i].is_whole = is_whole;
             return;

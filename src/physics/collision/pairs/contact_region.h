@@ -11,8 +11,8 @@
 
 namespace embody::physics::collision {
 
-/// What a shape offers to a contact: a polygon (counter-clockwise seen from outside), a segment or a point, in the
-/// frame of the pair. `ids` name the corners; edge i runs from corner i to the next.
+/// The feature of a shape that meets another: a polygon (counter-clockwise seen from outside), a segment or a point, in
+/// the frame of the pair. `ids` name the corners; edge i runs from corner i to the next.
 struct ContactFeature {
     std::vector<Vec3> points;
     std::uint32_t id = 0;  ///< of the face, edge or vertex within its shape
@@ -27,7 +27,7 @@ struct ContactFeature {
     }
 };
 
-/// 32-bit name of a meeting of features.
+/// 32-bit name of a combination of features.
 std::uint32_t feature_name(std::initializer_list<std::uint32_t> parts);
 
 /// A corner of a polygon while it is clipped: in the reference's plane, and its height over it; the edges that meet
@@ -37,8 +37,8 @@ struct ClipCorner {
     std::uint32_t edge_in, edge_out;
 };
 
-/// A contact region while it is gathered, in the frame of the pair, and room for that work: one lives long and its
-/// vectors keep their memory.
+/// A contact region while it is gathered, in the frame of the pair, and memory for that work: one object lives long and
+/// its vectors keep their memory.
 struct ContactRegion {
     Vec3 normal;  ///< unit, a to b
     std::vector<ManifoldPoint> points;
@@ -56,8 +56,8 @@ struct ContactRegion {
     }
 };
 
-/// Clips `incident` (polygon or segment) by the sides of the polygon `reference` and adds what lies within `margin` of
-/// the reference's plane. `reference_is_a` tells whose plane it is; region.normal must be +-reference.normal. `lift`:
+/// Clips `incident` (polygon or segment) by the sides of the polygon `reference` and adds the points within `margin` of
+/// the reference's plane. `reference_is_a` says whose plane it is; region.normal must be +-reference.normal. `lift`:
 /// radius around the incident's core.
 void clip_to_region(const ContactFeature& reference, const ContactFeature& incident, bool reference_is_a, double lift,
                     double margin, ContactRegion& region);
@@ -72,12 +72,12 @@ void add_near_corners(const ContactFeature& reference, const PlacedConvex& incid
 /// or in the sliver between a rim and its polygon.
 void keep_deepest(Vec3 on_a, double separation, double tolerance, ContactRegion& region);
 
-/// Two segments: the overlap of nearly parallel ones (two points), else where they pass each other (one point).
+/// Two segments: the overlap of nearly parallel ones (two points), else their nearest points (one point).
 /// Separations are measured along region.normal less the radii.
 void cross_segments(const ContactFeature& a, const ContactFeature& b, double radius_a, double radius_b, double margin,
                     ContactRegion& region);
 
-/// Appends the region as manifold, turned and moved into the world; as two where four points leave others unseen;
+/// Appends the region as manifold, turned and moved into the world; as two where four points do not cover the others;
 /// nothing for an empty region.
 void append_manifolds(ContactRegion& region, const Mat3& turn, Vec3 origin, std::vector<Manifold>& manifolds);
 

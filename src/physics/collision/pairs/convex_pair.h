@@ -21,7 +21,7 @@ inline Mat3 transposed_product(const Mat3& a, const Mat3& b) {
     return {column(b.x), column(b.y), column(b.z)};
 }
 
-/// Two convex pieces. They are compared in the own frame of the first, where it needs no turning and far from the
+/// Two convex pieces. They are compared in the own frame of the first: it needs no rotation there, and far from the
 /// world's origin no digit is lost.
 struct ConvexPair {
     const Convex* a = nullptr;

@@ -8,8 +8,8 @@
 
 namespace embody::physics::collision {
 
-// Each finds the contact region of one family of pairs in an empty ContactRegion; its normal is set where there are
-// points. The frame is that of a.
+// Each function finds the contact region of one family of pairs in an empty ContactRegion; its normal is set if there
+// are points. The frame is that of a.
 
 /// Signed distance of a point from the surface of a convex (negative inside), and the outward direction there.
 struct SurfaceDistance {
@@ -17,7 +17,7 @@ struct SurfaceDistance {
     double distance = 0;
     std::uint32_t face = Polytope::no_face;  ///< of a hull: the point lies over it, or inside and nearest to it
 };
-/// Of points farther off than `enough` only that they are.
+/// For points farther away than `enough`, only a lower bound of the distance.
 SurfaceDistance distance_from_surface(const Convex& convex, Vec3 local_point, double enough = 1e300);
 
 /// Half space below dot(normal, p) = offset, in the frame of the pair.
@@ -31,8 +31,8 @@ void collide_sphere(const PlacedConvex& a, const PlacedConvex& b, double margin,
                     ContactRegion& region);
 /// a is any convex, b the plane; the normal points from a into the plane.
 void collide_plane(const PlacedConvex& a, const PlacedPlane& plane, double margin, ContactRegion& region);
-/// Both are polytopes with volume. False, and nothing done, where they are so deep in each other that too many edges
-/// would have to be paired.
+/// Both are polytopes with volume. False, with nothing done, where they overlap so deeply that too many edges would
+/// have to be paired.
 bool collide_polytopes(const ConvexPair& pair, double margin, PairMemory& memory, ContactRegion& region);
 /// Any pair of convexes, by GJK and EPA: those with a round side, and triangles.
 void collide_round(const PlacedConvex& a, const PlacedConvex& b, double margin, PairMemory& memory,

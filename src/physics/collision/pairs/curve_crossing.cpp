@@ -12,10 +12,10 @@ namespace {
 
 // Directions within this sine of a side's or an edge's normal plane are taken to mean the side or the edge.
 constexpr double beside = 0.05;
-// Lines at a smaller angle than this run side by side.
+// Lines at a smaller angle than this count as parallel.
 constexpr double min_sine = 0.03;
 
-/// A point (tangent zero), a straight line, or the circle of a rim; and the point on it where the other is looked for.
+/// A point (tangent zero), a straight line, or the circle of a rim; and the point on it where the search begins.
 struct Curve {
     bool is_circle = false;
     Vec3 center, axis, outward;  ///< of a circle
@@ -25,17 +25,17 @@ struct Curve {
     Vec3 from, to;  ///< ends of a line, along the tangent
 
     [[nodiscard]] bool is_line() const { return !is_circle && tangent != Vec3{}; }
-    // How far a line goes on to both sides of the point; negative beyond its ends.
+    // The distance to the nearer end of the line; negative beyond its ends.
     [[nodiscard]] double room() const { return std::min(dot(point - from, tangent), dot(to - point, tangent)); }
     [[nodiscard]] bool is_beyond_end() const { return is_line() && room() < 0; }
-    // The solid's core reaches as far in the direction n, around a line square to it.
+    // The point of the solid's core that is farthest in the direction n, around a line perpendicular to it.
     [[nodiscard]] Vec3 on_surface(Vec3 n) const {
         return reach == 0 ? point : point + normalized(n - tangent * dot(n, tangent)) * reach;
     }
     void stay_within() {
         if (is_beyond_end()) point = dot(point - from, tangent) < 0 ? from : to;
     }
-    // Goes along the tangent and back to the curve.
+    // Moves along the tangent and back to the curve.
     void go(double displacement) {
         point += tangent * displacement;
         if (!is_circle) return;
@@ -44,7 +44,7 @@ struct Curve {
         point = center + outward * radius;
         tangent = cross(axis, outward);
     }
-    // How much faster than the tangent's the distance to the other curve grows, by the circle's own curvature.
+    // How much faster than with the tangent the distance to the other curve grows, by the circle's own curvature.
     [[nodiscard]] double curvature(Vec3 direction_to_other) const {
         return is_circle ? dot(direction_to_other, outward) / radius : 0;
     }
@@ -158,7 +158,7 @@ bool approach(Curve& p, Curve& q) {
     return false;
 }
 
-// To the nearest points of two segments whose lines are nearest beyond an end, or of one and a curve near by.
+// Moves to the nearest points of two segments whose lines are nearest beyond an end, or of a segment and a close curve.
 void stay_within(Curve& p, Curve& q) {
     p.stay_within();
     if (q.is_line()) q.point += q.tangent * dot(p.point - q.point, q.tangent);
@@ -167,7 +167,7 @@ void stay_within(Curve& p, Curve& q) {
     p.stay_within();
 }
 
-// What is met at the end of a line: the rim of a side, at its point nearest to the other curve, or the end itself.
+// The feature at the end of a line: the rim of a side, at its point nearest to the other curve, or the end itself.
 void turn_to_end(Curve& curve, Vec3 other) {
     if (!curve.is_line() || curve.room() > 0) return;
     if (curve.reach == 0) {
@@ -181,7 +181,7 @@ void turn_to_end(Curve& curve, Vec3 other) {
     curve.tangent = cross(axis, outward);
 }
 
-// To the middle of the common part of two parallel lines, or to the ends that are nearest.
+// Moves to the middle of the common part of two parallel lines, or to the ends that are nearest.
 void meet_halfway(Curve& p, Curve& q) {
     const double whole = dot(p.to - p.from, p.tangent);
     const double s = std::clamp(dot(q.from - p.from, p.tangent), 0.0, whole);
@@ -191,8 +191,8 @@ void meet_halfway(Curve& p, Curve& q) {
     q.stay_within();
 }
 
-// Across both tangents; where one has none, or they are nearly parallel, along the gap, if it is not too short: else
-// zero.
+// The normal across both tangents; where one has none, or they are nearly parallel, along the gap, unless the gap is
+// too short: then zero.
 Vec3 common_normal(const Curve& p, const Curve& q, Vec3 direction, double shortest) {
     const Vec3 across = cross(p.tangent, q.tangent), gap = q.point - p.point;
     const double sine = length(across), apart = length(gap);
@@ -201,7 +201,7 @@ Vec3 common_normal(const Curve& p, const Curve& q, Vec3 direction, double shorte
     return dot(n, direction) < 0 ? -n : n;
 }
 
-/// How much of the difference of two solids a curve holds around its point: see is_best_crossing.
+/// How much of the difference of two solids a curve contains around its point: see is_best_crossing.
 struct Hold {
     double depth, width;
 };

@@ -8,7 +8,7 @@ namespace embody::physics::collision {
 
 namespace {
 
-// Tilted by more than 1.8 degrees a disc is no disc any more, seen from the other.
+// A disc tilted by more than 1.8 degrees is too narrow an ellipse in the other's plane to count as a disc.
 constexpr double square_cosine = 0.9995;
 
 // A unit vector square to `normal`, along `wanted` or, where that has no length, any.
@@ -30,7 +30,7 @@ struct DiscOnPolygon {
     double margin;
     ContactRegion& region;
 
-    // With the height of the disc's plane over it.
+    // Adds a point with the height of the disc's plane over it.
     void add(Vec3 point, std::uint32_t part) const {
         const double separation = dot(disc.center - point, disc.normal) / dot(polygon.normal, disc.normal);
         if (separation > margin) return;
@@ -39,8 +39,9 @@ struct DiscOnPolygon {
     }
 };
 
-// The polygon's corners inside the rim, where its sides cross the rim, and of the rim itself four points, quarter by
-// quarter: from its first corner, or, where the centre is beyond a side, from the point that reaches farthest back.
+// Adds the polygon's corners inside the rim, the points where its sides cross the rim, and four points of the rim
+// itself, quarter by quarter: from its first corner, or, where the centre is beyond a side, from the point farthest
+// inside.
 void add_disc_on_polygon(const DiscOnPolygon& d) {
     constexpr std::uint32_t crossings = 0x100, rim = 0x1000;
     const Vec3 n = d.polygon.normal, center = d.disc.center - n * dot(d.disc.center - d.polygon.points[0], n);
@@ -110,7 +111,7 @@ bool add_disc_region(const ContactFeature& reference, const ContactFeature& inci
         part = 8;
     }
 
-    // Each with the height of the incident's plane over it.
+    // Each point gets the height of the incident's plane over it.
     for (const Vec3& p : points) {
         const double separation = dot(incident.center - p, incident.normal) / facing;
         const std::uint32_t name = feature_name({reference_is_a ? 6u : 7u, reference.id, incident.id, part++});

@@ -13,11 +13,11 @@ namespace embody::physics::collision {
 struct ManifoldPoint {
     Vec3 position;              ///< world, midway between the two surfaces
     double separation = 0;      ///< along the normal, m; negative where the shapes overlap
-    std::uint32_t feature = 0;  ///< which features met; equal from step to step while they stay the same
+    std::uint32_t feature = 0;  ///< name of the features that met; equal from step to step while they stay the same
 };
 
-/// The contact region of two convex pieces: up to four points kept of the polygon, chosen for area. What stands on more
-/// corners than these tell, since they lie in no plane (a chair with uneven feet), has a second one with others.
+/// The contact region of two convex pieces: up to four points kept of the polygon, chosen for area. A region whose
+/// corners lie in no common plane (a chair with uneven feet) has a second manifold with other points.
 struct Manifold {
     static constexpr int max_points = 4;            ///< three carry a body, a fourth keeps a face from tipping
     static constexpr double whole_travel = 0.0025;  ///< m, see is_whole
@@ -25,7 +25,7 @@ struct Manifold {
     std::uint32_t piece_a = 0, piece_b = 0;         ///< child of a compound, triangle of a mesh; 0 otherwise
     std::uint32_t part = 0;                         ///< 0 holds the deepest point; 1: the second four
     int count = 0;
-    /// No other corner of the two pieces is within the margin; a sphere meets one face or plane alone, and does so
+    /// No other corner of the two pieces is within the margin; a sphere meets one face or plane alone, and keeps to it
     /// until it has moved by whole_travel.
     bool is_whole = false;
     /// Whether the piece is of those that roll: spheres, capsules, cylinders and cones.

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The best normal of two convexes, of which one or both are round. A normal is a lower bound of the gap, a point of one
 // solid and its distance from the other's surface an upper one: where the two agree, the normal is the best of all. So
-// the search goes from normal to surface and back, and is done where a face, cap or side meets whatever is deepest over
-// it. Where edges and rims cross, Newton's method finds the normal and crossing_is_best proves it.
+// the search alternates between normal and surface, and ends where a face, cap or side meets the point that is deepest
+// over it. Where edges and rims cross, Newton's method finds the normal and crossing_is_best proves it.
 // Where that ends without proof, GJK finds the normal between one solid and the other one's core, shrunk so that they
-// do not overlap; what parts the solids as far as the cores allow is the best of all normals. Where an edge meets a rim
-// deeply neither core tells, and EPA on the solids does. All are held against the exact normals nearby (faces, caps,
-// crossing lines): a cylinder on a box stands on the box's exact normal. (D. Gregorius's remark that GJK and EPA alone
-// give noisy face contacts, GDC 2015.)
+// do not overlap; a normal that separates the solids as far as the cores allow is the best of all. Where an edge meets
+// a rim deeply the cores do not decide, and EPA on the solids does. All are compared with the exact normals close by
+// (faces, caps, crossing lines): a cylinder on a box stands on the box's exact normal. (D. Gregorius's remark that GJK
+// and EPA alone give noisy face contacts, GDC 2015.)
 #include "physics/collision/pairs/parting_axis.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace {
 /// A direction known from the shapes themselves.
 struct CandidateNormal {
     Vec3 normal;
-    bool is_exact = false;  ///< does not depend on the direction near which it was looked for
+    bool is_exact = false;  ///< does not depend on the direction from which its search began
 };
 struct CandidateScratch {
     std::vector<CandidateNormal> candidates;
@@ -41,36 +41,37 @@ struct AxisSearch {
     double margin = 0, size = 0;
     CandidateScratch& scratch;
     Vec3 inside_a, inside_b;                ///< the inner points
-    Vec3 on_a = inside_a, on_b = inside_b;  ///< points of the cores, where both reached farthest along some normal
+    Vec3 on_a = inside_a, on_b = inside_b;  ///< points of the cores that were farthest along some normal
     PartingAxis axis;
     bool is_crossing = false;  ///< the axis is where curves cross
-    Vec3 apart;                ///< a direction that parts the pair by more than the margin; zero if none was found
-    double most = 1e300;       ///< no direction parts the pair by more than this
-    Vec3 toward;               ///< the surface's normal at the point that told so
+    Vec3 apart;                ///< a direction that separates the pair by more than the margin; zero if none was found
+    double most = 1e300;       ///< upper bound of the separation along any direction
+    Vec3 toward;               ///< the surface's normal at the point that gave the bound
 
     [[nodiscard]] double separation(Vec3 normal) const { return separation_along(core_a, core_b, normal); }
-    // More than what any two points, one of each solid, are apart along the normal it can't be; nor less the balls
-    // around them: those inside the solids and the radii around the cores.
+    // Upper bound of the separation along the normal: by any two points, one of each solid, and by the balls around
+    // them:
+    // those inside the solids and the radii around the cores.
     [[nodiscard]] double separation_at_most(Vec3 normal) const {
         const double middle = dot(normal, inside_b - inside_a) - a.shape->inner - b.shape->inner;
         const double from_a = dot(normal, on_b - inside_a) - a.shape->inner - core_b.depth;
         const double from_b = dot(normal, inside_b - on_a) - b.shape->inner - core_a.depth;
         return std::min({middle, from_a, from_b});
     }
-    // Where both reach farthest along the normal.
+    // Finds the points of both that are farthest along the normal.
     double touch_along(Vec3 normal) {
         on_a = core_a.support(normal);
         on_b = core_b.support(-normal);
         return dot(normal, on_b - on_a) - core_a.depth - core_b.depth;
     }
-    // Ends the search with the axis there is: the best one, or one that parts the pair.
+    // Ends the search with the present axis: the best one, or one that separates the pair.
     bool accept() {
         if (axis.separation > margin) apart = axis.normal;
         return true;
     }
 };
 
-// Faces and caps stand still; the normal of a smooth side was read off at the direction found so far.
+// Normals of faces and caps are fixed; the normal of a smooth side was read off at the direction found so far.
 void add_normals_of(const PlacedConvex& convex, Vec3 direction, double sign, bool all_faces,
                     CandidateScratch& scratch) {
     scratch.own.clear();
@@ -103,7 +104,8 @@ bool solve_normal(const SlopedLine& first, const SlopedLine& second, Vec3 wanted
     return true;
 }
 
-// Two lines of surfaces part along the normal that is square to both, or leans from a cone's axis as its side does.
+// Two lines of surfaces separate along the normal that is perpendicular to both, or leans from a cone's axis as its
+// side does.
 void gather_crossing_lines(AxisSearch& s, Vec3 normal) {
     CandidateScratch& scratch = s.scratch;
     scratch.candidates.clear();
@@ -122,19 +124,19 @@ void gather_crossing_lines(AxisSearch& s, Vec3 normal) {
 // Least cosine between normals that count as near each other.
 constexpr double near = 0.99;
 
-/// Which candidates may replace the normal that was found.
+/// The candidates that may replace the normal that was found.
 struct Preference {
-    double hair = 0;        ///< they may part the pair by this much less
-    double within = -2;     ///< least cosine between the two
-    double enough = 1e300;  ///< a face that parts the pair as far is taken at once
+    double hair = 0;        ///< their separation may be smaller by this
+    double within = -2;     ///< minimum cosine between the two
+    double enough = 1e300;  ///< a face with this separation is taken at once
     bool exact_only = false;
     bool all_faces = false;
 };
 
-// By how much less an exact normal may part the pair than the best one: as among the axes of polytopes.
+// The separation along an exact normal may be smaller than along the best one by this: as among the axes of polytopes.
 double bias_of(const AxisSearch& s) { return 1e-4 * s.size + 0.02 * std::fabs(s.axis.separation); }
 
-// Replaces the axis by the best of the candidates that parts the pair by more than `least`. True if there was one.
+// Replaces the axis by the candidate of the largest separation above `least`. True if there was one.
 bool take_best_candidate(AxisSearch& s, const Preference& preference, Vec3 found, double least) {
     double best = least;
     for (const CandidateNormal& candidate : s.scratch.candidates) {
@@ -161,7 +163,7 @@ bool prefer_candidate(AxisSearch& s, const Preference& preference) {
     return take_best_candidate(s, preference, found, is_own ? s.axis.separation : least) || is_own;
 }
 
-/// The solids with one of them shrunk to a core.
+/// The solids, one of them shrunk to a core.
 struct CorePair {
     Core a, b;
     bool is_core_of_a = true;
@@ -183,7 +185,7 @@ bool measure_cores(AxisSearch& s, const CorePair& p, double enough, double conve
     return measure_cores(s, p, 1e300, converged);
 }
 
-// Any point of one solid is an upper bound: no direction parts the two by more than its distance from the other's
+// Any point of one solid is an upper bound: the separation along any direction is at most its distance from the other's
 // surface. The bound is tight where the point is deepest over a face, cap or smooth side.
 void limit_by_point(AxisSearch& s, const PlacedConvex& solid, Vec3 point, double radius) {
     if (!has_volume(*solid.shape)) return;
@@ -200,21 +202,21 @@ void limit_by_points(AxisSearch& s, Vec3 on_a, Vec3 on_b) {
     limit_by_point(s, s.b, on_a, s.core_a.depth);
 }
 
-// Whether the crossing is where both solids reach farthest along its normal, and no other normal is better by more than
-// `loss`.
+// Whether both solids are farthest along the crossing's normal at the crossing, and no other normal is better by more
+// than `loss`.
 bool is_certain(AxisSearch& s, const CurveCrossing& crossing, double separation, double loss) {
     const double radii = s.core_a.depth + s.core_b.depth, hair = 1e-9 * s.size;
     const Vec3 displacement = crossing.on_b - crossing.on_a;
     if (crossing.is_within && std::fabs(separation - (dot(crossing.normal, displacement) - radii)) > hair) return false;
 
-    // Cores that are apart are nearest there, for they are convex.
+    // Cores that are apart are nearest there, since they are convex.
     if (crossing.is_within && separation > -radii && separation >= length(displacement) - radii - hair) return true;
     if (crossing.is_best) return true;
     limit_by_points(s, crossing.on_a, crossing.on_b);
     return crossing.is_within && separation >= s.most - loss;
 }
 
-// The exact normal of the curves that meet near the one found, if it is certain but for `loss`.
+// The exact normal of the curves that meet at the one found, if it is certain within `loss`.
 bool search_by_curves(AxisSearch& s, double loss) {
     CurveCrossing crossing;
     if (!s.axis.found || !cross_curves(s.a, s.b, s.axis.normal, crossing)) return false;
@@ -227,7 +229,7 @@ bool search_by_curves(AxisSearch& s, double loss) {
 
 bool has_few_faces(const Convex& convex) { return convex.kind != ConvexKind::polytope || convex.is_box; }
 
-// The best exact normal near the axis, if it is certain; else the better one of the two stays.
+// The best exact normal close to the axis, if it is certain; else the better one of the two stays.
 bool take_exact_normal(AxisSearch& s) {
     const PartingAxis found = s.axis;
     const double hair = 1e-7 * s.size;
@@ -236,8 +238,8 @@ bool take_exact_normal(AxisSearch& s) {
     s.touch_along(s.axis.normal);
     limit_by_points(s, s.on_a, s.on_b);
     if (s.axis.separation >= s.most - hair) return s.accept();
-    // Where faces, sides or edges lie on each other both reach farthest at corners that are not over the other one. A
-    // hull has many faces that are as good but for the bias: which one it gets shall not depend on the start.
+    // Where faces, sides or edges lie on each other, both are farthest at corners that are not over the other one. A
+    // hull has many faces that are as good within the bias: the choice must not depend on the start.
     if (has_few_faces(*s.a.shape) && has_few_faces(*s.b.shape)) {
         limit_by_points(s, facing_point(s.a, s.axis.normal, s.inside_b), facing_point(s.b, -s.axis.normal, s.inside_a));
         if (s.axis.separation >= s.most - bias_of(s)) return s.accept();
@@ -246,7 +248,7 @@ bool take_exact_normal(AxisSearch& s) {
     return false;
 }
 
-// The normal of the surface that limits the gap, if it is certain; where it is the better one it stays in any case.
+// The normal of the surface that limits the gap, if it is certain; if it is the better one it stays in any case.
 bool take_surface_normal(AxisSearch& s) {
     const double separation = s.separation(s.toward);
     if (separation <= s.axis.separation - 1e-9 * s.size) return false;
@@ -262,8 +264,9 @@ bool is_face_normal(const AxisSearch& s) {
     return has_aligned_face(s.a, s.axis.normal, equal) || has_aligned_face(s.b, -s.axis.normal, equal);
 }
 
-// From a normal to what is deepest along it, from there to the surface over it, whose normal is the next one. True
-// where a normal is certain or the pair is apart: mostly after two rounds. The one found does not depend on the start.
+// From a normal to the point that is deepest along it, from there to the surface over it, whose normal is the next one.
+// True where a normal is certain or the pair is apart: mostly after two iterations. The result does not depend on the
+// start.
 bool search_by_surfaces(AxisSearch& s, Vec3 start) {
     constexpr int max_iterations = 4;  // the longer search takes what needs more
     Vec3 normal = start;
@@ -273,7 +276,7 @@ bool search_by_surfaces(AxisSearch& s, Vec3 start) {
         limit_by_points(s, s.on_a, s.on_b);
         if (is_face_normal(s) && s.axis.separation >= s.most - 1e-7 * s.size) return true;
         if (take_exact_normal(s) || take_surface_normal(s)) return true;
-        // What the curves told may be a better limit.
+        // The bound from the curves may be better.
         if (search_by_curves(s, 5e-5 * s.size) || take_surface_normal(s)) return true;
         if (dot(s.toward, normal) > 1 - 1e-9) return false;
         normal = s.toward;
@@ -281,7 +284,7 @@ bool search_by_surfaces(AxisSearch& s, Vec3 start) {
     return false;
 }
 
-// The way out of the larger one from the inside of the smaller one.
+// The shortest direction out of the larger one from the inner point of the smaller one.
 Vec3 first_normal(const AxisSearch& s) {
     const bool from_a = has_volume(*s.a.shape) && (!has_volume(*s.b.shape) || s.a.shape->reach >= s.b.shape->reach);
     const PlacedConvex &larger = from_a ? s.a : s.b, &smaller = from_a ? s.b : s.a;
@@ -290,9 +293,9 @@ Vec3 first_normal(const AxisSearch& s) {
     return from_a ? outwards : -outwards;
 }
 
-// The normal between one solid's shrunk core and the other solid. No direction can part the solids farther than the
-// gap there less the core's depth: where the solids themselves are parted as far along that normal, it is the best one,
-// whether they overlap or not. That is so wherever a face, a smooth side or a crossing line of the shrunk one is met.
+// The normal between one solid's shrunk core and the other solid. No direction can separate the solids farther than the
+// gap there less the core's depth: if that normal separates the solids themselves as far, it is the best one, whether
+// they overlap or not. That is so wherever a face, a smooth side or a crossing line of the shrunk one is met.
 // True where the normal is certain or the pair is apart.
 bool search_by_core(AxisSearch& s, bool is_core_of_a) {
     constexpr double corner_loss = 1.5;  // what shrinking takes away at a corner, in shares of the depth
@@ -304,7 +307,7 @@ bool search_by_core(AxisSearch& s, bool is_core_of_a) {
     (is_core_of_a ? p.a : p.b) = Core(is_core_of_a ? s.a : s.b, shrink);
     p.depth = p.a.depth + p.b.depth;
 
-    // Roughly first: exact normals near by are preferred by a little, as among the axes of polytopes.
+    // First a rough search: exact normals close by are preferred by a small bias, as among the axes of polytopes.
     if (!measure_cores(s, p, s.margin + p.depth + corner_loss * shrink, shrink > 0 ? 1e-3 : 1e-4)) return false;
     if (s.axis.separation <= s.margin) {
         const PartingAxis rough = s.axis;
@@ -314,7 +317,7 @@ bool search_by_core(AxisSearch& s, bool is_core_of_a) {
         const bool is_exact = prefer_candidate(s, {.hair = bias, .within = near, .exact_only = true});
         if (is_exact && s.axis.separation >= s.most - bias) return s.accept();
         s.axis = rough;
-        // Far below what the cores allow it is a corner of the core that was met, which never tells.
+        // A separation far below the cores' bound means that a corner of the core was met, which gives no bound.
         if (rough.separation < s.most - corner_met * (shrink + rounding(inner))) return false;
         if (!measure_cores(s, p, 1e300, 1e-12)) return false;
     }
@@ -324,7 +327,7 @@ bool search_by_core(AxisSearch& s, bool is_core_of_a) {
     return s.accept();
 }
 
-// Where neither surfaces nor cores tell (rims and edges, at which shrinking takes away more than its depth): GJK on the
+// Where neither surfaces nor cores decide (rims and edges, at which shrinking removes more than its depth): GJK on the
 // solids, and EPA where they overlap.
 void search_by_penetration(AxisSearch& s) {
     const double radii = s.core_a.depth + s.core_b.depth;
@@ -353,7 +356,7 @@ void search_by_penetration(AxisSearch& s) {
     prefer_candidate(s, {.hair = 1e-7 * s.size, .all_faces = is_lost});
 }
 
-// From the last normal on. Deep in each other two solids have more than one good normal: which one they get shall not
+// Searches from the last normal. Two deeply overlapping solids have more than one good normal: the choice must not
 // depend on the past.
 bool search_from_memory(AxisSearch& s, const PairMemory& memory) {
     using Kind = PairMemory::Kind;
@@ -367,11 +370,11 @@ bool search_from_memory(AxisSearch& s, const PairMemory& memory) {
     return search_by_surfaces(s, memory.axis) && s.axis.separation > deep;
 }
 
-// As if nothing was known of the pair.
+// Searches as if nothing was known of the pair.
 void search_from_nothing(AxisSearch& s) {
     s.axis = {};
     s.most = 1e300;
-    // A capsule's axis and a triangle are soon found to be apart.
+    // A capsule's axis and a triangle are found to be apart quickly.
     const bool is_simple = s.core_a.depth + s.core_b.depth > 0 && !(has_volume(*s.a.shape) && has_volume(*s.b.shape));
     if (!is_simple && search_by_surfaces(s, first_normal(s))) return;
     if (!search_by_core(s, true) && !search_by_core(s, false)) search_by_penetration(s);

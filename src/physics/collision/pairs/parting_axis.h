@@ -7,7 +7,7 @@
 
 namespace embody::physics::collision {
 
-/// The normal along which a pair parts soonest, or is farthest apart.
+/// The normal along which a pair separates with the shortest displacement, or is farthest apart.
 struct PartingAxis {
     bool found = false;
     Vec3 normal;  ///< unit, a to b
@@ -16,10 +16,10 @@ struct PartingAxis {
     Vec3 on_a, on_b;
 };
 
-/// Of any two convexes that are not two polytopes with volume. Not found where they are farther apart than `margin`.
+/// For any two convexes that are not two polytopes with volume. Not found where they are farther apart than `margin`.
 PartingAxis find_parting_axis(const PlacedConvex& a, const PlacedConvex& b, double margin, PairMemory& memory);
 
-/// The smaller one's largest extent: what lengths are compared with.
+/// The smaller one's largest extent: the reference of lengths.
 double smaller_size(const PlacedConvex& a, const PlacedConvex& b);
 
 }  // namespace embody::physics::collision

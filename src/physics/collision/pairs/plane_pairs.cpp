@@ -25,7 +25,7 @@ struct PlaneProbe {
 void probe_rim(const PlacedConvex& round, double height, std::uint32_t first_feature, const PlaneProbe& probe) {
     const Vec3 down = round.direction_to_local(-probe.plane.normal);
     const RimStart start = rim_start(down);
-    // Quarter turns from the lowest point, named by their number: on a rolling wheel number 0 stays the lowest.
+    // Quarter turns from the lowest point, named by their number: on a rolling wheel number 0 stays the lowest point.
     const double r = round.shape->radius;
     for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
         const Vec3 d = quarter == 0   ? start.along

@@ -2,8 +2,8 @@
 // Separating axes of two polytopes: face normals of both, and the cross products of those edge pairs that build a face
 // of the Minkowski difference (D. Gregorius, "The separating axis test between convex polyhedra", GDC 2013: arcs on the
 // Gauss map). Almost all are ruled out by a witness: the gap along a face normal is at most the height of any point of
-// the other polytope over that face, and an edge can part the two no better than a witness's heights over its two faces
-// allow. So no axis is left out that could be the best; which are measured first changes only the time.
+// the other polytope over that face, and the gap along an edge's normal is bounded by a witness's heights over its two
+// faces. So no axis is left out that could be the best; the order of measuring changes only the time.
 // Then the region: the incident face clipped by the reference face's sides.
 #include <algorithm>
 #include <cmath>
@@ -32,14 +32,14 @@ struct EdgeAxis {
     Vec3 normal;  ///< unit, in a's frame, from a to b
 };
 
-/// An edge that may part the pair, turned into a's frame: the normals beside it (b's reversed) and its line.
+/// An edge that may separate the pair, turned into a's frame: the normals beside it (b's reversed) and its line.
 struct EdgeArc {
     Vec3 left, right, turn;  ///< turn: right x left
     Vec3 from, along;
     std::uint32_t edge = 0;
 };
 
-/// Two polytopes, each as the other sees it, and room for what is found on the way.
+/// Two polytopes, each in the frame of the other, and memory for the search.
 struct PolytopeSearch {
     const Polytope* a = nullptr;
     const Polytope* b = nullptr;
@@ -50,7 +50,7 @@ struct PolytopeSearch {
     std::vector<EdgeArc> arcs_a, arcs_b;
 };
 
-/// Best face of `faces`, `other` placed in its frame. Only faces that part by more than `least` count. `start` is any
+/// Best face of `faces`, `other` placed in its frame. Only faces with a gap above `least` count. `start` is any
 /// point of the other, `first` a face to measure first (or none).
 FaceAxis best_face_axis(const Polytope& faces, const PlacedConvex& other, double least, Vec3 start, std::uint32_t first,
                         PolytopeSearch& s) {
@@ -62,7 +62,7 @@ FaceAxis best_face_axis(const Polytope& faces, const PlacedConvex& other, double
     Extreme next{1e300, first};
     if (first >= count) next = lower_bounds(faces, start, s.bounds.data());
     for (std::size_t iterations = 0; iterations <= count; ++iterations) {
-        // The face that promises most; of equal ones the first, whatever was measured before.
+        // The face with the highest bound; of equal ones the first, whatever was measured before.
         if (next.along < best.separation) break;
         if (next.along == best.separation && (best.face == none || next.index > best.face)) break;
 
@@ -73,14 +73,14 @@ FaceAxis best_face_axis(const Polytope& faces, const PlacedConvex& other, double
         const bool is_tie = separation == best.separation && best.face != none && next.index < best.face;
         if (separation > best.separation || is_tie) best = {separation, next.index, witness};
         if (separation > s.margin) break;
-        // Measured: it promises nothing any more.
+        // Measured: its bound is not used again.
         s.bounds[next.index] = -1e300;
         next = lower_bounds(faces, witness, s.bounds.data());
     }
     return best;
 }
 
-// Edges beside a face that the witness is not farther below than `depth`.
+// Edges beside a face below which the witness lies by at most `depth`.
 void gather_edges(const Polytope& polytope, Vec3 witness, double depth, PolytopeSearch& s) {
     s.heights.resize(polytope.normal_lanes.size());
     heights_over_faces(polytope, witness, s.heights.data());
@@ -124,7 +124,7 @@ bool arcs_cross(const EdgeArc& a, const EdgeArc& b) {
     return (cba * dba < 0) & (adc * bdc < 0) & (cba * bdc > 0);
 }
 
-// How far the two polytopes are apart along a direction from a to b, in a's frame.
+// The gap between the two polytopes along a direction from a to b, in a's frame.
 double gap_along(const PolytopeSearch& s, Vec3 n) {
     const double reach_a = farthest(s.a->vertex_lanes, n).along;
     const double reach_b = farthest(s.b->vertex_lanes, -s.b_in_a.direction_to_local(n)).along;
@@ -132,9 +132,10 @@ double gap_along(const PolytopeSearch& s, Vec3 n) {
 }
 
 // Gap along an edge pair's own normal. Edges of merged faces lie a little beside the faces' planes; where they are
-// short, the normal may not touch the shapes at these edges at all. The shapes' own extent along it is what separates.
+// short, the shapes may not touch along the normal at these edges at all. The gap is that of the shapes' extents along
+// it.
 void measure_edge_pair(const EdgeArc& a, const EdgeArc& b, PolytopeSearch& s, EdgeAxis& best) {
-    // Nearly parallel edges have no axis of their own: a face tells as much.
+    // Nearly parallel edges have no axis of their own: a face has nearly the same.
     Vec3 n = cross(a.along, b.along);
     const double squared = length_squared(n);
     if (squared < 1e-12 * length_squared(a.along) * length_squared(b.along)) return;
@@ -173,8 +174,8 @@ void get_edge(const PlacedConvex& placed, std::uint32_t edge, ContactFeature& fe
     feature.points.push_back(placed.to_frame(polytope.vertices[polytope.edges[edge].to]));
 }
 
-// Pairs that are searched farther than this move too fast for their contacts to be followed: what else is near need not
-// be known. m
+// Pairs that are searched farther than this move too fast for their contacts to be followed: other features within the
+// margin need not be known. m
 constexpr double widest_followed = 8 * Manifold::whole_travel;
 
 // Whether corners other than the given ones lie up to `level` along a direction of the polytope's own frame.
@@ -187,8 +188,8 @@ bool has_other_corners(const Polytope& polytope, Vec3 direction, double level, s
     });
 }
 
-// Whether a rich polytope has corners beside one of its faces that are near what meets the face: a rounded side comes
-// to lie on the next one of its many small faces before it has moved far.
+// Whether a rich polytope has corners beside one of its faces that are close to the feature that meets the face: a
+// rounded side comes to lie on the next one of its many small faces before it has moved far.
 bool has_corners_beside(const PlacedConvex& owner, std::uint32_t face, const ContactFeature& facing, double margin,
                         std::vector<std::uint32_t>& low) {
     constexpr std::size_t corners_of_a_box = 8;  // what has no more is no rounded thing
@@ -209,7 +210,7 @@ bool has_edges_alone(const PolytopeSearch& s, const EdgeAxis& axis, std::vector<
            !has_other_corners(*s.b, s.b_in_a.direction_to_local(axis.normal), level_b, ends_b, low);
 }
 
-// A face of `owner` against what the other turns to it. `deepest` is the other's point nearest to the face.
+// A face of `owner` against the facing feature of the other. `deepest` is the other's point nearest to the face.
 void add_face_region(const PlacedConvex& owner, const PlacedConvex& other, const FaceAxis& axis, Vec3 deepest,
                      bool is_face_of_a, double margin, double bias, ContactRegion& region) {
     get_polytope_face(owner, axis.face, region.reference);
@@ -222,7 +223,7 @@ void add_face_region(const PlacedConvex& owner, const PlacedConvex& other, const
     region.has_all_corners = margin <= widest_followed && region.points.size() <= Manifold::max_points &&
                              !has_corners_beside(owner, axis.face, region.incident, margin, region.low);
 
-    // Where they overlap the deepest corner is over the reference face; a little apart it may be beside it.
+    // Where they overlap the deepest corner is over the reference face; if they are apart it may be beside it.
     if (axis.separation >= 0) return;
     const Vec3 on_a = is_face_of_a ? deepest - region.normal * axis.separation : deepest;
     keep_deepest(on_a, axis.separation, bias, region);
@@ -278,14 +279,14 @@ bool collide_polytopes(const ConvexPair& pair, double margin, PairMemory& memory
         if (memory.gap > margin) return true;
     }
 
-    // The face of a that parts them most, beginning with the remembered one.
+    // The face of a with the largest gap, beginning with the remembered one.
     const FaceAxis face_a = best_face_axis(*s.a, s.b_in_a, -1e300, s.b_in_a.to_frame(s.b->center),
                                            memory.kind == Kind::face_of_a ? memory.feature_a : none, s);
     if (face_a.separation > margin) {
         memory.part_along(s.a->faces[face_a.face].normal, face_a.separation);
         return true;
     }
-    // Faces are preferred by a little: they give a region, and the choice does not flicker by rounding.
+    // Faces are preferred by a small bias: they give a region, and the choice does not flicker by rounding.
     const double bias = 1e-4 * std::min(min_extent(*pair.a), min_extent(*pair.b));
     s.heights.resize(s.a->normal_lanes.size());
     const bool is_inside_a = heights_over_faces(*s.a, face_a.witness, s.heights.data()) <= 0;
@@ -301,7 +302,7 @@ bool collide_polytopes(const ConvexPair& pair, double margin, PairMemory& memory
     const double face_separation = is_face_of_a ? face_a.separation : face_b.separation;
     if (!is_face_of_a) witness_of_a = face_b.witness;
 
-    // An edge pair has to be better by more than that.
+    // An edge pair has to be better by more than the bias.
     EdgeAxis edge;
     const double least = std::min(face_separation + bias + 0.02 * std::fabs(face_separation), margin);
     if (!best_edge_axis(least, face_a.witness, witness_of_a, s, edge)) return false;

@@ -19,7 +19,7 @@ constexpr double square = 3e-5;
 
 struct UnitCircle {
     std::array<double, rim_corners> cosine{}, sine{};
-    // Built by one rotation after another, not by the library's sin and cos, whose last digits differ by system.
+    // Built by successive rotations, not by the library's sin and cos, whose last digits differ by system.
     UnitCircle() {
         constexpr double c = 0.96592582628906828675, s = 0.25881904510252076235;  // 15 degrees
         static_assert(rim_corners == 24);
@@ -141,7 +141,8 @@ bool get_aligned_line(const PlacedConvex& convex, Vec3 direction, ContactFeature
         case ConvexKind::sphere:
             return false;
         case ConvexKind::capsule:
-            // Its round ends keep the far end honest: at any slope the separations of both ends are right.
+            // The round ends of the capsule make the far end right: at any slope the separations of both ends are
+            // correct.
             if (std::fabs(d.y) > 0.1) return false;
             get_axis(convex, feature);
             return true;
@@ -187,7 +188,7 @@ Vec3 facing_point(const PlacedConvex& convex, Vec3 direction, Vec3 point) {
     constexpr double across = 0.05;  // cosine to the axis: 3 degrees off a right angle
     const Convex& shape = *convex.shape;
     const Vec3 d = convex.direction_to_local(direction), p = convex.to_local(point);
-    // To one end, or, where both are as far along the direction, as near to the point as can be.
+    // Chooses one end, or, where both are equally far along the direction, the point between them that is nearest.
     const auto settle = [](double along, double half, double at) {
         if (std::fabs(along) > across) return along < 0 ? -half : half;
         return std::fmax(-half, std::fmin(half, at));
@@ -243,7 +244,7 @@ void add_sloped_lines(const PlacedConvex& convex, Vec3 direction, std::vector<Sl
         case ConvexKind::polytope:
             break;
     }
-    // All of a simple polytope's; of a rich one those at the farthest vertex.
+    // All edges of a simple polytope; of a rich one those at the farthest vertex.
     const Polytope& polytope = shape.polytope;
     if (polytope.edge_directions.size() <= few) {
         for (const Vec3& e : polytope.edge_directions) lines.push_back({convex.direction_to_frame(e), 0});
@@ -271,7 +272,7 @@ bool span_face(const PlacedConvex& owner, bool is_owner_a, const ContactFeature&
     region.normal = is_owner_a ? face.normal : -face.normal;
     clip_to_region(face, line, is_owner_a, lift, margin, region);
 
-    // Seen along the crossing's normal, to which both edge and line are square.
+    // Seen along the crossing's normal, to which both edge and line are perpendicular.
     region.normal = crossing_normal;
     double deepest = margin;
     for (ManifoldPoint& point : region.points) {

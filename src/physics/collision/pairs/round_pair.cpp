@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Any two convexes, for pairs with a round side and for single triangles: the best normal, then the region over which
-// the faces, lines or points there are near each other.
+// the faces, lines or points there are within the margin of each other.
 #include <algorithm>
 #include <cmath>
 
@@ -24,8 +24,8 @@ double twice_area(const ContactFeature& face) {
     return length(sum);
 }
 
-// A polytope's own face is exact, a rim is a polygon: the former first. Of two polytopes' faces the larger one: the
-// small faces that a scanned hull's side is made of say little about how it lies.
+// The reference: a polytope's own face, which is exact, before a rim, which is a polygon. Of two polytopes' faces the
+// larger one: the small faces of a scanned hull's side say little about how it lies.
 bool is_better_reference(const PlacedConvex& a, const ContactFeature& face_a, const PlacedConvex& b,
                          const ContactFeature& face_b) {
     if (a.shape->kind != ConvexKind::polytope || b.shape->kind != ConvexKind::polytope)
@@ -33,7 +33,7 @@ bool is_better_reference(const PlacedConvex& a, const ContactFeature& face_a, co
     return twice_area(face_a) >= (1 - 1e-6) * twice_area(face_b);
 }
 
-// A face of one against what the other turns to it, and the other's deepest point whatever happens.
+// A face of one against the facing feature of the other, and always the other's deepest point.
 void add_face_region(const PlacedConvex& a, const PlacedConvex& b, const PartingAxis& axis, bool is_face_a,
                      double margin, FeatureScratch& f, ContactRegion& region) {
     const PlacedConvex& incident = is_face_a ? b : a;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Sphere against any convex by closed forms: of a polytope the face, or the nearest of the edges that the centre sees.
-// Round shapes are looked at in the half plane of distance from the axis and height: a rectangle (cylinder) or a
+// Sphere against any convex by closed forms: of a polytope the face, or the nearest of the edges visible from the
+// centre.
+// Round shapes are treated in the half plane of distance from the axis and height: a rectangle (cylinder) or a
 // triangle (cone) there.
 #include <algorithm>
 #include <cmath>
@@ -39,7 +40,7 @@ SurfaceDistance distance_from_cylinder(const Convex& cylinder, Vec3 p) {
     const double beyond_cap = std::fabs(p.y) - cylinder.half_height;
     const Vec3 cap_normal{0, p.y < 0 ? -1.0 : 1.0, 0};
 
-    // Beyond both the rim is nearest; else the side or the cap, whichever is less deep.
+    // Beyond both, the rim is nearest; else the side or the cap, whichever is less deep.
     if (beyond_side > 0 && beyond_cap > 0) {
         const double distance = std::sqrt(beyond_side * beyond_side + beyond_cap * beyond_cap);
         return {(outward * beyond_side + cap_normal * beyond_cap) / distance, distance};
@@ -97,7 +98,7 @@ bool is_over_face(const Polytope& polytope, const Polytope::Face& face, Vec3 p, 
     return true;
 }
 
-// The nearest point of those edges that the point sees: beside a face that it is above.
+// The nearest point of the edges that the point sees: edges beside a face that it is above.
 Vec3 nearest_on_seen_edges(const Polytope& polytope, const std::vector<double>& heights, Vec3 p) {
     Vec3 nearest;
     double least = 1e300;
@@ -124,8 +125,8 @@ SurfaceDistance distance_from_polytope(const Convex& convex, Vec3 p, double enou
     const Polytope::Face& face = polytope.faces[nearest];
     if (most <= 0 || most > enough) return {face.normal, most, nearest};
 
-    // Outside: the face that it is highest above where it stands over that one (its normal is exact), for no plane is
-    // farther. Else an edge or a vertex that it sees.
+    // Outside: the face with the largest height of the point, if the point is over that face (its normal is exact),
+    // since no plane is farther. Else an edge or a vertex that it sees.
     if (is_over_face(polytope, face, p, 0)) return {face.normal, most, nearest};
     return to_point(nearest_on_seen_edges(polytope, heights, p), p, face.normal);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A convex against the triangles near it. One-sided, and without bumps at the edges inside a surface: a normal that
-// leans over an edge farther than the surface itself bends there belongs to the neighbour (the Voronoi region test, cf.
-// P. Terdiman and others on "internal edges"). Triangles are looked up and most of them ruled out in the surface's own
-// frame, where they need no turning; the few that are left are met in the convex's.
+// A convex against the triangles within reach. One-sided, and without bumps at the edges inside a surface: a normal
+// that leans over an edge farther than the surface itself bends there belongs to the neighbour (the Voronoi region
+// test, cf. P. Terdiman and others on "internal edges"). Triangles are looked up and most of them ruled out in the
+// surface's own frame, where they need no rotation; the few that are left are tested in the convex's.
 #include "physics/collision/pairs/surface_pair.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct NormalGroup {
     bool has_all_corners = true;  ///< of the convex over these triangles, within the margin
 };
 
-/// The convex that is held against triangles, seen in the surface's frame.
+/// The convex that is tested against triangles, seen in the surface's frame.
 struct Probe {
     PlacedConvex placed;
     Core own;  ///< in its own frame
@@ -41,7 +41,8 @@ struct Probe {
           margin(extra) {}
 
     [[nodiscard]] bool is_polytope() const { return placed.shape->kind == ConvexKind::polytope; }
-    // Around what of its own box is in its ball, with the margin: turned boxes reach far beyond what they hold.
+    // Bounds of the part of its own box that is in its ball, with the margin: turned boxes reach far beyond their
+    // contents.
     [[nodiscard]] Bounds bounds() const {
         const Bounds& box = placed.shape->bounds;
         const Vec3 half = box.half_extents(), center = placed.to_frame(box.center());
@@ -50,14 +51,14 @@ struct Probe {
         const Vec3 of_ball{reach, reach, reach};
         return {max(center - extent, inside - of_ball), min(center + extent, inside + of_ball)};
     }
-    // Farthest point of the core in its own frame; of a hull as far as floats tell.
+    // Farthest point of the core in its own frame; of a hull within the precision of floats.
     [[nodiscard]] Vec3 own_support(Vec3 direction) const {
         const Convex& convex = *placed.shape;
         if (convex.kind != ConvexKind::polytope || convex.is_box) return own.support(direction);
         return convex.polytope.vertices[farthest_roughly(convex.polytope.rough_vertex_lanes, direction)];
     }
     // Whether the convex may be within the margin of the triangle's front: by the extents of both along the shortest
-    // way from the triangle to its inside, which part most of those that are only near.
+    // line from the triangle to its inside, which separates most of those that are only close.
     [[nodiscard]] bool may_meet(const NearTriangle& t, Vec3 across) const {
         if (!(dot(inside - t.corners[0], across) > 0)) return false;
         const Vec3 own_away = placed.direction_to_local(t.away);
@@ -68,8 +69,8 @@ struct Probe {
     }
 };
 
-// Puts a triangle into the convex's frame; false where its plane parts the two, or one of its sides a round convex,
-// which is slow to meet.
+// Puts a triangle into the convex's frame; false where its plane separates the two, or one of its sides a round convex,
+// whose test is slow.
 bool place_near(const Probe& probe, const std::array<Vec3, 3>& corners, Vec3 normal, PlacedTriangle& t) {
     t.normal = probe.placed.direction_to_local(normal);
     t.corners[0] = probe.placed.to_local(corners[0]);
@@ -86,7 +87,7 @@ bool place_near(const Probe& probe, const std::array<Vec3, 3>& corners, Vec3 nor
     return true;
 }
 
-/// What one triangle adds.
+/// The contacts that one triangle adds.
 struct TriangleRegion {
     const ContactRegion& region;
     std::uint32_t triangle = 0;
@@ -146,7 +147,7 @@ void collide_surface(const ConvexPiece& piece, std::uint32_t piece_index, const 
         if (!region.points.empty()) add_to_groups({region, index, has_all_corners}, groups, count);
     }
 
-    // Into the world.
+    // Transforms the contacts into the world.
     const PlacedConvex own = place(piece, pose, {});
     for (std::size_t g = 0; g < count; ++g) {
         const std::size_t before = manifolds.size();

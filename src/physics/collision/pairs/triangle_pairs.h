@@ -8,8 +8,8 @@
 
 namespace embody::physics::collision {
 
-// A convex against one triangle of a surface, in the convex's own frame. Each fills an empty region with what of the
-// two is within the margin and is this triangle's business; its normal is set where there are points.
+// A convex against one triangle of a surface, in the convex's own frame. Each function fills an empty region with the
+// points within the margin that belong to this triangle; its normal is set if there are points.
 
 /// A polytope. True where the region holds all of its corners that are low over the triangle.
 bool collide_polytope_triangle(const Convex& convex, const PlacedTriangle& triangle, double margin,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A polytope against one triangle of a surface, in the polytope's frame. Separating axes as for two polytopes
-// (D. Gregorius, "The separating axis test between convex polyhedra", GDC 2013), but only those that are the triangle's
-// business: its own normal, faces of the polytope whose normals lean no farther over an edge than the surface bends
-// there, and edges of the polytope that the normal meets on its way over such an edge. The latter are found by walking:
+// (D. Gregorius, "The separating axis test between convex polyhedra", GDC 2013), but only those that belong to the
+// triangle: its own normal, faces of the polytope whose normals lean no farther over an edge than the surface bends
+// there, and edges of the polytope that the normal crosses while it turns over such an edge. They are found by walking:
 // the vertex that is lowest along the triangle's normal is known; turning the normal over the edge, the lowest vertex
 // changes exactly where an edge of the polytope lies across. On a flat floor nothing but the first axis is left.
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace embody::physics::collision {
 
 namespace {
 
-/// A normal (from the triangle outwards) and what of the polytope it belongs to.
+/// A normal (from the triangle outwards) and the feature of the polytope that it belongs to.
 struct TriangleAxis {
     enum class Kind : std::uint8_t { own, face, edges };
     Kind kind = Kind::own;
@@ -43,11 +43,11 @@ struct TriangleSearch {
 /// A corner of a polygon while it is clipped, named by the edges that meet there.
 struct PrismCorner {
     Vec3 point;
-    double beyond = 0;  ///< the side that clips now, m
+    double beyond = 0;  ///< distance beyond the present clipping side, m
     std::uint32_t edge_in = 0, edge_out = 0;
 };
 
-/// Room for the work of one thread.
+/// Scratch of one thread.
 struct TriangleScratch {
     std::vector<double> heights;
     std::vector<std::uint32_t> low;
@@ -69,7 +69,7 @@ CornerOverFace lowest_over_face(const TriangleSearch& s, std::uint32_t face) {
     return lowest;
 }
 
-// Faces of the polytope as axes. No face parts the two farther than any one point of the triangle is above it.
+// Faces of the polytope as axes. The gap along a face normal is at most the height of any one point of the triangle.
 void lean_to_faces(TriangleSearch& s, std::vector<double>& heights) {
     const std::size_t count = s.polytope.faces.size();
     heights.resize(s.polytope.normal_lanes.size());
@@ -86,13 +86,13 @@ void lean_to_faces(TriangleSearch& s, std::vector<double>& heights) {
     }
 }
 
-// Turns the normal over one edge and measures each edge of the polytope that lies across on the way.
+// Turns the normal over one edge and measures each edge of the polytope that the normal crosses.
 void lean_over_edge(TriangleSearch& s, std::size_t edge) {
     const PlacedTriangle& t = s.triangle;
-    // As far as the neighbour's normal, but not beyond the upright.
+    // Turns as far as the neighbour's normal, but at most by 90 degrees.
     const double half = std::min(1.0, static_cast<double>(t.half_dihedrals[edge]));
     const double cosine = (1 - half * half) / (1 + half * half), sine = 2 * half / (1 + half * half);
-    // Leaning by an angle v the lowest point alone allows height cos v + beyond sin v.
+    // At a lean by an angle v the lowest point alone limits the height to height cos v + beyond sin v.
     const double most = std::max(t.height, t.height * cosine) + std::max(0.0, t.beyond(edge, t.lowest)) * sine;
     if (most <= s.best.separation + s.bias) return;
     const Vec3 end = t.normal * cosine + t.outward[edge] * sine;
@@ -122,8 +122,8 @@ void lean_over_edge(TriangleSearch& s, std::size_t edge) {
     }
 }
 
-// Whether the depth along the triangle's normal is a neighbour's: where a thing stands across the edge of a step, the
-// step's side cuts deep into it, yet a face of the thing, which is not this triangle's business, hardly overlaps.
+// Whether the depth along the triangle's normal belongs to a neighbour: where a body stands across the edge of a step,
+// the step's side cuts deep into it, yet a face of the body, which does not belong to this triangle, hardly overlaps.
 bool is_deep_in_neighbour(const TriangleSearch& s) {
     constexpr double believed = 0.1;  // of the smallest side: a depth less than this is the triangle's own
     const Vec3 size = s.convex.bounds.size();
@@ -135,7 +135,7 @@ bool is_deep_in_neighbour(const TriangleSearch& s) {
     return false;
 }
 
-// False where some axis parts the two by more than the margin.
+// False where some axis separates the two by more than the margin.
 bool find_triangle_axis(TriangleSearch& s, std::vector<double>& heights) {
     const PlacedTriangle& t = s.triangle;
     s.best = {TriangleAxis::Kind::own, t.normal, t.height};
@@ -196,7 +196,7 @@ double add_low_corners(const TriangleSearch& s, const PrismSide (&sides)[3], dou
     return highest;
 }
 
-// What of the polytope is over the triangle: the corners of the face that faces it, clipped, and low corners.
+// The part of the polytope over the triangle: the corners of the face that faces it, clipped, and low corners.
 void add_over_triangle(const TriangleSearch& s, TriangleScratch& scratch, ContactRegion& region) {
     constexpr std::uint32_t side_tag = 0x8000u;
     const PlacedTriangle& t = s.triangle;
@@ -206,7 +206,7 @@ void add_over_triangle(const TriangleSearch& s, TriangleScratch& scratch, Contac
     region.normal = -t.normal;
     const double low = add_low_corners(s, sides, level, scratch, region);
 
-    // The face turned to the triangle; each side may add one corner.
+    // The polytope's face turned to the triangle; each side may add one corner.
     const std::uint32_t face = support_face(p, -t.normal);
     const Polytope::Face& f = p.faces[face];
     if (scratch.corners.size() < f.count + 3) {
@@ -222,7 +222,7 @@ void add_over_triangle(const TriangleSearch& s, TriangleScratch& scratch, Contac
         const PrismCorner& c = scratch.corners[i];
         const double along = dot(t.normal, c.point), separation = along - level;
         if (separation > s.margin) continue;
-        // A corner of the face keeps its name from triangle to triangle, so that sliding things are known again.
+        // A corner of the face keeps its name from triangle to triangle, so that sliding bodies are recognised.
         const bool is_corner = (c.edge_in & side_tag) == 0 && (c.edge_out & side_tag) == 0;
         if (is_corner && along <= low) continue;  // known
         const std::uint32_t owner = is_corner ? 0 : t.index + 1;
@@ -230,7 +230,7 @@ void add_over_triangle(const TriangleSearch& s, TriangleScratch& scratch, Contac
     }
 }
 
-// What of the triangle is before a face of the polytope.
+// The part of the triangle in front of a face of the polytope.
 void add_before_face(const TriangleSearch& s, ContactRegion& region) {
     const PlacedConvex placed{&s.convex, {}, {}};
     get_polytope_face(placed, s.best.face, region.reference);
@@ -241,7 +241,7 @@ void add_before_face(const TriangleSearch& s, ContactRegion& region) {
     clip_to_region(region.reference, region.incident, true, 0, s.margin, region);
 }
 
-// Where an edge of the polytope crosses an edge of the triangle; nothing where they pass each other beyond an end.
+// The point where an edge of the polytope crosses an edge of the triangle; none where they pass beyond an end.
 void add_crossing(const TriangleSearch& s, ContactRegion& region) {
     constexpr double slack = 1e-6;  // of an edge: rounding at its ends
     const std::size_t edge = s.best.edge_of_triangle;
@@ -259,7 +259,7 @@ void add_crossing(const TriangleSearch& s, ContactRegion& region) {
                              static_cast<std::uint32_t>(edge), s.triangle.index}));
 }
 
-// In the wedge over a sharp edge the nearest points alone, if the normal there is this triangle's business.
+// In the wedge over a sharp edge only the nearest points, if the normal there belongs to this triangle.
 void add_nearest(const TriangleSearch& s, ContactRegion& region) {
     const auto& dihedrals = s.triangle.half_dihedrals;
     if (s.best.separation <= 0 ||

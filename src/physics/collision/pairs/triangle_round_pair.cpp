@@ -22,7 +22,7 @@ void collide_sphere_triangle(double radius, const PlacedTriangle& t, double marg
     region.add(outwards * -radius, gap - radius, 0);
 }
 
-// Against the plane of the triangle, clipped to the triangle.
+// Tests against the plane of the triangle, clipped to the triangle.
 void collide_along_normal(const PlacedConvex& convex, const PlacedTriangle& t, double margin, ContactRegion& region) {
     thread_local ContactFeature face, facing;
     region.normal = -t.normal;
@@ -51,7 +51,7 @@ void collide_round_triangle(const Convex& convex, const PlacedTriangle& t, doubl
         collide_along_normal(placed, t, margin, region);
         return;
     }
-    // An edge where the surface bends away: the best normal of all, if it is this triangle's business.
+    // An edge where the surface bends away: the best normal of all, if it belongs to this triangle.
     thread_local Convex flat{ConvexKind::polytope, 0, 0, triangle_polytope({}, {1, 0, 0}, {0, 0, 1}), {}};
     set_triangle(flat.polytope, t.corners[0], t.corners[1], t.corners[2]);
     flat.bounds = {};

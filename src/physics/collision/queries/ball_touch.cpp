@@ -14,7 +14,7 @@ namespace {
 
 constexpr double same_normal = 1 - 1e-9;  // cosine
 
-// As seen from the ball's centre.
+// The triangle as seen from the ball's centre.
 PlacedTriangle place_triangle(const std::array<Vec3, 3>& corners, Vec3 normal, Vec3 center) {
     PlacedTriangle t;
     t.normal = normal;
@@ -36,7 +36,7 @@ void add_curvature(const PlacedTriangle& t, const std::array<float, 3>& half_dih
     }
 }
 
-// Whether the place lies on an edge that no smooth surface has.
+// Whether the place lies on an edge where the surface is not smooth.
 bool is_on_real_edge(const PlacedTriangle& t, const std::array<float, 3>& half_dihedrals, Vec3 nearest) {
     static const double most = std::tan(smooth_edge_angle / 2);
     constexpr double on_edge = 1e-6;  // in shares of the edge's length

@@ -14,19 +14,19 @@ namespace embody::physics::collision {
 /// shading: 30 degrees), but a ramp of 20 degrees is one (validation.Bowls: CoarseHalfPipe…, RampOfTwentyDegrees…).
 inline constexpr double smooth_edge_angle = 0.28;
 
-/// A place where a ball is near a surface.
+/// A place where a ball touches a surface or is within the margin.
 struct BallTouch {
     Vec3 normal;     ///< world, unit, towards the ball
     double gap = 0;  ///< m, negative where they overlap
     /// Shape operator S: how the normal turns along the surface, world, 1/m, symmetric: dn = S · dx, positive where the
     /// surface curves away.
     Mat3 shape_operator = Mat3::zero();
-    bool knows_curvature = false;  ///< of a smooth place of a mesh or heightfield
+    bool knows_curvature = false;  ///< known at a smooth place of a mesh or heightfield
     bool is_flat = false;          ///< a face or plane, whose normal does not turn with the place
 };
 
-/// Appends where the ball (a shape of that radius, world) is nearer than `margin` (m, > 0) to the ground: each triangle
-/// of a mesh or heightfield by itself, of other shapes each piece.
+/// Appends the places where the ball (a shape of that radius, world) is closer than `margin` (m, > 0) to the ground:
+/// for each triangle of a mesh or heightfield, of other shapes for each piece.
 void find_ball_touches(const CollisionShape& ball, double radius, Vec3 center, const CollisionShape& ground,
                        const Transform& pose, double margin, std::vector<BallTouch>& touches);
 

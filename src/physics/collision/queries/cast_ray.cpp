@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A line enters a convex once. Each part of its surface offers the places where the ray meets it from outside; those
-// that lie on the part itself count, and the nearest wins. A ray from inside thus meets nothing.
+// A line enters a convex once. Each part of its surface gives the points where the ray meets it from outside; those
+// that lie on the part itself count, and the nearest is the hit. A ray from inside thus meets nothing.
 #include <cmath>
 
 #include "physics/collision/queries/cast_at_convex.h"
@@ -23,7 +23,7 @@ struct RayProbe {
     }
 };
 
-// False where the ray's whole way lies on one side of the box, for sure.
+// False only where the ray's whole length lies on one side of the box.
 bool may_meet(const RayProbe& ray, const Bounds& box) {
     constexpr double slack = 1e-9;  // of the numbers' size
     const Vec3 end = ray.at(ray.max_distance);
@@ -34,12 +34,12 @@ bool may_meet(const RayProbe& ray, const Bounds& box) {
     return true;
 }
 
-// Smaller root of a t² + 2 b t + c, where the ray comes in; false if there is none.
+// Smaller root of a t² + 2 b t + c, where the ray enters; false if there is none.
 bool first_root(double a, double b, double c, double& t) {
     const double disc = b * b - a * c;
     if (!(disc >= 0) || a == 0) return false;
     const double root = std::sqrt(disc);
-    // Without cancellation, whatever the sign of b.
+    // Avoids cancellation for either sign of b.
     const double q = b < 0 ? root - b : -root - b;
     const double t0 = q / a, t1 = q != 0 ? c / q : t0;
     t = std::fmin(t0, t1);
@@ -47,7 +47,7 @@ bool first_root(double a, double b, double c, double& t) {
 }
 
 bool meets_sphere(const RayProbe& ray, Vec3 center, double radius, double& t) {
-    // From the point of the ray nearest to the centre, which keeps the digits of far origins.
+    // Computed from the point of the ray nearest to the centre, which keeps the digits of far origins.
     const double nearest = dot(center - ray.origin, ray.direction);
     const double off = length_squared(ray.at(nearest) - center);
     if (off > radius * radius) return false;

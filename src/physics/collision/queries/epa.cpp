@@ -22,7 +22,7 @@ struct HorizonEdge {
     int from = 0, to = 0;
 };
 
-/// The polytope inside the Minkowski difference that grows towards its boundary nearest to the origin.
+/// The polytope inside the Minkowski difference that grows towards the boundary point nearest to the origin.
 struct Expansion {
     std::vector<Vec3> points;
     std::vector<ExpandingFace> faces;
@@ -55,8 +55,8 @@ struct Expansion {
         return best;
     }
 
-    // Removes what the new point sees and closes the hole from its rim; false, with nothing changed, where rounding
-    // would tear the surface.
+    // Removes the faces that the new point sees and closes the hole from its rim; false, with nothing changed, where
+    // rounding would tear the surface.
     bool grow(Vec3 point, double clearance) {
         thread_local std::vector<HorizonEdge> horizon;
         horizon.clear();
@@ -146,7 +146,7 @@ bool penetration_normal(const Core& a, const Core& b, const CoreDistance& overla
     expansion.add_face(0, 3, 1);
     expansion.add_face(1, 3, 2);
 
-    // Grow at the face nearest to the origin until the boundary itself is there.
+    // Grows at the face nearest to the origin until that face is on the boundary.
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
         const int nearest = expansion.nearest_face();
         if (nearest < 0) return false;
@@ -157,7 +157,7 @@ bool penetration_normal(const Core& a, const Core& b, const CoreDistance& overla
         const double gain = dot(next, face.normal) - face.distance;
         const double size = std::fabs(face.distance) + length(next);
         if (gain <= converged * size) break;
-        // Faces that the point lies in all but exactly may count as seen or not, as long as the surface stays whole.
+        // Faces in whose plane the point nearly lies may count as seen or not, as long as the surface stays whole.
         bool grown = false;
         for (const double clearance : {1e-12, 0.0, -1e-12, 1e-10, 1e-8, -1e-10}) {
             grown = grown || expansion.grow(next, clearance * size);

@@ -13,7 +13,7 @@ namespace {
 
 using Simplex = std::array<DifferencePoint, 4>;
 
-/// Nearest point of a simplex to the origin: the corners that carry it and their weights.
+/// Nearest point of a simplex to the origin: the corners that define it and their weights.
 struct NearestPoint {
     int size;
     int corner[4];
@@ -49,7 +49,7 @@ NearestPoint nearest_on_triangle(const Simplex& s, int a, int b, int c, Vec3 n) 
         const double sum = wa + wb + wc;
         return {3, {a, b, c}, {wa / sum, wb / sum, wc / sum}, n * (dot(n, p) / nn)};
     }
-    // Outside of the triangle's prism: the nearest of the edges it is beyond.
+    // Outside of the triangle's prism: the nearest of the edges that it is beyond.
     NearestPoint best;
     best.size = 0;
     if (!(wc > 0)) take_nearer(best, nearest_on_edge(s, a, b));
@@ -64,7 +64,7 @@ Vec3 triangle_normal(const Simplex& s, int a, int b, int c) {
 }
 
 // The last corner is the new one: the origin is on its side of the three others' face. `is_outside`: the origin is
-// known to be outside, which a nearly flat tetrahedron (three points of a rim and a triangle) cannot tell by itself.
+// known to be outside, which a nearly flat tetrahedron (three points of a rim and a triangle) cannot decide by itself.
 NearestPoint nearest_on_tetrahedron(const Simplex& s, bool is_outside) {
     static constexpr int faces[3][4] = {{0, 1, 3, 2}, {0, 3, 2, 1}, {1, 2, 3, 0}};
     NearestPoint best;
@@ -100,7 +100,7 @@ bool holds(const CoreDistance& state, Vec3 difference) {
     return false;
 }
 
-// Drops the corners that do not carry the nearest point; the order of the others stays.
+// Drops the corners that do not define the nearest point; the order of the others stays.
 void keep_carriers(CoreDistance& state, NearestPoint& nearest) {
     for (int i = 1; i < nearest.size; ++i) {
         for (int k = i; k > 0 && nearest.corner[k] < nearest.corner[k - 1]; --k) {
@@ -115,7 +115,7 @@ void keep_carriers(CoreDistance& state, NearestPoint& nearest) {
     state.simplex_size = nearest.size;
 }
 
-// The points of both shapes that the carriers' weights stand for.
+// The points of both shapes by the weights of these corners.
 void read_witnesses(CoreDistance& state, const NearestPoint& nearest) {
     state.on_a = state.on_b = {};
     for (int i = 0; i < nearest.size; ++i) {
@@ -154,7 +154,7 @@ CoreDistance core_distance(const Core& a, const Core& b, double enough, Vec3 sta
                           std::fabs(next.difference.x) + std::fabs(next.difference.y) + std::fabs(next.difference.z));
         const double lower = dot(nearest.point, next.difference);
 
-        // No nearer in this direction, or farther than anyone asks for.
+        // No nearer point in this direction, or farther than the caller's limit.
         if (squared - lower <= converged * squared || holds(state, next.difference)) break;
         if (lower > 0 && enough < 1e150 && lower * lower > enough * enough * squared) {
             read_witnesses(state, nearest);
@@ -164,7 +164,7 @@ CoreDistance core_distance(const Core& a, const Core& b, double enough, Vec3 sta
             return state;
         }
         state.simplex[static_cast<std::size_t>(state.simplex_size)] = next;
-        // A plane parts the two for certain where the support point is beyond the origin by more than rounding.
+        // A plane certainly separates the two where the support point is beyond the origin by more than rounding.
         const bool is_apart = lower > 1e-12 * scale * std::sqrt(squared);
         NearestPoint found = nearest_on_simplex(state.simplex, state.simplex_size + 1, is_apart);
         if (found.size == 4) {
@@ -172,7 +172,7 @@ CoreDistance core_distance(const Core& a, const Core& b, double enough, Vec3 sta
             state.overlap = true;
             break;
         }
-        // Rounding lets a flat simplex step back; the last one is then as near as doubles tell.
+        // Rounding lets a flat simplex step back; the last one is then as near as doubles can represent.
         const double found_squared = length_squared(found.point);
         if (found_squared >= squared) break;
         ++state.simplex_size;

@@ -17,7 +17,7 @@ DifferencePoint difference_support(const Core& a, const Core& b, Vec3 direction)
 /// Nearest points of two cores.
 struct CoreDistance {
     bool overlap = false;
-    bool is_final = true;  ///< false where it stopped early
+    bool is_final = true;  ///< false where the search stopped early
     double distance = 0;
     Vec3 on_a, on_b;
     Vec3 direction;  ///< along which the cores are apart, of any length; zero where they overlap
@@ -29,7 +29,8 @@ struct CoreDistance {
 CoreDistance core_distance(const Core& a, const Core& b, double enough = 1e300, Vec3 start = {},
                            double converged = 1e-12);
 
-/// Direction in which overlapping cores part soonest, unit, from a to b; false if no volume was found to search.
+/// Direction in which overlapping cores separate with the shortest displacement, unit, from a to b; false if no volume
+/// was found.
 bool penetration_normal(const Core& a, const Core& b, const CoreDistance& overlap, Vec3& normal);
 
 }  // namespace embody::physics::collision

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Conservative advancement: B. Mirtich, "Impulse-based dynamic simulation of rigid body systems", 1996: time goes on by
-// what the gap allows at the highest speed at which any point can approach along the gap's own direction.
+// Conservative advancement: B. Mirtich, "Impulse-based dynamic simulation of rigid body systems", 1996: time advances
+// by the gap over the highest speed at which any point can approach along the gap's own direction.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -53,9 +53,9 @@ struct PosedShapes {
         const double offset = b.plane_offset + dot(n, pose_b.position - pose_a.position);
         return dot(n, core_support(piece, -n)) - rounding(*piece.shape) - offset;
     }
-    // Gap of two parts along the direction from a to b in which they met. Of a triangle its own normal counts, whatever
-    // the direction: nothing passes it without getting behind it, and what slides on from the triangle before meets its
-    // edge head on.
+    // Gap of two parts along the direction from a to b in which they met. For a triangle its own normal counts,
+    // whatever the direction: nothing passes it without getting behind it, and a body that slides on from the triangle
+    // before meets its edge head on.
     [[nodiscard]] double gap_along(const PartPair& parts, Vec3 direction) const {
         const PlacedConvex piece = placed_a(parts.a);
         if (b.is_plane) return height_over_plane(piece);
@@ -72,7 +72,7 @@ Gap gap_between(const PlacedConvex& a, const PlacedConvex& b, double enough, Par
     return {gap.distance - radii, gap.distance > 0 ? (gap.on_b - gap.on_a) / gap.distance : Vec3{}, parts};
 }
 
-// Bounds of a piece and of all places on its `way` (world axes), in the frame of b's surface.
+// Bounds of a piece and of all places on its `path` (world axes), in the frame of b's surface.
 Bounds bounds_in_surface(const PosedShapes& s, const PlacedConvex& piece, Vec3 displacement) {
     const Vec3 h = piece.shape->bounds.half_extents();
     const Mat3 r = to_matrix(conjugate(s.pose_b.rotation)) * piece.rotation;
@@ -84,7 +84,7 @@ Bounds bounds_in_surface(const PosedShapes& s, const PlacedConvex& piece, Vec3 d
     return bounds;
 }
 
-/// How far to look: gaps up to `enough`; of a surface only triangles within `beside` of the way.
+/// The reach of the search: gaps up to `enough`; of a surface only triangles within `beside` of the path.
 struct Reach {
     double enough = 0;
     Vec3 displacement;
@@ -119,7 +119,7 @@ void for_each_gap(const PosedShapes& s, const Reach& reach, Visit&& visit) {
     }
 }
 
-/// A shape on its way: the centre on a line, the rotation along the shortest arc (normalised linear interpolation).
+/// A moving shape: the centre on a line, the rotation along the shortest arc (normalised linear interpolation).
 struct Motion {
     Quat start_rotation, end_rotation;
     Vec3 center, start_center, displacement;
@@ -145,7 +145,7 @@ struct Motion {
             Quat{p.x + (q.x - p.x) * t, p.y + (q.y - p.y) * t, p.z + (q.z - p.z) * t, p.w + (q.w - p.w) * t});
         return {start_center + displacement * t - rotate(mixed, center), mixed};
     }
-    // No point of the shape moves faster than this by turning.
+    // No point of the shape moves faster than this by rotation.
     [[nodiscard]] double turn_speed(const CollisionShape& shape) const {
         return turn_bound > 0 ? turn_bound * shape.radius_about(center) : 0;
     }
@@ -165,7 +165,7 @@ struct Advancement {
     [[nodiscard]] PosedShapes at(double time) const {
         return {a.data(), b.data(), motion_a.at(time), motion_b.at(time)};
     }
-    // What may be met in the rest of the time.
+    // The parts that may be met in the rest of the time.
     [[nodiscard]] Reach reach_at(double time) const {
         const double near = turn_speed * (1 - time) + search.target_separation + tolerance;
         return {length(displacement) * (1 - time) + near, displacement * (1 - time), near};
@@ -209,7 +209,7 @@ std::optional<double> time_of_impact(const CollisionShape& a, const Sweep& path_
         bool touches = false;
         for_each_gap(advance.at(time), advance.reach_at(time), [&](const Gap& gap) {
             // Parts that move away from each other are no impact, even if they touch now.
-            // Overlapping ones have no direction to tell.
+            // Overlapping ones have no direction.
             const bool has_direction = length_squared(gap.direction) > 0;
             const double speed = dot(advance.displacement, gap.direction) + advance.turn_speed;
             if ((speed <= 0 && has_direction) || advance.is_passed_over(gap.parts)) return;

@@ -48,7 +48,7 @@ Convex make_convex(const geometry::ConvexHull& hull) {
     return {ConvexKind::polytope, 0, 0, polytope_from(hull), geometry::bounds(hull)};
 }
 
-// Bounds of a placed convex; round ones by their own formulas, which a turned box would overestimate.
+// Bounds of a placed convex; round ones by their own formulas, since turned boxes would overestimate.
 Bounds convex_bounds(const Convex& convex, const Transform& pose) {
     const Mat3 r = to_matrix(pose.rotation);
     const PlacedConvex placed{&convex, r, pose.position};
@@ -75,7 +75,7 @@ Bounds convex_bounds(const Convex& convex, const Transform& pose) {
     return b;
 }
 
-// The library's may differ in its last digit from one machine to the next; sizes are far from overflow.
+// The library's hypot may differ in its last digit from one machine to the next; sizes are far from overflow.
 double hypotenuse(double a, double b) { return std::sqrt(a * a + b * b); }
 
 double convex_radius_about(const Convex& convex, Vec3 c) {
@@ -141,7 +141,7 @@ private:
         if (!hull) return Error{"points", hull.error().why, hull.error().remedy};
         return add_piece(*hull, local);
     }
-    /// Of a round shape, a box or a hull that is built.
+    /// For a round shape, a box or a built hull.
     template <class Solid>
     Result<void> add_piece(const Solid& solid, const Transform& local) const {
         Convex convex = make_convex(solid);
@@ -215,7 +215,7 @@ bool CollisionShape::is_round() const {
 
 PlacedConvex place(const ConvexPiece& piece, const Transform& pose, Vec3 origin) {
     if (piece.is_alone) return {&piece.convex, turn_of(pose.rotation), pose.position - origin};
-    // The origin is taken off first: far from the world's origin the small differences keep their digits.
+    // The origin is subtracted first: far from the world's origin the small differences keep their digits.
     const Vec3 at = (pose.position - origin) + rotate(pose.rotation, piece.local.position);
     return {&piece.convex, turn_of(pose.rotation * piece.local.rotation), at};
 }

@@ -23,7 +23,7 @@ public:
     ~CollisionShape();
 
     [[nodiscard]] const ShapeDefinition& definition() const;
-    /// Of the homogeneous solid at density 1; zero for static-only shapes.
+    /// Mass properties of the homogeneous solid at density 1; zero for static-only shapes.
     [[nodiscard]] const geometry::MassProperties& mass_properties() const;
     [[nodiscard]] Bounds local_bounds() const;
     [[nodiscard]] Bounds bounds(const Transform& pose) const;
@@ -45,12 +45,12 @@ private:
 /// static-only ones. Points with separation up to `margin` are reported, so that the solver can act before they touch.
 void collide(const CollisionShape& a, const Transform& pose_a, const CollisionShape& b, const Transform& pose_b,
              double margin, std::vector<Manifold>& manifolds);
-/// The same with what the pair remembers of its last call: nothing else comes out, but faster. Of compounds only the
-/// first pair of pieces remembers; planes, meshes and heightfields leave the memory as it is.
+/// As above with the memory of the pair's last call: the same result, but faster. Of compounds only the
+/// first pair of pieces has a memory; planes, meshes and heightfields leave the memory as it is.
 void collide(const CollisionShape& a, const Transform& pose_a, const CollisionShape& b, const Transform& pose_b,
              double margin, PairMemory& memory, std::vector<Manifold>& manifolds);
 
-/// The same of a capsule, which is no more than the points nearer than `radius` (m) to a segment.
+/// As above for a capsule, given as the points closer than `radius` (m) to a segment.
 void collide_capsule(Vec3 from, Vec3 to, double radius, const CollisionShape& b, const Transform& pose_b, double margin,
                      std::vector<Manifold>& manifolds);
 
@@ -70,19 +70,19 @@ struct Sweep {
 };
 /// What counts as an impact.
 struct ImpactSearch {
-    double target_separation = 0;  ///< m: so near is a touch
-    /// Parts as near as this at the start are passed over for the whole way, m; by default none.
+    double target_separation = 0;  ///< m: a gap up to this counts as a touch
+    /// Parts at least as close as this at the start are ignored for the whole path, m; by default none.
     double touching_at_start = -1e300;
-    /// So is a touch after which the two end no deeper in each other along the direction of the touch, m: sliding and
+    /// A touch is also ignored if at the end the two are no deeper than this along its direction, m: sliding and
     /// rolling. By default none.
     double harmless_depth = -1e300;
 };
-/// First time in [0, 1] at which the two are as near as the target, by conservative advancement; std::nullopt if they
-/// stay farther apart. Parts that move away from each other do not count. a is not static-only.
+/// First time in [0, 1] at which the gap is the target, by conservative advancement; std::nullopt if the gap
+/// stays larger. Parts that move away from each other do not count. a is not static-only.
 std::optional<double> time_of_impact(const CollisionShape& a, const Sweep& path_a, const CollisionShape& b,
                                      const Sweep& path_b, const ImpactSearch& search);
-/// The same of a turning about its origin while b stands still. 0 where they overlap at the start: ask only for pairs
-/// that do not touch yet.
+/// As above for a rotation about a's origin while b does not move. 0 where they overlap at the start: call it only for
+/// pairs that do not touch yet.
 std::optional<double> time_of_impact(const CollisionShape& a, const Transform& pose_a_start,
                                      const Transform& pose_a_end, const CollisionShape& b, const Transform& pose_b,
                                      double target_separation);

@@ -11,11 +11,11 @@
 
 namespace embody::physics::collision {
 
-/// A convex of a shape and where it stands in the shape's frame.
+/// A convex of a shape and its place in the shape's frame.
 struct ConvexPiece {
     Convex convex;
     Transform local;
-    bool is_alone = true;  ///< stands in the shape's frame untouched: `local` changes nothing
+    bool is_alone = true;  ///< in the shape's frame: `local` changes nothing
 };
 
 struct CollisionShape::Data {
@@ -23,8 +23,8 @@ struct CollisionShape::Data {
     geometry::MassProperties mass;
     Bounds bounds;
     // Exactly one of the three is in use.
-    std::vector<ConvexPiece> pieces;           ///< one, or the children of a compound
-    std::vector<Bounds> piece_bounds;          ///< of these, in the shape's frame
+    std::vector<ConvexPiece> pieces;           ///< one piece, or the children of a compound
+    std::vector<Bounds> piece_bounds;          ///< bounds of the pieces, in the shape's frame
     std::unique_ptr<TriangleSurface> surface;  ///< mesh and heightfield
     bool is_plane = false;
     Vec3 plane_normal;  ///< unit

@@ -21,7 +21,7 @@ Vec3 rim_support(double radius, Vec3 local_direction, double height) {
     return {local_direction.x * s, height, local_direction.z * s};
 }
 
-// How far each face's normal reaches over all vertices, and lanes of vertices and normals.
+// The maximum over all vertices along each face's normal, and lanes of vertices and normals.
 void fill_lanes(Polytope& polytope) {
     std::vector<Vec3> normals;
     for (const Polytope::Face& face : polytope.faces) {
@@ -134,7 +134,7 @@ void link_edges(Polytope& polytope) {
         }
     }
 
-    // Directions once each, so that parallel edges cost one axis.
+    // Each direction once, so that parallel edges cost one axis.
     for (const Polytope::Edge& edge : polytope.edges) {
         const Vec3 d = normalized(polytope.vertices[edge.to] - polytope.vertices[edge.from]);
         bool known = false;
@@ -232,7 +232,7 @@ double shrinkable(const Convex& convex) {
         case ConvexKind::cone:
             break;
     }
-    // Of the radius of the largest ball inside.
+    // As a fraction of the radius of the largest ball inside.
     const ConeSlope slope = cone_slope(convex);
     return fraction * convex.radius * slope.radial / (1 + slope.axial);
 }

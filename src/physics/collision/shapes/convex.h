@@ -21,7 +21,7 @@ struct Lanes {
     [[nodiscard]] std::size_t size() const { return x.size(); }
 };
 
-/// The same in single precision.
+/// As Lanes, in single precision.
 struct RoughLanes {
     static constexpr std::size_t multiple = 16;  // floats of 512 bits
     std::vector<float> x, y, z;
@@ -49,7 +49,7 @@ struct Polytope {
     std::vector<Vec3> edge_directions;  ///< unit, each direction once (without its sign)
     Vec3 center;                        ///< mean of the vertices, inside
     // For the separating axes, filled with the edges. `reach`: largest dot(normal, vertex) of each face, its plane's
-    // offset but for what merging left; `unevenness`: how far corners lie below their faces, at most.
+    // offset up to merging; `unevenness`: maximum depth of corners below their faces.
     Lanes vertex_lanes, normal_lanes;
     RoughLanes rough_vertex_lanes;
     std::vector<double> reach;
@@ -65,7 +65,7 @@ struct Polytope {
 Polytope box_polytope(Vec3 half_extents);
 /// One flat face with open edges, counter-clockwise seen from the front.
 Polytope triangle_polytope(Vec3 a, Vec3 b, Vec3 c);
-/// Moves an existing triangle without allocating.
+/// Sets the corners of an existing triangle without allocating.
 void set_triangle(Polytope& triangle, Vec3 a, Vec3 b, Vec3 c);
 /// Fills edges, edge_directions, center, lanes, reach and spokes from vertices, faces and loops.
 void link_edges(Polytope& polytope);
@@ -83,7 +83,7 @@ struct Convex {
     double reach = 0;     ///< farthest surface point from the inner point, for whole pieces of shapes
     double inner = 0;     ///< radius of a ball around the inner point that lies inside, likewise
 
-    /// Of those that roll.
+    /// Whether it is of the kinds that roll.
     [[nodiscard]] bool is_round() const { return kind != ConvexKind::polytope; }
 };
 
@@ -106,14 +106,14 @@ struct PlacedConvex {
 inline bool has_volume(const Convex& convex) {
     return convex.kind != ConvexKind::polytope || convex.polytope.faces.size() > 1;
 }
-/// A point well inside.
+/// A point well inside the solid.
 Vec3 interior_point(const PlacedConvex& convex);
 /// Radius around the core.
 inline double rounding(const Convex& convex) {
     return convex.kind == ConvexKind::sphere || convex.kind == ConvexKind::capsule ? convex.radius : 0.0;
 }
 
-/// What lies inside a placed convex by at least a depth: the solid without the radius around it (sphere, capsule) and,
+/// The part of a placed convex at least a depth inside: the solid without the radius around it (sphere, capsule) and,
 /// if `shrink` is not zero, every face and side moved inwards by it. Its support points are quick to find.
 struct Core {
     const Convex* shape = nullptr;
@@ -123,7 +123,7 @@ struct Core {
     double radius = 0;           ///< of cylinder and cone
     double top = 0, bottom = 0;  ///< heights of caps, base, apex, or ends of a capsule's axis
     Vec3 half;                   ///< of a box
-    double depth = 0;            ///< how far inside the solid's faces and smooth sides it lies
+    double depth = 0;            ///< how deep inside the solid's faces and smooth sides it lies
 
     explicit Core(const PlacedConvex& placed, double shrink = 0);
     [[nodiscard]] Vec3 support(Vec3 direction) const;
@@ -133,7 +133,7 @@ struct Core {
 private:
     [[nodiscard]] Vec3 local_support(Vec3 direction) const;
 };
-/// How far a core is shrunk where it shall lie inside the solid: a small part of its thickness, deeper than resting
+/// The depth by which a core is shrunk to lie inside the solid: a small part of its thickness, deeper than resting
 /// contacts are; 0 for polytopes other than boxes.
 double shrinkable(const Convex& convex);
 
@@ -141,14 +141,14 @@ double shrinkable(const Convex& convex);
 std::uint32_t support_vertex(const Polytope& polytope, Vec3 direction);
 /// Index of the face whose normal is nearest to `direction` (local).
 std::uint32_t support_face(const Polytope& polytope, Vec3 direction);
-/// The same of a box or any other polytope.
+/// As above for a box or any other polytope.
 std::uint32_t support_face(const Convex& convex, Vec3 direction);
 /// Farthest point of the core along `direction` (frame, any length).
 Vec3 core_support(const PlacedConvex& convex, Vec3 direction);
 /// Gap between the two solids along the unit direction `normal` from a to b: never more than their true distance, and
 /// equal to it (or to minus the penetration depth) along the best normal.
 double separation_along(const PlacedConvex& a, const PlacedConvex& b, Vec3 normal);
-/// The same of two cores, less their depths.
+/// As above for two cores, less their depths.
 double separation_along(const Core& a, const Core& b, Vec3 normal);
 
 /// Cone: slope of the side's normal: unit (radial, axial) components.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Nearest points of triangles, four at a time in floats: C. Ericson, "Real-Time Collision Detection", 2005, section
-// 5.1.5, with every case worked out and chosen from, since which of the seven it is cannot be predicted.
+// 5.1.5, with every case computed and one selected, since which of the seven it is cannot be predicted.
 #include "physics/collision/shapes/near_triangles.h"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ Four3 nearest_to_origin(const Four3& a, const Four3& b, const Four3& c) {
     const Four of_c = ab_a * ac_b - ab_b * ac_a, of_b = ab_c * ac_a - ab_a * ac_c, of_a = ab_b * ac_c - ab_c * ac_b;
     const Four to_c = ac_b - ab_b, to_b = ab_c - ac_c, sum = of_a + of_b + of_c;
 
-    // Shares of ab and ac: inside, then on sides, then at corners, each before the last one.
+    // Fractions of ab and ac: inside, then on sides, then at corners, each before the last one.
     const Four zero{}, one = zero + 1;
     Four v = of_b / sum, w = of_c / sum;
     const auto choose = [&](FourMask here, Four fraction_b, Four fraction_c) {
@@ -86,8 +86,8 @@ void find_near_triangles(const TriangleSurface& surface, std::span<const std::ui
         const Batch t(surface, some, point);
         const Four3 nearest = nearest_to_origin(t.a, t.b, t.c);
 
-        // Along the way to that point all corners are at least so far: true of any point, and so of what rounding made
-        // of it. What rounding does here grows with the triangle.
+        // Along the line to that point all corners are at least so far: true of any point, and so of a rounded one.
+        // The rounding error grows with the triangle.
         const Four squared = dot(nearest, nearest);
         const Four least = smaller(smaller(dot(nearest, t.a), dot(nearest, t.b)), dot(nearest, t.c));
         const Four limit = static_cast<float>(reach) + 1e-6F * (size_of(t.a) + size_of(t.b) + size_of(t.c));

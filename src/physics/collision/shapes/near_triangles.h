@@ -17,11 +17,11 @@ class TriangleSurface;
 struct NearTriangle {
     std::uint32_t index = 0;
     std::array<Vec3, 3> corners;
-    Vec3 away;  ///< from its nearest point to the point, as far as floats tell
+    Vec3 away;  ///< from its nearest point to the point, in the precision of floats
 };
 
-/// Appends those of `triangles` that may be nearer to `point` than `reach`, m, in their order. None is left out that
-/// is.
+/// Appends those of `triangles` that may be closer to `point` than `reach`, m, in their order. None that is closer is
+/// left out.
 void find_near_triangles(const TriangleSurface& surface, std::span<const std::uint32_t> triangles, Vec3 point,
                          double reach, std::vector<NearTriangle>& found);
 

@@ -69,8 +69,8 @@ void add_convex(const Convex& convex, const OutlineVisit& visit) {
     }
 }
 
-// An edge between two triangles runs one way in one of them and the other way in the other: it is drawn where it runs
-// upwards. One where the surface ends is drawn always.
+// An edge between two triangles has opposite directions in them: it is drawn where it runs upwards. An edge at the end
+// of the surface is always drawn.
 void add_surface(const TriangleSurface& surface, const OutlineVisit& visit) {
     const auto key = [](Vec3 p) { return std::tuple(p.x, p.y, p.z); };
     for (std::uint32_t triangle = 0; triangle < surface.count(); ++triangle) {

@@ -25,7 +25,7 @@ bool PlacedTriangle::is_flat_to(Vec3 outwards) const { return dot(outwards, norm
 bool PlacedTriangle::normal_is_best() const {
     const double depth = std::max(0.0, -height);
     for (std::size_t i = 0; i < 3; ++i) {
-        // Leaning over the edge by an angle v takes |x| sin v away and gives back at most depth (1 - cos v).
+        // Leaning over the edge by an angle v lowers the gap by |x| sin v and raises it by at most depth (1 - cos v).
         if (is_open(i) && beyond(i, lowest) > -depth) return false;
     }
     return true;

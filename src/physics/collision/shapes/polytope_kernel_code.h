@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Loops over all vertices or faces of a polytope, compiled once for each width (polytope_kernel_4.cpp and its like).
-// What is highest is found first; where it is, by a second pass that compares: no index is carried along, and the first
+// The maximum is found first, its index by a second pass that compares: no index is carried along, and the first
 // of equal ones is found whatever the width.
 #include "math/wide_search.h"
 #include "physics/collision/shapes/polytope_kernels.h"
@@ -30,8 +30,9 @@ std::uint32_t first_lane(std::size_t i, std::uint32_t mask) {
     return static_cast<std::uint32_t>(i) + static_cast<std::uint32_t>(__builtin_ctz(mask));
 }
 
-// The first number for which mask_at(i), the mask of the `width` numbers from i on, tells so; 0 where none does. Most
-// polytopes have no more than 64 of a kind: then there is no branch that cannot be predicted.
+// The first number for which its bit in mask_at(i), the mask of the `width` numbers from i on, is set; 0 if there is
+// none.
+// Most polytopes have no more than 64 of a kind: then there is no branch that cannot be predicted.
 template <class MaskAt>
 [[gnu::always_inline]] inline std::uint32_t find_first(std::size_t count, std::size_t width, MaskAt mask_at) {
     for (std::size_t block = 0; block < count; block += 64) {

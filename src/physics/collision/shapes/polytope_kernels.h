@@ -8,13 +8,13 @@
 
 namespace embody::physics::collision {
 
-/// One of many and its value.
+/// The index of one of many numbers, and its value.
 struct Extreme {
     double along = 0;
     std::uint32_t index = 0;
 };
 
-/// How far many reach along a direction, least and most.
+/// Minimum and maximum along a direction.
 struct Extent {
     double lowest = 0, highest = 0;
 };
@@ -27,7 +27,7 @@ struct VectorLanes {
 };
 
 /// Loops over all vertices or faces of a polytope for one width of the processor's registers; any width gives the same
-/// bits. `d` points to the three components of a vector. What they compute is told in polytope_query.h.
+/// bits. `d` points to the three components of a vector. polytope_query.h says what they compute.
 struct PolytopeKernels {
     Extreme (*farthest)(const VectorLanes<double>& vectors, const double* d);
     Extent (*extent)(const VectorLanes<double>& vectors, const double* d);

@@ -18,7 +18,7 @@ Extreme farthest(const Lanes& lanes, Vec3 direction);
 /// The least and the largest of the dot products of `lanes` with `direction`; of none 1e300 and -1e300.
 Extent extent(const Lanes& lanes, Vec3 direction);
 
-/// Index of the vector farthest along `direction`, as far as floats tell: another one may be farther by a few ten
+/// Index of the vector farthest along `direction`, in single precision: another one may be farther by a few ten
 /// millionths of the size.
 std::uint32_t farthest_roughly(const RoughLanes& lanes, Vec3 direction);
 

@@ -63,7 +63,7 @@ struct SideTable {
         std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
         for_each_side([&](std::uint32_t low, const Side& side) { sides[next[low]++] = side; });
     }
-    // Those of one corner, sorted by the other one; equal ones stay in the order of the triangles.
+    // Sides of one corner, sorted by the other one; equal ones stay in the order of the triangles.
     [[nodiscard]] std::span<Side> of(std::size_t low) {
         const std::span<Side> own(sides.data() + first[low], sides.data() + first[low + 1]);
         std::stable_sort(own.begin(), own.end(), [](const Side& a, const Side& b) { return a.high < b.high; });

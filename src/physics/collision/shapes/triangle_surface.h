@@ -13,7 +13,7 @@
 
 namespace embody::physics::collision {
 
-/// The triangles of a mesh or a heightfield, how they bend at their edges, and a way to find those near a box or a ray.
+/// The triangles of a mesh or a heightfield, their dihedral angles, and a search for those at a box or a ray.
 /// A heightfield keeps its samples only: corners follow from a triangle's number.
 class TriangleSurface {
 public:
@@ -29,20 +29,20 @@ public:
         const auto& t = triangles_[triangle];
         return {positions_[t[0]], positions_[t[1]], positions_[t[2]]};
     }
-    /// Unit; zero for a triangle without area.
+    /// Unit normal; zero for a triangle without area.
     [[nodiscard]] Vec3 normal(std::uint32_t triangle) const;
-    /// Over the edges from each corner to the next one: the tangent of half the angle by which the surface dihedrals
+    /// For the edges from each corner to the next one: the tangent of half the angle by which the surface bends
     /// away there, negative where it bends towards the front (concave), infinite where it ends.
     [[nodiscard]] const std::array<float, 3>& signed_half_dihedrals(std::uint32_t triangle) const {
         return half_dihedrals_[triangle];
     }
-    /// The same, 0 where it is flat (within flat_sine) or concave.
+    /// As above, but 0 where it is flat (within flat_sine) or concave.
     [[nodiscard]] std::array<float, 3> half_dihedrals(std::uint32_t triangle) const {
         const auto& dihedrals = half_dihedrals_[triangle];
         const auto away = [](float half) { return half > flat_half_dihedral ? half : 0; };
         return {away(dihedrals[0]), away(dihedrals[1]), away(dihedrals[2])};
     }
-    /// Of all that is kept, bytes.
+    /// Size of all that is kept, bytes.
     [[nodiscard]] std::size_t memory_bytes() const;
 
     /// Appends the triangles whose bounds meet the box, any two in the same order whatever the box.
@@ -66,15 +66,15 @@ private:
     [[nodiscard]] std::array<Vec3, 3> corners_in_field(std::uint32_t triangle) const;
     void find_in_field(const Bounds& box, std::vector<std::uint32_t>& found) const;
 
-    // Of a mesh.
+    // Only of a mesh.
     std::vector<Vec3f> positions_;
     std::vector<std::array<std::uint32_t, 3>> triangles_;
     std::unique_ptr<Tree> tree_;
-    // Of a heightfield, which finds its cells by division.
+    // Only of a heightfield, which finds its cells by division.
     std::vector<float> heights_;
     int columns_ = 0, rows_ = 0;
     double cell_x_ = 1, cell_z_ = 1;
-    // Of both.
+    // Of both kinds.
     std::vector<std::array<float, 3>> half_dihedrals_;
     Bounds bounds_;
 };
