@@ -30,8 +30,8 @@ float round_up(double x) { return -round_down(-x); }
 
 }  // namespace
 
-// Top-down: each range of leaves becomes a node, is split where bins of centres say that the expected number of box
-// tests is least, and its halves follow.
+// Top-down: each range of leaves becomes a node and is split where bins of centres give the minimum expected number of
+// box tests; its halves follow.
 struct BoundingVolumeTree::Builder {
     struct Leaf {
         Bounds box;

@@ -19,7 +19,7 @@ namespace embody::geometry {
 
 /// Static tree of axis-aligned boxes over things that do not move, such as the triangles of a terrain. Built by the
 /// surface area heuristic in bins (I. Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007).
-/// Same leaves, same tree, same order of visits. Boxes are kept in single precision, rounded outwards.
+/// Equal leaves give the same tree and order of visits. Boxes are kept in single precision, rounded outwards.
 class BoundingVolumeTree {
 public:
     BoundingVolumeTree() = default;
@@ -67,7 +67,8 @@ private:
     static constexpr int max_depth = 80;
 
     static Box rounded_outwards(const Bounds& b);
-    // A box that many others are held against, without branches: which of the six comparisons fails cannot be foretold.
+    // A box that many others are compared with, without branches: which of the six comparisons fails cannot be
+    // predicted.
     struct Window {
 #if defined(__SSE2__)
         __m128 most, least;  // of a box's numbers 0 … 3 (those of `lower` count) and 2 … 5 (of `upper`)
@@ -113,7 +114,7 @@ void BoundingVolumeTree::query(const Bounds& bounds, Visit&& visit) const {
         const Node& node = nodes_[current];
         if (window.overlaps(node.box)) {
             if (node.count == 0) {
-                // What waits comes from far-off memory meanwhile.
+                // The waiting node's memory is far away: prefetch it meanwhile.
                 __builtin_prefetch(&nodes_[node.link]);
                 waiting[count++] = node.link;
                 ++current;

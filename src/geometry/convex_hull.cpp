@@ -2,7 +2,7 @@
 //
 // The hull itself is Qhull's: C. B. Barber, D. P. Dobkin, H. Huhdanpaa, "The Quickhull algorithm for convex hulls",
 // ACM Trans. on Mathematical Software 22(4), 1996. Its reentrant library keeps all state in a qhT of the caller, so
-// several imports may run at once. Here: the questions before it (is there a solid at all?), the choice of vertices
+// several imports may run at once. Here: the tests before it (is there a solid at all?), the choice of vertices
 // where there are too many, and a check of what comes back, face by face; nothing unchecked leaves this file.
 #include "geometry/convex_hull.h"
 
@@ -214,7 +214,7 @@ std::vector<Polygon> QhullRun::polygons(std::span<const Vec3> points) {
         const Vec3 normal{facet->normal[0], facet->normal[1], facet->normal[2]};
         const bool inwards = dot(area_vector(points, loop), normal) < 0;
         if (inwards) std::reverse(loop.begin(), loop.end());
-        // Begin at the smallest index, so that the same hull always reads the same.
+        // Begins at the smallest index, so that the same hull always has the same loop.
         std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
         result.push_back(std::move(loop));
     }
@@ -324,7 +324,7 @@ std::optional<ConvexHull> hull_of(std::span<const Vec3> points) {
 
 // ---------------------------------------------------------------------------------------- too many vertices
 
-// For each face the point farthest outside it, farthest first.
+// For each face the point farthest outside it; the farthest first.
 std::vector<std::pair<double, std::uint32_t>> farthest_outside(std::span<const Vec3> points, const ConvexHull& hull) {
     std::vector<std::pair<double, std::uint32_t>> farthest(hull.faces.size(), {0, 0});
     for (std::uint32_t i = 0; i < points.size(); ++i) {
@@ -360,7 +360,7 @@ std::optional<ConvexHull> reduced_hull(std::span<const Vec3> points, std::array<
         const std::size_t batch = std::min(free_places, std::max<std::size_t>(1, chosen.size() / 4));
         if (batch == 0 || farthest.front().first <= convexity_tolerance) break;
 
-        // Points much nearer than the farthest wait: they may be covered once it is taken.
+        // Points much nearer than the farthest wait: they may be inside once it is added.
         for (std::size_t i = 0; i < std::min(batch, farthest.size()); ++i) {
             if (farthest[i].first < 0.25 * farthest.front().first) break;
             chosen.push_back(points[farthest[i].second]);
@@ -391,7 +391,7 @@ Result<ConvexHull> build_convex_hull(std::span<const Vec3> points, int max_verti
     if (!normalised) return normalised.error();
     if (const auto solid = find_simplex(normalised->points); !solid) return solid.error();
 
-    // Only the vertices of the full hull need a further look, and if they are few they all stay.
+    // Only the vertices of the full hull matter from here, and if they are few they all stay.
     const std::vector<Vec3> extremes = extreme_points(std::move(normalised->points));
     std::optional<ConvexHull> hull;
     if (extremes.size() <= static_cast<std::size_t>(max_vertices)) hull = hull_of(extremes);

@@ -21,7 +21,8 @@ struct ConvexHull {
         Vec3 normal;        ///< unit, outwards
         double offset = 0;  ///< m
     };
-    /// Runs from `start` to `end` counter-clockwise around the face `left`, and backwards around `right`.
+    /// Runs from `start` to `end` counter-clockwise around the face `left`, and in the opposite direction around
+    /// `right`.
     struct Edge {
         std::uint32_t start = 0, end = 0;
         std::uint32_t left = 0, right = 0;
@@ -48,11 +49,11 @@ inline constexpr int max_hull_vertices = 4096;
 
 /// The convex hull of `points`, with at most `max_vertices` of them as vertices. Where the full hull needs more, those
 /// farthest outside are taken greedily, so extremes stay; the result then lies inside the full hull and says by how
-/// much. Faces that are coplanar within 1e-6 of the size are merged. Same points in the same order, same hull.
+/// much. Faces that are coplanar within 1e-6 of the size are merged. Same points in the same order give the same hull.
 /// Errors: fewer than 4 points, a point that is not finite, points all in one place, line or plane (within 1e-5 of the
 /// size), `max_vertices` out of its limits. Safe to call from several threads.
 Result<ConvexHull> build_convex_hull(std::span<const Vec3> points, int max_vertices = 256);
-/// Of the vertices that triangles of `mesh` use.
+/// The convex hull of the vertices that triangles of `mesh` use.
 Result<ConvexHull> build_convex_hull(const TriangleMesh& mesh, int max_vertices = 256);
 
 /// The faces as triangle fans (single precision, as meshes are).

@@ -28,7 +28,7 @@ double support(const ConvexHull& hull, Vec3 direction) {
     return best;
 }
 
-// Spread evenly over the sphere along a Fibonacci spiral.
+// Directions spread evenly over the sphere along a Fibonacci spiral.
 std::vector<Vec3> even_directions(int count) {
     std::vector<Vec3> directions;
     const double golden_angle = pi * (3 - std::sqrt(5.0));
@@ -39,7 +39,7 @@ std::vector<Vec3> even_directions(int count) {
     return directions;
 }
 
-// What every fit to one hull shares.
+// The data that all fits to one hull use.
 struct Subject {
     const ConvexHull& hull;
     MassProperties solid;
@@ -89,7 +89,7 @@ private:
     }
 };
 
-// Where the hull begins and ends along a unit vector.
+// The extent of the hull along a unit vector.
 struct Extent {
     double low, high;
     [[nodiscard]] double middle() const { return (low + high) / 2; }
@@ -185,14 +185,14 @@ double badness(const Subject& subject, const PrimitiveFit& fit) {
     return fit.volume_error + fit.deviation / std::max({size.x, size.y, size.z});
 }
 
-// The best of the candidates that `make` gives for each axis of each frame.
+// The best of the candidates that `make` returns for each axis of each frame.
 template <class Make>
 std::optional<PrimitiveFit> best_over_axes(const Subject& subject, Make make) {
     std::optional<PrimitiveFit> best;
     std::vector<Vec3> tried;
     for (const Mat3& frame : subject.frames) {
         for (int axis = 0; axis < 3; ++axis) {
-            // Frames of parallel faces bring the same axes again.
+            // Frames of parallel faces repeat the same axes.
             const Vec3 y = frame.column(axis);
             if (std::ranges::any_of(tried, [&](Vec3 t) { return std::fabs(dot(t, y)) > 1 - 1e-9; })) continue;
             tried.push_back(y);

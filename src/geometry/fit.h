@@ -14,7 +14,7 @@ enum class PrimitiveKind { box, sphere, capsule, cylinder };
 /// "box", "sphere", "capsule" or "cylinder".
 const char* name(PrimitiveKind kind);
 
-/// A primitive in the place of a convex body. Round ones have their axis along the local Y axis.
+/// A primitive that replaces a convex body. Round ones have their axis along the local Y axis.
 struct PrimitiveFit {
     PrimitiveKind kind = PrimitiveKind::box;
     Vec3 half_extents;       ///< m, box only
@@ -33,16 +33,17 @@ struct PrimitiveFit {
 /// The box around the hull with faces along the model's axes, or a turned one where its volume is at least 1 % smaller
 /// (frames tried: principal axes of inertia, and each large face with its edges).
 PrimitiveFit fit_box(const ConvexHull& hull);
-/// Centre in the middle of mass, radius halfway between the smallest and the largest support.
+/// Centre at the centre of mass, radius halfway between the smallest and the largest support.
 PrimitiveFit fit_sphere(const ConvexHull& hull);
-/// Axis along whichever axis of the frames fits best; radius halfway between smallest and largest sideways support.
+/// Axis along the axis of the frames that fits best; radius halfway between smallest and largest sideways support.
 /// None where the straight part would be shorter than a tenth of the radius along every axis.
 std::optional<PrimitiveFit> fit_capsule(const ConvexHull& hull);
 PrimitiveFit fit_cylinder(const ConvexHull& hull);
 
-/// The primitive that stands best for the hull: volume error at most `tolerance`, and deviation at most `tolerance`
-/// times the hull's largest extent. Among those the one with the least sum of both; none where none is that good.
-/// Says nothing about hollows of the model itself: compare its volume with the hull's for that.
+/// The primitive that represents the hull best: volume error at most `tolerance`, and deviation at most `tolerance`
+/// times the hull's largest extent. Among those the one with the smallest sum of both; none where no primitive is as
+/// good.
+/// It ignores hollows of the model itself: compare the model's volume with the hull's for that.
 std::optional<PrimitiveFit> best_primitive(const ConvexHull& hull, double tolerance = 0.05);
 
 }  // namespace embody::geometry

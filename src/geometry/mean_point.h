@@ -7,7 +7,7 @@
 
 namespace embody::geometry {
 
-/// Mean of the points; zero without any. Of the corners of a convex solid it lies inside.
+/// Mean of the points; zero without any. The mean of a convex solid's corners lies inside.
 inline Vec3 mean_point(std::span<const Vec3> points) {
     Vec3 mean;
     for (const Vec3& point : points) mean += point / static_cast<double>(points.size());

@@ -15,10 +15,10 @@
 namespace embody::geometry {
 namespace {
 
-constexpr double widest_opening = 1.0 / 3;  // of the closed surface; more than that, and it holds nothing
-constexpr double thinnest_solid = 1e-4;     // volume below this share of (size · area) is a sheet
+constexpr double widest_opening = 1.0 / 3;  // of the closed surface; with a larger opening it encloses nothing
+constexpr double thinnest_solid = 1e-4;     // a volume below this fraction of (size · area) is a sheet
 
-// A side of a triangle that no other triangle shares, in the triangle's direction.
+// A side of a triangle that is no side of another triangle, in the triangle's direction.
 using RimEdge = std::pair<std::uint32_t, std::uint32_t>;
 
 std::vector<RimEdge> rim_of(const TriangleMesh& mesh) {
@@ -62,7 +62,7 @@ MassProperties integrate_closed(const TriangleMesh& piece) {
     const std::vector<RimEdge> rim = rim_of(piece);
     const auto opening_of = openings_of(rim);
 
-    // Each rim's middle, its edges weighted by their lengths.
+    // The middle of each rim, its edges weighted by their lengths.
     struct Middle {
         Vec3 sum;
         double weight = 0;

@@ -16,7 +16,7 @@ constexpr std::uint32_t none = ~std::uint32_t{0};
 
 // ---------------------------------------------------------------------------------------- weld
 
-// Kept vertices in cells a few tolerances wide, so that a look around a point mostly meets one cell.
+// Kept vertices in cells a few tolerances wide, so that a search around a point mostly reads one cell.
 class VertexGrid {
 public:
     explicit VertexGrid(double tolerance) : tolerance_(tolerance), cell_(4 * tolerance) {}
@@ -55,7 +55,7 @@ private:
         }
     };
 
-    // Cells far away share the last one; with tolerance 0 the cells are the floats themselves.
+    // Far cells are clamped to the last one; with tolerance 0 the cells are the floats themselves.
     std::int64_t cell_of(double x) const {
         if (cell_ == 0) return static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(x == 0 ? 0.0 : x));
         return static_cast<std::int64_t>(std::clamp(std::floor(x / cell_), -9e18, 9e18));
@@ -182,7 +182,7 @@ TriangleMesh weld(const TriangleMesh& mesh, double tolerance) {
         if (!copy[i]) welded.triangles.push_back(triangles[i]);
     }
 
-    // Vertices that only degenerate triangles used go.
+    // Vertices that only degenerate triangles used are dropped.
     std::vector<std::uint32_t> place(welded.positions.size(), none);
     std::vector<Vec3f> used;
     for (Triangle& t : welded.triangles) {
@@ -234,7 +234,7 @@ TriangleMesh oriented_outwards(const TriangleMesh& mesh) {
     std::vector<std::uint32_t> patch;
     for (std::uint32_t seed = 0; seed < mesh.triangles.size(); ++seed) {
         if (seen[seed] != 0) continue;
-        // Spread from the seed: a neighbour turns where the shared edge says so.
+        // Spreads from the seed: a neighbour is turned where the common edge requires it.
         patch.assign(1, seed);
         seen[seed] = 1;
         for (std::size_t i = 0; i < patch.size(); ++i) {
@@ -246,7 +246,7 @@ TriangleMesh oriented_outwards(const TriangleMesh& mesh) {
             }
         }
 
-        // Outwards is where the volume is positive.
+        // Outwards is the orientation of positive volume.
         Bounds box;
         for (const std::uint32_t i : patch) {
             for (const Vec3 corner : corners(mesh, i)) box.add(corner);

@@ -9,11 +9,11 @@
 namespace embody::geometry {
 
 /// The mesh with vertices closer than `tolerance` (m, 0 = equal only) made one: each vertex goes to the first kept one
-/// in reach. Triangles that lose a side, and copies of a triangle (also turned around, as double-sided surfaces have
+/// within it. Triangles that lose a side, and copies of a triangle (also turned around, as double-sided surfaces have
 /// them), are dropped; vertices without triangles too. Same mesh, same result.
 TriangleMesh weld(const TriangleMesh& mesh, double tolerance);
 
-/// How the triangles of a welded mesh hang together.
+/// How the triangles of a welded mesh are connected.
 struct Topology {
     std::size_t edge_count = 0;
     std::size_t boundary_edges = 0;      ///< with one triangle
@@ -27,7 +27,8 @@ struct Topology {
         return edge_count > 0 && boundary_edges == 0 && crowded_edges == 0 && inconsistent_edges == 0;
     }
 };
-/// Components are triangles connected through shared edges. Vertices count as shared by index: weld() first.
+/// Components are triangles connected through common edges. Vertices are common if their indices are equal: weld()
+/// first.
 Topology find_topology(const TriangleMesh& mesh);
 
 /// Whether the mesh is closed once vertices within 1e-6 of its size are welded.

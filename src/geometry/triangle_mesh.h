@@ -19,8 +19,8 @@ struct TriangleMesh {
 /// Bounds of the vertices that triangles use; empty where there are no triangles.
 Bounds bounds(const TriangleMesh& mesh);
 
-/// Whether every index points to a vertex and every used vertex is finite; names the first triangle that is wrong.
-/// Whatever comes from a file passes here first: the functions of this layer take both for granted.
+/// Whether every index names a vertex and every used vertex is finite; the error names the first wrong triangle.
+/// All meshes from files are checked here first: the functions of this layer rely on both.
 Result<void> validate(const TriangleMesh& mesh);
 
 /// Sum of the triangles' areas, m².

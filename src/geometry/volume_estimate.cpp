@@ -24,7 +24,7 @@ constexpr double far_away = 2.0;
 constexpr std::uint32_t triangles_per_cluster = 8;
 constexpr double weld_tolerance = 1e-6;  // of the mesh's size
 constexpr double exact_error = 1e-6;     // single precision positions
-constexpr double thinnest_solid = 1e-4;  // volume below this share of (size · area) is a sheet
+constexpr double thinnest_solid = 1e-4;  // a volume below this fraction of (size · area) is a sheet
 
 // Solid angle of a triangle seen from the origin.
 double solid_angle(Vec3 a, Vec3 b, Vec3 c) {
@@ -122,7 +122,7 @@ double WindingNumber::at(Vec3 point) const {
 
 namespace {
 
-// The mesh sorted into what can be integrated and what can not.
+// The mesh divided into parts that can be integrated and parts that cannot.
 struct Parts {
     TriangleMesh closed, open;
     MassProperties closed_sum;  // overlaps counted twice
@@ -145,7 +145,7 @@ Parts sort_parts(const TriangleMesh& mesh, const Topology& topology) {
         parts.closed_sum = combined(parts.closed_sum, integrate_polyhedron(part));
         boxes.push_back(bounds(part));
     }
-    // Along x, so that many small parts need few comparisons.
+    // Sorted along x, so that many small parts need few comparisons.
     std::sort(boxes.begin(), boxes.end(), [](const Bounds& a, const Bounds& b) { return a.lower.x < b.lower.x; });
     for (std::size_t i = 0; i < boxes.size() && parts.closed_apart; ++i) {
         for (std::size_t k = i + 1; k < boxes.size() && boxes[k].lower.x <= boxes[i].upper.x; ++k) {
@@ -259,7 +259,7 @@ VolumeEstimate estimate_volume(const TriangleMesh& mesh, int cells) {
     const Topology topology = find_topology(welded);
     const Parts parts = sort_parts(welded, topology);
 
-    // Closed parts that keep apart are exact, all else needs the grid.
+    // Closed parts that do not overlap are exact, all else needs the grid.
     if (parts.open.triangles.empty() && parts.closed_apart) {
         estimate.solid = parts.closed_sum;
         estimate.method = VolumeMethod::closed_mesh;

@@ -6,17 +6,17 @@
 
 namespace embody::geometry {
 
-/// Where an enclosed volume comes from, from the surest to the least sure.
+/// The source of an enclosed volume, from the most to the least certain.
 enum class VolumeMethod {
-    closed_mesh,     ///< polyhedral integrals of a closed mesh, or of closed parts that keep apart
-    closed_parts,    ///< the same, less what overlapping closed parts count twice (measured on a grid)
+    closed_mesh,     ///< polyhedral integrals of a closed mesh, or of closed parts that do not overlap
+    closed_parts,    ///< the same, less the volume that overlapping closed parts count twice (measured on a grid)
     winding_number,  ///< closed parts as before, and grid cells that open parts wind around
     no_volume,       ///< no triangles, or nothing is enclosed: sheets, lines
 };
 /// "closed mesh", "closed parts", "winding number" or "no volume".
 const char* name(VolumeMethod method);
 
-/// What a mesh encloses, as a solid of density 1.
+/// The volume that a mesh encloses, as a solid of density 1.
 struct VolumeEstimate {
     MassProperties solid;
     VolumeMethod method = VolumeMethod::no_volume;
@@ -40,7 +40,7 @@ public:
     [[nodiscard]] double at(Vec3 point) const;
 
 private:
-    // A range of triangles as one dipole, and where to go on when it is far enough to count as that.
+    // A range of triangles as one dipole, and the next cluster if it is far enough to count as a dipole.
     struct Cluster {
         Vec3 center;
         Vec3 area_vector;

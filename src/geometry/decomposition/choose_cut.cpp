@@ -2,9 +2,9 @@
 //
 // Planes as K. Mamou's V-HACD (2014) and X. Wei et al., "Approximate convex decomposition for 3D meshes with
 // collision-aware concavity and tree search", ACM Trans. on Graphics 41(4), 2022, try them: across the axes. Here also
-// across the directions in which much of the surface faces, and mostly just beside flat faces, where the best planes
-// of furniture are. What a plane is worth is what it leaves hollow in the hulls of both sides, each place counted by
-// its depth; where that does not tell (half a ring is as hollow as the ring) halves go before slices.
+// across the directions that much of the surface faces, and mostly just beside flat faces, where the best planes
+// of furniture are. The score of a plane is the hollow volume that it leaves in the hulls of both sides, each place
+// weighted by its depth; where scores are equal (half a ring is as hollow as the ring) halves go before slices.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,10 +17,10 @@ namespace {
 constexpr std::size_t most_sampled_voids = 512;
 constexpr int even_planes = 9, strong_planes = 6, most_directions = 5;
 constexpr double facing = 0.996;            // cosine of 5°
-constexpr double worth_a_direction = 0.15;  // share of the surface that faces it
-constexpr double worth_a_plane = 0.01;      // share of the surface in it
+constexpr double worth_a_direction = 0.15;  // fraction of the surface that faces it
+constexpr double worth_a_plane = 0.01;      // fraction of the surface in it
 constexpr double rough = 5;                 // times the tolerance: hulls of planes that are only tried
-constexpr double halving = 0.05;            // of the hollow: what a cut in equal halves is worth against a slice
+constexpr double halving = 0.05;            // of the hollow: the bonus of a cut in equal halves against a slice
 
 struct Facet {
     Vec3 normal;
@@ -72,7 +72,7 @@ CutSearch::CutSearch(const Part& part, const DecompositionSearch& search) : part
     sample_voids();
 }
 
-// Evenly over all, by the fractional parts of multiples of the golden ratio.
+// Samples evenly over all voids, by the fractional parts of multiples of the golden ratio.
 void CutSearch::sample_voids() {
     const std::size_t all = part_.voids.size(), count = std::min(all, most_sampled_voids);
     for (std::size_t i = 0; i < count; ++i) {
@@ -106,7 +106,7 @@ std::vector<Vec3> CutSearch::directions() const {
     return found;
 }
 
-// Depths of the sampled voids that the hull of the points holds.
+// Sum of the depths of the sampled voids that the hull of the points contains.
 double CutSearch::hollow(std::vector<Vec3>& points, double& volume) {
     SearchHull hull = build_search_hull(points, rough * search_.tolerance, search_.thickness);
     volume = hull.volume;
@@ -159,7 +159,7 @@ void CutSearch::try_direction(Vec3 normal) {
     const double extent = high - low, beside = std::max(2 * search_.tolerance, 1e-4 * extent);
     if (extent < 4 * search_.tolerance) return;
 
-    // How much of the surface lies across, in bins.
+    // The area of the surface that faces across, in bins.
     constexpr std::size_t bins = 128;
     struct Bin {
         double area = 0, lowest = std::numeric_limits<double>::infinity(), highest = -lowest;

@@ -53,7 +53,7 @@ Result<TriangleMesh> checked_and_welded(const TriangleMesh& mesh) {
     return welded;
 }
 
-// Vertices of one small cell become the first of them. Coarser until few enough are left to search with.
+// Vertices of one small cell become the first of them. Cells grow until few enough vertices are left to search with.
 TriangleMesh simplified(const TriangleMesh& mesh, double pitch) {
     const Bounds box = bounds(mesh);
     TriangleMesh result = mesh;
@@ -79,7 +79,7 @@ TriangleMesh simplified(const TriangleMesh& mesh, double pitch) {
     return result;
 }
 
-// Parts that hang together through shared edges: a corner is not enough, a chair's legs often touch the seat's. None
+// Parts connected through edges: a corner is not enough, since a chair's legs often touch the seat's. None
 // where there are very many.
 std::vector<Part> connected_parts(const TriangleMesh& mesh) {
     const Topology topology = find_topology(mesh);
@@ -129,7 +129,7 @@ Decomposer::Decomposer(const TriangleMesh& welded, const DecompositionParameters
 Result<void> Decomposer::split() {
     const std::size_t budget = parts_.size() + 2 * static_cast<std::size_t>(parameters_.max_hulls);
     while (parts_.size() < budget) {
-        // The deepest next.
+        // Cuts the deepest part next.
         std::size_t deepest = parts_.size();
         for (std::size_t i = 0; i < parts_.size(); ++i) {
             if (parts_[i].is_final || parts_[i].concavity <= parameters_.hull_error) continue;
@@ -150,7 +150,7 @@ Result<void> Decomposer::split() {
     return {};
 }
 
-// Vertices that simplifying left out belong to the nearest hull.
+// Vertices that simplification left out are added to the nearest hull.
 void Decomposer::reach_all_vertices() {
     if (searched_.positions.size() == mesh_.positions.size()) return;
     for (const Vec3f position : mesh_.positions) {

@@ -22,8 +22,8 @@ double height_over(const ConvexHull& hull, Vec3 p) {
     return most;
 }
 
-// Calls visit(point) for places spread evenly by area over the triangles, `wanted` in all, each triangle's share
-// rounded by a fixed sequence.
+// Calls visit(point) for places spread evenly by area over the triangles, `wanted` in all; the number of each triangle
+// is rounded by a fixed sequence.
 template <class Visit>
 void spread(const TriangleMesh& mesh, double area_of_one, Random& random, Visit visit) {
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {

@@ -8,10 +8,10 @@
 
 namespace embody::geometry {
 
-/// How well convex hulls stand for a mesh, whoever made them.
+/// How well convex hulls represent a mesh, whatever made them.
 struct DecompositionMeasure {
     /// m: from the surface of the hulls' union to the mesh, of all sampled places and at the 95th percentile; 0 where a
-    /// place lies inside the mesh by its winding number. What the hulls add.
+    /// place lies inside the mesh by its winding number. This is the volume that the hulls add.
     double added = 0, added_95 = 0;
     double left_out = 0;       ///< m: from the mesh to the nearest hull; what the hulls leave out
     double hull_volume = 0;    ///< m³, sum over the hulls: overlaps count twice

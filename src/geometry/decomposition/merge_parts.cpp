@@ -8,7 +8,7 @@
 namespace embody::geometry {
 namespace {
 
-// Concavity of two parts as one: known, or only that it is at least so much.
+// Concavity of two parts merged: exact, or a lower bound.
 struct PairCost {
     double concavity = 0;
     bool is_known = false;
@@ -30,7 +30,7 @@ private:
     std::vector<std::vector<PairCost>> costs_;  // of parts i < j at [j][i]
 };
 
-// Of places between corners of the one and corners of the other, all of which their common hull holds.
+// Samples places between corners of one part and corners of the other, all of which their common hull contains.
 double Merging::least_concavity(const Part& a, const Part& b) const {
     double deepest = std::max(a.concavity, b.concavity);
     const std::size_t na = a.hull.vertices.size(), nb = b.hull.vertices.size();
@@ -66,7 +66,7 @@ void Merging::erase(std::size_t index) {
     }
 }
 
-// What lies in another's hull needs none of its own.
+// A part inside another part's hull needs no hull of its own.
 void Merging::absorb_contained() {
     for (std::size_t j = parts_.size(); j-- > 0;) {
         const Part& small = parts_[j];

@@ -19,7 +19,7 @@ void complete(Part& part, std::span<const Void> candidates, const DecompositionS
 
 namespace {
 
-// Takes over points of a part as they are needed.
+// Copies points of a part as they are needed.
 class Side {
 public:
     explicit Side(const Part& from) : from_(from), index_(from.points.size(), none) {}

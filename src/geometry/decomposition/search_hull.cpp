@@ -2,7 +2,7 @@
 //
 // The incremental hull of C. B. Barber, D. P. Dobkin, H. Huhdanpaa, "The Quickhull algorithm for convex hulls", ACM
 // Trans. on Mathematical Software 22(4), 1996: the farthest point outside is joined with the horizon that it sees. Here
-// it stops as soon as nothing lies farther outside than a tolerance, which is most of what makes it fast.
+// it stops as soon as no point lies farther outside than a tolerance, which gives most of its speed.
 #include "geometry/decomposition/search_hull.h"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ std::uint32_t index_of_largest(std::span<const Vec3> points, Measure measure) {
     return best;
 }
 
-// Three points far apart: a triangle, or less where the points lie on a line or in one place.
+// Three points far from each other: a triangle, or less where the points lie on a line or in one place.
 std::array<std::uint32_t, 3> wide_triangle(std::span<const Vec3> points) {
     const auto a = index_of_largest(points, [](Vec3 p) { return -(p.x + 1.01 * p.y + 0.99 * p.z); });
     const auto b = index_of_largest(points, [&](Vec3 p) { return length_squared(p - points[a]); });
@@ -84,7 +84,7 @@ std::uint32_t Builder::add_face(std::uint32_t a, std::uint32_t b, std::uint32_t 
     return static_cast<std::uint32_t>(faces_.size() - 1);
 }
 
-// Above the first face from `first_face` on that it is clearly outside of.
+// Puts the point above the first face, from `first_face` on, that it is clearly outside of.
 void Builder::let_wait(std::uint32_t point, std::uint32_t first_face) {
     for (std::uint32_t f = first_face; f < faces_.size(); ++f) {
         Face& face = faces_[f];
@@ -155,7 +155,7 @@ bool Builder::add(std::uint32_t eye, std::uint32_t seen) {
             if (beyond.corner[k] == side.end && beyond.corner[(k + 1) % 3] == side.start) beyond.across[k] = f;
         }
     }
-    // What waited above the faces that are gone waits above the new ones, or lies inside now.
+    // Points that waited above the removed faces wait above the new ones, or lie inside now.
     for (const std::uint32_t f : hidden_) {
         for (std::uint32_t p = faces_[f].outside; p != none;) {
             const std::uint32_t after = next_[p];
@@ -171,7 +171,7 @@ bool Builder::run(std::array<std::uint32_t, 4> s) {
     if (dot(cross(points_[s[1]] - points_[s[0]], points_[s[2]] - points_[s[0]]), points_[s[3]] - points_[s[0]]) > 0) {
         std::swap(s[1], s[2]);
     }
-    // Of a tetrahedron with s[3] below the triangle s[0] s[1] s[2].
+    // For a tetrahedron with s[3] below the triangle s[0] s[1] s[2].
     add_face(s[0], s[1], s[2]);
     add_face(s[0], s[3], s[1]);
     add_face(s[1], s[3], s[2]);
@@ -220,7 +220,7 @@ SearchHull Builder::take() {
     return hull;
 }
 
-// The box, where rounding got the better of the hull.
+// The bounding box, where rounding made the hull fail.
 SearchHull box_hull(const Bounds& box) {
     SearchHull hull;
     hull.box = box;
@@ -251,7 +251,7 @@ double SearchHull::height(Vec3 p) const {
 
 std::vector<Vec3> thickened(std::span<const Vec3> points, double least_thickness) {
     std::vector<Vec3> result(points.begin(), points.end());
-    // Once for each direction in which they may be flat: a sheet, a line, a point.
+    // Once for each direction in which the points may be flat: a sheet, a line, a point.
     for (int round = 0; round < 3; ++round) {
         if (result.empty()) return result;
         const auto t = wide_triangle(result);

@@ -17,8 +17,8 @@ struct CutPlane {
     [[nodiscard]] double height(Vec3 p) const { return dot(normal, p) - offset; }
 };
 
-/// A convex hull for searching: triangles only, near enough to the points, some twenty times as fast as the checked
-/// hull of convex_hull.h, and never handed out.
+/// A convex hull for searching: triangles only, within a tolerance of the points, some twenty times as fast as the
+/// checked hull of convex_hull.h, and never handed out.
 struct SearchHull {
     std::vector<Vec3> vertices;
     std::vector<CutPlane> planes;
@@ -26,7 +26,7 @@ struct SearchHull {
     double volume = 0;
     Bounds box;
 
-    /// Moves the plane that said no to the front: neighbouring points are mostly outside of the same one.
+    /// Moves the plane that rejected the point to the front: neighbouring points are mostly outside of the same one.
     [[nodiscard]] bool contains(Vec3 p) {
         for (std::size_t i = 0; i < planes.size(); ++i) {
             if (planes[i].height(p) <= 0) continue;
@@ -39,11 +39,11 @@ struct SearchHull {
     [[nodiscard]] double height(Vec3 p) const;
 };
 
-/// Grows the hull by the farthest point outside until none is farther than `tolerance` (m). What is thinner than
+/// Grows the hull by the farthest point outside until none is farther than `tolerance` (m). A hull thinner than
 /// `least_thickness` (m, above zero) is thickened to that, evenly to both sides. Empty only where `points` is.
 SearchHull build_search_hull(std::span<const Vec3> points, double tolerance, double least_thickness);
 
-/// Points of a body thinner than `least_thickness` moved apart along its thinnest direction, so that they span at least
+/// Points of a body thinner than `least_thickness`, moved along its thinnest direction until they span at least
 /// that; other points as they are.
 std::vector<Vec3> thickened(std::span<const Vec3> points, double least_thickness);
 

@@ -3,7 +3,7 @@
 // Triangles and cells: M. Schwarz, H.-P. Seidel, "Fast parallel surface and solid voxelization on GPUs", ACM Trans. on
 // Graphics 29(6), 2010: a box overlaps a triangle iff it does so with its plane and in the three projections.
 // Distances on the grid: P. Felzenszwalb, D. Huttenlocher, "Distance transforms of sampled functions", Theory of
-// Computing 8, 2012, along one axis after the other; near the surface the triangles themselves are asked.
+// Computing 8, 2012, along one axis after the other; close to the surface by the triangles themselves.
 // The generalised winding number was the alternative for inside and outside; it takes an open mug for solid.
 #include "geometry/decomposition/solid_grid.h"
 
@@ -76,7 +76,7 @@ double SurfaceDistance::at(Vec3 p, double limit) const {
 
 double SurfaceDistance::at(Vec3 p) const {
     if (triangles_.empty()) return std::numeric_limits<double>::infinity();
-    // A ball that grows until something is in it; the bounds say where there is surely nothing yet.
+    // A ball that grows until it contains a triangle; the bounds give a radius that is certainly empty.
     const Vec3 nearest = min(max(p, box_.lower), box_.upper);
     const double size = length(box_.size());
     double limit = distance(p, nearest) + 0.02 * size + 1e-12;
@@ -118,7 +118,7 @@ int SolidGrid::clamped(double at, int axis) const {
 }
 
 void SolidGrid::mark(const std::array<Vec3, 3>& triangle) {
-    // In cells, from the grid's corner.
+    // The corners in cells, from the grid's corner.
     std::array<Vec3, 3> v{};
     Bounds box;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -160,14 +160,14 @@ void SolidGrid::mark(const std::array<Vec3, 3>& triangle) {
     }
 }
 
-// From the margin into all that is not touched: sideways and down, and up only where that is asked for.
+// From the margin into all cells that no triangle touches: sideways and down, and up only if `open_below`.
 void SolidGrid::flood(bool open_below) {
     std::vector<Cell> front;
     const auto enter = [&](int x, int y, int z) {
         if (x < 0 || y < 0 || z < 0 || x >= count_[0] || y >= count_[1] || z >= count_[2]) return;
         const std::size_t i = index(x, y, z);
         if (touched_[i] != 0 || depth_[i] != 0) return;
-        depth_[i] = 1;  // outside; how deep comes later
+        depth_[i] = 1;  // outside; its depth follows later
         front.push_back({x, y, z});
     };
     for (int z = 0; z < count_[2]; ++z) {
@@ -212,7 +212,7 @@ void SolidGrid::measure_depths(const TriangleMesh& mesh) {
         }
     }
 
-    // Near the surface a cell is too coarse.
+    // Close to the surface a cell is too coarse.
     const SurfaceDistance surface(mesh);
     std::size_t i = 0;
     for (int z = 0; z < count_[2]; ++z) {

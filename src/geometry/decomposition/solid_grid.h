@@ -17,7 +17,7 @@ public:
     explicit SurfaceDistance(const TriangleMesh& mesh);
     /// Distance of `p` to the nearest triangle, if that is at most `limit` (m); else `limit`.
     [[nodiscard]] double at(Vec3 p, double limit) const;
-    /// Without a limit.
+    /// As above without a limit.
     [[nodiscard]] double at(Vec3 p) const;
 
 private:
@@ -32,10 +32,10 @@ struct Void {
     float depth = 0;  ///< m, distance to the surface
 };
 
-/// Where around a surface other things can be, in cubic cells. A cell is filled if a triangle touches it, or if nothing
-/// that moves sideways or down gets there from outside. So holes narrower than a cell are closed; a mug is hollow, also
-/// one without thickness; a sofa without bottom or a chest that stands on the floor is solid: what is open only below
-/// is filled, unless `open_below`.
+/// The places around a surface that other bodies can reach, in cubic cells. A cell is filled if a triangle touches it,
+/// or if nothing that moves sideways or down gets there from outside. So holes narrower than a cell are closed; a mug
+/// is hollow, also one without thickness; a sofa without bottom or a chest that stands on the floor is solid: a hollow
+/// that is open only below is filled, unless `open_below`.
 class SolidGrid {
 public:
     /// About `cells` cells over the bounds, none smaller than `least_cell` (m).

@@ -9,7 +9,7 @@
 namespace embody::geometry {
 namespace {
 
-constexpr double on_face = 1e-9;  // least weight of a place that counts as within
+constexpr double on_face = 1e-9;  // minimum weight of a place that counts as inside
 
 std::array<double, 4> barycentric(const TetrahedralMesh& mesh, const Tetrahedron& t, Vec3 p) {
     const Vec3 a = mesh.nodes[t[0]];
@@ -24,7 +24,7 @@ Bounds bounds_of(const TetrahedralMesh& mesh, const Corners& corners) {
     return box;
 }
 
-// Finds the tetrahedron that carries a place.
+// Finds the tetrahedron that contains a place.
 class Carriers {
 public:
     explicit Carriers(const TetrahedralMesh& mesh) : mesh_(mesh) {
@@ -39,7 +39,7 @@ public:
 
     [[nodiscard]] EmbeddedPoint at(Vec3 p) const {
         EmbeddedPoint best;
-        double depth = -1;  // least weight
+        double depth = -1;  // minimum weight
         solids_.query({p, p}, [&](std::uint32_t t) {
             const auto weights = barycentric(mesh_, mesh_.tetrahedra[t], p);
             const double least = *std::min_element(weights.begin(), weights.end());
@@ -55,7 +55,7 @@ public:
 
 private:
     [[nodiscard]] std::uint32_t nearest_face(Vec3 p) const {
-        // A ball that grows until something is in it; the bounds say where there is surely nothing yet.
+        // A ball that grows until it contains a triangle; the bounds give a radius that is certainly empty.
         const double size = length(box_.size());
         double reach = distance(p, min(max(p, box_.lower), box_.upper)) + 0.02 * size;
         for (;; reach *= 2) {

@@ -7,7 +7,7 @@
 
 namespace embody::geometry {
 
-/// What carries a point: it stays at the same barycentric coordinates of a tetrahedron whose nodes move.
+/// The position of a point in a tetrahedron: it keeps its barycentric coordinates while the nodes move.
 struct EmbeddedPoint {
     std::uint32_t tetrahedron = 0;
     std::array<double, 4> weights{};  ///< of its nodes; their sum is 1, and some are negative outside of it
@@ -17,7 +17,7 @@ struct EmbeddedPoint {
 /// mesh without tetrahedra or surface, a position that is not finite.
 Result<std::vector<EmbeddedPoint>> embed(const std::vector<Vec3f>& positions, const TetrahedralMesh& mesh);
 
-/// Where the point is when the nodes are at `nodes`, as many as the mesh had.
+/// The point's position when the nodes are at `nodes`, as many as the mesh had.
 Vec3 position(const EmbeddedPoint& point, const TetrahedralMesh& mesh, const std::vector<Vec3>& nodes);
 
 }  // namespace embody::geometry

@@ -8,11 +8,11 @@
 namespace embody::geometry {
 namespace {
 
-constexpr double edge_margin = 1e-9;  // barycentric: rather both triangles at an edge than none
+constexpr double edge_margin = 1e-9;  // barycentric: an edge counts for both triangles rather than for none
 constexpr int halvings = 12;
 
-// Where origin + t direction meets the triangle (T. Möller, B. Trumbore, "Fast, minimum storage ray/triangle
-// intersection", Journal of Graphics Tools 2(1), 1997).
+// Parameter t at which origin + t direction meets the triangle (T. Möller, B. Trumbore, "Fast, minimum storage
+// ray/triangle intersection", Journal of Graphics Tools 2(1), 1997).
 std::optional<double> meet(Vec3 origin, Vec3 direction, const std::array<Vec3, 3>& triangle) {
     const Vec3 e1 = triangle[1] - triangle[0], e2 = triangle[2] - triangle[0];
     const Vec3 p = cross(direction, e2);
@@ -36,7 +36,7 @@ EnclosedSolid::EnclosedSolid(const TriangleMesh& mesh) : tree_(mesh), winding_(m
 bool EnclosedSolid::contains(Vec3 p) const { return embody::contains(bounds_, p) && winding_.at(p) > 0.5; }
 
 double EnclosedSolid::leave(Vec3 inside, Vec3 outside) const {
-    // Every triangle on the way; then the first behind which it is outside. Behind the last it is.
+    // Finds every triangle on the path; then the first behind which it is outside. Behind the last it is.
     std::vector<double> met;
     const Vec3 way = outside - inside;
     tree_.query_ray(inside, way, 1, [&](std::uint32_t leaf, double max_t) {

@@ -6,7 +6,7 @@
 
 namespace embody::geometry {
 
-/// What a surface encloses, as estimate_volume() sees it: the places in its bounds with a winding number above one
+/// The solid that a surface encloses, as in estimate_volume(): the places in its bounds with a winding number above one
 /// half. The surface may be open, and its parts may overlap.
 class EnclosedSolid {
 public:
@@ -15,7 +15,8 @@ public:
 
     [[nodiscard]] const Bounds& bounds() const { return bounds_; }
     [[nodiscard]] bool contains(Vec3 p) const;
-    /// Where on the way from `inside` to `outside` the solid ends: 0 … 1. The first end where there are several.
+    /// The fraction of the path from `inside` to `outside` at which the solid ends: 0 … 1. The first end if there are
+    /// several.
     [[nodiscard]] double leave(Vec3 inside, Vec3 outside) const;
 
 private:

@@ -68,7 +68,7 @@ Sought seek(const EnclosedSolid& solid, double volume, int wanted) {
             best_miss = miss;
         }
         if (best_miss < near_enough || (ratio <= 1 && cell == finest)) break;
-        // The count jumps where the lattice begins to miss a thin part, so a guess beyond the tried ones is none.
+        // The count jumps where the lattice begins to miss a thin part, so a guess beyond the tried ones is not used.
         cell *= std::clamp(std::cbrt(ratio), 0.5, 2.0);
         if (!(cell > too_fine)) cell = std::isfinite(too_coarse) ? std::sqrt(too_fine * too_coarse) : too_fine;
         if (!(cell < too_coarse)) cell = std::sqrt(too_fine * too_coarse);

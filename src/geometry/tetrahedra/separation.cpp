@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t not_numbered = std::numeric_limits<std::uint32_t>::max();
 
-// Sets that grow together; each is known by its least member, so that the order of joining does not matter.
+// Disjoint sets, each known by its smallest member, so that the order of joining does not matter.
 class Sets {
 public:
     explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
@@ -125,7 +125,7 @@ void drop_unused_nodes(TetrahedralMesh& mesh) {
 }  // namespace
 
 void separate(TetrahedralMesh& mesh) {
-    // Each round drops at least one tetrahedron, so it ends.
+    // Each iteration drops at least one tetrahedron, so the loop ends.
     for (;;) {
         separate_nodes(mesh, find_tetrahedral_topology(mesh.tetrahedra));
         const TetrahedralTopology topology = find_tetrahedral_topology(mesh.tetrahedra);

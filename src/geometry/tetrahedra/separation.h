@@ -5,12 +5,12 @@
 
 namespace embody::geometry {
 
-/// Makes tetrahedra hang together through faces only: where they meet in a node alone, each side gets its own node at
+/// Leaves tetrahedra connected through faces only: where they meet in a node alone, each side gets its own node at
 /// the same place; where they meet in an edge alone though they are connected around it, the smaller side is left out.
 /// Nodes without tetrahedra are dropped. After that every edge of the outer faces has exactly two of them.
 void separate(TetrahedralMesh& mesh);
 
-/// The parts that hang together through faces, largest volume first.
+/// The components connected through faces, largest volume first.
 struct TetrahedralComponents {
     std::vector<std::uint32_t> component_of;  ///< for each tetrahedron
     std::vector<double> volumes;              ///< m³

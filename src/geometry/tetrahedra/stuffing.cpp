@@ -2,9 +2,9 @@
 //
 // F. Labelle, J. R. Shewchuk, "Isosurface stuffing: fast tetrahedral meshes with good dihedral angles", ACM Trans. on
 // Graphics 26(3), 2007, with a lattice of one size. Every edge of the lattice that leaves the solid has a cut point.
-// Where one is close to a node, the node moves there; the tetrahedra that are cut still are replaced by up to three
-// within. Their shapes cannot be bad, since no cut point is near a node any more. Other than in the paper cut points
-// come from the surface itself, not from values at the nodes: overlapping parts make a distance that means nothing.
+// Where one is close to a node, the node moves there; the tetrahedra that are still cut are replaced by up to three
+// within. Their shapes cannot be bad, since no cut point is close to a node any more. Other than in the paper cut
+// points come from the surface itself, not from values at the nodes: overlapping parts make a distance without meaning.
 #include "geometry/tetrahedra/stuffing.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace embody::geometry {
 namespace {
 
-// Shares of an edge's length within which a node moves to the cut point: of the lattice's axes and of its diagonals.
+// Fractions of an edge's length within which a node moves to the cut point: of the lattice's axes and of its diagonals.
 constexpr double close_on_axis = 0.24999;
 constexpr double close_on_diagonal = 0.41189;
 
@@ -50,11 +50,11 @@ private:
         Place place{};
         Vec3 position;
         Side side = Side::outside;
-        std::array<float, directions> cut;  // share of the edge from here; negative where there is none
+        std::array<float, directions> cut;  // fraction of the edge from here; negative where there is none
         std::uint32_t used = none;          // number in the result
         std::array<std::uint32_t, directions> used_cuts;
     };
-    // A corner of a piece: a node, or the cut of the edge that starts at it. `ideal` says which way round it lies.
+    // A corner of a piece: a node, or the cut of the edge that starts at it. `ideal` gives its orientation.
     struct Corner {
         std::uint32_t* number = nullptr;
         Vec3 position;
@@ -166,7 +166,7 @@ void Stuffing::move_nodes() {
     for (std::uint32_t i = 0; i < nodes_.size(); ++i) move_node(i);
 }
 
-// To the nearest of the cut points that are too close; those of its edges are then gone.
+// Moves the node to the nearest of the cut points that are too close; those of its edges are then gone.
 void Stuffing::move_node(std::uint32_t index) {
     Node& node = nodes_[index];
     double least = std::numeric_limits<double>::infinity();
@@ -196,7 +196,7 @@ void Stuffing::move_node(std::uint32_t index) {
 
 // ---------------------------------------------------------------------------------------- pieces
 
-// The four tetrahedra around the line from the middle of one cube to the next: with each side of the square between.
+// The four tetrahedra around the line from the middle of one cube to the next: one for each side of the square between.
 void Stuffing::fill_between(std::uint32_t middle, std::size_t axis) {
     const Place from = nodes_[middle].place;
     const std::uint32_t next = find(from + ways[axis]);
@@ -247,9 +247,9 @@ void Stuffing::fill(const Tetrahedron& t) {
     add(corners);
 }
 
-// Of the face a b out, whose cuts make a quadrilateral with a and b: whether it is halved from a to the cut on b's
-// edge, and not from b to that on a's. To the cut on the long edge, which is the wider angle; else a matter of order.
-// Both tetrahedra at the face must agree.
+// For the face a b out, whose cuts make a quadrilateral with a and b: whether its diagonal runs from a to the cut on
+// b's edge, and not from b to that on a's. It runs to the cut on the long edge, which is the wider angle; else by
+// order. Both tetrahedra at the face must agree.
 bool Stuffing::diagonal_from_first(std::uint32_t a, std::uint32_t b, std::uint32_t out) const {
     if (is_on_axis(a, out)) return false;
     return is_on_axis(b, out) || a < b;

@@ -25,7 +25,7 @@ DihedralAngles measure_dihedral_angles(const TetrahedralMesh& mesh) {
     for (const Tetrahedron& t : mesh.tetrahedra) {
         for (std::size_t i = 0; i < 4; ++i) {
             for (std::size_t k = i + 1; k < 4; ++k) {
-                // At the edge i k, between the faces to the two other corners.
+                // Directions at the edge i k, between the faces to the two other corners.
                 std::array<Vec3, 2> away{};
                 std::size_t count = 0;
                 const Vec3 at = mesh.nodes[t[i]], along = normalized(mesh.nodes[t[k]] - at);
@@ -48,7 +48,7 @@ TetrahedralTopology find_tetrahedral_topology(const std::vector<Tetrahedron>& te
         std::array<std::uint32_t, 3> key;  // corners in ascending order
         TetrahedronFace face;
     };
-    // Opposite to each corner, seen from outside where the volume is positive.
+    // The face opposite to each corner, seen from outside where the volume is positive.
     constexpr std::array<std::array<std::size_t, 3>, 4> faces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
     std::vector<Keyed> all;
     all.reserve(4 * tetrahedra.size());

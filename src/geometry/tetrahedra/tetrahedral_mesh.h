@@ -16,12 +16,12 @@ struct TetrahedralMesh {
     std::vector<Vec3> nodes;                            ///< each is used
     std::vector<Tetrahedron> tetrahedra;                ///< dot(b - a, cross(c - a, d - a)) > 0
     std::vector<std::array<std::uint32_t, 3>> surface;  ///< outer faces, counter-clockwise from outside
-    std::vector<std::uint32_t> surface_tetrahedra;      ///< whose face it is, parallel to `surface`
+    std::vector<std::uint32_t> surface_tetrahedra;      ///< the tetrahedron of each face, parallel to `surface`
 };
 
-/// Volume, m³; negative where the tetrahedron is turned inside out.
+/// Volume, m³; negative where the tetrahedron is inverted.
 double signed_volume(const TetrahedralMesh& mesh, const Tetrahedron& t);
-/// Of all tetrahedra, m³.
+/// Volume of all tetrahedra, m³.
 double volume(const TetrahedralMesh& mesh);
 
 /// The angles between faces, which say how well the elements are shaped: 70.5° in a regular tetrahedron.
@@ -36,12 +36,12 @@ struct TetrahedronFace {
     std::uint32_t tetrahedron = 0;
 };
 
-/// How tetrahedra hang together through faces that they share.
+/// How tetrahedra are connected through common faces.
 struct TetrahedralTopology {
     std::vector<std::array<std::uint32_t, 2>> neighbours;  ///< pairs of tetrahedra with a common face
     std::vector<TetrahedronFace> outer_faces;              ///< of one tetrahedron only
 };
-/// Expects that no face has more than two tetrahedra. The same order for the same tetrahedra.
+/// Expects that no face has more than two tetrahedra. The order is the same for the same tetrahedra.
 TetrahedralTopology find_tetrahedral_topology(const std::vector<Tetrahedron>& tetrahedra);
 
 }  // namespace embody::geometry
