@@ -7,7 +7,7 @@
 namespace embody {
 namespace {
 
-// For |t| <= 1: the angle is halved twice by tan(a/2) = t / (1 + √(1 + t²)), then summed up as a power series.
+// For |t| <= 1: the angle is halved twice by tan(a/2) = t / (1 + √(1 + t²)), then computed by a power series.
 double arc_tangent_of(double t) {
     double quarter = t;
     for (int i = 0; i < 2; ++i) quarter /= 1 + std::sqrt(1 + quarter * quarter);
@@ -22,7 +22,7 @@ double arc_tangent_of(double t) {
 }  // namespace
 
 double arc_tangent(double y, double x) {
-    // From the nearer axis, so that the ratio is at most 1.
+    // Measured from the nearer axis, so that the ratio is at most 1.
     const double wide = std::fabs(x), high = std::fabs(y);
     if (wide == 0 && high == 0) return 0;
     double angle = high <= wide ? arc_tangent_of(high / wide) : std::numbers::pi / 2 - arc_tangent_of(wide / high);

@@ -20,14 +20,14 @@ namespace embody {
 /// Whether this processor can run kernels for 4, 8 or 16 floats side by side, as math/wide.h makes them.
 bool has_lanes(int lanes);
 
-/// Those of 4, 8 or 16 floats; nothing where this processor cannot run them.
+/// The kernels of 4, 8 or 16 floats; none where this processor cannot run them.
 template <class Kernels>
 const Kernels* kernels_of(int lanes) {
     if (!has_lanes(lanes)) return nullptr;
     return lanes == 4 ? &Kernels::lanes_4 : lanes == 8 ? &Kernels::lanes_8 : &Kernels::lanes_16;
 }
 
-/// The widest that this processor can run.
+/// The widest kernels that this processor can run.
 template <class Kernels>
 const Kernels& widest_kernels() {
     return has_lanes(16) ? Kernels::lanes_16 : has_lanes(8) ? Kernels::lanes_8 : Kernels::lanes_4;

@@ -8,7 +8,7 @@ namespace embody {
 void follow_rotation(const Mat3& deformation, Quat& rotation) {
     constexpr int most_rounds = 20;
     constexpr double close = 1e-10;     // rad
-    constexpr double last_turn = 1e-5;  // rad: its square, which is about what is left after it, is close
+    constexpr double last_turn = 1e-5;  // rad: the error after it is about its square, which is below `close`
     for (int round = 0; round < most_rounds; ++round) {
         // W = Rᵀ F is symmetric where R is right. A turn by ω (in R's axes) changes its skew part by (tr W - W) ω.
         const Mat3 w = transpose(to_matrix(rotation)) * deformation;

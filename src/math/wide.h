@@ -90,7 +90,7 @@ EMBODY_WIDE_INLINE bool any(WideMask mask) {
 #endif
 }
 
-// Rows of eight floats, one a lane, to eight columns and back. `rows` is what they are counted in from `base`.
+// Rows of eight floats, one a lane, to eight columns and back. `rows` counts rows from `base`.
 constexpr int row_floats = 8;
 
 #if EMBODY_LANES == 4
@@ -226,7 +226,7 @@ EMBODY_WIDE_INLINE void store_3(float* to, const Wide3& v) {
 #if EMBODY_LANES == 4
 EMBODY_WIDE_INLINE void transpose_quads(Wide r[4]) { transpose_4(r[0], r[1], r[2], r[3]); }
 #else
-/// Of each four lanes: four rows to four columns (its own inverse).
+/// For each four lanes: four rows to four columns (its own inverse).
 EMBODY_WIDE_INLINE void transpose_quads(Wide r[4]) {
     const Wide a0 = EMBODY_SHUFFLE(r[0], r[1], 0, 8, 1, 9, 4, 12, 5, 13);
     const Wide a1 = EMBODY_SHUFFLE(r[0], r[1], 2, 10, 3, 11, 6, 14, 7, 15);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Which of many numbers is the highest: doubles side by side, half as many as floats, and masks with a bit for each
-// lane. Only for kernels, see math/wide.h. Equal bits for all widths: a maximum does not depend on the order it is
-// taken in but for the sign of zero, which is always made positive.
+// The maximum of many numbers and its index: doubles side by side, half as many as floats, and masks with a bit for
+// each lane. Only for kernels, see math/wide.h. Equal bits for all widths: a maximum does not depend on the order of
+// the numbers except for the sign of zero, which is always made positive.
 #pragma once
 
 #include "math/wide.h"
@@ -21,7 +21,7 @@ EMBODY_WIDE_INLINE WideDouble load(const double* from) {
 EMBODY_WIDE_INLINE void store(double* to, WideDouble value) { std::memcpy(to, &value, sizeof value); }
 EMBODY_WIDE_INLINE WideDouble broadcast(double value) { return WideDouble{} + value; }
 
-// Larger and smaller ones, lane by lane, and bit i: a[i] == b[i], a[i] <= b[i].
+// The larger and smaller numbers, lane by lane, and masks with bit i: a[i] == b[i], a[i] <= b[i].
 #if defined(__AVX512F__) && EMBODY_LANES == 16
 EMBODY_WIDE_INLINE WideDouble minimum(WideDouble a, WideDouble b) { return _mm512_maskz_min_pd(0xFF, a, b); }
 EMBODY_WIDE_INLINE WideDouble maximum(WideDouble a, WideDouble b) { return _mm512_maskz_max_pd(0xFF, a, b); }
@@ -72,7 +72,7 @@ EMBODY_WIDE_INLINE std::uint32_t at_most_mask(WideDouble a, WideDouble b) {
 }
 #endif
 
-// The highest lane: halves against each other.
+// The highest lane: maximum of both halves, again and again.
 using Double2 = double __attribute__((vector_size(16)));
 using Float4 = float __attribute__((vector_size(16)));
 EMBODY_WIDE_INLINE double highest(WideDouble wide) {
