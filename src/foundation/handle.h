@@ -7,7 +7,7 @@
 namespace embody {
 
 /// A typed reference to an element of a HandleTable. All zero is null; a handle whose element was removed
-/// is detectably stale, because the slot's generation has moved on.
+/// is detectably stale, because the slot's generation has increased.
 template <class Tag>
 struct Handle {
     std::uint32_t index = 0;       ///< slot in the table

@@ -9,11 +9,11 @@ namespace {
 
 struct CodePoint {
     std::uint32_t code = 0;
-    std::size_t bytes = 0;  ///< 0: what stands here is no UTF-8
+    std::size_t bytes = 0;  ///< 0: the text here is not UTF-8
 };
 
-/// The code point at the start of `text`, which is not empty. RFC 3629: overlong forms, surrogates and what is above
-/// U+10FFFF are no UTF-8.
+/// The code point at the start of `text`, which is not empty. RFC 3629: overlong forms, surrogates and code points
+/// above U+10FFFF are not UTF-8.
 CodePoint first_code_point(std::string_view text) {
     const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const unsigned char lead = byte(0);
@@ -34,7 +34,7 @@ CodePoint first_code_point(std::string_view text) {
 bool is_control(std::uint32_t code) {
     const bool is_c0_or_c1 = code < 0x20 || (code >= 0x7F && code <= 0x9F);
     const bool ends_line = code == 0x2028 || code == 0x2029;
-    // Embeddings, overrides and isolates: text after them is shown in another order than it is written in.
+    // Embeddings, overrides and isolates: they change the direction in which the text after them is shown.
     const bool turns_direction = (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
     return is_c0_or_c1 || ends_line || turns_direction;
 }
@@ -57,7 +57,7 @@ void append_control(std::string& out, std::uint32_t code) {
             out += "\\t";
             return;
         default:
-            // From U+007F on as JSON writes them too.
+            // From U+007F on in the form that JSON uses too.
             append_escape(out, code < 0x7F ? "\\x%02x" : "\\u%04x", code);
     }
 }

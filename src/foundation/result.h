@@ -8,7 +8,7 @@
 
 namespace embody {
 
-/// Bad input, told so that a person can mend it: where it is, why it is wrong, what to do.
+/// Bad input, described so that a person can correct it: where it is, why it is wrong, what to do.
 struct Error {
     std::string where;        ///< file, field or row, e.g. "scene.json: entities[3].attributes.mass"
     std::string why;          ///< e.g. "must be greater than 0 kg, got -2"

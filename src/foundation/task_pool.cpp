@@ -16,11 +16,11 @@ namespace embody {
 
 namespace {
 
-// A thread that waits looks so often, some 20 microseconds, before it offers its core with each further look: the one
-// it waits for may need that core where other programs run.
+// A waiting thread polls this often, some 20 microseconds, before it yields its core with each further poll: the thread
+// that it waits for may need that core where other programs run.
 constexpr int looks_alone = 1000;
-// And so often altogether before it sleeps: some 100 microseconds between tasks, a millisecond between those of a row,
-// if nobody takes the core.
+// The total number of polls before it sleeps: some 100 microseconds between tasks, a millisecond between tasks of a
+// row, if nobody takes the core.
 constexpr int looks_between_tasks = looks_alone + 200, looks_while_awake = looks_alone + 2000;
 
 void wait_a_little(int look) {
@@ -48,10 +48,10 @@ void Progress::wait_for(std::uint64_t count) const {
 }
 
 struct TaskPool::State {
-    const std::function<void(int)>* task = nullptr;  // of the present round
-    const char* zone = nullptr;                      // that the task is run in
+    const std::function<void(int)>* task = nullptr;  // of the present call of run()
+    const char* zone = nullptr;                      // zone in which the task is run
     std::atomic<unsigned> round{0};
-    std::atomic<unsigned> calls{0};  // another one with each round and with each StayAwake: what sleeping threads watch
+    std::atomic<unsigned> calls{0};  // increases with each run() and each StayAwake: sleeping threads wait on it
     std::atomic<int> looks{looks_between_tasks};
     std::atomic<int> running{0};
     std::atomic<bool> stops{false};
@@ -73,7 +73,8 @@ struct TaskPool::State {
         calls.notify_all();
     }
 
-    // Returns when the round is another one than `seen`: looks for a while, then sleeps until called, and again.
+    // Returns when the present call is another one than `seen`: polls for a while, then sleeps until called, and
+    // repeats.
     void await_round(unsigned seen) {
         while (true) {
             const unsigned call = calls.load(std::memory_order_acquire);

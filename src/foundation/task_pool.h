@@ -21,11 +21,11 @@ private:
     std::atomic<unsigned> round_{0};
 };
 
-/// How far a worker of a task has come, for others that follow it. Spins first.
+/// The progress of one worker of a task, for others that follow it. Spins first.
 class alignas(64) Progress {
 public:
     void reach(std::uint64_t count) { count_.store(count, std::memory_order_release); }
-    /// Returns when it has reached that.
+    /// Returns when the progress has reached `count`.
     void wait_for(std::uint64_t count) const;
 
 private:
@@ -33,15 +33,15 @@ private:
 };
 
 /// A fixed set of threads that run one task together. The calling thread is worker 0, so a pool of one has no threads;
-/// those of others begin with the first task. Between tasks they sleep, after a short while of looking for the next
-/// one.
+/// the others start with the first task. Between tasks they sleep, after polling for the next one for a short
+/// while.
 class TaskPool {
 public:
     /// `workers` >= 1.
     explicit TaskPool(int workers);
     ~TaskPool();
-    /// How many workers pay on this machine: half of what it can run at once, since two threads of one core gain
-    /// little, but two where it can; four at most.
+    /// The number of workers that is worth its cost on this machine: half of the threads that it can run at once, since
+    /// two threads of one core gain little, but two where it can; four at most.
     static int workers_that_pay();
 
     TaskPool(const TaskPool&) = delete;
@@ -52,8 +52,8 @@ public:
     /// throw. One caller at a time.
     void run(const std::function<void(int worker)>& task);
 
-    /// While one lives the pool's threads stay awake between tasks, if they come within about a millisecond. To wake a
-    /// thread takes 30 to 80 microseconds, so it is begun some time before the first of a row of tasks.
+    /// While one exists the pool's threads stay awake between tasks that come within about a millisecond. To wake a
+    /// thread takes 30 to 80 microseconds, so create it some time before the first of a row of tasks.
     class StayAwake {
     public:
         explicit StayAwake(TaskPool& pool);
@@ -70,7 +70,7 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// Worker `worker`'s share of `count` things: the same for each call with the same numbers.
+/// The part of `count` indices for worker `worker`: the same for each call with the same numbers.
 struct IndexRange {
     std::size_t first = 0, last = 0;
 };

@@ -12,7 +12,7 @@ namespace embody {
 
 namespace {
 
-// The zones of one thread that were not taken yet: a ring that its thread fills and the recording empties.
+// The zones of one thread that were not yet taken: a ring that its thread fills and the recording empties.
 struct ThreadZones {
     ThreadZones(ZoneThread which, std::size_t room) : thread(std::move(which)), ring(room) {}
 
@@ -32,7 +32,7 @@ struct ThreadZones {
     std::atomic<std::uint64_t> dropped{0};
 };
 
-// What is recorded at present. Threads keep their own ThreadZones by a shared pointer, so that either may end first.
+// The present recording. Threads keep their own ThreadZones by a shared pointer, so that either may end first.
 struct Registry {
     std::mutex mutex;
     std::vector<std::shared_ptr<ThreadZones>> threads;
@@ -100,7 +100,7 @@ void ZoneRecording::take(const std::function<void(const ZoneThread&, const ZoneR
         const std::size_t last = zones->filled.load(std::memory_order_acquire);
         for (std::size_t i = zones->taken.load(std::memory_order_relaxed); i != last; ++i) {
             const ZoneRecord& zone = zones->ring[i % zones->ring.size()];
-            // One that began before the recording has no place in it.
+            // A zone that began before the recording is left out.
             if (zone.begin >= start_) visit(zones->thread, zone);
         }
         zones->taken.store(last, std::memory_order_release);

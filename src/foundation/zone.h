@@ -12,7 +12,7 @@ namespace embody {
 
 using ZoneClock = std::chrono::steady_clock;
 
-/// A named stretch of time on one thread. Those of a thread lie within each other or beside each other.
+/// A named interval of time on one thread. Zones of a thread are nested or follow each other.
 struct ZoneRecord {
     const char* name = nullptr;
     ZoneClock::time_point begin, end;
@@ -24,8 +24,8 @@ struct ZoneThread {
     std::string name;
 };
 
-/// Records the zones of all threads while it lives; one at a time in a program. Its memory is bounded: of a thread it
-/// holds as many zones as told, and what ends while it is full is dropped and counted.
+/// Records the zones of all threads while it lives; one at a time in a program. Its memory is bounded: for each thread
+/// it holds a given number of zones, and zones that end while it is full are dropped and counted.
 class ZoneRecording {
 public:
     explicit ZoneRecording(std::size_t zones_of_thread = std::size_t{1} << 14);
@@ -33,8 +33,8 @@ public:
     ZoneRecording(const ZoneRecording&) = delete;
     ZoneRecording& operator=(const ZoneRecording&) = delete;
 
-    /// Hands over the zones that ended since the last call, thread by thread, each thread's in the order of their ends,
-    /// and makes room for as many. Other threads may go on meanwhile; one caller at a time.
+    /// Returns the zones that ended since the last call, thread by thread, each thread's in the order of their ends,
+    /// and frees their room. Other threads may go on meanwhile; one caller at a time.
     void take(const std::function<void(const ZoneThread&, const ZoneRecord&)>& visit);
     /// Zones that ended while there was no room, so far.
     [[nodiscard]] std::uint64_t dropped() const;
@@ -44,9 +44,9 @@ private:
     ZoneClock::time_point start_;
 };
 
-/// What the zones of this thread are shown under; before its first zone.
+/// Sets the name under which the zones of this thread are shown; call before its first zone.
 void name_zone_thread(std::string name);
-/// Of the innermost zone that this thread is in; nullptr where it is in none, or nothing is recorded.
+/// Name of the innermost zone that this thread is in; nullptr where it is in none, or nothing is recorded.
 const char* innermost_zone();
 
 namespace zone_details {
@@ -77,7 +77,7 @@ private:
     ZoneClock::time_point begin_;
 };
 
-/// A zone whose time is wanted too: reads the clock whether zones are recorded or not, and once for both.
+/// A zone that also measures its time: reads the clock whether zones are recorded or not, and once for both.
 class TimedZone {
 public:
     explicit TimedZone(const char* name);
