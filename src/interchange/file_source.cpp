@@ -55,7 +55,7 @@ std::string FolderSource::find(std::string_view path) const {
 Result<std::vector<std::uint8_t>> FolderSource::read(std::string_view path) const {
     const std::string found = find(path);
     if (found.empty()) return Error{describe(path), "no such file in the model's folder"};
-    // A link may have come into its place since find(): what the links lead to now is opened by its own name.
+    // A link may have replaced it since find(): the file that the links lead to now is opened by its own name.
     std::error_code problem;
     const auto file = std::filesystem::canonical(folder_ / found, problem);
     if (problem || !lies_in(file, folder_)) return Error{describe(path), "is no longer in the model's folder"};

@@ -10,14 +10,15 @@
 
 namespace embody::interchange {
 
-/// Where a model file and what it refers to (materials, buffers, textures) are read from: one folder or one archive.
+/// The source of a model file and of the files that it refers to (materials, buffers, textures): one folder or one
+/// archive.
 /// Nothing outside it can be reached: not by "..", not by an absolute path, not by a link in the folder.
 class FileSource {
 public:
     virtual ~FileSource() = default;
     /// The stored path of `path`, which may differ in case; empty where there is no such file inside the source.
     [[nodiscard]] virtual std::string find(std::string_view path) const = 0;
-    /// The bytes of a file that find() knows, at most 512 MiB.
+    /// The bytes of a file that find() returned, at most 512 MiB.
     [[nodiscard]] virtual Result<std::vector<std::uint8_t>> read(std::string_view path) const = 0;
     /// The whole place for people, e.g. "models.sh3f: chair/chair.obj".
     [[nodiscard]] virtual std::string describe(std::string_view path) const = 0;
@@ -31,7 +32,7 @@ public:
     [[nodiscard]] std::string describe(std::string_view path) const override;
 
 private:
-    std::filesystem::path folder_;  // canonical, so that links can be told
+    std::filesystem::path folder_;  // canonical, so that links can be detected
 };
 
 class ArchiveSource final : public FileSource {

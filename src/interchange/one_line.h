@@ -6,7 +6,8 @@
 
 namespace embody::interchange {
 
-/// What a library said of a file, fit for one line of an error: it may quote the file, line ends, broken UTF-8 and all.
+/// A library's message about a file, fit for one line of an error: it may quote the file, line ends, broken UTF-8 and
+/// all.
 /// At most 200 characters, ASCII.
 inline std::string one_line(std::string_view text) {
     constexpr std::size_t longest = 200;

@@ -8,7 +8,7 @@
 namespace embody::interchange {
 namespace {
 
-// Clipping ears takes the square of the corners' number and, of odd shapes, its cube.
+// Ear clipping takes a time that grows with the square of the number of corners and, for odd shapes, with its cube.
 constexpr std::size_t most_corners = 1000;
 
 /// Newell's normal: twice the area, whatever the corners' order and flatness.
@@ -50,7 +50,7 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of_polygon(std::span<const V
     while (left.size() > 3) {
         std::size_t ear = 0;
         while (ear < left.size() && !is_ear(ear)) ++ear;
-        // What crosses itself or has no area has none: any corner will do.
+        // A polygon that crosses itself or has no area has no ear: any corner will do.
         if (ear == left.size()) ear = 1;
         const std::size_t n = left.size();
         triangles.push_back({left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]});

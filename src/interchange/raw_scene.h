@@ -10,7 +10,7 @@
 
 namespace embody::interchange {
 
-/// An image as it stood in the file: PNG or JPEG bytes.
+/// An image as it was in the file: PNG or JPEG bytes.
 struct RawImage {
     std::string name;
     std::vector<std::uint8_t> bytes;
@@ -36,8 +36,8 @@ struct RawMesh {
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// What any importer makes of a file: flat (node transforms applied), Y up, right-handed, in metres as far as the file
-/// tells.
+/// The result of any importer: flat (node transforms applied), Y up, right-handed, in metres as far as the file
+/// says.
 struct RawScene {
     std::vector<RawMesh> meshes;
     std::vector<RawMaterial> materials;

@@ -30,7 +30,7 @@ bool is_out_of_memory(const Error& error);
 /// VRML's unit is the metre, Y up.
 Result<RawScene> read_model(const std::filesystem::path& file);
 
-/// The same from any source, e.g. an archive; `path` is inside the source.
+/// As above from any source, e.g. an archive; `path` is inside the source.
 Result<RawScene> read_model(const FileSource& source, const std::string& path);
 
 }  // namespace embody::interchange

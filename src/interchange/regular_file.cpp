@@ -25,7 +25,7 @@ int open_without_links(const std::filesystem::path& file) {
         folder = next;
     }
     if (folder < 0) return -1;
-    // Not waiting: a pipe without a writer would hold the caller for ever.
+    // Does not wait: a pipe without a writer would block the caller for ever.
     const int opened =
         openat(folder, file.filename().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     const int problem = errno;

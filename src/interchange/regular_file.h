@@ -12,7 +12,7 @@
 namespace embody::interchange {
 
 /// A file opened for reading that is surely a regular one: no folder, device, pipe or socket. No symbolic link is
-/// followed on the way to it, so that what was found inside a folder is what is opened, whatever happens in between.
+/// followed on its path, so that the file found inside a folder is the one opened, whatever happens in between.
 class RegularFile {
 public:
     /// `file`: canonical path. Refuses files of more than `limit` bytes by name of the limit; never waits for a pipe.
@@ -22,11 +22,11 @@ public:
     RegularFile& operator=(RegularFile&&) = delete;
     ~RegularFile();
 
-    /// When it was opened, bytes.
+    /// Size when it was opened, bytes.
     [[nodiscard]] std::uint64_t size() const { return size_; }
-    /// Fills as much of `block` as there still is; 0 at the end.
+    /// Fills as much of `block` as is left in the file; 0 at the end.
     Result<std::size_t> read(std::span<std::uint8_t> block);
-    /// All from here on, at most size() bytes.
+    /// Reads all from here on, at most size() bytes.
     Result<std::vector<std::uint8_t>> read_all();
     /// Hands the open descriptor over to the caller, who closes it.
     int release() { return std::exchange(descriptor_, -1); }

@@ -6,7 +6,7 @@
 
 namespace embody::interchange {
 
-/// 0 to 1; 0 for what is no number.
+/// Clamps to 0 … 1; 0 for NaN.
 inline float unit_range(float value) { return std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 0.0f; }
 
 /// The colours of formats older than glTF are meant for the screen (IEC 61966-2-1).

@@ -4,7 +4,7 @@
 namespace embody::interchange {
 namespace {
 
-// Of the bytes 0x80 to 0xFF.
+// Code page 437, bytes 0x80 to 0xFF.
 constexpr std::u16string_view code_page_437 =
     u"ÇüéâäàåçêëèïîìÄÅÉæÆôöòûùÿÖÜ¢£¥₧ƒ"
     u"áíóúñÑªº¿⌐¬½¼¡«»░▒▓│┤╡╢╖╕╣║╗╝╜╛┐"

@@ -25,7 +25,7 @@ std::string in_lower_case(std::string_view text) {
     return lower;
 }
 
-/// minizip's way to open a file; what is opened already is in `file`.
+/// The open function for minizip; the file is open already, in `file`.
 voidpf open_given(voidpf file, const void*, int) {
     const int descriptor = static_cast<RegularFile*>(file)->release();
     FILE* stream = descriptor < 0 ? nullptr : fdopen(descriptor, "rb");
@@ -82,7 +82,7 @@ Result<Archive> Archive::open(const std::filesystem::path& file) {
             unzGetFilePos64(state->zip, &place) != UNZ_OK) {
             return Error{file.string(), "member " + std::to_string(i) + " of the archive is damaged"};
         }
-        // Folders, names that lead out of the archive and those that did not fit in are not members.
+        // Folders, names that lead out of the archive and entries that were refused are not members.
         const std::string_view stored(name.data());
         const std::string path = normalized_member_path(utf8_or_cp437(stored));
         if (path.empty() || stored.back() == '/' || member.size_filename >= name.size()) continue;
@@ -123,7 +123,7 @@ Result<std::vector<std::uint8_t>> Archive::read(std::string_view path, std::uint
         }
         bytes.insert(bytes.end(), block.begin(), block.begin() + got);
     }
-    // Closing checks the checksum.
+    // Closing verifies the checksum.
     const int closed = unzCloseCurrentFile(state_->zip);
     if (got < 0 || closed != UNZ_OK) return Error{where, "is damaged: unpacking or its checksum failed"};
     return bytes;
@@ -134,7 +134,7 @@ std::string normalized_member_path(std::string_view path) {
     std::replace(slashed.begin(), slashed.end(), '\\', '/');
     if (slashed.size() > 1 && slashed[1] == ':') return {};
 
-    // Part by part; ".." takes back a part, never more than there are.
+    // Part by part; ".." removes a part, never more than there are.
     std::vector<std::string_view> parts;
     const std::string_view all = slashed;
     for (std::size_t begin = 0; begin <= all.size();) {

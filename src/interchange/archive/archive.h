@@ -28,12 +28,12 @@ public:
     Archive& operator=(Archive&&) noexcept;
     ~Archive();
 
-    /// In the order of the archive's own list, folders left out.
+    /// Members in the order of the archive's own list, without folders.
     [[nodiscard]] const std::vector<ArchiveMember>& members() const;
     /// The member's path, found exactly or else without regard to case; empty where there is none. `path` is UTF-8, or
     /// the bytes that an old zip program stored: both are read as the members' names are.
     [[nodiscard]] std::string find(std::string_view path) const;
-    /// Unpacks one member. More than `limit` bytes, whatever the archive states: an error, and nothing is held.
+    /// Unpacks one member. More than `limit` bytes, whatever the archive states, is an error, and nothing is kept.
     Result<std::vector<std::uint8_t>> read(std::string_view path, std::uint64_t limit = default_limit) const;
 
     static constexpr std::uint64_t default_limit = std::uint64_t{512} << 20;  ///< bytes unpacked

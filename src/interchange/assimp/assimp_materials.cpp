@@ -31,7 +31,7 @@ Result<std::vector<std::uint8_t>> bytes_of(const aiTexture& texture) {
     return encode_png(image);
 }
 
-/// In the file or beside it.
+/// Finds the texture in the file or beside it.
 int index_of(TextureReader& textures, const aiScene& read, const std::string& reference) {
     if (const aiTexture* texture = read.GetEmbeddedTexture(reference.c_str())) {
         return textures.index_of(reference, bytes_of(*texture));

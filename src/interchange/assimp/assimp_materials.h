@@ -10,7 +10,7 @@ struct aiScene;
 
 namespace embody::interchange {
 
-/// How a format means its materials.
+/// Conventions of a format for its materials.
 struct MaterialReading {
     bool linear_colors =
         false;  ///< glTF's factors are linear; the colours of older formats are meant for the screen (sRGB)

@@ -27,10 +27,11 @@ namespace {
 constexpr std::size_t most_triangles = 20'000'000;
 constexpr std::size_t most_nodes = 1'000'000;
 
-// Of read_model()'s formats those that have no reader of their own.
+// Those of read_model()'s formats that have no reader of their own.
 constexpr std::array<std::string_view, 6> our_extensions{"obj", "stl", "dae", "gltf", "glb", "ac"};
 
-/// Removes every loader but those of the formats that we read, so that a file cannot pick another by its first bytes.
+/// Removes all loaders except those of the formats that we read, so that a file cannot select another by its first
+/// bytes.
 void keep_our_formats(Assimp::Importer& importer) {
     for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
         const aiImporterDesc* description = importer.GetImporterInfo(i);
@@ -98,7 +99,7 @@ Result<RawMesh> mesh_of(const aiMesh& read, const aiMatrix4x4& to_scene) {
     return mesh;
 }
 
-/// Walks the nodes and adds each mesh where it stands.
+/// Walks the nodes and adds each mesh at its node's place.
 Result<void> add_meshes(const aiScene& read, RawScene& scene) {
     struct Visit {
         const aiNode* node;
@@ -133,14 +134,14 @@ Result<void> add_meshes(const aiScene& read, RawScene& scene) {
 
 Result<RawScene> read_by_assimp(const FileSource& source, const std::string& path) {
     const std::string where = source.describe(path);
-    // Read before the library does, which would not say why it cannot.
+    // Read before the library reads it, since the library would not say why it cannot.
     const auto bytes = source.read(path);
     if (!bytes) return Error{where, bytes.error().why, bytes.error().remedy};
     if (bytes->empty()) return Error{where, "is empty"};
     Assimp::Importer importer;
     keep_our_formats(importer);
     importer.SetIOHandler(new_source_files(source));  // the importer owns and deletes it
-    // No bones, animations, cameras, lights: what is not asked for cannot go wrong.
+    // No bones, animations, cameras or lights: what is not requested cannot fail.
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS |
                                                             aiComponent_CAMERAS | aiComponent_LIGHTS |
                                                             aiComponent_TANGENTS_AND_BITANGENTS);
@@ -148,7 +149,7 @@ Result<RawScene> read_by_assimp(const FileSource& source, const std::string& pat
     importer.SetPropertyBool(AI_CONFIG_IMPORT_AC_EVAL_SUBDIVISION, false);
     const aiScene* read = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_RemoveComponent);
     if (read == nullptr || read->mRootNode == nullptr) {
-        // assimp catches what runs out of memory, and says no more than its name.
+        // assimp catches errors of memory, and reports no more than their name.
         const std::string told = importer.GetErrorString();
         if (told == "std::bad_alloc") throw std::bad_alloc();
         return Error{where, reason_of_refusal(source, path, *bytes, told)};

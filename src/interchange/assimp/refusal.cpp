@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A reason; nothing where none was found.
+/// The reason; empty where none was found.
 using Reason = std::optional<std::string>;
 
 std::string bytes_text(std::uint64_t count) { return std::to_string(count) + (count == 1 ? " byte" : " bytes"); }
@@ -33,7 +33,7 @@ bool leaves_folder(const std::string& uri) {
            normalized_member_path(uri).empty();
 }
 
-/// What a file is, where its first bytes say so.
+/// The format of a file, where its first bytes show it.
 Reason another_format(std::string_view content, const std::string& extension) {
     struct Mark {
         std::string_view begin;
@@ -195,7 +195,7 @@ Reason reason_of_stl(std::string_view content) {
     return std::nullopt;
 }
 
-/// Counted lines that are missing: of the format all that a file which breaks off lacks.
+/// Counts the lines that are missing: a file that breaks off lacks the rest of its format.
 Reason reason_of_ac3d(std::string_view content) {
     if (!content.starts_with("AC3D")) return "does not begin with \"AC3D\", so it is no AC3D file";
     std::istringstream lines{std::string(content)};
@@ -245,7 +245,7 @@ Reason reason_of_format(const FileSource& source, const std::string& path, std::
     return std::nullopt;
 }
 
-/// Whether a message of the library is only that it gives up.
+/// Whether a message of the library says only that it gives up.
 bool says_nothing(const std::string& told) {
     static constexpr std::array<std::string_view, 6> phrases = {"No suitable reader", "nknown error", "Failed to open",
                                                                 "Unable to open",     "std::",        "exception"};

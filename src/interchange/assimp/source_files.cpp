@@ -38,7 +38,7 @@ private:
     size_t at_ = 0;
 };
 
-/// assimp 5.2 passes over numbers such as ".5" in OBJ files, and with them the whole vertex: writes "0.5" on v, vt and
+/// assimp 5.2 skips numbers such as ".5" in OBJ files, and with them the whole vertex: this writes "0.5" on v, vt and
 /// vn lines.
 std::vector<std::uint8_t> with_leading_zeros(const std::vector<std::uint8_t>& obj) {
     std::vector<std::uint8_t> out;

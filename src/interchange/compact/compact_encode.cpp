@@ -131,7 +131,7 @@ private:
             } else if (textured) {
                 textures.resize(part.positions.size());
             }
-            // Triangles that the grid makes a line or a point show nothing and enclose nothing.
+            // Triangles that the grid collapses to a line or a point show nothing and enclose nothing.
             for (const auto& t : mesh->triangles) {
                 const GridPoint &a = part.positions[first + t[0]], &b = part.positions[first + t[1]],
                                 &c = part.positions[first + t[2]];

@@ -20,7 +20,7 @@ struct CompactGeometry {
     std::vector<std::uint8_t> bytes;
     std::uint32_t vertices = 0, triangles = 0;  ///< stored; triangles that became points or lines are left out
     std::uint32_t parts = 0;                    ///< draw calls: one a material
-    std::uint32_t materials = 0, images = 0;    ///< that are used
+    std::uint32_t materials = 0, images = 0;    ///< in use
     double position_step = 0;                   ///< m, the grid of positions: 1/65535 of the largest extent
     std::vector<std::string> warnings;
 };
@@ -34,7 +34,7 @@ Result<CompactGeometry> encode(const RawScene& scene);
 /// their own: weld where topology matters. Safe on any bytes: damaged, truncated or foreign ones are an error.
 Result<geometry::TriangleMesh> decode_mesh(std::span<const std::uint8_t> bytes);
 
-/// The form that a glTF viewer reads. The stored form of version 1 is that already.
+/// Converts to the form that a glTF viewer reads. The stored form of version 1 is that already.
 Result<std::vector<std::uint8_t>> to_glb(std::span<const std::uint8_t> bytes);
 
 }  // namespace embody::interchange

@@ -11,7 +11,7 @@ constexpr std::uint32_t magic = 0x46546C67;       // "glTF"
 constexpr std::uint32_t json_chunk = 0x4E4F534A;  // "JSON"
 constexpr std::uint32_t bin_chunk = 0x004E4942;   // "BIN\0"
 
-/// Little endian, whatever the machine.
+/// Little endian on every machine.
 std::uint32_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) {
     return static_cast<std::uint32_t>(bytes[at]) | static_cast<std::uint32_t>(bytes[at + 1]) << 8 |
            static_cast<std::uint32_t>(bytes[at + 2]) << 16 | static_cast<std::uint32_t>(bytes[at + 3]) << 24;
@@ -44,7 +44,7 @@ Result<GlbView> split_glb(std::span<const std::uint8_t> bytes) {
 }
 
 std::vector<std::uint8_t> join_glb(const nlohmann::json& json, std::span<const std::uint8_t> binary) {
-    // Names come from files and need not be UTF-8; what is not is replaced.
+    // Names come from files and need not be UTF-8; other bytes are replaced.
     std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     text.append((4 - text.size() % 4) % 4, ' ');
     const std::size_t padding = (4 - binary.size() % 4) % 4;

@@ -34,7 +34,7 @@ Result<StoredTexture> reduce_texture(const RawImage& image, int largest) {
     StoredTexture stored;
     stored.mime_type = header->format == ImageFormat::jpeg ? "image/jpeg" : "image/png";
 
-    // Small enough, and nothing to look at in its pixels: as it is.
+    // Small enough, and its pixels need no test: it stays as it is.
     const bool too_large = std::max(header->width, header->height) > largest;
     const bool heavy_png = header->format == ImageFormat::png && image.bytes.size() > large_png;
     if (!too_large && !heavy_png && !header->has_alpha) {

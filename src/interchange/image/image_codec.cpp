@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The one place where stb's image libraries are compiled. stb reads what no library of its own is worth while for;
-// docs/decisions/0015-image-decoders.md says why not the rest.
+// The only place where stb's image libraries are compiled. stb reads the formats that are not worth a library of their
+// own; docs/decisions/0015-image-decoders.md says why not the rest.
 #include "interchange/image/image_codec.h"
 
 #include <limits>
@@ -9,7 +9,7 @@
 #include "interchange/image/png_image.h"
 #include "interchange/image/sgi_image.h"
 
-// What is not wanted stays out; the libraries' own warnings are theirs.
+// Formats that are not wanted are left out; the libraries' own warnings are theirs.
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_BMP
@@ -61,7 +61,7 @@ Result<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes) {
     if (const auto sgi = read_sgi_header(bytes)) return *sgi;
     ImageHeader header;
     int channels = 0;
-    // A BMP without pixels is one to stb.
+    // stb accepts a BMP without pixels.
     if (!fits_int(bytes.size()) ||
         stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &header.width, &header.height, &channels) ==
             0 ||

@@ -23,7 +23,7 @@ struct ImageHeader {
     bool has_alpha = false;  ///< the file stores an alpha channel; it may still be 1 everywhere
 };
 
-/// What the first bytes say; an error where they are no PNG, JPEG, BMP, TGA, GIF or SGI image.
+/// The format by the first bytes; an error where they are no PNG, JPEG, BMP, TGA, GIF or SGI image.
 Result<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes);
 
 /// Decodes PNG, JPEG, BMP, TGA, GIF (first frame) or SGI. Refuses more than 64 million pixels before it makes room for

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The one place that sees libjpeg-turbo. It reports errors by longjmp(), which passes over destructors: what runs below
-// attempt() holds none.
+// The only place that includes libjpeg-turbo. It reports errors by longjmp(), which skips destructors: the code below
+// attempt() has none.
 #include "interchange/image/jpeg_image.h"
 
 #include <algorithm>
 #include <array>
 #include <csetjmp>
 #include <cstdio>
-// After <cstdio>, which they need.
+// Included after <cstdio>, which they need.
 #include <jerror.h>
 #include <jpeglib.h>
 
@@ -47,7 +47,7 @@ public:
                            false};
     }
 
-    /// After read_header().
+    /// Call after read_header().
     Result<Image> read_image(const ImageHeader& header) {
         Image image{header.width, header.height, {}};
         image.rgba.resize(4 * static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The one place that sees libpng. It reports errors by longjmp(), which passes over destructors: what runs below
-// attempt() holds none.
+// The only place that includes libpng. It reports errors by longjmp(), which skips destructors: the code below
+// attempt() has none.
 #include "interchange/image/png_image.h"
 
 #include <png.h>
@@ -50,7 +50,7 @@ public:
                            static_cast<int>(png_get_image_height(png_, info_)), transparent};
     }
 
-    /// After read_header().
+    /// Call after read_header().
     Result<Image> read_image(const ImageHeader& header) {
         Image image{header.width, header.height, {}};
         image.rgba.resize(4 * static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height));
@@ -60,7 +60,7 @@ public:
 
 private:
     static void read_pixels(PngReader& reader, std::uint8_t* rgba) {
-        // Whatever is stored becomes four channels of 8 bits.
+        // Every stored form becomes four channels of 8 bits.
         png_set_expand(reader.png_);
         png_set_scale_16(reader.png_);
         png_set_gray_to_rgb(reader.png_);

@@ -13,18 +13,18 @@ namespace embody::interchange {
 /// The numbers of a PLY file one after another, in any of its encodings.
 class PlyNumbers {
 public:
-    /// `file`: all of it, `header`: its own.
+    /// `file`: the whole file, `header`: its header.
     PlyNumbers(std::string_view file, const PlyHeader& header)
         : left_(file.substr(header.size)),
           file_size_(file.size()),
           encoding_(header.encoding),
           line_(header.lines + 1) {}
 
-    /// The next one; nothing where the file ends or holds something else.
+    /// The next number; empty where the file ends or has something else there.
     std::optional<double> next(PlyType type);
     /// The next list, counted as the property says; false where next() would give nothing, or the count is none.
     bool next_list(const PlyProperty& property, std::vector<double>& list);
-    /// Where reading stands, for people: "line 12" or "byte 3456".
+    /// The present place in the file, for people: "line 12" or "byte 3456".
     [[nodiscard]] std::string place() const;
 
 private:

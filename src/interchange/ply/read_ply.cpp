@@ -53,7 +53,7 @@ private:
     using Place = std::optional<std::size_t>;  // of a property in its element
     enum class Role : std::uint8_t { other, vertex, face, strips };
 
-    /// Which of an element's properties are wanted.
+    /// The properties of an element that are read.
     struct Parts {
         Role role = Role::other;
         std::array<Place, 3> position, normal;
@@ -88,7 +88,7 @@ private:
         return {};
     }
 
-    /// One element: all of its numbers, then what they mean.
+    /// Reads one element: all of its numbers, then their meanings.
     Result<void> read_one(const PlyElement& element) {
         values_.assign(element.properties.size(), 0);
         corner_texture_.clear();
@@ -142,7 +142,7 @@ private:
         return {};
     }
 
-    /// Whole numbers are of 255, fractions of 1.
+    /// Whole numbers are in 0 … 255, fractions in 0 … 1.
     void add_color(const PlyElement& element) {
         ++colored_;
         for (std::size_t c = 0; c < 4; ++c) {
@@ -159,7 +159,7 @@ private:
         return std::isfinite(uv[0]) && std::isfinite(uv[1]) ? uv : std::array{0.0f, 0.0f};
     }
 
-    /// The vertex that a number means; nothing where there is none.
+    /// The vertex with this number; empty where there is none.
     [[nodiscard]] std::optional<std::uint32_t> vertex_of(double index) const {
         if (!(index >= 0) || index >= static_cast<double>(vertices_) || index != std::floor(index)) return std::nullopt;
         return static_cast<std::uint32_t>(index);
@@ -238,7 +238,7 @@ private:
     std::array<double, 4> color_sum_{};
     std::uint64_t colored_ = 0;
 
-    // Of the element in hand.
+    // Of the present element.
     Parts parts_;
     std::vector<double> values_, indices_, corner_texture_, ignored_;
     std::vector<std::uint32_t> corners_;

@@ -57,7 +57,7 @@ constexpr std::size_t most_nodes = 1'000'000;
 constexpr std::size_t most_materials = 1'000;
 constexpr std::size_t deepest = 250;  // nodes in nodes; Coin reads and walks them by recursion
 
-// What Coin had to say since it was last asked: it reports through global handlers.
+// The first message of Coin since the last reset: it reports through global handlers.
 std::string first_complaint;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 void note_complaint(const SoError* error, void*) {
@@ -68,7 +68,7 @@ void leave_inline_out(const SbString&, void*, SoVRMLInline*) {}
 SoProto* leave_prototype_out(SoInput*, const SbString*, const int, void*) { return nullptr; }
 void* make_group() { return new SoGroup; }
 
-/// A texture that only knows its url: Coin's looks for the file while it is read, whatever setDelayFetchURL says.
+/// A texture that only has its url: Coin's own opens the file while it is read, whatever setDelayFetchURL says.
 class UnfetchedTexture final : public SoVRMLImageTexture {
 public:
     UnfetchedTexture() { url.enableNotify(FALSE); }
@@ -80,14 +80,14 @@ private:
     }
 };
 
-/// A sound likewise.
+/// A sound that only has its url.
 class UnfetchedSound final : public SoVRMLAudioClip {
 public:
     UnfetchedSound() { url.enableNotify(FALSE); }
     static void* make() { return new UnfetchedSound; }
 };
 
-/// Once a process; nothing of the file reaches for other files after this.
+/// Called once a process; after this nothing in the file opens other files.
 void start_coin() {
     static const bool started = [] {
         SoDB::init();
@@ -111,7 +111,7 @@ void start_coin() {
     static_cast<void>(started);
 }
 
-/// How deep braces stand in braces, outside of comments and strings.
+/// The depth of nested braces, outside of comments and strings.
 std::size_t depth_of(std::string_view text) {
     std::size_t depth = 0, greatest = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -152,7 +152,7 @@ std::size_t faces_of(const SoVRMLIndexedFaceSet& set) {
     return static_cast<std::size_t>(ends) + 1;
 }
 
-/// Coin believes a file's indices: what points outside would be read from anywhere.
+/// Coin does not check a file's indices: indices out of range would read from anywhere.
 bool holds_together(const SoVRMLIndexedFaceSet& set) {
     const auto covers = [&](const SoMFInt32& own, bool per_vertex, std::size_t count) {
         if (per_vertex) return reaches_inside(own, set.coordIndex, count);
@@ -263,7 +263,7 @@ private:
         return error_ ? SoCallbackAction::ABORT : SoCallbackAction::CONTINUE;
     }
 
-    /// Points, lines and text have no triangles; what is no VRML is none of ours.
+    /// Points, lines and text have no triangles; nodes other than VRML's are skipped.
     SoCallbackAction::Response visit_geometry(const SoNode& node) {
         bool whole = true;
         if (node.isOfType(SoVRMLIndexedFaceSet::getClassTypeId())) {
@@ -298,7 +298,7 @@ private:
             solid_};
         const auto known = meshes_.find(key);
         if (known != meshes_.end()) return scene_.meshes[known->second];
-        // One a vertex colour would be no end of them.
+        // One material for each vertex colour would be too many.
         if (meshes_.size() >= most_materials) return scene_.meshes.back();
 
         RawMaterial material;
@@ -336,7 +336,7 @@ private:
         if (++triangles_ > most_triangles) return fail("triangles", "are more than " + std::to_string(most_triangles));
         take_transform(action.getModelMatrix());
         RawMesh& mesh = mesh_of(action, corners[0]->getMaterialIndex());
-        // The last mesh may have taken in what has another surface.
+        // The last mesh may have got triangles of another surface.
         const bool textured = scene_.materials[static_cast<std::size_t>(mesh.material)].base_color_image >= 0;
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
         for (const SoPrimitiveVertex* corner : corners) {
@@ -370,7 +370,7 @@ private:
     std::size_t nodes_ = 0, triangles_ = 0;
     std::map<Key, std::size_t> meshes_;
 
-    // Of the shape in hand.
+    // Of the present shape.
     std::string material_name_, texture_;
     SbMatrix to_scene_, for_normals_;
     bool solid_ = true, clockwise_ = false, has_transform_ = false, mirrored_ = false;
