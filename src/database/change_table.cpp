@@ -53,7 +53,7 @@ Result<std::int64_t> ChangeTable::begin_batch(const ChangeBatch& batch) {
 }
 
 Result<void> ChangeTable::add(std::int64_t batch, const ManualChange& change) {
-    // No value is told from an empty one by a text that no JSON is.
+    // A missing value is distinguished from an empty one by a text that is not JSON.
     auto statement = connection_.prepare(
         "INSERT INTO manual_change (batch, model_key, name, old_value, old_by, old_at, new_value)"
         " VALUES (?1, ?2, ?3, nullif(?4, ''), iif(?4 = '', NULL, ?5), iif(?4 = '', NULL, ?6), nullif(?7, ''))");
@@ -111,7 +111,7 @@ Result<std::optional<ChangeBatch>> ChangeTable::changed_since(const ManualChange
 }
 
 Result<std::vector<RecordedChange>> ChangeTable::search(const ChangeSearch& search) {
-    // Empty and 0 ask for all; batches rise with time, so the newest rows are those with the highest numbers.
+    // Empty and 0 mean all; batches rise with time, so the newest rows are those with the highest numbers.
     auto statement =
         connection_.prepare("SELECT " EMBODY_CHANGE_COLUMNS ", " EMBODY_BATCH_COLUMNS
                             ", ifnull((SELECT m.name FROM model AS m WHERE m.key = c.model_key), '')"

@@ -60,22 +60,22 @@ class ChangeTable {
 public:
     explicit ChangeTable(Connection& connection) : connection_(connection) {}
 
-    /// Gives the batch's id.
+    /// Returns the batch's id.
     Result<std::int64_t> begin_batch(const ChangeBatch& batch);
     Result<void> add(std::int64_t batch, const ManualChange& change);
-    /// Notes which undo took the batch back; 0: it acts again.
+    /// Stores which undo reverted the batch; 0: it is in force again.
     Result<void> mark_undone(std::int64_t batch, std::int64_t undone_by);
 
     Result<std::optional<ChangeBatch>> find_batch(std::int64_t id);
     /// The last batch of this person that can be undone: no undo itself, and not undone.
     Result<std::optional<ChangeBatch>> last_batch(std::string_view person);
-    /// In the order in which they were made.
+    /// All changes in the order in which they were made.
     Result<std::vector<ManualChange>> changes_of(std::int64_t batch);
     /// The batch that last changed the same value after `change` and is in force; undo and redo do not count.
     Result<std::optional<ChangeBatch>> changed_since(const ManualChange& change);
-    /// Newest first.
+    /// Changes, newest first.
     Result<std::vector<RecordedChange>> search(const ChangeSearch& search);
-    /// Newest first.
+    /// Batches, newest first.
     Result<std::vector<CountedBatch>> batches(const BatchSearch& search);
     /// The number of the newest batch; 0: none.
     Result<std::int64_t> newest_batch();

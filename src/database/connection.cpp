@@ -51,7 +51,7 @@ Error describe(const std::filesystem::path& file, int code, const char* detail) 
     }
 }
 
-/// What can be told before the library is asked.
+/// Errors that can be found before the library is called.
 Result<void> prepare_place(const std::filesystem::path& file) {
     std::error_code failure;
     if (file.empty()) return Error{"database", "no file is named", "name one with --database"};
@@ -146,7 +146,7 @@ Result<void> Connection::need_writable() const {
 }
 
 Result<void> Connection::check_ownership(const ConnectionOptions& options) {
-    // One snapshot for all questions: another process may be creating the file just now.
+    // One snapshot for all queries: another process may be creating the file just now.
     if (auto begun = execute("BEGIN"); !begun) return begun;
     Result<void> owned = compare_marks(options);
     if (auto ended = execute("COMMIT"); owned && !ended) return ended;
@@ -170,7 +170,7 @@ Result<void> Connection::compare_marks(const ConnectionOptions& options) {
 
 Result<void> Connection::configure(const ConnectionOptions& options) {
     if (read_only_) return execute("PRAGMA cache_size = -32768; PRAGMA temp_store = MEMORY");
-    // A page size counts only before the first write; the mark is set by whoever comes first.
+    // A page size counts only before the first write; the mark is set by the first process to write.
     if (auto size = execute("PRAGMA page_size = " + std::to_string(page_bytes)); !size) return size;
     if (auto log = switch_to_write_ahead_log(options.wait_milliseconds); !log) return log;
     if (auto marked = set_mark(options.application_id); !marked) return marked;
@@ -207,7 +207,7 @@ Result<void> Connection::execute(const std::string& commands) {
 }
 
 Result<Statement> Connection::prepare(std::string_view command) {
-    // From the idle ones where there is one.
+    // Takes an idle one where there is one.
     if (auto found = handles_->idle.find(command); found != handles_->idle.end()) {
         auto taken = handles_->idle.extract(found);
         return Statement(*this, std::move(taken.key()), taken.mapped());

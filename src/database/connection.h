@@ -33,14 +33,14 @@ public:
 
     [[nodiscard]] const std::filesystem::path& file() const { return file_; }
     [[nodiscard]] bool is_read_only() const { return read_only_; }
-    /// The error that a command which writes would give; to be asked before long work is done for it.
+    /// The error that a command which writes would return; call it before long work for such a command.
     [[nodiscard]] Result<void> need_writable() const;
 
     /// Runs one or more commands that take no values and give no rows.
     Result<void> execute(const std::string& commands);
     /// A compiled command, kept for the next call with the same text.
     Result<Statement> prepare(std::string_view command);
-    /// The first column of the first row; the error tells if there is none.
+    /// The first column of the first row; an error if there is none.
     Result<std::int64_t> query_integer(std::string_view command);
     /// Row id of the last insertion.
     [[nodiscard]] std::int64_t last_row_id() const;

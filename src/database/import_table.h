@@ -10,7 +10,7 @@
 
 namespace embody::database {
 
-/// What was imported from one place.
+/// An import from one place.
 struct ImportSource {
     std::string location;    ///< a file, or archive!entry
     std::int64_t model = 0;  ///< id
@@ -31,7 +31,7 @@ public:
     Result<std::vector<std::string>> locations_of(std::int64_t model);
     /// Whether the model was imported from any place with this preparation.
     Result<bool> has_preparation(std::int64_t model, std::uint64_t prepare_hash);
-    /// After a model was stored anew: places that held something else no longer count as its.
+    /// Call after a model was stored anew: places that contained something else no longer count as its.
     Result<void> forget_other_preparations(std::int64_t model, std::uint64_t prepare_hash);
 
 private:

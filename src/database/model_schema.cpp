@@ -142,9 +142,9 @@ CREATE INDEX manual_change_by_model ON manual_change (model_key, name, id);
 CREATE INDEX manual_change_by_batch ON manual_change (batch);
 )sql";
 
-// Geometry and pictures apart from the models that have them: what is the same for many is stored once, and goes with
-// the last of them. `hash` only finds candidates; 0 where it was not computed. `model_words` follows changes of words
-// only.
+// Geometry and pictures are separate from their models: data that is the same for many is stored once, and is removed
+// with the last of them. `hash` only finds candidates; 0 where it was not computed. `model_words` follows changes of
+// words only.
 constexpr const char* shared_contents = R"sql(
 CREATE TABLE stored_geometry (
     id          INTEGER PRIMARY KEY,

@@ -51,7 +51,7 @@ ModelRow read_row(const Statement& statement) {
 // each).
 constexpr std::size_t most_to_rank = 1500;
 
-// How well a name fits the words, best first; what fits only by tags and the like is the last.
+// How well a name matches the words, best first; models that match only by tags and the like come last.
 enum NameFit : std::uint8_t { is_the_words, has_the_words, has_their_beginnings, elsewhere };
 constexpr std::size_t name_fits = 4;
 
@@ -102,7 +102,7 @@ Result<ModelMatches> ModelTable::search(const ModelSearch& search) {
     const MatchExpressions expressions = match_expressions(search.words);
     if (expressions.ranked.empty()) return ModelMatches{};
 
-    // All that match, by the index alone, and of these the category's.
+    // All matches, by the index alone, and of these those of the category.
     auto ids = ids_that_match(expressions.anywhere);
     if (!ids) return ids.error();
     const bool broad = ids->size() > most_to_rank;
@@ -216,7 +216,7 @@ Result<std::vector<std::int64_t>> ModelTable::broad_page(const MatchExpressions&
         start += size;
     }
 
-    // The index by name is walked until all of them have come by; most often that is soon.
+    // The index by name is walked until all of them were met; usually that is soon.
     auto walk = connection_.prepare(search.category.empty()
                                         ? "SELECT id FROM model ORDER BY name COLLATE NOCASE, id"
                                         : "SELECT id FROM model WHERE category = ? ORDER BY name COLLATE NOCASE, id");

@@ -25,7 +25,7 @@ struct ModelRow {
     std::uint64_t file_hash = 0, geometry_hash = 0;
 };
 
-/// What is known of a model, as JSON text.
+/// The stored facts of a model, as JSON text.
 struct ModelKnowledge {
     std::string facts, automatic;
 };
@@ -56,14 +56,14 @@ public:
     Result<std::int64_t> put(const ModelRow& model, const ModelKnowledge& knowledge, const ModelBlobs& blobs);
     /// As `put`, with the geometry and picture of the model `like`, which are not stored again.
     Result<std::int64_t> put_like(std::int64_t like, const ModelRow& model, const ModelKnowledge& knowledge);
-    /// Replaces what is known of a model; its geometry and pictures stay.
+    /// Replaces the stored facts of a model; its geometry and pictures stay.
     Result<void> describe(const ModelRow& model, const ModelKnowledge& knowledge);
     Result<void> put_knowledge(std::int64_t id, const ModelKnowledge& knowledge);
     Result<void> remove(std::int64_t id);
 
     Result<std::optional<ModelRow>> find(std::int64_t id);
     Result<std::optional<ModelRow>> find_key(std::string_view key);
-    /// At most two, enough to know whether a name is one model's.
+    /// At most two, enough to know whether a name belongs to one model.
     Result<std::vector<ModelRow>> find_name(std::string_view name);
     /// The model imported from a plain file with these bytes.
     Result<std::optional<ModelRow>> find_file(std::uint64_t file_hash);
@@ -74,7 +74,7 @@ public:
     Result<std::int64_t> count();
     Result<std::vector<std::int64_t>> ids();
 
-    // Of one model; the error says if there is no such model.
+    // Data of one model; an error if there is no such model.
     Result<ModelKnowledge> knowledge(std::int64_t id);
     Result<std::vector<std::uint8_t>> geometry(std::int64_t id);
     Result<std::vector<std::uint8_t>> hull_points(std::int64_t id);
@@ -82,7 +82,7 @@ public:
 
 private:
     Result<std::int64_t> put_row(const ModelRow& model);
-    // The id of these bytes, which are stored unless they are there.
+    // The id of these bytes, which are stored unless they already are.
     Result<std::int64_t> store_geometry(const ModelBlobs& blobs, std::uint64_t hash);
     Result<std::int64_t> store_picture(std::span<const std::uint8_t> png);
     Result<void> link(std::int64_t id, std::int64_t geometry, std::int64_t picture);

@@ -33,7 +33,7 @@ CodePoint read_code_point(std::string_view text) {
     return {value, length};
 }
 
-// Letters and digits of any script, near enough to the index's own idea of them: a sign that passes wrongly only finds
+// Letters and digits of any script, close to the index's own definition: a character that passes wrongly only finds
 // nothing.
 bool is_part_of_word(std::uint32_t c) {
     if (c < 0x80) return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');

@@ -9,7 +9,7 @@
 
 namespace embody::database {
 
-/// What a model that changes its form is computed on, or why nothing is.
+/// The simulation mesh of a model that changes its form, or why there is none.
 struct StoredSimulationMesh {
     std::string kind;                ///< of the thing: "soft"
     int revision = 0;                ///< of the rule that it was made by

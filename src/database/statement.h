@@ -15,7 +15,7 @@ namespace embody::database {
 class Connection;
 
 /// A compiled command, borrowed from its connection until it goes out of scope. Bind the values in order, then step
-/// through the rows. A failed bind is told by the next step().
+/// through the rows. A failed bind is reported by the next step().
 class Statement {
 public:
     Statement(Statement&& other) noexcept;
