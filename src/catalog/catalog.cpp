@@ -76,12 +76,12 @@ struct Catalog::State {
     database::ManualAttributeTable manual;
     ManualChanges changes;
     Author author{current_person(), {}};
-    // How far changes_of_others() has looked, and what need not be told.
+    // The last change that changes_of_others() has read, and changes that it must not report.
     std::int64_t seen_version = -1, seen_batch = 0;
     std::set<std::int64_t> own_batches;
     TaskPool workers{TaskPool::workers_that_pay()};  ///< no threads before the first use
 
-    // What is known of one model, read from the database.
+    // The stored facts of one model, read from the database.
     struct Known {
         database::ModelRow row;
         attributes::ModelFacts facts;
@@ -282,7 +282,7 @@ void Catalog::prepare_shape(const ChangeReport& report) const {
     if (!set) return;
     if (attributes::matter_of(*set) == attributes::Matter::solid) (void)soft_mesh(report.models.front().id);
     if (set->word("collision_shape", "") != "decomposition") return;
-    // What fails here fails again where the shape is needed, and is told there.
+    // An error here occurs again where the shape is needed, and is reported there.
     const geometry::DecompositionParameters usual;
     (void)convex_parts(report.models.front().id, static_cast<int>(set->number("max_hulls", usual.max_hulls)),
                        set->number("hull_error", usual.hull_error));
@@ -341,7 +341,7 @@ Result<std::vector<ChangeBatchRecord>> Catalog::history_batches(const BatchQuery
 
 Result<std::vector<ChangeBatchRecord>> Catalog::changes_of_others() {
     State& state = *state_;
-    // SQLite's count of what other connections committed: asking costs no reading.
+    // SQLite's count of commits by other connections: reading it costs no query.
     const auto version = state.connection->query_integer("PRAGMA data_version");
     if (!version) return version.error();
     if (*version == state.seen_version) return std::vector<ChangeBatchRecord>();
@@ -401,7 +401,7 @@ Result<void> Catalog::State::refresh_attributes(const std::string& hash, const O
 
 Result<bool> Catalog::State::refresh_batch(const std::string& hash, const std::vector<std::int64_t>& ids,
                                            std::size_t& done) {
-    // How far it is stands in the database, and changes with the models: neither a kill nor another process that does
+    // The progress is stored in the database, and changes with the models: neither a kill nor another process that does
     // the same makes a difference. Until all is done, the database counts as of no taxonomy.
     constexpr std::size_t batch = 512;
     auto transaction = database::Transaction::begin(*connection);
@@ -418,7 +418,7 @@ Result<bool> Catalog::State::refresh_batch(const std::string& hash, const std::v
     const auto end = first + std::min<std::ptrdiff_t>(batch, ids.end() - first);
     done = static_cast<std::size_t>(end - ids.begin());
 
-    // What another process has removed meanwhile is left out.
+    // Models that another process has removed meanwhile are left out.
     std::vector<Description> descriptions;
     for (auto id = first; id != end; ++id) {
         const auto there = models.find(*id);
@@ -465,7 +465,7 @@ Result<void> Catalog::add_variants(const std::vector<ModelVariant>& variants) {
 }
 
 Result<void> Catalog::State::store_primitives() {
-    // Once a database: a person who removed one does not want it back at the next start.
+    // Once a database: a person who removed a model does not want it back at the next start.
     database::SettingTable settings(*connection);
     const auto stored_revision = settings.get(primitives_setting);
     if (!stored_revision) return stored_revision.error();
@@ -521,7 +521,7 @@ Result<ConvexParts> Catalog::convex_parts(std::int64_t id, int max_hulls, double
     const auto stored = table.find(id, max_hulls, micrometres(error));
     if (!stored) return stored.error();
     if (*stored) {
-        // What can't be read is made again.
+        // Unreadable data is made again.
         if (auto parts = parts_from(**stored)) return parts;
     }
     const auto model = mesh(id);
@@ -538,7 +538,7 @@ Result<SoftMesh> Catalog::soft_mesh(std::int64_t id) const {
     if (!stored) return stored.error();
     if (*stored && is_current(**stored)) {
         auto mesh = soft_mesh_from(**stored);
-        // What can't be read is made again.
+        // Unreadable data is made again.
         if (mesh || !(*stored)->problem.empty()) return mesh;
     }
     const auto model = mesh(id);
@@ -554,7 +554,7 @@ Result<ImportReport> Catalog::import(const std::vector<std::filesystem::path>& p
     ConfinedPoolOptions pool;
     pool.workers = options.workers;
     pool.worker_program = options.worker_program;
-    // The last news again and again, so that a person can stop within a model, too.
+    // Repeats the last progress, so that a person can stop within a model, too.
     ImportOptions watched = options;
     ImportProgress last;
     if (options.progress) {

@@ -72,13 +72,13 @@ struct ImportOptions {
     int workers = 0;                                           ///< 0: one a core
     bool again = false;                                        ///< prepare also what is in the database unchanged
     std::filesystem::path worker_program = {};                 ///< empty: beside the running program
-    std::optional<Collection> collection = {};                 ///< what is known of the files; see catalog/collection.h
+    std::optional<Collection> collection = {};                 ///< facts about the files; see catalog/collection.h
     std::function<bool(const ImportProgress&)> progress = {};  ///< returns false to stop; may be empty
 };
 
 struct OpenOptions {
-    /// Told again and again while all models are resolved anew, because the taxonomy has changed; false ends that with
-    /// an error, and the next opening goes on from there. May be empty.
+    /// Called again and again while all models are resolved anew, because the taxonomy has changed; false ends that
+    /// with an error, and the next opening goes on from there. May be empty.
     std::function<bool(std::size_t done, std::size_t total)> progress = {};
 };
 
@@ -102,24 +102,24 @@ public:
                                                  const std::filesystem::path& user_taxonomy = user_taxonomy_folder());
     /// $XDG_DATA_HOME/embody/models.sqlite, or ~/.local/share/embody/models.sqlite.
     static std::filesystem::path default_file();
-    /// Where the user's own categories are: $EMBODY_TAXONOMY, else $XDG_CONFIG_HOME/embody/taxonomy or
+    /// Folder of the user's own categories: $EMBODY_TAXONOMY, else $XDG_CONFIG_HOME/embody/taxonomy or
     /// ~/.config/embody/taxonomy where that folder exists, else empty.
     static std::filesystem::path user_taxonomy_folder();
     ~Catalog();
 
-    /// What it resolves attributes by.
+    /// The taxonomy that it resolves attributes by.
     [[nodiscard]] const attributes::Taxonomy& taxonomy() const;
 
     Result<SearchPage> search(const SearchQuery& query) const;
     Result<std::vector<CategoryCount>> categories() const;
-    /// By key, id as decimal text, or a name that only one model has.
+    /// Finds a model by key, id as decimal text, or a name that only one model has.
     Result<ModelSummary> model(std::string_view key_or_id_or_name) const;
     [[nodiscard]] std::int64_t model_count() const;
 
     Result<attributes::ModelFacts> facts(std::int64_t id) const;
-    /// Automatic attributes with the manual ones on top.
+    /// Automatic attributes, replaced by the manual ones.
     Result<attributes::AttributeSet> attributes(std::int64_t id) const;
-    /// Without the manual ones: what reset goes back to.
+    /// Without the manual ones: the values after a reset.
     Result<attributes::AttributeSet> automatic_attributes(std::int64_t id) const;
     /// A manual change by a person; survives re-import. Refused where the attribute does not concern the model's kind.
     Result<void> set_attribute(std::int64_t id, std::string_view name, const attributes::AttributeValue& value);
@@ -138,12 +138,12 @@ public:
     Result<ChangeReport> undo_changes(std::int64_t batch, const ChangeOptions& options = {});
     /// Who changed what when, newest first.
     Result<std::vector<ChangeRecord>> history(const HistoryQuery& query) const;
-    /// The same by acts, newest first.
+    /// As above by acts, newest first.
     Result<std::vector<ChangeBatchRecord>> history_batches(const BatchQuery& query) const;
     /// What others (another instance or process) changed by hand in this file since the last call, oldest first. Costs
     /// little where nobody wrote.
     Result<std::vector<ChangeBatchRecord>> changes_of_others();
-    /// Through what the person acts from now on, for the history: "Studio client 2".
+    /// Sets the program or client through which the person acts from now on, for the history: "Studio client 2".
     void set_session(std::string session);
 
     Result<std::vector<std::uint8_t>> thumbnail(std::int64_t id) const;  ///< PNG
@@ -164,12 +164,12 @@ public:
     /// the report.
     Result<ImportReport> import(const std::vector<std::filesystem::path>& paths, const ImportOptions& options);
     Result<void> remove(std::int64_t id);
-    /// All of them or none. The geometry is shared, so its size is not the variant's.
+    /// Adds all of them or none. Variants use one stored geometry, so its size is not the variant's.
     Result<void> add_variants(const std::vector<ModelVariant>& variants);
 
 private:
     Catalog();
-    /// Makes the decomposition or the tetrahedra that a change of one model asks for, so that no one waits later.
+    /// Makes the decomposition or the tetrahedra that a change of one model requires, so that no one waits later.
     void prepare_shape(const ChangeReport& report) const;
     void after_change(const ChangeReport& report);
     struct State;

@@ -16,14 +16,14 @@ struct CollectionFolder {
     std::string package;  ///< Debian package that brings it
 };
 
-/// What all files of a collection are whose place below its folder fits: "Relay_*" are a "relay".
+/// The word for all files of a collection whose place below its folder matches: "Relay_*" are a "relay".
 struct CollectionThings {
     std::string files;  ///< pattern of the shell (fnmatch, case does not matter, * matches / too)
     std::string are;    ///< word of the taxonomy
 };
 
-/// What is known of a collection of model files that say nothing of it themselves: where they lie, the length of their
-/// unit, their upward axis, who made them. Read from data/collections (schema: data/schema/collection.schema.json).
+/// Facts about a collection of model files that do not contain them: their folder, the length of their
+/// unit, their upward axis, their authors. Read from data/collections (schema: data/schema/collection.schema.json).
 struct Collection {
     std::string name;   ///< short, e.g. "kicad"; the beginning of the keys of its models
     std::string title;  ///< source of its models, for people

@@ -13,7 +13,7 @@
 
 namespace embody::catalog {
 
-/// A model that is to be described anew, and what came of it.
+/// A model that is to be described anew, and the result.
 struct Description {
     database::ModelRow row;  ///< its words are changed
     database::ModelKnowledge knowledge;
@@ -23,7 +23,7 @@ struct Description {
     std::optional<Error> problem;           ///< the stored facts can't be read
 };
 
-/// Resolves the attributes of all, on all workers.
+/// Resolves the attributes of all models, on all workers.
 void describe_all(std::span<Description> models, const attributes::Taxonomy& taxonomy, TaskPool& workers);
 
 }  // namespace embody::catalog

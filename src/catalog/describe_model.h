@@ -21,11 +21,11 @@ void apply_item(attributes::ModelFacts& facts, const ImportItem& item);
 void apply_item(database::ModelRow& row, const ImportItem& item);
 
 /// Resolves the automatic attributes from the facts, and takes category, subcategory and kind of `row` from them, with
-/// the manual ones on top. Gives what the database keeps of it.
+/// the manual ones on top. Returns the facts that the database keeps.
 database::ModelKnowledge describe(database::ModelRow& row, const attributes::ModelFacts& facts,
                                   const attributes::Taxonomy& taxonomy,
                                   const std::vector<attributes::AttributeEntry>& manual);
-/// The second half alone, for a changed manual attribute.
+/// Only the second half, for a changed manual attribute.
 void classify(database::ModelRow& row, const attributes::ModelFacts& facts, const attributes::AttributeSet& automatic,
               const std::vector<attributes::AttributeEntry>& manual);
 

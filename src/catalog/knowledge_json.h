@@ -10,7 +10,7 @@
 
 namespace embody::catalog {
 
-// What is known of a model as the JSON text that the database keeps. Numbers survive to the last bit, infinities as
+// The facts of a model as the JSON text that the database keeps. Numbers survive to the last bit, infinities as
 // "inf" and "-inf"; text that is not UTF-8 (old OBJ files) gets the replacement sign. Reading names the field that is
 // wrong.
 

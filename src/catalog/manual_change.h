@@ -17,7 +17,7 @@ struct Author {
     std::string session;  ///< program or client through which the person acts, such as "Studio client 2"
 };
 
-/// A value that a person gives, or takes back.
+/// A value that a person sets or removes.
 struct AttributeChange {
     std::string name;
     std::optional<attributes::AttributeValue> value = {};  ///< none: back to the automatic one
@@ -26,7 +26,7 @@ struct AttributeChange {
 struct ChangeOptions {
     bool reset_all = false;     ///< take back all manual values; then no change is named
     bool skip_refused = false;  ///< change the other models where some refuse
-    bool dry_run = false;       ///< tell what would happen
+    bool dry_run = false;       ///< only report what would happen
     /// After each model, done of total; returns false to stop: then nothing is changed. May be empty.
     std::function<bool(std::size_t done, std::size_t total)> progress = {};
 };
@@ -68,7 +68,7 @@ struct BatchQuery {
     std::int64_t after = 0;      ///< only batches with a number above this
     std::int64_t before = 0;     ///< only batches with a number below this; 0: all
     int limit = 50;
-    int changes = 10;  ///< values that are told of each
+    int changes = 10;  ///< maximum number of values listed of each
 };
 
 /// One value that a person changed.

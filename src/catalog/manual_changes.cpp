@@ -67,7 +67,7 @@ std::optional<std::string> value_of(const std::optional<ManualAttribute>& entry)
 
 }  // namespace
 
-/// One value of one model on its way to another.
+/// A change of one value of one model.
 struct ManualChanges::Step {
     ChangedModel model;
     std::string name;
@@ -91,7 +91,7 @@ Result<ChangeReport> ManualChanges::change(const Choose& choose, const std::vect
     const auto chosen = choose(models_);
     if (!chosen) return chosen.error();
 
-    // What is to do, before anything is done: one refusal may stop it all.
+    // Finds what is to do before anything is done: one refusal may stop it all.
     ChangeReport report;
     report.chosen = chosen->size();
     const bool sets =
@@ -208,7 +208,7 @@ Result<ChangeReport> ManualChanges::undo(std::int64_t number, const ChangeOption
     auto named = meant(number, author);
     if (!named) return named.error();
 
-    // An undo of an undo does again what that one took back, an undo of a redo takes it back again.
+    // An undo of an undo repeats what that one reverted, an undo of a redo reverts it again.
     database::ChangeBatch target = *named;
     if (named->undoes != 0) {
         auto found = audit_.find_batch(named->undoes);

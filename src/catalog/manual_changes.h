@@ -14,13 +14,13 @@ public:
     /// `list_again` renews category, subcategory and kind in the row of a model, inside the transaction.
     ManualChanges(database::Connection& connection, std::function<Result<void>(std::int64_t id)> list_again);
 
-    /// The models of a choice, best match first. Called inside the transaction, so that no model comes in between.
+    /// The models of a selection, best match first. Called inside the transaction, so that no model comes in between.
     using Choose = std::function<Result<std::vector<database::ModelRow>>(database::ModelTable&)>;
 
     /// `asked` says in words which models are meant.
     Result<ChangeReport> change(const Choose& choose, const std::vector<AttributeChange>& changes,
                                 const ChangeOptions& options, const Author& author, const std::string& asked);
-    /// Takes the batch back; of an undo: does again what it took back. 0: the author's last.
+    /// Reverts the batch; of an undo: repeats what it reverted. 0: the author's last.
     Result<ChangeReport> undo(std::int64_t batch, const ChangeOptions& options, const Author& author);
     /// Newest first.
     Result<std::vector<ChangeRecord>> history(const HistoryQuery& query);

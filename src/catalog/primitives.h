@@ -7,7 +7,7 @@
 
 namespace embody::catalog {
 
-/// A shape with a formula: no file, but a model like any other for who searches and builds scenes.
+/// A shape with a formula: no file, but a model like any other for those who search and build scenes.
 struct Primitive {
     ImportItem item;  ///< key "primitive:box" …
     PreparedModel model;

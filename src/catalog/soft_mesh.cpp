@@ -19,12 +19,12 @@ constexpr double least_share = 0.4;  // of the volume: with less it is mostly th
 constexpr double least_piece = 0.5;  // of the mesh: with less there is no piece that the others hang on
 constexpr double weld_share = 1e-6;  // of the size, as the volume estimate welds
 constexpr std::size_t most_nodes = 100'000;
-// More than this many times what was asked for is no accident of the lattice: it is flat.
+// A count more than this many times the wanted one is not by chance: the body is flat.
 constexpr double most_surplus = 1.3;
 constexpr double greatest_flatness = 8;
 
-// Two of the lattice's cubes across the thickness, with 12 tetrahedra each. Thickness is the least extent, or for what
-// is hollow or branched that of a plate of as much surface, and half of it more for edges: 3 V/A (ball: half its
+// Two of the lattice's cubes across the thickness, with 12 tetrahedra each. Thickness is the smallest extent, or for
+// hollow or branched bodies that of a plate of as much surface, and half of it more for edges: 3 V/A (ball: half its
 // diameter).
 int wanted_tetrahedra(double volume, double area, Vec3 size) {
     const double thickness = std::min(std::min({size.x, size.y, size.z}), 3 * volume / area);
@@ -61,7 +61,7 @@ struct Filled {
     double flatness = 1;
 };
 
-// As it is, or where that takes too many cubes as if it were thicker, which makes them flat.
+// Cubes, or where that takes too many, cells as if the body were thicker, which makes them flat.
 Result<Filled> fill(const geometry::TriangleMesh& welded, double volume, Vec3 size) {
     geometry::TetrahedralParameters parameters;
     parameters.tetrahedra = wanted_tetrahedra(volume, geometry::surface_area(welded), size);
@@ -83,7 +83,7 @@ Result<Filled> fill(const geometry::TriangleMesh& welded, double volume, Vec3 si
     return filled;
 }
 
-// The largest piece alone: the others would fall apart from it.
+// Only the largest component: the others would fall off.
 Result<std::size_t> keep_largest(geometry::TetrahedralMesh& mesh) {
     geometry::TetrahedralComponents pieces = geometry::find_components(mesh);
     double whole = 0;
@@ -96,7 +96,7 @@ Result<std::size_t> keep_largest(geometry::TetrahedralMesh& mesh) {
     return count - 1;
 }
 
-// By way of an array of floats: gcc 12 takes a rounding there and back of the same value for none when it vectorises.
+// Through an array of floats: gcc 12 removes a rounding there and back of the same value when it vectorises.
 void to_single_precision(std::vector<Vec3>& nodes) {
     std::vector<Vec3f> rounded;
     rounded.reserve(nodes.size());

@@ -8,13 +8,13 @@
 
 namespace embody::catalog {
 
-/// What a soft thing is computed on.
+/// The simulation mesh of a soft body.
 struct SoftMesh {
     geometry::TetrahedralMesh mesh;  ///< in the thing's frame; nodes have single precision, as stored ones have
     double cell = 0;                 ///< m, side of the cubes of the lattice that it is cut from
-    double flatness = 1;             ///< how many times as wide as thick these are made where cubes would be too many
-    double volume_share = 0;         ///< of what the surface encloses: what it lacks is thinner than a cell
-    std::size_t left_out = 0;        ///< pieces of the thing that do not hang together with it and go along with it
+    double flatness = 1;             ///< how many times as wide as thick the cells are where cubes would be too many
+    double volume_share = 0;         ///< fraction of the enclosed volume: the rest is thinner than a cell
+    std::size_t left_out = 0;        ///< pieces of the body that are not connected to it and move with it
 };
 
 inline constexpr int fewest_soft_tetrahedra = 300, most_soft_tetrahedra = 2000;
@@ -25,11 +25,11 @@ inline constexpr int fewest_soft_tetrahedra = 300, most_soft_tetrahedra = 2000;
 /// it too thin, or several things that do not hang together.
 Result<SoftMesh> make_soft_mesh(const geometry::TriangleMesh& surface);
 
-/// As the database has it: the mesh, or why there is none.
+/// The mesh as the database has it, or why there is none.
 database::StoredSimulationMesh stored_form(const Result<SoftMesh>& mesh);
-/// Whether it was made by the rule of today: what was not is made again.
+/// Whether it was made by the present rule: others are made again.
 bool is_current(const database::StoredSimulationMesh& stored);
-/// The mesh, or the stored problem. What cannot be read is an error whose `where` is "soft mesh".
+/// The mesh, or the stored problem. Unreadable data is an error whose `where` is "soft mesh".
 Result<SoftMesh> soft_mesh_from(const database::StoredSimulationMesh& stored);
 
 }  // namespace embody::catalog

@@ -6,7 +6,7 @@
 
 namespace embody::catalog {
 
-/// The error as the database keys it.
+/// The error in the unit by which the database finds it.
 std::int64_t micrometres(double length);
 
 database::StoredDecomposition stored_form(const ConvexParts& parts);

@@ -14,7 +14,7 @@ namespace embody::catalog {
 /// Size and time of change; a file with the same stamp is taken to have the same bytes.
 Result<std::string> stamp_file(const std::filesystem::path& file);
 
-/// Told again and again how far it is, bytes; false stops.
+/// Called again and again with the number of bytes done; false stops.
 using HashProgress = std::function<bool(std::uint64_t done, std::uint64_t total)>;
 
 /// Hash of the bytes of the regular file at this canonical path; nothing where `progress` stopped it. Refuses files of

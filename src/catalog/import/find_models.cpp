@@ -42,7 +42,7 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
     return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-/// What a collection says of all its files.
+/// Applies the collection's facts to a file.
 void describe_by(const Collection& collection, ImportItem& item) {
     item.source = collection.title;
     item.licence = collection.licence;
@@ -51,7 +51,7 @@ void describe_by(const Collection& collection, ImportItem& item) {
     item.stated_rotation = collection.rotation;
 }
 
-/// The file's path below the collection's folder that it is in; empty where it is in none.
+/// The file's path below the collection's folder that contains it; empty where none does.
 fs::path place_in(const Collection& collection, const fs::path& file) {
     for (const CollectionFolder& folder : collection.folders) {
         std::error_code failure;
@@ -61,7 +61,7 @@ fs::path place_in(const Collection& collection, const fs::path& file) {
     return {};
 }
 
-/// What that place says.
+/// Applies the collection's facts for that place.
 void describe_by_place(const Collection& collection, const fs::path& place, ImportItem& item) {
     const std::string inside = place.generic_string();
     item.key = collection.name + ":" + inside;
@@ -78,14 +78,14 @@ bool is_left_out(const Collection& collection, const fs::path& place) {
                        [&](const std::string& pattern) { return fits(pattern, place.generic_string()); });
 }
 
-/// One walk's memory.
+/// Memory of one search.
 struct Walk {
     const std::optional<Collection>& collection;
     const std::function<bool()>& go_on;
     FoundModels found;
     bool stopped = false;
 
-    /// Asked before each step that may take long.
+    /// Called before each step that may take long.
     bool is_stopped() {
         stopped = stopped || (go_on && !go_on());
         return stopped;
@@ -162,7 +162,7 @@ struct Walk {
         return any;
     }
 
-    // In a folder, a jar or zip without models is somebody else's and no failure.
+    // In a folder, a jar or zip without models belongs to something else and is no failure.
     void add_archive(const fs::path& file, bool named_by_user) {
         auto catalogue = interchange::read_sweethome_catalogue(file);
         if (catalogue) return add_catalogue(file, std::move(*catalogue));
@@ -185,7 +185,7 @@ struct Walk {
         return lies_in(file, folder) || (collection && !place_in(*collection, file).empty());
     }
 
-    /// What a link in `folder` leads to, where that is a wanted file which may be read.
+    /// The file that a link in `folder` leads to, where that is a wanted file which may be read.
     std::optional<fs::path> target_of(const fs::path& link, const fs::path& folder) {
         std::error_code failure;
         const fs::path target = fs::canonical(link, failure);

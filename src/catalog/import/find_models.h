@@ -12,7 +12,7 @@
 
 namespace embody::catalog {
 
-/// A model that lies somewhere, before anybody looked into its file.
+/// A model that was found, before its file was read.
 struct FoundModel {
     ImportItem item;             ///< a plain file's key is still empty: it comes from the content
     std::filesystem::path file;  ///< on disk, canonical: the model's own, or its archive's

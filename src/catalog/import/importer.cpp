@@ -130,7 +130,7 @@ Result<ImportReport> Importer::run(const std::vector<fs::path>& paths, const Imp
     progress_ = {};
     again_ = options.again;
 
-    // What is there, and what of it is to be done.
+    // Finds the items, and what is to be done with each.
     FoundModels found = find_models(paths, options.collection, [&] { return tell_progress(options, {}); });
     report_.failures = std::move(found.failures);
     progress_.total = found.models.size();
@@ -139,7 +139,7 @@ Result<ImportReport> Importer::run(const std::vector<fs::path>& paths, const Imp
     progress_.unchanged = report_.unchanged;
     progress_.failed = report_.failures.size();
 
-    // Do it.
+    // Does it.
     if (report_.stopped || !tell_progress(options, {})) {
         report_.stopped = true;
     } else if (!planned_.empty()) {
@@ -210,7 +210,7 @@ Result<std::optional<std::uint64_t>> Importer::hash_content(const FoundModel& mo
     const std::uint64_t limit =
         model.item.archive.empty() ? interchange::Archive::default_limit : interchange::Archive::largest_file;
     return hash_file(model.file, limit, [&](std::uint64_t done, std::uint64_t total) {
-        // Small files are read in no time; of large ones a person sees how far it is.
+        // Small files are read at once; for large ones a person sees the progress.
         const std::uint64_t percent = total == 0 ? 100 : 100 * done / total;
         const std::string far = done == 0 ? "" : ", read to " + std::to_string(percent) + " %";
         return tell_progress(options, model.file.filename().string() + far);
@@ -303,7 +303,7 @@ Result<void> Importer::keep(const ImportItem& item, const database::ModelRow& mo
     const bool same_words = *before && (*before)->item_hash == source.item_hash;
     if (same_words && (*before)->stamp == source.stamp && (*before)->prepare_hash == source.prepare_hash) return {};
 
-    // The catalogue says something else than last time: cheap, because the geometry stays.
+    // The catalogue has other facts than last time: cheap, because the geometry stays.
     if (*before && !same_words) {
         const auto knowledge = models_.knowledge(model.id);
         if (!knowledge) return knowledge.error();

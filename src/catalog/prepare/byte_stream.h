@@ -74,12 +74,12 @@ public:
         }
         return static_cast<std::size_t>(value);
     }
-    /// For callers that find a value which cannot be.
+    /// For callers that find an impossible value.
     void fail() {
         ok_ = false;
         left_ = {};
     }
-    /// Everything was there, and nothing is left over.
+    /// Whether everything was there, and nothing is left over.
     [[nodiscard]] bool is_complete() const { return ok_ && left_.empty(); }
 
 private:

@@ -62,7 +62,7 @@ std::string in_words(double seconds) {
     return static_cast<double>(whole) == seconds ? std::to_string(whole) : std::to_string(seconds);
 }
 
-/// Whether another try may end otherwise: what the file causes by itself is the same again.
+/// Whether another try may end otherwise: errors that the file causes by itself repeat.
 enum class Again : std::uint8_t { no, yes };
 
 /// One import: a number of places, each with a worker or none, and the items in order; then one place for those that
@@ -235,7 +235,7 @@ private:
         while (next_ < queue_.size()) {
             const std::size_t number = queue_[next_++];
             std::vector<std::uint8_t> payload = to_bytes(items_[number]);
-            // What the worker would refuse to read is refused here.
+            // Items that the worker would refuse to read are refused here.
             if (const auto readable = item_from_bytes(payload); !readable) {
                 finish_item(number, readable.error());
                 if (stopped_) return;
@@ -281,7 +281,7 @@ private:
     std::size_t bytes_per_worker_ = 0;
     std::vector<std::string> readable_;  // by the workers
     std::vector<Place> places_;
-    std::vector<std::size_t> queue_, again_;  // items of this round, and of the next
+    std::vector<std::size_t> queue_, again_;  // items of this pass, and of the next
     std::size_t next_ = 0;                    // in the queue
     bool stopped_ = false, any_was_ready_ = false, is_last_round_ = false;
     int starts_in_vain_ = 0;

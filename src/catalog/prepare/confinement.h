@@ -17,11 +17,11 @@ struct ConfinementOptions {
     std::vector<std::string> readable = {};
 };
 
-/// Gives up, for good, what reading models does not need. What is left: reading these files (where the kernel knows
-/// Landlock, as Linux does since 5.13; else all files), memory up to the limit, and the open pipes 0, 1 and 2. What
-/// goes: network, new processes and programs, writing, creating or removing files, signals to others, executable
-/// memory; see docs/import.md. The process ends with its parent. Call before the first byte of a foreign file is looked
-/// at. Linux only.
+/// Gives up, for good, all rights that reading models does not need. What is left: reading these files (where the
+/// kernel has Landlock, as Linux does since 5.13; else all files), memory up to the limit, and the open pipes 0, 1 and
+/// 2. What goes: network, new processes and programs, writing, creating or removing files, signals to others,
+/// executable memory; see docs/import.md. The process ends with its parent. Call before the first byte of a foreign
+/// file is read. Linux only.
 Result<void> confine_this_process(const ConfinementOptions& options);
 
 }  // namespace embody::catalog

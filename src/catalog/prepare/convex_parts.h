@@ -10,7 +10,7 @@
 
 namespace embody::catalog {
 
-/// The convex decomposition of a model, and what it was made with.
+/// The convex decomposition of a model, and its settings.
 struct ConvexParts {
     int max_hulls = 0;
     double hull_error = 0;                  ///< m

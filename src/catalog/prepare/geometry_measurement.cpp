@@ -55,7 +55,7 @@ void add_fit(const geometry::ConvexHull& hull, attributes::GeometryFacts& facts)
     facts.fitted_error = fit->deviation;
 }
 
-/// How hollow the hull is; and the parts of a hollow thing. What cannot be decomposed stays one hull.
+/// Measures how hollow the hull is, and decomposes a hollow body. A body that cannot be decomposed stays one hull.
 void add_parts(const geometry::TriangleMesh& mesh, Decompose decompose, GeometryMeasurement& measured) {
     const geometry::DecompositionParameters usual;
     const double kept = decompose == Decompose::no ? std::numeric_limits<double>::infinity()
@@ -83,7 +83,7 @@ GeometryMeasurement measure_geometry(const interchange::RawScene& scene, Decompo
     const geometry::Topology topology = geometry::find_topology(mesh);
     measured.inconsistent_edges = topology.inconsistent_edges;
 
-    // What it encloses, by the surest method that applies.
+    // The volume that it encloses, by the most certain method that applies.
     const geometry::VolumeEstimate estimate = geometry::estimate_volume(mesh, volume_cells);
     measured.volume_method = estimate.method;
     facts.closed = estimate.method == geometry::VolumeMethod::closed_mesh;

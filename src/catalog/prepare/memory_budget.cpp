@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t smallest_share = std::size_t{1} << 30;
 constexpr std::size_t largest_share = std::size_t{3} << 30;
 
-/// The least memory.max of this process's control group and those above it; all there is where none is set.
+/// The smallest memory.max of this process's control group and those above it; all memory where none is set.
 std::size_t control_group_limit() {
     std::size_t least = std::numeric_limits<std::size_t>::max();
     std::ifstream groups("/proc/self/cgroup");

@@ -9,7 +9,7 @@ namespace embody::catalog {
 /// less.
 std::size_t default_memory_budget();
 
-/// How the workers of one import share its memory: several at a time for most models, one at a time, with all of it,
+/// How the workers of one import divide its memory: several at a time for most models, one at a time, with all of it,
 /// for those that need more.
 struct MemoryShares {
     std::size_t workers = 1;  ///< at a time
@@ -17,7 +17,7 @@ struct MemoryShares {
     std::size_t alone = 0;    ///< address space of one that works alone, bytes
 };
 
-/// `budget`: bytes for all; `wanted`: workers, at least 1. Fewer workers where a share would be too small to read
+/// `budget`: bytes for all; `wanted`: workers, at least 1. Fewer workers where each would have too little to read
 /// ordinary models.
 MemoryShares share_memory(std::size_t budget, std::size_t wanted);
 

@@ -29,7 +29,7 @@ std::vector<attributes::PartFacts> measure_parts(const interchange::RawScene& sc
     }
     std::ranges::stable_sort(parts, std::greater{}, [](const auto& part) { return part.form.shell.volume; });
 
-    // The small ones as one.
+    // Merges the small ones.
     for (; parts.size() > most_parts; parts.pop_back()) {
         attributes::PartFacts& rest = parts[most_parts - 1];
         rest.material.clear();

@@ -10,7 +10,7 @@ namespace embody::catalog {
 namespace {
 
 constexpr double largest_extent = 10'000;  // m
-constexpr double flat = 1e-6;              // share of the largest extent below which an axis is flat
+constexpr double flat = 1e-6;              // fraction of the largest extent below which an axis is flat
 
 Bounds bounds_of(const interchange::RawScene& scene, const Mat3& rotation) {
     Bounds bounds;

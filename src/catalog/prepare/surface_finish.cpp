@@ -19,7 +19,7 @@ using interchange::RawScene;
 const double smooth_below = std::cos(40.0 * 3.14159265358979323846 / 180.0);
 constexpr std::size_t most_neighbours = 64;  // at one point; more are a fan whose middle may shade flat
 
-/// For each vertex the number of its place: vertices at equal positions share it.
+/// For each vertex the number of its place: vertices at equal positions have the same one.
 std::vector<std::uint32_t> places_of(const std::vector<Vec3f>& positions) {
     std::vector<std::uint32_t> order(positions.size()), place(positions.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -74,7 +74,7 @@ void add_crease_normals(RawMesh& mesh) {
     mesh = std::move(cornered);
 }
 
-/// Whether some edge of the meshes is run more often in one direction than in the other.
+/// Whether some edge of the meshes has more triangles in one direction than in the other.
 bool is_open(const std::vector<const RawMesh*>& meshes) {
     std::vector<Vec3f> positions;
     std::vector<std::array<std::uint32_t, 3>> triangles;

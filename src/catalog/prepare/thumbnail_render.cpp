@@ -31,11 +31,11 @@ double srgb_from_linear(double v) {
     v = std::clamp(v, 0.0, 1.0);
     return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
 }
-/// A share of 1 as a byte.
+/// A fraction 0 … 1 as a byte.
 std::uint8_t byte_from(double share) { return static_cast<std::uint8_t>(std::lround(255 * share)); }
 double linear_from_srgb(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
 
-/// What a ray met: where, how it faces, and what it is made of there.
+/// The hit of a ray: place, normal and material there.
 struct SurfacePoint {
     Vec3 position, normal;
     Vec3 color;  ///< linear

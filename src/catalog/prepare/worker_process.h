@@ -15,8 +15,8 @@
 
 namespace embody::catalog {
 
-/// A worker process and its two pipes, as the parent sees it: everything that it sends is suspect. Killed and reaped at
-/// the end of this object's life.
+/// A worker process and its two pipes, as the parent sees it: everything that it sends is untrusted. Killed and reaped
+/// at the end of this object's life.
 class WorkerProcess {
 public:
     using Clock = std::chrono::steady_clock;
@@ -37,7 +37,7 @@ public:
     /// Queues a frame for the worker; send_some() sends it.
     void queue(std::vector<std::uint8_t> frame);
     void send_some();
-    /// Reads what is there. False when the worker closed its end.
+    /// Reads the bytes that are there. False when the worker closed its end.
     bool receive_some();
 
     struct Message {

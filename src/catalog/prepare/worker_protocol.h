@@ -9,7 +9,7 @@
 
 namespace embody::catalog {
 
-/// What passes between the importing program and a worker, each as one frame:
+/// The messages between the importing program and a worker, each as one frame:
 ///   word "EMBW", version, kind, payload length (32 bit each), payload, its 64-bit hash.
 /// The program sends items; the worker says `ready` once it is confined, then answers each item with `prepared`,
 /// `failed` or, an error as well, `out_of_memory`.
@@ -26,7 +26,7 @@ struct FrameHeader {
 };
 
 std::vector<std::uint8_t> frame(FrameKind kind, std::span<const std::uint8_t> payload);
-/// Of the first frame_header_size bytes of a frame.
+/// Reads the first frame_header_size bytes of a frame.
 Result<FrameHeader> read_frame_header(std::span<const std::uint8_t> bytes);
 /// The payload of a whole frame whose header was read, its hash checked.
 Result<std::span<const std::uint8_t>> payload_of(std::span<const std::uint8_t> whole_frame);
@@ -35,9 +35,9 @@ std::vector<std::uint8_t> to_bytes(const ImportItem& item);
 std::vector<std::uint8_t> to_bytes(const PreparedModel& model);
 std::vector<std::uint8_t> to_bytes(const Error& error);
 
-/// The way back. The other end may have been taken over by a hostile file, so every count, length and number is
-/// checked: lists and texts bounded, numbers finite, choices known, hull points at most 256, convex parts at most 256
-/// of 64 vertices each.
+/// Messages of the worker. The other end may have been taken over by a hostile file, so every count, length and number
+/// is checked: lists and texts bounded, numbers finite, choices known, hull points at most 256, convex parts at most
+/// 256 of 64 vertices each.
 Result<ImportItem> item_from_bytes(std::span<const std::uint8_t> payload);
 Result<PreparedModel> model_from_bytes(std::span<const std::uint8_t> payload);
 /// What the other end reports, or that it reports nothing readable.
