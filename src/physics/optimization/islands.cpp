@@ -77,7 +77,7 @@ void find_levels(std::span<const BodyState> bodies, std::span<const ContactSumma
     }
 }
 
-// Sorts `count` items into islands by counting; `island_of(i)` tells the island of item i, `none` if it has none.
+// Sorts `count` items into islands by counting; `island_of(i)` returns the island of item i, `none` if it has none.
 template <class IslandOf, class SetFirst, class SetCount>
 void distribute(std::size_t count, std::vector<Island>& list, std::vector<std::uint32_t>& items, IslandOf island_of,
                 SetFirst first_of, SetCount count_of) {
