@@ -11,7 +11,7 @@ namespace dynamic {}
 /// and rolling. Solves the lists it is given and knows nothing of islands.
 namespace embody::physics::constraint {
 
-// The rooms that it may see (docs/architecture.md).
+// Namespaces that it may use (docs/architecture.md).
 using namespace collision;
 using namespace linear;
 using namespace dynamic;

@@ -15,8 +15,9 @@ void set_arms(Contact& contact, ContactPoint& point, Vec3 arm_a, Vec3 arm_b, std
     contact.approach_speed = std::max(contact.approach_speed, static_cast<float>(speed));
 }
 
-// Where a contact lies between the two surfaces, as a share of the gap from a's to b's: midway, but on the surface of
-// what rolls on something flat, whose speed at the contact would else not be that of its radius where it has sunk in.
+// Place of a contact between the two surfaces, as a fraction of the gap from a's to b's: midway, but on the surface of
+// a body that rolls on something flat: where that has sunk in, its speed at the midpoint would not be that of its
+// radius.
 double place_in_gap(bool a_is_round, bool b_is_round) { return a_is_round == b_is_round ? 0.5 : b_is_round ? 1 : 0; }
 
 }  // namespace
@@ -86,7 +87,7 @@ Anchor anchor_of(const Contact& contact) {
 }
 
 void match_points(const Contact& old_contact, Contact& new_contact, const ContactSettings& settings) {
-    // Features tell the same point; where they changed, the nearest old point within reach stands in for it.
+    // Features identify the same point; where they changed, the nearest old point within reach replaces it.
     const double squared_reach = settings.match_reach * settings.match_reach;
     const double squared_ratio = settings.match_feature_ratio * settings.match_feature_ratio;
     std::array<bool, Manifold::max_points> taken{};
@@ -115,7 +116,7 @@ void match_points(const Contact& old_contact, Contact& new_contact, const Contac
     }
 
     // The tangents of the two steps differ by a turn about the normal; the friction keeps its world direction. The
-    // bodies' last way is short beside the region: the old anchor is taken where it was.
+    // bodies' last travel is short beside the region: the old anchor is taken where it was.
     const Vec3 shift = anchor_of(old_contact).arm_a - anchor_of(new_contact).arm_a;
     const Vec3 force = friction_force(old_contact, old_contact.friction);
     new_contact.friction = {
@@ -230,8 +231,8 @@ void follow_bodies(Contact& contact, const FollowedPair& pair) {
 
 namespace {
 
-// How the point at `arm` moved since it was found. On a round body other matter has come to the point when it rolls, so
-// only the tilt counts, to first order: exact turning would lift a rolling ball by r θ²/2.
+// How the point at `arm` moved since it was found. When a round body rolls, other matter comes to the point, so only
+// the tilt counts, to first order: exact turning would lift a rolling ball by r θ²/2.
 Vec3 motion_of(const BodyState& body, Vec3 arm, bool is_round) {
     const Vec3 shift = body.center - body.start_center;
     if (!is_round) return shift + rotate(body.turn, arm) - arm;

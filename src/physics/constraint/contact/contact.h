@@ -33,7 +33,8 @@ struct ContactPoint {
     Vec3f place;                 ///< surface point of the smaller body when the pair was compared, see FollowedPair
     float place_separation = 0;  ///< then, m
     float total = 0;             ///< along the normal, of the whole step, impacts included, N s
-    float inactive_until = 0;    ///< s in the step: until then an impact lets the surfaces part, or they are not there
+    float inactive_until = 0;    ///< s in the step: until then the surfaces separate after an impact, or are not there
+                                 ///< yet
     std::uint32_t feature = 0;   ///< what it is on the two shapes
     float unused = 0;            ///< fills the row
 };
@@ -74,7 +75,7 @@ inline Vec3 tangent_2(const Contact& contact) { return cross(Vec3(contact.normal
 /// Takes the coefficients of the pair.
 void set_material(Contact& contact, const Material& material);
 
-/// What most stages must know of every contact, small enough to walk through all of them.
+/// What most stages need of every contact, small enough for a pass over all contacts.
 struct ContactSummary {
     std::uint32_t a = 0, b = 0;
     float approach_speed = 0;
@@ -82,15 +83,15 @@ struct ContactSummary {
     bool was_touching : 1 = false;  ///< in the last step
     bool was_loaded : 1 = false;
     bool bounces : 1 = false;
-    bool is_deep : 1 = false;  ///< bodies were found far in each other
+    bool is_deep : 1 = false;  ///< bodies were found to overlap deeply
     bool touches : 1 = false;  ///< in this step, once it was solved
     bool is_sunk : 1 = false;  ///< deeper than its load explains, once it was solved
     bool is_kept : 1 = false;  ///< as in the last step: both bodies stand
-    bool is_idle : 1 = false;  ///< connects nothing: its bodies fly free and keep apart through the step
+    bool is_idle : 1 = false;  ///< connects nothing: its bodies move freely and stay apart through the step
 };
 static_assert(sizeof(ContactSummary) == 16);
 
-/// Before the contact was solved. Deep: from `deep_penetration`, m, on.
+/// Summary of a contact that is not solved yet. Deep: penetrating by `deep_penetration`, m, or more.
 ContactSummary summary_of(const Contact& contact, float deep_penetration);
 
 /// Arms to the middle of the region's points, where its friction acts.
@@ -107,8 +108,8 @@ inline Vec3 position_of(const Contact& contact, const ContactPoint& point, std::
 /// Same bodies and pieces, in the order contacts are kept.
 inline std::array<std::uint32_t, 5> contact_key(const Contact& c) { return {c.a, c.b, c.piece_a, c.piece_b, c.part}; }
 
-/// What a contact is seen from while it follows its bodies: the larger body, and its axes; or others, in which the
-/// contact's normal stays as well.
+/// The frame of a contact while it follows its bodies: that of the larger body, or other axes in which the contact's
+/// normal stays constant as well.
 struct SeenFrom {
     Quat axes;
     bool b_is_larger = false;
@@ -118,9 +119,9 @@ struct SeenFrom {
 Contact make_contact(std::uint32_t a, std::uint32_t b, const Manifold& manifold, std::span<const BodyState> bodies,
                      const SeenFrom& seen = {});
 
-/// A pair of bodies as its contacts see it: from the larger body, whose turning moves surface points the least. All but
-/// the step's motion is in the axes of its SeenFrom, and small: so nothing is lost where a body is far from its
-/// surface.
+/// A pair of bodies in the frame of its contacts: that of the larger body, whose turning moves surface points the
+/// least. All but the step's motion is in the axes of its SeenFrom, and small: so no digits are lost where a body's
+/// centre is far from its surface.
 struct FollowedPair {
     Vec3f shift;  ///< of the smaller body's centre of mass since the pair was compared, m
     Vec3f turn;   ///< of the smaller body since then, imaginary part of a quaternion whose real part is not negative
@@ -129,10 +130,10 @@ struct FollowedPair {
     Vec3f apart;                ///< from a's centre of mass to b's, m, world; so are the next three
     Vec3f velocity;             ///< of b's centre of mass relative to a's, m/s
     Vec3f spin_a, spin_b;       ///< rad/s
-    bool has_ball = false;      ///< one is a ball: its point of contact goes with its centre along the other's surface
+    bool has_ball = false;      ///< one is a ball: its point of contact moves with its centre along the other's surface
 };
 
-/// Clears what belongs to a step, and notes what the last one made of the contact.
+/// Clears what belongs to a step, and notes the contact's state at the end of the last step.
 void begin_step(Contact& contact);
 
 /// Follows the bodies of a contact that was found in an earlier step: its surface points stay where they are on each

@@ -6,7 +6,8 @@
 
 namespace embody::physics::constraint {
 
-/// What contacts did to the kinetic energy of bodies, J, had they done the share s of it: linear · s + quadratic · s².
+/// What contacts did to the kinetic energy of bodies, J, had they done the fraction s of it: linear · s + quadratic ·
+/// s².
 struct ContactWork {
     double linear = 0, quadratic = 0;
     ContactWork& operator+=(const ContactWork& other) {
@@ -23,9 +24,9 @@ struct VelocityPair {
 ContactWork contact_work(const BodyConstants& constants, Quat rotation, const VelocityPair& free,
                          const VelocityPair& change);
 
-/// The largest share of what contacts did that gives no energy: contacts at rest and in sliding only take some (paper,
-/// eq. 4 and 7), and what sweeps that have not converged give is error. All impulses take the same share, so momentum
-/// is kept.
+/// The largest fraction of what contacts did that adds no energy: sticking and sliding contacts only take energy
+/// (paper, eq. 4 and 7), and energy that unconverged sweeps add is error. All impulses are scaled by the same fraction,
+/// so momentum is kept.
 double fraction_without_gain(const ContactWork& work);
 
 }  // namespace embody::physics::constraint

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Source: A. Castro, F. Permenter, X. Han, "An unconstrained convex formulation of compliant contact", 2022, with the
-// departures told in docs/physics/direct-solver.md.
+// departures described in docs/physics/direct-solver.md.
 #include "physics/constraint/direct/contact_newton.h"
 
 #include <algorithm>
@@ -100,7 +100,7 @@ void ContactNewton::note_rest() {
     }
 }
 
-// The one of that key, or one that was not needed for a while, or a new one.
+// The structure of that key, or one that was not needed for a while, or a new one.
 ContactNewton::Structure& ContactNewton::structure_of(std::uint32_t key) {
     if (key >= structure_of_key_.size()) structure_of_key_.resize(key + 1, 0);
     std::uint32_t& index = structure_of_key_[key];
@@ -140,7 +140,7 @@ void ContactNewton::find_structure(std::uint32_t key, std::span<const DirectPatc
     structure_->matrix.analyse(bodies_.size(), edges);
 }
 
-// M + Jᵀ S J and its factors, unless those at hand are of the same slopes.
+// M + Jᵀ S J and its factors, unless the present factors have the same slopes.
 void ContactNewton::factor(std::span<DirectPatch> patches) {
     const auto is_known = [](const DirectPatch& patch) {
         return patch.normal_slope == patch.factored_normal_slope &&
@@ -213,14 +213,14 @@ bool ContactNewton::find_rest(std::span<const Vec6> free, std::span<Vec6> veloci
     return iterate(free, settings_.rest_iterations, velocity, patches);
 }
 
-// The first step goes where all that was loaded and stuck stays so.
+// The first step takes the loaded points as loaded and the sticking ones as sticking.
 void ContactNewton::begin_from(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches) {
     std::copy(free.begin(), free.end(), velocity.begin());
     set_patch_velocities(velocity, patches);
     for (DirectPatch& patch : patches) evaluate_as_before(patch, stiffness_, settings_);
 }
 
-// Rounds until the impulses are right for this stiffness.
+// Iterates until the impulses are right for this stiffness.
 bool ContactNewton::iterate(std::span<const Vec6> free, int iterations, std::span<Vec6> velocity,
                             std::span<DirectPatch> patches) {
     for (int iteration = 0; iteration < iterations; ++iteration) {
@@ -235,9 +235,9 @@ bool ContactNewton::iterate(std::span<const Vec6> free, int iterations, std::spa
     return false;
 }
 
-// One step of Newton's method from the impulses that the patches hold; whether it was the last one.
+// One step of Newton's method from the impulses that the patches hold; returns whether it was the last one.
 bool ContactNewton::step(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches) {
-    // Downhill: Jᵀ λ − M (v − v*).
+    // Descent direction: Jᵀ λ − M (v − v*).
     std::vector<Vec6>& direction = direction_;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         right_side_[i] = momentum_of(bodies_[i], difference(free[i], velocity[i]));
@@ -249,7 +249,7 @@ bool ContactNewton::step(std::span<const Vec6> free, std::span<Vec6> velocity, s
     if (!std::all_of(direction.begin(), direction.end(), is_finite)) return false;
     for (DirectPatch& patch : patches) patch.change = relative_twist(patch, direction);
 
-    // How far.
+    // Line search.
     double fraction = 1;
     if (bound_ != FrictionBound::undamped) {
         slope_by_mass_ = curvature_by_mass_ = 0;
@@ -272,7 +272,8 @@ double ContactNewton::slope_at(double fraction, std::span<const DirectPatch> pat
     return slope;
 }
 
-// Where f stops falling along the step, by the regula falsi (Illinois); the whole step where it falls that far.
+// Length at which f stops falling along the step, by the regula falsi (Illinois); the whole step where f falls all
+// along it.
 double ContactNewton::find_fraction(std::span<const DirectPatch> patches) const {
     double low = 0, high = 1, at_low = slope_at(0, patches), at_high = slope_at(1, patches);
     const double enough = settings_.line_search_tolerance * std::fabs(at_low);

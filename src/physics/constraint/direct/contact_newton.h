@@ -31,26 +31,26 @@ public:
     /// Starts a list. Patches number the bodies by their place; `key` names lists that are likely the same ones as in
     /// the last step.
     void begin(std::uint32_t key, std::span<const NewtonBody> bodies, std::span<const DirectPatch> patches);
-    /// A list that was tried in vain, or that does not come to a stop, is not tried again for a while.
+    /// A list for which the method failed, or that does not come to rest, is not tried again for a while.
     void abandon();
     /// The list was solved, and its bodies hardly move.
     void note_rest();
     [[nodiscard]] bool has_given_up(std::uint32_t key) const;
-    /// Products of two 6×6 blocks that one round takes.
+    /// Products of two 6×6 blocks that one iteration takes.
     [[nodiscard]] std::size_t block_products() const { return structure_->matrix.block_products(); }
 
     /// The same, done in this step so far.
     [[nodiscard]] std::size_t work() const { return work_; }
 
-    /// From the velocities that the forces alone would give, finds the true ones and each patch's impulse. False where
-    /// the method does not converge.
+    /// From the velocities by the forces alone, finds the true ones and each patch's impulse. False where the method
+    /// does not converge.
     bool find_velocities(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches);
     /// The same for bodies that hardly move: friction and loads together, from where nothing moves.
     bool find_rest(std::span<const Vec6> free, std::span<Vec6> velocity, std::span<DirectPatch> patches);
 
     /// Before find_shifts(): bodies may slide while they are moved. Else what sticks stays where it is.
     void drop_friction(std::span<DirectPatch> patches);
-    /// Small motions that close `share` of the gaps and overlaps of all loaded points, each by `most` m at most; after
+    /// Small motions that close `share` of the gaps and overlaps of all loaded points, each by at most `most` m; after
     /// find_velocities() or find_rest(), with the last factors.
     void find_shifts(std::span<const DirectPatch> patches, double fraction, double most, std::span<Vec6> shifts);
 
@@ -85,7 +85,8 @@ private:
     double stiffness_ = 0;                              // k, kg
     bool has_factors_ = false;                          // of this list
     std::size_t work_ = 0;                              // products of 6×6 blocks
-    FrictionBound bound_ = FrictionBound::undamped;     // steps go only as far as f falls, but in haste
+    FrictionBound bound_ = FrictionBound::undamped;     // undamped takes whole steps; else the line search shortens
+                                                        // them
     double slope_by_mass_ = 0, curvature_by_mass_ = 0;  // of f along the step, kg m²/s²
     std::vector<Vec6> direction_, right_side_;
     std::vector<Structure> structures_;

@@ -12,7 +12,7 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr double cone_rounding = 1e-6;  // share by which friction may leave its cone: stored in floats it does by 1e-7
+constexpr double cone_rounding = 1e-6;  // fraction by which friction may exceed its cone; floats exceed it by 1e-7
 
 // How the point moved with the body in this step; on a round body only the tilt counts (contact.cpp).
 Vec3 motion_at(Vec3 displacement, const Quat& turn, Vec3 arm, bool is_round) {
@@ -46,7 +46,7 @@ DirectContactSolver::Outcome DirectContactSolver::solve(const List& list, Effort
     const bool may_wait = newton_.has_given_up(list.bodies.front()) || newton_.work() > settings_.max_products_step;
     if (only_slow && may_wait) return Outcome::unsolved;
 
-    // Slow bodies in one go; should they turn out to move, from the beginning again.
+    // Slow bodies in one solve; should they turn out to move, from the beginning again.
     gather(list, bodies, constants, contacts, 1);
     if (only_slow && newton_.block_products() > settings_.max_products_slow) return Outcome::unsolved;
     if (is_slow(slow)) {
@@ -81,8 +81,8 @@ std::int32_t DirectContactSolver::number_of(std::uint32_t slot) const {
     return is_ours ? number_of_slot_[slot] : DirectPatch::immovable;
 }
 
-// Whether the last impulses hold everything where it is: then they are the solution. What the rounding of the stored
-// impulses leaves over is no reason to move.
+// Whether the last impulses hold everything where it is: then they are the solution. The rounding error of the stored
+// impulses is no reason to move.
 bool DirectContactSolver::stays_at_rest(const List& list, std::span<BodyState> bodies,
                                         std::span<const BodyConstants> constants, std::span<Contact> contacts) {
     std::vector<Vec6>& momentum = shift_;
@@ -124,7 +124,7 @@ void DirectContactSolver::hold(const List& list, std::span<Contact> contacts) {
     }
 }
 
-// Adds a contact's last impulses to the bodies' momentum; false where they cannot be the next ones.
+// Adds a contact's last impulses to the bodies' momentum; false where they cannot be the next impulses.
 bool DirectContactSolver::holds_at_rest(const Contact& contact) {
     const double rest_gap = settings_.rest_gap_tolerance;
     const Anchor anchor = anchor_of(contact);
@@ -223,7 +223,8 @@ bool DirectContactSolver::is_slow(double most) const {
     });
 }
 
-// One solve for the whole step. What is solved directly in motion too mostly goes on as it was, which takes one round.
+// One solve for the whole step. Islands that are solved directly in motion, too, mostly go on as before, which takes
+// one iteration.
 bool DirectContactSolver::rest(bool only_slow, std::span<const Contact> contacts) {
     measure_gaps(contacts);
     for (DirectPatch& patch : patches_) begin_substep(patch, {h_, h_, settings_.rest_gap_tolerance}, settings_);
@@ -233,7 +234,7 @@ bool DirectContactSolver::rest(bool only_slow, std::span<const Contact> contacts
     drift();
     measure_gaps(contacts);
     if (worst_gap() > settings_.rest_gap_tolerance) {
-        // What sticks would hold on to its overlaps, or open other contacts while they close.
+        // With sticking, overlaps would stay, or other contacts would open while these close.
         newton_.drop_friction(patches_);
         correct_positions(settings_.rest_correction_fraction, settings_.max_rest_shift, contacts);
     }
@@ -276,7 +277,7 @@ void DirectContactSolver::drift() {
         motion.displacement += v * h_;
         motion.turn = normalized(cayley(w * h_) * motion.turn);
 
-        // A body near others that nothing touched: its mean velocity lies half a kick behind.
+        // A body that touched nothing: its mean velocity is half a kick behind.
         if (v == free_velocity_[i].linear()) motion.displacement -= motion.acceleration * (h_ * h_ / 2);
     }
 }

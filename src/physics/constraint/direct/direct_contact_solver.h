@@ -22,10 +22,10 @@ public:
     /// stand still.
     struct List {
         std::span<const std::uint32_t> bodies, contacts;
-        int impulse_parts = 1;  ///< the contacts' impulses are those of the step's last part of so many equal ones
+        int impulse_parts = 1;  ///< the contacts' impulses are those of the last of so many equal parts of the step
     };
 
-    /// How much a list is worth.
+    /// How much effort a list is worth.
     enum class Effort {
         while_slow,  ///< one cheap solve for the whole step, if nothing moves or begins to move
         any,
@@ -42,7 +42,7 @@ public:
     /// Solves one list through the step: moves its bodies and hands the impulses to its contacts.
     [[nodiscard]] Outcome solve(const List& list, Effort effort, std::span<BodyState> bodies,
                                 std::span<const BodyConstants> constants, std::span<Contact> contacts);
-    /// What solve() does where it is known that the list is held.
+    /// Replaces solve() where it is known that the last impulses hold the list.
     static void hold(const List& list, std::span<Contact> contacts);
 
 private:

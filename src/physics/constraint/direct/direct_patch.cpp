@@ -8,7 +8,7 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr double below_any_load = -1e300;  // N s: what an inactive point wants
+constexpr double below_any_load = -1e300;  // N s: unbounded impulse of an inactive point
 
 double wanted_load(const DirectPatch::Point& point, Vec3 normal_part, double stiffness) {
     return point.guess - stiffness * (dot(row_of(point), normal_part) + point.limit);
@@ -151,7 +151,7 @@ void lag_loads(DirectPatch& patch, bool from_guess, const DirectSettings& settin
     if (arm < settings.min_spin_arm_fraction * extent) arm = 0;
     if (patch.friction_dynamic > 0) arm += patch.torsion_arm / patch.friction_dynamic;
 
-    // A centre that hardly moved stays, so that the factors serve again.
+    // A centre of pressure that hardly moved is kept, so that the factors can be used again.
     const double change =
         std::fabs(s - patch.center_s) + std::fabs(t - patch.center_t) + std::fabs(arm - patch.spin_arm);
     if (change <= settings.metric_tolerance * patch.spin_arm) return;
@@ -168,8 +168,8 @@ double predicted_load(const DirectPatch& patch) {
     return load;
 }
 
-// The loads that the last step predicted bound the friction: those at a velocity that is not yet the right one may be
-// anything. What sticks keeps its metric, so that the factors serve again.
+// The loads that the last step predicted bound the friction: loads at a velocity that has not converged may be
+// anything. A sticking patch keeps its metric, so that the factors can be used again.
 void lag_predicted_loads(DirectPatch& patch, const DirectSettings& settings) {
     if (patch.is_new || patch.is_sliding || patch.is_rolling) {
         lag_loads(patch, false, settings);
@@ -230,9 +230,9 @@ struct InCone {
     std::array<double, Manifold::max_points> load{};
     int loaded = 0;         // points
     Vec3 friction;          // y, in the metric
-    bool is_inside = true;  // as wanted; else on the cone:
+    bool is_inside = true;  // inside the cone; else on it:
     Vec3 direction;         // of y
-    double shorter = 0;     // s, by which y is shorter than wanted, N s
+    double shorter = 0;     // s, by which y is shorter than y', N s
     double size = 0;        // |y'|, N s
 };
 
@@ -323,8 +323,8 @@ void evaluate_coupled(DirectPatch& patch, double stiffness) {
     note_impulse(patch, normal_part, cone.friction, rolling);
 }
 
-// Friction under the lagged load. In haste what has just met sticks, and where the sliding turned round within the step
-// it stops, rather than slide to and fro for ever.
+// Friction under the lagged load. With undamped steps a new contact sticks, and sliding that reverses within the step
+// stops: else it would slide to and fro for ever.
 void evaluate_lagged(DirectPatch& patch, double stiffness, bool is_undamped, const DirectSettings& settings) {
     const PatchTwist& velocity = patch.velocity;
     const Vec3 normal_part = note_loads(patch, stiffness, [&](std::size_t i) {
@@ -389,7 +389,7 @@ void drop_friction(DirectPatch& patch, double stiffness) {
 void evaluate_as_before(DirectPatch& patch, double stiffness, const DirectSettings& settings) {
     const double parting_load = -settings.new_contact_speed * stiffness;
 
-    // A new patch has no memory: what does not part is loaded, and sticks.
+    // A new patch has no memory: points that do not separate are loaded, and stick.
     const PatchTwist& velocity = patch.velocity;
     Vec3 normal_part;
     patch.normal_slope = patch.coupling_slope = Mat3::zero();
@@ -406,7 +406,7 @@ void evaluate_as_before(DirectPatch& patch, double stiffness, const DirectSettin
     const bool is_loaded = patch.normal_slope != Mat3::zero();
     if (!is_loaded) patch.sticks = true;
 
-    // What slid goes on with the same friction; the next round turns it.
+    // A sliding patch goes on with the same friction; the next iteration turns it.
     const Mat3 r = metric(patch);
     patch.is_sliding = !patch.sticks;
     patch.slide_direction = {};

@@ -12,7 +12,7 @@
 
 namespace embody::physics::constraint {
 
-/// What goes with each other in a contact's frame (n, t1, t2) at its anchor: a relative velocity, or an impulse on b.
+/// Components in a contact's frame (n, t1, t2) at its anchor: a relative velocity, or an impulse on b.
 struct PatchTwist {
     Vec3 normal_part;    ///< along n; about t1, t2
     Vec3 friction_part;  ///< along t1, t2; about n
@@ -29,22 +29,22 @@ inline double dot(const PatchTwist& a, const PatchTwist& b) {
 
 /// What bounds a patch's friction while Newton's method looks for it.
 enum class FrictionBound {
-    undamped,  ///< the load of the last round; what has just met, or turns round within the step, sticks
-    lagged,    ///< the load of the last round
-    coupled,   ///< the load itself, found with it: for what rests. What slides would be lifted
+    undamped,  ///< the load of the last iteration; new contacts, and sliding that reverses in the step, stick
+    lagged,    ///< the load of the last iteration
+    coupled,   ///< the load itself, found together with friction: for bodies at rest; sliding would lift them
 };
 
-/// A contact region as the direct solver sees it (docs/physics/direct-solver.md): a law that gives the impulse for a
-/// relative velocity. Impulses are a substep's.
+/// A contact region as the direct solver sees it (docs/physics/direct-solver.md): a law of the impulse for a relative
+/// velocity. Impulses are a substep's.
 struct DirectPatch {
-    static constexpr std::int32_t immovable = -1;  ///< no number: the body answers nothing
+    static constexpr std::int32_t immovable = -1;  ///< no number: the body does not move
 
     struct Point {
         double s = 0, t = 0;        ///< from the anchor along t1, t2, m
         double gap = 0;             ///< now, m
         double guess = 0;           ///< λ₀, N s
         double load = 0;            ///< λ, N s
-        double predicted = 0;       ///< λ by the slopes of the last round, N s
+        double predicted = 0;       ///< λ by the slopes of the last iteration, N s
         double total = 0;           ///< of the step, N s
         double limit = 0;           ///< the approach speed that the gap allows, m/s
         double inactive_until = 0;  ///< s in the step
@@ -65,7 +65,7 @@ struct DirectPatch {
     Vec3 rolling_guess, rolling;                    ///< x, y: about t1, t2, N m s
     bool sticks = true;                             ///< holds by static friction until the cone is left
 
-    // Lagged: of the last round; of the first one with loads where the patch is new.
+    // Lagged: of the last iteration; of the first one with loads where the patch is new.
     bool is_new = true;
     double lagged_load = 0;             ///< N s
     double center_s = 0, center_t = 0;  ///< centre of pressure, m
@@ -89,32 +89,32 @@ DirectPatch make_patch(std::uint32_t index, const Contact& contact, double subst
 /// Hands back impulses: those of a substep are `substep_fraction` of the patch's.
 void write_patch(const DirectPatch& patch, double substep_fraction, Contact& contact);
 
-/// How the normal part of a velocity becomes a point's speed of parting.
+/// The row that turns the normal part of a velocity into a point's separating speed.
 inline Vec3 row_of(const DirectPatch::Point& point) { return {1, point.t, -point.s}; }
 
 /// A substep of the direct solver.
 struct PatchSubstep {
     double time = 0;      ///< of its end, s since the step began
     double duration = 0;  ///< s
-    double slack = 0;     ///< m: what was loaded and is apart by no more counts as touching
+    double slack = 0;     ///< m: a loaded point with a gap up to this counts as touching
 };
 void begin_substep(DirectPatch& patch, const PatchSubstep& substep, const DirectSettings& settings);
-/// Before the first round with coupled bounds: what the guess tells of the friction's metric.
+/// Before the first iteration with coupled bounds: the friction's metric by the guess.
 void begin_coupled(DirectPatch& patch, const DirectSettings& settings);
 /// The impulses become the next guess and part of the step's totals.
 void end_substep(DirectPatch& patch);
-/// The points' loads after the patch's change of velocity, were the same ones loaded.
+/// The points' loads after the patch's change of velocity, if the same points stay loaded.
 void predict_loads(DirectPatch& patch, double stiffness);
-/// Whether it slides under the static coefficient: from then on the dynamic one counts.
+/// Whether the patch slides under the static coefficient: from then on the dynamic one counts.
 bool breaks_away(DirectPatch& patch);
 
-/// Writes down the impulse for the patch's velocity, and how it changes with it. `stiffness` is k, kg.
+/// Stores the impulse for the patch's velocity, and how it changes with it. `stiffness` is k, kg.
 void evaluate(DirectPatch& patch, double stiffness, FrictionBound bound, const DirectSettings& settings);
-/// The impulse for another velocity under the same bounds; writes nothing down.
+/// The impulse for another velocity under the same bounds; stores nothing.
 PatchTwist impulse_at(const DirectPatch& patch, const PatchTwist& velocity, double stiffness, FrictionBound bound);
 /// Leaves the slopes of the loaded points alone.
 void drop_friction(DirectPatch& patch, double stiffness);
-/// The same, were the loaded points and the sticking as they were in the last substep.
+/// The same, if loaded points and sticking are as in the last substep.
 void evaluate_as_before(DirectPatch& patch, double stiffness, const DirectSettings& settings);
 /// Relative velocity (or small motion) of the bodies at the anchor.
 PatchTwist relative_twist(const DirectPatch& patch, std::span<const Vec6> bodies);

@@ -37,11 +37,12 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // choose those (ImpactSolverSettings).
 constexpr double stop_fraction = 1e-9;  // of the start velocity: slower sliding is none, rounding leaves 1e-16 a step
 constexpr double straight_fraction = 1e-8;  // of the start velocity, by which a slide taken as straight misses its path
-constexpr double above_zero = 1e-300;       // m/s: a stop speed where nothing moves
-constexpr double straight_rounding = 1e-13;  // sine of the turn of a slide that rounding makes
+constexpr double above_zero = 1e-300;       // m/s: speed that counts as none where nothing moves
+constexpr double straight_rounding = 1e-13;  // sine of a slide's turn that is only rounding
 // Most collisions end within the first short steps. Where A is ill-conditioned u_t decays slowly, and steps may grow;
 // they may from the start where less than the last digits is asked for.
-constexpr double exact_step_fraction = 0.1;  // ImpactPrecision::step_fraction up to which they may not
+constexpr double exact_step_fraction = 0.1;  // ImpactPrecision::step_fraction up to which steps may not grow from the
+                                             // start
 constexpr int short_steps = 400;             // of 0.1: a decay to e⁻⁴⁰
 constexpr double max_fraction = 1.5;     // of the fastest decay, of a step: Runge-Kutta of order 4 is stable up to 2.78
 constexpr int max_steps = 20000;         // bounds the loop where A is so ill-conditioned that no step ends it
@@ -73,7 +74,7 @@ double impulse_to_end(const Collision& k, double rate) {
     const double un = k.s.velocity.z;
     if (k.phase == Phase::compression) return rate > 0 ? std::max(0.0, -un / rate) : infinity;
 
-    // W + u_n p + ½ rate p² = target; if the parting speed dies first, the phase ends there.
+    // W + u_n p + ½ rate p² = target; if the separating speed becomes zero first, the phase ends there.
     const double missing = k.target_work - k.s.normal_work;
     if (missing <= 0) return 0;
     const double discriminant = un * un + 2 * rate * missing;
@@ -82,7 +83,7 @@ double impulse_to_end(const Collision& k, double rate) {
     return denominator > 0 ? 2 * missing / denominator : infinity;
 }
 
-// Applies `amount` of normal impulse with the constant tangential share `ratio` (dP_t/dP₃).
+// Applies `amount` of normal impulse with the constant tangential part `ratio` (dP_t/dP₃).
 void advance_linearly(const Collision& k, Vec3 ratio, double amount) {
     const Vec3 direction{ratio.x, ratio.y, 1};
     const Vec3 change = k.a * direction * amount;
@@ -160,7 +161,7 @@ bool slide_curved(const Collision& k) {
         const Vec3 sliding = tangential(k.s.velocity), rate = tangential(rate_over_tau(k, sliding).velocity);
         const double slip = length(sliding), change = length(rate);
 
-        // Towards its end the sliding hardly turns any more: what the rest of a straight path would miss is nothing.
+        // Towards its end the sliding hardly turns any more: taking the rest as straight makes no error.
         const double turning = std::fabs(sliding.x * rate.y - sliding.y * rate.x);
         if (turning <= straight_fraction * start_slip * change) return slide_straight(k, sliding / slip);
         const double wanted = change > 0 ? k.precision.step_fraction * slip / change : longest;
@@ -228,7 +229,7 @@ void run_phase(const Collision& k) {
     }
     k.s.velocity.x = k.s.velocity.y = 0;
 
-    // The point stands: it sticks if friction can hold it, else it slides on.
+    // The point has stopped: it sticks if friction can hold it, else it slides on.
     const Vec3 hold = -solve_tangential(k.a, k.a.z);
     if (length(hold) <= k.c.friction_stick) {
         const double rate = (k.a * Vec3{hold.x, hold.y, 1}).z;

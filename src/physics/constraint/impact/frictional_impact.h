@@ -17,19 +17,19 @@ struct ImpactCoefficients {
 
 /// How finely eq. (3) is integrated.
 struct ImpactPrecision {
-    /// Share of the fastest decay of the sliding that one step spans, 0.01 … 0.5.
+    /// Length of a step over the time of the fastest decay of the sliding, 0.01 … 0.5.
     double step_fraction = ImpactSolverSettings{}.expansion_step_fraction;
-    /// Share of a step within which the end of a phase is found.
+    /// Fraction of a step within which the end of a phase is found.
     double end_fraction = ImpactSolverSettings{}.expansion_end_fraction;
-    double stop_speed = 0;  ///< m/s of sliding that counts as none; 1e-9 of the start speed is the least
+    double stop_speed = 0;  ///< m/s of sliding that counts as none; at least 1e-9 of the start speed
 };
 
-/// Where a micro-collision stands: what eq. (3) integrates over the normal impulse.
+/// State of a micro-collision: what eq. (3) integrates over the normal impulse.
 struct ImpactState {
     Vec3 velocity;           ///< relative velocity of the contact point, m/s
     Vec3 impulse;            ///< so far, N s
     double normal_work = 0;  ///< ∫ u_n dP₃ since the phase began, J
-    bool sticks = false;     ///< the point stuck at the end of the last phase
+    bool sticks = false;     ///< the point sticks at the end of the last phase
 };
 
 struct ImpactOutcome {

@@ -104,8 +104,8 @@ void make_ready(ImpactWork& work, std::span<const BodyState> bodies) {
     work.inverse_mass = transpose(work.frame) * in_world * work.frame;
 }
 
-// The end of a compression without its path. If it ends in sticking, the impulse is the one that stops the point,
-// whatever the path; a slide that hardly turns goes along its mean direction. False: neither.
+// The end of a compression without following its path. If it ends in sticking, the impulse is the one that stops the
+// point, whatever the path; a slide that hardly turns is taken along its mean direction. False where neither holds.
 bool estimate_compression(const Mat3& a, const ImpactCoefficients& c, double min_cosine, ImpactState& state) {
     const Vec3 u = state.velocity;
     const double slip = std::sqrt(u.x * u.x + u.y * u.y);
@@ -127,7 +127,7 @@ bool estimate_compression(const Mat3& a, const ImpactCoefficients& c, double min
         direction = normalized(direction + Vec3{end.x / end_slip, end.y / end_slip, 0});
     }
 
-    // It stops before the approach does.
+    // The sliding stops before the approach does.
     const Vec3 stop = -solve(a, u);
     const double friction = c.friction_slide * stop.z;
     if (!(stop.z > 0) || stop.x * stop.x + stop.y * stop.y > friction * friction) return false;
@@ -136,8 +136,8 @@ bool estimate_compression(const Mat3& a, const ImpactCoefficients& c, double min
     return true;
 }
 
-// Whether the compression of one more round may be estimated: all sites, or those that only rest on each other once
-// the collision itself has been followed.
+// Whether the compressions of the next iteration may be estimated: those of all sites, or those of sites that only rest
+// on each other, once the collision itself has been followed.
 bool may_estimate(const ImpactWork& work, SlidePath path, std::size_t iteration) {
     return path == SlidePath::estimated || (work.site->coefficients.restitution <= 0 && iteration > 0);
 }
@@ -145,8 +145,8 @@ bool may_estimate(const ImpactWork& work, SlidePath path, std::size_t iteration)
 bool is_same_pair(const ImpactWork& x, const ImpactWork& y) { return x.site->a == y.site->a && x.site->b == y.site->b; }
 
 // The sites that approach fastest, none if none does: one of each pair of bodies, the earlier one unless a later one is
-// faster by more than rounding (a patch stands before its corners). Those that are as fast go together, so that what is
-// symmetric stays so.
+// faster by more than rounding (a patch stands before its corners). Sites that are as fast are compressed together, so
+// that a symmetric collision stays symmetric.
 void find_fastest(std::vector<ImpactWork>& works, std::span<const BodyState> bodies, double tolerance, double rounding,
                   std::vector<ImpactWork*>& fastest) {
     fastest.clear();
@@ -199,8 +199,8 @@ void compress_alone(ImpactWork& work, std::span<const BodyState> bodies, const C
                                        .stop_speed = settings.rough_slide_tolerance * rules.fastest});
 }
 
-// Compresses these sites at once: each as if it were alone, then all by the same share, so far that the first of them
-// no longer approaches.
+// Compresses these sites at once: each as if it were alone, then all by the same fraction, so far that the first of
+// them no longer approaches.
 void compress_together(std::span<ImpactWork* const> sites, std::span<BodyState> bodies, const CompressionRules& rules,
                        std::size_t iteration, std::vector<Vec3>& impulses) {
     impulses.clear();
@@ -228,7 +228,7 @@ void compress_together(std::span<ImpactWork* const> sites, std::span<BodyState> 
     }
 }
 
-// Compresses until no site approaches. Returns how many sites took part, or -1 where the rounds were not enough.
+// Compresses until no site approaches. Returns how many sites took part, or -1 where the iterations were not enough.
 int compress_all(ImpactGroupMemory& memory, std::span<BodyState> bodies, const ImpactSolverSettings& settings,
                  SlidePath path) {
     std::vector<ImpactWork>& works = memory.works;
@@ -267,7 +267,7 @@ void expand_alone(ImpactWork& work, std::span<BodyState> bodies, const ImpactSol
     if (path == SlidePath::estimated) {
         precision = {.step_fraction = settings.rough_step_fraction, .end_fraction = settings.rough_end_fraction};
     }
-    // A slide that stopped with the compression has left no direction to slide on along, but its rounding.
+    // After a slide that stopped with the compression, the direction to slide on along is only rounding.
     precision.stop_speed = settings.slide_tolerance * length(work.velocity_before);
     const double e = work.site->coefficients.restitution;
     const Vec3 before = work.state.impulse;
@@ -317,7 +317,7 @@ void expand_together(std::vector<ImpactWork>& works, std::span<BodyState> bodies
         if (work.expansion.z > 0) apply(work, work.expansion, bodies);
     }
 
-    // Site by site of a pair; those of several pairs at once, in as many equal parts.
+    // The sites of one pair one after the other; those of several pairs at once, in as many equal parts.
     const std::size_t pairs = count_bouncing_pairs(works);
     set_places(works);
     std::size_t places = 0;
@@ -355,8 +355,8 @@ void sum_impulses(std::vector<ImpactWork>& works) {
     }
 }
 
-// Takes the part 1 − share of the expansion back, with the largest share that does not add energy: in the share the
-// energy is T_c + b s + c s².
+// Takes the part 1 − s of the expansion back, with the largest fraction s that does not add energy: the energy is T_c +
+// b s + c s².
 void limit_expansion(std::vector<ImpactWork>& works, std::span<BodyState> bodies) {
     sum_impulses(works);
     const double excess = energy_change(works, bodies);
@@ -404,7 +404,7 @@ bool expand(std::vector<ImpactWork>& works, std::span<BodyState> bodies, int tak
     return true;
 }
 
-// Where the answers of jointed bodies will be written.
+// Where the responses of jointed bodies will be written.
 void list_responses(std::vector<ImpactWork>& works, ImpactGroupMemory& memory) {
     const std::size_t size = 3 * memory.joints.bodies().size();
     if (size == 0) return;
@@ -426,7 +426,7 @@ ImpactReport solve_impact_group(std::span<ImpactSite> sites, std::span<BodyState
     for (std::size_t i = 0; i < sites.size(); ++i) begin(sites[i], bodies, works[i]);
     list_responses(works, memory);
 
-    // Compression and expansion; what that drives together again is stopped without a bounce.
+    // Compression and expansion; sites that approach again by these are stopped without a bounce.
     ImpactReport report;
     const int taking_part = compress_all(memory, bodies, settings, path);
     report.converged = taking_part >= 0;

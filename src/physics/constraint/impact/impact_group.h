@@ -23,7 +23,7 @@ struct ImpactSite {
 };
 
 struct ImpactReport {
-    bool converged = true;     ///< false: some site still approaches after the allowed rounds
+    bool converged = true;     ///< false: some site still approaches after the allowed iterations
     double energy_change = 0;  ///< J, <= 0 up to rounding
 };
 
@@ -40,12 +40,12 @@ struct ImpactWork {
     Vec3 turn_a, turn_b;             ///< arm × normal
     ImpactJoints* joints = nullptr;  ///< that pass its impulses on; null where neither body is jointed
     Vec6* response = nullptr;        ///< of the jointed bodies' velocities to 1 N s along each axis of the frame
-    bool is_ready = false;           ///< the next two are known
+    bool is_ready = false;           ///< the next two are valid
     Mat3 frame;                      ///< columns t1, t2, n
     Mat3 inverse_mass;               ///< A of eq. (3) in the frame
     ImpactState state;
     double compression_work = 0;
-    double velocity = 0;          ///< along the normal, before a round that several sites share, m/s
+    double velocity = 0;          ///< along the normal, before several sites are compressed together, m/s
     std::size_t place = 0;        ///< among the sites of its pair of bodies
     Vec3 friction;                ///< in the expansion, in the frame
     Vec3 compression, expansion;  ///< impulses in the frame

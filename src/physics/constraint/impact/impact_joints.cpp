@@ -38,7 +38,7 @@ void ImpactJoints::set(const JointedList& list, const View& view) {
     factor(view);
 }
 
-// The matrix of this structure: as analysed before, or in the place of the one longest out of use.
+// The matrix of this structure: as analysed before, or in the place of the one that was not used for the longest time.
 void ImpactJoints::choose_matrix() {
     edges_.clear();
     for (std::size_t i = 0; i < places_.size(); ++i) {

@@ -15,7 +15,7 @@ namespace embody::physics::constraint {
 ///
 ///   M Δv − Jᵀ λ = f,   J Δv = 0      λ: impulses of the joints
 ///
-/// which keeps momentum and all joints, and whose inverse is symmetric, so that the energy of a collision is told by
+/// which keeps momentum and all joints, and whose inverse is symmetric, so that the energy of a collision follows from
 /// its impulse alone. Motors and springs take no part: their forces are finite. One factorisation serves all impulses.
 class ImpactJoints {
 public:
@@ -29,8 +29,8 @@ public:
 
     /// No body is jointed.
     void clear();
-    /// These bodies and joints, at the places where they are at the impact; a joint whose other body is not of the list
-    /// holds on to that body as it is and moves then. Bodies ascend.
+    /// These bodies and joints, at the places where they are at the impact; a joint whose other body is not in the list
+    /// is held by that body with its pose and velocity then. Bodies ascend.
     void set(const JointedList& list, const View& view);
 
     [[nodiscard]] std::span<const std::uint32_t> bodies() const { return bodies_; }
@@ -39,24 +39,24 @@ public:
 
     /// Takes from the velocities what the joints forbid.
     void project(const View& view);
-    /// How the velocities of bodies() change if these pushes come at once, in their order; until the next call. Pushes
-    /// on others are left out.
+    /// Changes of the velocities of bodies(), in their order, if these pushes come at once; valid until the next call.
+    /// Pushes on other bodies are ignored.
     std::span<const Vec6> respond(std::span<const Push> pushes);
-    /// Adds the joints' answer to the pushes to their totals of the step.
+    /// Adds the joints' impulses by the pushes to their totals of the step.
     void add_to_totals(std::span<const Push> pushes, const View& view);
 
-    /// Structures of assemblies that are remembered; what is analysed again is the same.
+    /// Maximum number of remembered structures of assemblies; analysing one again gives the same.
     static constexpr std::size_t max_analysed = 16;
 
 private:
     struct Place {
         std::uint32_t joint = 0;      // index
-        std::int32_t a = -1, b = -1;  // numbers of the bodies; −1: does not answer
+        std::int32_t a = -1, b = -1;  // numbers of the bodies; −1: does not move
         std::uint32_t edge_a = 0, edge_b = 0;
         JointRows rows;
         Vec3 arm_b;  // from b's centre of mass to the joint
     };
-    /// A matrix whose pattern is analysed. Assemblies of one structure share it.
+    /// A matrix whose pattern is analysed. Assemblies of one structure use the same one.
     struct Analysed {
         std::size_t bodies = 0, nodes = 0;
         std::vector<BlockPattern::Edge> edges;
@@ -71,7 +71,7 @@ private:
     std::vector<std::uint32_t> bodies_;
     std::vector<Place> places_;
     std::vector<BlockPattern::Edge> edges_;
-    std::vector<Analysed> analysed_;  // at most max_analysed; those longest out of use make room
+    std::vector<Analysed> analysed_;  // at most max_analysed; those not used for the longest time make room
     std::size_t chosen_ = 0;          // of analysed_
     std::uint64_t uses_ = 0;
     std::vector<Vec6> unknowns_;  // changes of the bodies' velocities, impulses of the joints

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Joints as bilateral constraints: their errors C and rows J, and how one is solved after the other in the two phases
-// of a substep where a list is too long for all at once (joint_system.h). Sources: J.-P. Ryckaert et al., "Numerical
-// integration of the cartesian equations of motion of a system with constraints", 1977 (Shake); H. Andersen, "Rattle",
-// 1983. With the Jacobian J of the pose before the drift,
+// Joints as bilateral constraints: their errors C and rows J, and how joints are solved one after the other in the two
+// phases of a substep where a list is too long for all at once (joint_system.h). Sources: J.-P. Ryckaert et al.,
+// "Numerical integration of the cartesian equations of motion of a system with constraints", 1977 (Shake); H. Andersen,
+// "Rattle", 1983. With the Jacobian J of the pose before the drift,
 //   position phase:  λ₁ such that C(pose after the drift) = 0      (C itself, not its linearisation)
 //   velocity phase:  λ₂ such that J v = 0 at the new pose
 // which is symplectic: a pendulum neither gains nor loses energy. The rows of one joint are one block, K = J M⁻¹ Jᵀ.
@@ -177,8 +177,8 @@ void solve_motor(Joint& joint, const JointPhase& phase, std::span<BodyState> bod
     change_free_impulse(joint, impulse, std::clamp(impulse + joint.free_mass * missing, -largest, largest), 1, bodies);
 }
 
-// Whether a body turns so far in a substep that its pose after the drift tells nothing: the passes would run away. The
-// speed of the rows then stands for the way.
+// Whether a body turns so far in a substep that its pose after the drift is useless: the passes would diverge. The
+// speed of the rows is then used in place of the displacement.
 bool turns_too_far(const Joint& joint, const JointPhase& phase, std::span<const BodyState> bodies) {
     const double fastest = std::max(length_squared(body_a(joint, bodies).angular_velocity),
                                     length_squared(bodies[joint.b].angular_velocity));
@@ -212,7 +212,7 @@ double& impulse_of(JointImpulses& impulses, const Bound& bound) {
     return bound.sign > 0 ? impulses.lower : impulses.upper;
 }
 
-// The velocity phase may take back what the bound gave in the position phase.
+// The velocity phase may take back the bound's impulse of the position phase.
 double earlier_impulse(Joint& joint, SolvePhase phase, const Bound& bound) {
     return phase == SolvePhase::velocity ? impulse_of(joint.position_phase, bound) : 0;
 }
@@ -235,7 +235,7 @@ void solve_bound(Joint& joint, const JointPhase& phase, const Bound& bound, std:
     const double earlier = earlier_impulse(joint, phase.phase, bound);
     double& impulse = impulse_of(impulses_of(joint, phase.phase), bound);
 
-    // What the warm start gave to a bound that holds no more is taken back.
+    // The warm start's impulse of a bound that no longer holds is taken back.
     if (phase.phase == SolvePhase::velocity && !(earlier > 0)) {
         change_free_impulse(joint, impulse, 0, bound.sign, bodies);
         return;
@@ -365,7 +365,7 @@ void warm_start_joint(Joint& joint, SolvePhase phase, std::span<BodyState> bodie
 double solve_joint(Joint& joint, const JointPhase& phase, std::span<BodyState> bodies) {
     solve_free_row(joint, phase, bodies);
 
-    // What each row's speed is too much.
+    // By how much each row's speed is too large.
     std::array<double, max_joint_rows> excess{};
     if (phase.phase == SolvePhase::position) {
         excess = position_excess(joint, phase, bodies);
@@ -384,8 +384,8 @@ double solve_joint(Joint& joint, const JointPhase& phase, std::span<BodyState> b
 }
 
 // Primal-dual active set: M. Hintermüller, K. Ito, K. Kunisch, "The primal-dual active set strategy as a semismooth
-// Newton method", 2003. A bound holds where its impulse and what the free row alone would add for the speed at which it
-// is left have a positive sum; a motor drives where that sum is within its force.
+// Newton method", 2003. A bound holds where its impulse and what the free row alone would add against the speed out of
+// the allowed range have a positive sum; a motor drives where that sum is within its force.
 double choose_free_hold(Joint& joint, const JointPhase& phase, bool is_first, std::span<BodyState> bodies) {
     JointImpulses& impulses = impulses_of(joint, phase.phase);
     const FreeHold last = impulses.hold;

@@ -32,7 +32,7 @@ enum class FreeHold : std::uint8_t { nothing, motor, lower, upper };
 struct JointImpulses {
     std::array<double, max_joint_rows> rows{};
     double motor = 0, lower = 0, upper = 0;
-    bool are_good = true;  ///< the passes came to an end: worth a warm start
+    bool are_good = true;  ///< the passes converged: worth a warm start
     FreeHold hold = FreeHold::nothing;
 };
 
@@ -58,13 +58,13 @@ struct Joint {
 
 JointImpulses& impulses_of(Joint& joint, SolvePhase phase);
 
-/// One phase of a substep in which joints are solved. A view for as long as that lasts.
+/// One phase of a substep in which joints are solved. A view that is valid during the phase.
 struct JointPhase {
     SolvePhase phase = SolvePhase::position;
     double substep = 0;  ///< s
     const JointSettings& settings;
 
-    /// What an error may be mended by in the substep, m or rad.
+    /// Maximum correction of an error in the substep, m or rad.
     [[nodiscard]] double max_correction() const { return settings.max_correction_speed * substep; }
 };
 
@@ -105,14 +105,14 @@ bool has_motor(const Joint& joint);
 bool has_limit(const Joint& joint);
 /// Speed along the row, m/s or rad/s.
 double row_speed(const Joint& joint, const JointRow& row, std::span<const BodyState> bodies);
-/// What may be left of an error, of which `max_correction` is mended at most, m or rad.
+/// Remaining part of an error of which at most `max_correction` is corrected, m or rad.
 double rest_of_error(double error, double max_correction);
 
-/// What holds the free coordinate in the next round of a direct solve, written to the phase's impulses; returns the
-/// speed that is too much along the free row, m/s or rad/s: to be taken away by the row where something holds, else
-/// changed here already. In the `first` round what held goes on holding.
+/// Finds what holds the free coordinate in the next iteration of a direct solve and writes it to the phase's impulses.
+/// Returns by how much the speed along the free row is too large, m/s or rad/s: the row corrects it where something
+/// holds, else it is changed here already. In the `first` iteration what held goes on holding.
 double choose_free_hold(Joint& joint, const JointPhase& phase, bool is_first, std::span<BodyState> bodies);
-/// Notes what a direct solve found for the free row.
+/// Stores what a direct solve found for the free row.
 void add_free_impulse(Joint& joint, SolvePhase phase, double change);
 
 /// Adds the phase's impulses to the totals; after the phase's last pass, before the rows are prepared anew.

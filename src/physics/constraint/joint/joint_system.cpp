@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The equations of docs/physics/joints.md and Newton's method for them. One round solves
+// The equations of docs/physics/joints.md and Newton's method for them. One iteration solves
 //
 //   (  A   −J̄ᵀ ) (Δv)   ( −R )      R: what is missing in the equations of motion
 //   ( −J₁  −E  ) (Δλ) = (  e )      e: by how much the speed of each row is too large
@@ -8,8 +8,8 @@
 // Sources: D. Baraff, "Linear-time dynamics using Lagrange multipliers", 1996 (multipliers as unknowns: from the leaves
 // of a tree inwards nothing fills in, and nothing cancels whatever the masses); O. Gonzalez, "Mechanical systems
 // subject to holonomic constraints: differential-algebraic formulations and conservative integration", 1999 (discrete
-// gradients). E is tiny. It keeps rows that say the same thing apart (loops of hinges); the next round takes back what
-// it lets through.
+// gradients). E is tiny. It keeps the matrix regular where rows are redundant (loops of hinges); the next iteration
+// corrects the error that it makes.
 #include "physics/constraint/joint/joint_system.h"
 
 #include <algorithm>
@@ -120,8 +120,8 @@ void JointSystem::begin_phase(SolvePhase phase, double substep, Motion motion, c
     }
 }
 
-// A force that pulls at its arm turns it back: over the substep by −h (F·r) ω across r. Light links under a large
-// tension would else swing up.
+// A force that pulls at an arm turns the arm back: over the substep by −h (F·r) ω across r. Without this, oscillations
+// of light links under a large tension would grow.
 void JointSystem::add_turning(const Place& place, const Joint& joint) {
     Vec3 force;
     for (std::size_t row = 0; row < static_cast<std::size_t>(joint.row_count); ++row) {
@@ -137,7 +137,7 @@ void JointSystem::add_turning(const Place& place, const Joint& joint) {
     add(place.b, force, place.before.geometry.arm_b);
 }
 
-// What others did to the velocities since the last round was not the joints' doing.
+// Changes of the velocities since the last iteration were not made by the joints.
 void JointSystem::absorb_changes(const View& view) {
     for (Body& body : bodies_) {
         const BodyState& state = view.bodies[body.slot];
@@ -148,7 +148,7 @@ void JointSystem::absorb_changes(const View& view) {
     }
 }
 
-// What holds the free coordinates; the largest speed that is wrong there.
+// Finds what holds the free coordinates; returns the largest error of speed there.
 double JointSystem::choose_holds(const View& view) {
     const JointPhase phase{phase_, substep_, view.settings};
     double largest = 0;
@@ -167,9 +167,9 @@ double JointSystem::choose_holds(const View& view) {
     return largest;
 }
 
-// What each row's speed is too much, as right sides; the largest one. In the position phase for where the drift would
-// take the bodies (without spin of their own, which the joints do not see), and with the rows of the mean of both
-// poses.
+// By how much each row's speed is too large, as right sides; returns the largest. In the position phase these are for
+// the poses after the drift (without the bodies' own spin, which the joints do not see), with the rows of the mean of
+// both poses.
 double JointSystem::find_excess(const View& view) {
     double largest = 0;
     const bool has_drift = phase_ == SolvePhase::position;
@@ -209,7 +209,7 @@ double JointSystem::find_excess(const View& view) {
     return largest;
 }
 
-// The impulses of all joints on the bodies, by the rows as they are.
+// The impulses of all joints on the bodies, by the present rows.
 void JointSystem::sum_impulses(const View& view, bool with_free_rows) {
     for (Body& body : bodies_) body.impulse = {};
     for (const Place& place : places_) {
@@ -235,8 +235,8 @@ void JointSystem::sum_impulses(const View& view, bool with_free_rows) {
     }
 }
 
-// R of the equations of motion, as right sides; the largest one as a speed. In the velocity phase they are linear, and
-// each round keeps them.
+// R of the equations of motion, as right sides; returns the largest as a speed. In the velocity phase the equations are
+// linear, and each iteration keeps them.
 double JointSystem::find_residuals(const View& view) {
     double largest = 0;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -268,7 +268,7 @@ void JointSystem::add_body_blocks(const View& view) {
         const Body& body = bodies_[i];
         Mat3 angular = body.inertia + body.turning;
         if (body.has_gyroscopic_torque && !is_linear_) {
-            // The derivative of what find_residuals() takes, y: dy = (1 − a×)⁻¹ ((1 + a×) I − h/2 (I ω + y)×) dω.
+            // Derivative of y of find_residuals(): dy = (1 − a×)⁻¹ ((1 + a×) I − h/2 (I ω + y)×) dω.
             const Vec3 spin = view.bodies[body.slot].angular_velocity;
             const Vec3 half_turn = spin * (substep_ / 2), momentum = body.inertia * spin + body.own_spin.momentum;
             const Mat3 inverse = inverse_of_turning(half_turn);
@@ -282,7 +282,7 @@ void JointSystem::add_body_blocks(const View& view) {
 
 // A force turns its arm back to it: −dT/dω = −h/2 f× (1 − h/2 ω×)⁻¹ r×. Without it light links under a large tension
 // would have to be followed through each of their oscillations. A pressing force, which turns it away, is left to the
-// rounds: there the block could become singular.
+// iterations: there the block could become singular.
 void JointSystem::add_turning_forces(const Place& place, const View& view) {
     const Joint& joint = view.joints[place.joint];
     const JointImpulses& impulses = joint.position_phase;
@@ -308,7 +308,7 @@ void JointSystem::add_joint_blocks(std::size_t number, const View& view) {
     Block6& own = matrix_.diagonal(bodies_.size() + number);
     for (int row = 0; row < max_joint_rows; ++row) own.column[row][row] = -1;
 
-    // Mean rows give the impulses; those of the pose after the drift, the speeds.
+    // The impulses are by mean rows, the speeds by the rows of the pose after the drift.
     const bool has_drift = phase_ == SolvePhase::position;
     const JointRows after =
         has_drift ? make_rows(joint, place.after.geometry) : JointRows{joint.row_count, joint.rows, joint.free_row};
@@ -387,7 +387,7 @@ double JointSystem::round(const View& view) {
     return error;
 }
 
-// Newton's method; whether it came to an end.
+// Newton's method; returns whether it converged.
 bool JointSystem::iterate(const View& view) {
     const JointSettings& settings = view.settings;
     double last = 0, error = 0;
@@ -426,7 +426,7 @@ void JointSystem::advance(double time, int halvings, const View& view) {
     for (int half = 0; half < 2; ++half) advance(time / 2, halvings - 1, view);
 }
 
-// False where the joints could not be made to hold.
+// False where the method did not converge.
 bool JointSystem::advance_in_one(double time, Motion motion, const View& view) {
     for (const Body& body : bodies_) kick(view.bodies[body.slot], view.constants[body.slot], time / 2);
     const double energy = kinetic_energy(view);
@@ -505,8 +505,8 @@ double JointSystem::kinetic_energy(const View& view) const {
     return sum / 2;
 }
 
-// Joints do no work but where they are mended or could not be made to hold, contacts take energy but where sweeps come
-// to no end: then they must not add any.
+// Joints do no work, except where errors are corrected or the solve did not converge; contacts take energy, except
+// where sweeps do not converge: then they must not add any.
 double JointSystem::bound_energy(double most, const View& view) const {
     const auto moves = [&](std::uint32_t slot) {
         return view.bodies[slot].linear_velocity != Vec3{} || view.bodies[slot].angular_velocity != Vec3{};

@@ -37,39 +37,39 @@ public:
     }
 
     /// How far a body may turn in a substep. Small: the joints are solved by their rows at its start. That is robust,
-    /// but loses some energy and leaves errors to be mended.
+    /// but loses some energy and leaves errors to be corrected.
     enum class Motion { any, small };
 
-    /// What becomes of the joints' errors in a motion. Kept: the way back leads to where it began.
+    /// What happens to the joints' errors in a motion. Kept: the motion back leads to where it began.
     enum class Errors { corrected, kept };
 
     /// Takes the list over. Bodies keep their slots and joints their places until the next call. A joint's body that
     /// the list lacks is taken as immovable.
     void set(const JointedList& list, const View& view);
-    /// The joints' impulses are of no known time: the next phase takes none over.
+    /// The joints' impulses are not those of a known substep: the next phase starts without them.
     void start_cold() { impulse_time_ = 0; }
 
-    /// Moves what nothing but joints and forces acts on through `time`, s: halves of the kick, the joints' impulses and
-    /// the drift; back, if the time is negative. A motion that is too fast for one go is taken in parts. Bodies outside
-    /// the list that joints hold on to go along by their own velocities.
+    /// Moves bodies that only joints and forces act on through `time`, s: halves of the kick, the joints' impulses and
+    /// the drift; back, if the time is negative. A motion that is too fast for one step is taken in parts. Bodies
+    /// outside the list that are joined to the list's move by their own velocities.
     void advance(double time, const View& view, Errors errors = Errors::corrected);
     /// Lists those bodies as they are now.
     void list_carriers(const View& view, std::vector<std::pair<std::uint32_t, BodyState>>& carriers) const;
 
-    // Where others change velocities between rounds. The joints must have been prepared anew.
+    // For use where others change velocities between iterations. The joints must have been prepared anew.
 
     /// Starts a phase of a substep, s.
     void begin_phase(SolvePhase phase, double substep, Motion motion, const View& view);
-    /// One round of Newton's method. Returns the largest speed that it had to correct, m/s or rad/s; where that is
-    /// nothing but rounding, nothing is done.
+    /// One iteration of Newton's method. Returns the largest speed that it had to correct, m/s or rad/s; where that is
+    /// only rounding, nothing is changed.
     double round(const View& view);
-    /// After the last round of the position phase: prepares the bodies for their drift.
+    /// After the last iteration of the position phase: prepares the bodies for their drift.
     void end_position_phase(const View& view);
 
     /// Of the list, J.
     [[nodiscard]] double kinetic_energy(const View& view) const;
     /// Scales the velocities where they have more energy than that, unless motors or moving bodies outside the list may
-    /// have given it; returns by how much, at most 1.
+    /// have added it; returns the factor, at most 1.
     double bound_energy(double most, const View& view) const;
     /// Of the list, kg.
     [[nodiscard]] double mass(const View& view) const;
@@ -84,7 +84,7 @@ private:
         Mat3 turning = Mat3::zero();    // Motion::small: how joints hold against turning, kg m²
         Vec3 free_velocity, free_spin;  // without the joints' impulses; the spin of isotropic bodies
         Vec3 free_momentum;             // angular, of the others
-        Vec3 last_velocity, last_spin;  // after the last round
+        Vec3 last_velocity, last_spin;  // after the last iteration
         Transform after;                // centre of mass and rotation after the drift, as it looks now
         Vec6 impulse;                   // of the joints
         Vec6 second_half;               // change of the velocities after the drift
@@ -142,7 +142,7 @@ private:
     double substep_ = 0;  // s
     bool is_first_ = true, is_linear_ = false, has_factors_ = false;
     Errors errors_ = Errors::corrected;
-    double impulse_time_ = 0;  // s: the last impulses of the position phase, both halves, were for so long
+    double impulse_time_ = 0;  // s: duration of the last impulses of the position phase, both halves
     bool has_motor_ = false;
     std::vector<Start> starts_;  // by the number of halvings left
     double last_error_ = 0;

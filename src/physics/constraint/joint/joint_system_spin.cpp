@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The spin of bodies that joints hold on an axis of symmetry only: set aside before a substep, as the joints do not
-// feel it, and given back with the drift (own_spin.h; docs/physics/joints.md).
+// The spin of bodies that joints hold on an axis of symmetry only: taken out before a substep, as it does not act on
+// the joints, and put back with the drift (own_spin.h; docs/physics/joints.md).
 #include "physics/constraint/joint/joint_system.h"
 #include "physics/dynamic/equations_of_motion.h"
 
@@ -20,7 +20,7 @@ void JointSystem::find_spin_axes(const View& view) {
             if (place.b >= 0) visit(bodies_[static_cast<std::size_t>(place.b)], joint, joint.local_b);
         }
     };
-    constexpr double hinge_weight = 1e6;  // a hinge's axis tells more than an anchor, which may be the centre of mass
+    constexpr double hinge_weight = 1e6;  // a hinge's axis is safer than an anchor, which may be the centre of mass
     const auto hinge_axis = [](const Transform& frame) { return rotate(frame.rotation, {1, 0, 0}); };
     visit_ends([&](Body& body, const Joint& joint, const Transform& frame) {
         const bool is_hinge = std::holds_alternative<HingeJoint>(joint.kind);
@@ -37,7 +37,8 @@ void JointSystem::find_spin_axes(const View& view) {
     });
 }
 
-// Before the motion of a substep: the spin that the joints do not feel, or else Euler's equations alone.
+// Before the motion of a substep: takes out the spin that does not act on the joints, or else applies Euler's equations
+// alone.
 void JointSystem::take_spin_aside(Body& body, double time, const View& view) {
     BodyState& state = view.bodies[body.slot];
     const BodyConstants& constants = view.constants[body.slot];

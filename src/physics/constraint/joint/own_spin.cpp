@@ -9,8 +9,8 @@ namespace embody::physics::constraint {
 
 namespace {
 
-// Share by which inertia and anchors may miss the axis: what definitions round is below 1e-7 of it, what is built
-// beside it is above 1e-4.
+// Relative error up to which inertia and anchors are on the axis: rounding of definitions is below 1e-7, true offsets
+// are above 1e-4.
 constexpr double aligned = 1e-6;
 
 // A turn by `angle` (rad, the length), of many Cayley turns: the library's sine differs by system. Right to 1e-3 at 4

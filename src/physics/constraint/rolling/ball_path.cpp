@@ -2,9 +2,9 @@
 //
 // A ball along still ground: in parts of the step it moves along the plane that touches it, is put back onto the ground
 // there, and its motion is turned with the normal. A mesh stands for a smooth surface where its edges turn by less than
-// smooth_edge_angle: there the turn takes nothing. Whatever the parts leave out, the energy says the speed:
+// smooth_edge_angle: there the turn takes no energy. Whatever error the parts make, the speed follows from the energy:
 //     T₁ = T₀ + m a · (x₁ − x₀) + work of friction,
-// so what puts the ball back takes from its motion what it lifts.
+// so the ball loses in its motion what putting it back onto the ground lifts it.
 #include "physics/constraint/rolling/ball_path.h"
 
 #include <algorithm>
@@ -18,10 +18,10 @@ namespace embody::physics::constraint {
 
 namespace {
 
-constexpr double same_normal = 1 - 1e-9;   // cosine: 4e-5 rad, what floats of a mesh leave of a flat face is 1e-7
-constexpr double min_travel = 1e-9;        // of the radius, in a part: less is standing still
-constexpr double level_sine = 1e-6;        // of the slope: what rounding leaves of level ground is 1e-15
-constexpr double beside_gap = 1e-6;        // of the radius: a place as near as that touches, rounding leaves 1e-15
+constexpr double same_normal = 1 - 1e-9;   // cosine: 4e-5 rad; a mesh's floats leave 1e-7 of a flat face
+constexpr double min_travel = 1e-9;        // of the radius, in a part: a ball that moves less stands still
+constexpr double level_sine = 1e-6;        // of the slope: rounding leaves 1e-15 on level ground
+constexpr double beside_gap = 1e-6;        // of the radius: a place within this touches; rounding leaves 1e-15
 constexpr double max_counted_parts = 1e6;  // no integer takes more than 2e9; max_parts is far below
 
 const double smooth_cosine = std::cos(smooth_edge_angle);
@@ -57,7 +57,8 @@ void BallPath::find(Vec3 center, double margin) {
     }
 }
 
-// Puts the ball onto the ground near by: the surfaces there count as planes. The touch is the last one that moved it.
+// Puts the ball onto the ground around it: the surfaces there count as planes. The touch is the last one that moved the
+// ball.
 bool BallPath::settle(BallPlace& at, const Vec3* last_normal, double margin) {
     constexpr double rounding = 1e-12;  // m; a centre metres away is known to 1e-15
     find(at.center, margin);
@@ -82,7 +83,7 @@ bool BallPath::settle(BallPlace& at, const Vec3* last_normal, double margin) {
     at.touch = touches_[chosen];
     at.ground = ground_of_[chosen];
 
-    // What it comes to beside another place is hit.
+    // A place that the ball comes to while another touches is hit.
     const auto is_beside = [&](const BallTouch& touch) {
         return touch.gap + dot(displacement, touch.normal) < rounding + beside_gap * radius_ &&
                dot(touch.normal, at.touch.normal) < smooth_cosine && dot(touch.normal, at.motion.velocity) <= 0;
@@ -91,8 +92,8 @@ bool BallPath::settle(BallPlace& at, const Vec3* last_normal, double margin) {
            (last_normal != nullptr && dot(*last_normal, at.touch.normal) < smooth_cosine);
 }
 
-// Comes to a place that stands at a real angle to the last one: what goes into it is lost, as in any impact without a
-// bounce. False where it bounces, or is wedged between the two, which is the contact solver's.
+// The ball comes to a place at a real angle to the last one: the velocity into it is lost, as in any impact without a
+// bounce. False where the ball bounces or is wedged between the two, which the contact solver handles.
 bool BallPath::hit(BallPlace& at, Vec3 last_normal) {
     const Vec3 n = at.touch.normal;
     const double closing = -dot(at.motion.velocity, n);
@@ -110,8 +111,8 @@ bool BallPath::is_flat(const BallPlace& at) const {
     });
 }
 
-// Flat as far as it gets, and level or resisting: the contact solver loses nothing there. Triangles beyond a hollow
-// edge are not seen from before it: where the ball gets to is looked at too.
+// The ground is flat as far as the ball gets, and level or resisting: the contact solver loses no energy there.
+// Triangles beyond a hollow edge cannot be seen before it: so the place that the ball gets to is checked, too.
 bool BallPath::is_plain(const BallPlace& at) {
     const bool is_level = length(cross(acceleration_, at.touch.normal)) <= level_sine * length(acceleration_);
     if (!(is_level || resists_) || !is_flat(at)) return false;
@@ -139,7 +140,7 @@ bool BallPath::begin(BallPlace& at, bool has_company) {
     if (closing > (was_touching_ && !bounces_ ? slowest_impact + smooth_edge_angle * speed : slowest_impact))
         return false;
 
-    // What is left of the motion into the ground goes; the way out of it is taken from the motion.
+    // The remaining velocity into the ground is removed; the energy of lifting the ball out is taken from its motion.
     at.motion.velocity += n * closing;
     const Vec3 along = acceleration_ - n * dot(acceleration_, n);
     const double least = resists_ ? settings_.slow_resisted_speed : is_on_face ? 0 : settings_.slow_speed;
@@ -168,8 +169,8 @@ int BallPath::count_parts(const BallPlace& at) const {
     return static_cast<int>(std::ceil(std::min(parts, max_counted_parts)));
 }
 
-// How hard the ground must press, m/s². Of a smooth mesh its curvature tells, that of the centre's path being κ/(1 + κ
-// r); else the last part does.
+// The ground's acceleration on the ball, m/s²: on a smooth mesh by the curvature κ, the centre's path having κ/(1 + κ
+// r); else by the last part.
 double BallPath::load(const BallPlace& at) const {
     double centripetal = at.centripetal;
     const double squared = length_squared(at.motion.velocity);
@@ -187,7 +188,8 @@ bool BallPath::leaves(const BallPlace& at) {
     return touches_.empty();
 }
 
-// Along the plane that touches it at the start, pressed by so much (m/s²). The work of friction, J/kg.
+// Moves the ball along the plane that touches it at the start, pressed by so much (m/s²). Returns the work of friction,
+// J/kg.
 double BallPath::move_along_plane(const BallPlace& from, BallPlace& to, double pressing, double time) const {
     const Vec3 n = from.touch.normal, along = acceleration_ - n * dot(acceleration_, n);
     const BallPush push = push_along(to.motion, n, along, pressing, grounds_[from.ground].friction, time);
@@ -198,8 +200,8 @@ double BallPath::move_along_plane(const BallPlace& from, BallPlace& to, double p
     return push.work;
 }
 
-// Turns the motion with the ground, which loses nothing, or hits what stands at a real angle to the last place. The
-// energy that is lost, J/kg, <= 0; none where it bounces or is wedged.
+// Turns the motion with the ground, which loses no energy, or hits a place at a real angle to the last one. Returns the
+// energy lost, J/kg, <= 0; none where the ball bounces or is wedged.
 std::optional<double> BallPath::turn_or_hit(BallPlace& at, Vec3 last_normal, double time) {
     const Vec3 n = at.touch.normal;
     if (dot(last_normal, n) >= smooth_cosine) {
@@ -228,7 +230,7 @@ bool BallPath::advance(BallPlace& at, double time, int halvings) {
     if (!settle(next, &last_normal, smooth_edge_angle * moved + settings_.settle_margin_fraction * radius_))
         return in_halves();
 
-    // With the energy that this leaves.
+    // Sets the speed by the energy that is left.
     const std::optional<double> lost = turn_or_hit(next, last_normal, time);
     if (!lost) return false;
     const double left = at.motion.energy() + dot(acceleration_, next.center - at.center) + friction_work + *lost;

@@ -18,13 +18,13 @@ namespace embody::physics::constraint {
 /// Where a ball that rolls on still ground ends the step.
 struct RolledBall {
     std::uint32_t body = 0;
-    std::uint32_t contact = 0;    ///< index: of its contacts the one that lies most as the ball stands in the end
+    std::uint32_t contact = 0;    ///< index of the contact whose normal is closest to the final one
     std::uint32_t candidate = 0;  ///< the caller's number of it
     BodyState state;
     Vec3 impulse;  ///< of the ground, N s
 };
 
-/// The ball on its way.
+/// The ball in motion.
 struct BallPlace {
     Vec3 center;
     Quat rotation;
@@ -35,7 +35,7 @@ struct BallPlace {
     bool rolls = false;
 };
 
-/// What a ball may touch, and where it is near that, while its path is followed.
+/// What a ball may touch, and where it is close to touching, while its path is followed.
 struct BallSurroundings {
     struct Ground {
         std::uint32_t body = 0;
@@ -67,19 +67,19 @@ class BallPath {
 public:
     BallPath(const BallInStep& ball, BallSurroundings& surroundings);
 
-    /// Alone through the whole step. False, and nothing told, where it lifts off, hits something, has come to rest or
-    /// moves on level ground.
+    /// Follows the ball alone through the whole step. False, without a result, where it lifts off, hits something, has
+    /// come to rest or moves on level ground.
     bool roll(RolledBall& rolled);
 
-    // In parts, beside other balls. Each is false where the ground does not hold the ball so.
+    // The same in parts, beside other balls. Each returns false where the ball does not stay on the ground.
 
-    /// Where it is at the step's start. What has company rolls on however slow it is.
+    /// At the step's start. A ball beside others rolls on however slow it is.
     bool begin(BallPlace& at, bool has_company);
     [[nodiscard]] int count_parts(const BallPlace& at) const;
-    /// What curves the ground, where its touch does not tell, from a first part of this time (s) on trial.
+    /// Finds the ground's curvature by a trial part of this time (s), where the touch does not have it.
     bool see_curvature(BallPlace& at, double part);
     bool advance(BallPlace& at, double time);
-    /// The end of the step. `received`: impulse of others than the ground, N s.
+    /// The end of the step. `received`: impulse of other bodies than the ground, N s.
     bool write(const BallPlace& at, Vec3 received, RolledBall& rolled) const;
     [[nodiscard]] double mass() const { return mass_; }
 

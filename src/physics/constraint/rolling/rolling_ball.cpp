@@ -7,11 +7,11 @@
 //     (1 + k) (dv/dt)_t = k r σ n × dn/dt + a_t,   r dσ/dt = −v · (n × dn/dt).
 // For n that turns by φ about the axis t, without a: with u = v·t, w = r σ, κ = k/(1 + k)
 //     du/dφ = κ w,   dw/dφ = −u,   so u² + κ w² stays;   v across t stays and turns along.
-// Two balls that collide: an impulse P along the line of centres c is answered by the ground, which takes what points
-// into it, so each yields with (1 − (c·n)²)/m, and P (1 + e) conserves energy for e = 1. For spheres it does not change
-// the slip, and friction not the approach, so eq. (3) of the paper ends in min(µ P, what stops the slip).
-// Sources: E. Routh, "Advanced dynamics", 1905, chapter V (a sphere that rolls on a surface); M. Gualtieri et al.,
-// "Golfer's dilemma", 2006 (the same in a cylinder).
+// Two balls that collide: an impulse P along the line of centres c meets the response of the ground, which takes the
+// part into it, so the inverse mass of each is (1 − (c·n)²)/m, and P (1 + e) conserves energy for e = 1. For spheres it
+// does not change the slip, and friction not the approach, so eq. (3) of the paper ends in min(µ P, what stops the
+// slip). Sources: E. Routh, "Advanced dynamics", 1905, chapter V (a sphere that rolls on a surface); M. Gualtieri et
+// al., "Golfer's dilemma", 2006 (the same in a cylinder).
 #include "physics/constraint/rolling/rolling_ball.h"
 
 #include <algorithm>
@@ -107,7 +107,7 @@ std::optional<Vec3> collide_balls(const CollidingBall& a, const CollidingBall& b
     const double closing = dot(direction, a.motion.velocity - b.motion.velocity);
     const double normal = (1 + collision.restitution) * closing / (yielding_along(a) + yielding_along(b));
 
-    // The slip of spheres yields to friction alone.
+    // Only friction changes the slip of spheres.
     Vec3 slip = surface_velocity(b, -1) - surface_velocity(a, 1);
     slip -= direction * dot(direction, slip);
     const double speed = length(slip);

@@ -69,7 +69,7 @@ private:
     const RollingSettings& limits_;
     const RollingBodySettings& settings_;
     const RollingRing* ring_ = nullptr;  // that touches
-    const RollingRing* end_ = nullptr;   // and to where; the same, where it is not on its side
+    const RollingRing* end_ = nullptr;   // the other end of the line; the same ring, where the body is not on its side
     Vec3 force_;
 };
 
@@ -113,7 +113,7 @@ bool Roller::choose_rings(const Moving& at) {
     return on_side() || ring_->radius == 0 || 1 - along * along > settings_.min_lean * settings_.min_lean;
 }
 
-// What slips is stopped, by the least impulse at the place that touches.
+// Stops the slip by the smallest impulse at the place that touches.
 bool Roller::begin(const BodyState& state, Moving& at) {
     at = {state.center, state.rotation, state.angular_velocity};
     if (!choose_rings(at)) return false;
@@ -122,7 +122,7 @@ bool Roller::begin(const BodyState& state, Moving& at) {
         return false;
     at.center -= ground_.normal * dot(at.center + arm - ground_.point, ground_.normal);
 
-    // The angular momentum about the place that touches stays.
+    // The angular momentum about the place that touches is conserved.
     const Mat3 inertia = rotate_tensor(at.rotation, constants_.inertia);
     const Mat3 about = inertia + (Mat3::identity() * length_squared(arm) - outer(arm, arm)) * constants_.mass;
     const Vec3 momentum = inertia * state.angular_velocity - cross(arm, state.linear_velocity) * constants_.mass;
@@ -142,7 +142,7 @@ double Roller::energy(const Moving& at) const {
            constants_.mass * dot(constants_.acceleration, at.center);
 }
 
-// How fast what decides the motion turns, rad/s.
+// Rate at which the vectors of the motion turn, rad/s.
 double Roller::rate_of(const Moving& at) const { return std::max(length(at.spin), axis_rate(at)); }
 
 double Roller::axis_rate(const Moving& at) const {
@@ -175,7 +175,7 @@ Vec3 Roller::spin_rate(const Moving& at) {
     return result;
 }
 
-// Pressing, within the cone of friction, and on the side with its middle between the line's ends.
+// Whether the force presses, lies within the cone of friction and, on the side, acts between the line's ends.
 bool Roller::force_is_allowed(const Moving& at, Vec3 spin_rate) const {
     const Vec3 n = ground_.normal;
     const double load = dot(force_, n);
@@ -238,7 +238,7 @@ std::optional<Vec3> Roller::roll(BodyState& state, double time) {
     const bool is_slow = axis_rate(at) * time < settings_.min_axis_turn && length(at.spin) * time < settings_.min_turn;
     if (is_slow || !(parts <= settings_.max_parts)) return std::nullopt;
 
-    // The way up out of the ground is taken from the motion.
+    // The energy of lifting the body out of the ground is taken from its motion.
     const double start = energy(at) - constants_.mass * dot(constants_.acceleration, state.center - at.center);
     const double part = time / parts;
     Vec3 impulse;

@@ -11,8 +11,8 @@
 
 namespace embody::physics::constraint {
 
-/// A ring around the axis (Y) of what rolls, that a tube is laid around: the rim of a cylinder or cone has no tube, a
-/// capsule's end is a tube around a ring of no size, a cone's apex is neither. Body axes, m.
+/// A torus around the axis (Y) of a rolling body: the rim of a cylinder or cone has no tube radius, a capsule's end has
+/// no ring radius, a cone's apex has neither. Body axes, m.
 struct RollingRing {
     Vec3 center;  ///< from the centre of mass
     double radius = 0, tube = 0;
@@ -21,7 +21,8 @@ struct RollingRing {
 /// A body of revolution that rolls alone on something flat that stands still: on one of its rings, or on the line
 /// between two.
 struct RollingBody {
-    static constexpr int max_rings = 8;  ///< of four cylinders on one axle; what has more goes to the contact solver
+    static constexpr int max_rings = 8;  ///< rings of four cylinders on one axle; the contact solver takes bodies with
+                                         ///< more
     Vec3 axis;                           ///< body axes, unit
     std::array<RollingRing, max_rings> rings;
     int ring_count = 0;
@@ -42,11 +43,11 @@ struct RollingStep {
     const RollingSettings& settings;
 };
 
-/// Takes the body through the time in pure rolling: Lagrange's equations (paper, eq. 2) with the constraint that what
-/// touches stands still, by the classical Runge-Kutta method in as many parts as the motion asks for; no work but that
-/// of `constants.acceleration` is done. Returns the ground's impulse, N s. Nothing is changed and there is no result
-/// where the body does not roll like that: it slips or lifts, the ground would have to pull or would need more
-/// friction, or it lies on more than one point or the side's line.
+/// Takes the body through the time in pure rolling: Lagrange's equations (paper, eq. 2) with the constraint that the
+/// place that touches stands still, by the classical Runge-Kutta method in as many parts as the motion asks for; no
+/// work but that of `constants.acceleration` is done. Returns the ground's impulse, N s. Nothing is changed and there
+/// is no result where the body does not roll like that: it slips or lifts off, the ground would have to pull or to have
+/// more friction, or the body lies on more than one point or the side's line.
 std::optional<Vec3> roll(BodyState& state, const BodyConstants& constants, const RollingBody& body,
                          const RollingGround& ground, const RollingStep& step);
 

@@ -101,7 +101,7 @@ constexpr int batch_floats(int lanes, int points) { return lanes * (BatchHead::s
 /// Numbers of one sweep.
 struct ContactSweep {
     float* velocity = nullptr;               ///< rows of eight floats: change of v and of ω since the step began
-    const float* motion = nullptr;           ///< rows: way, turn (x y z w)
+    const float* motion = nullptr;           ///< rows: displacement, turn (x y z w)
     float substep = 0, inverse_substep = 0;  ///< s, 1/s
     float time = 0;                          ///< of the substep's end in the step, s
     float bias_rate = 0, mass_scale = 1, impulse_scale = 0;

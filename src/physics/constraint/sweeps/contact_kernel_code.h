@@ -50,7 +50,7 @@ void warm_start(float* batch, int points, const ContactSweep& sweep) {
     v.put_back(batch, sweep);
 }
 
-// m with n·(what a body's turn R since the step began adds to an arm r) = m·r: m = Rᵀn − n. On a round body only the
+// m = Rᵀn − n, with m·r what a body's turn R since the step began adds to n·r of an arm r. On a round body only the
 // tilt counts (as contact.cpp: motion_of).
 EMBODY_WIDE_INLINE Wide3 turned_back(const Wide row[row_floats], const Wide3& n, WideMask is_round) {
     const Wide3 turn{row[3], row[4], row[5]};
@@ -126,7 +126,7 @@ EMBODY_WIDE_INLINE Pressure pressure_of(float* batch, int points) {
 }
 
 /// The bounds of friction: forces f and moments τ with (|f| r)² + τ² <= (F r)². Without a lever r there is no moment to
-/// bound, and any r will do.
+/// bound, and any r is right.
 struct FrictionLimit {
     Wide force, lever;
     EMBODY_WIDE_INLINE FrictionLimit of(Wide force, Wide lever) {
@@ -139,7 +139,7 @@ struct FrictionLimit {
 };
 
 // Coulomb's law of the whole region (paper, eq. 7; contact_solver.cpp). Friction is (tangent 1, tangent 2, moment), the
-// moment about the centre of pressure; returns what it changed, the moment about the anchor.
+// moment about the centre of pressure; returns its change, the moment about the anchor.
 EMBODY_WIDE_INLINE Wide3 solve_friction(float* batch, int points, const RegionMotion& motion) {
     const Wide zero{}, one = broadcast(1);
     const Pressure p = pressure_of(batch, points);
@@ -243,7 +243,7 @@ EMBODY_WIDE_INLINE NormalLoad solve_normals(float* batch, const RegionMotion& mo
         }
     }
 
-    // Forwards and backwards: else the last point would win and a flat body lean.
+    // Forwards and backwards: else the last point would dominate and a flat body lean.
     const auto solve_point = [&](int k, Wide wanted) __attribute__((always_inline)) {
         const Wide change = wanted - impulse[k];
         impulse[k] = wanted;
@@ -254,7 +254,8 @@ EMBODY_WIDE_INLINE NormalLoad solve_normals(float* batch, const RegionMotion& mo
         return maximum(rest - speed[k], zero);
     };
     for (int k = 0; k < points; ++k) solve_point(k, wanted(k));
-    // The way back begins at each contact's last point but one, whatever the batch's other contacts have.
+    // The backward pass begins at each contact's last point but one, however many points the batch's other contacts
+    // have.
     for (int k = points - 2; k >= 0; --k) {
         const WideMask is_last = quantity(point_of(batch, k + 1), BatchPoint::normal_mass) == zero;
         solve_point(k, select(is_last, impulse[k], wanted(k)));
@@ -292,8 +293,8 @@ EMBODY_WIDE_INLINE void solve_rolling(float* batch, int points, const Frame& f, 
     apply(v, m, f.arm_a, f.arm_b, none, now - old);
 }
 
-// Whether no lane carries a load or friction, and no point comes nearer than it may in this substep: then the region
-// changes nothing.
+// Whether no lane carries a load or friction, and no point's gap closes in this substep: then the region changes
+// nothing.
 template <int points>
 EMBODY_WIDE_INLINE bool is_idle(float* batch, const RegionMotion& motion, const ContactSweep& sweep) {
     const Wide zero{};
@@ -399,7 +400,7 @@ void drift(const BodyRows& rows, float substep, std::int32_t first, std::int32_t
         gather_rows(rows.kick, row, kick_row);
         gather_rows(rows.start, row, start_row);
 
-        // A body near others that nothing touched: its mean velocity lies half a kick behind.
+        // A body that touched nothing: its mean velocity is half a kick behind.
         const WideMask is_free = (v[0] == kicked[0]) & (v[1] == kicked[1]) & (v[2] == kicked[2]);
         const Wide behind = select(is_free, half * h, zero);
         for (int i = 0; i < 3; ++i) x[i] += (start_row[i] + v[i]) * h - kick_row[i] * behind;

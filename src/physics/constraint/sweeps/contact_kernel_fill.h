@@ -106,7 +106,7 @@ EMBODY_WIDE_INLINE bool resists_rolling(const float* batch) {
     return Velocities::rows_of(batch, BatchHead::writable)[2] != 0;
 }
 
-// Inverse of what is large enough to have one in floats, 1e-30, else 0.
+// Inverse of numbers above 1e-30, whose inverse is a finite float, else 0.
 EMBODY_WIDE_INLINE Wide inverse(Wide number) {
     return select(number > broadcast(1e-30F), broadcast(1) / number, Wide{});
 }
@@ -236,8 +236,8 @@ EMBODY_WIDE_INLINE void fill_inertia(float* batch, const float* inertia, const s
     store(batch + mass * lanes, row[6]);
 }
 
-// Torsion is known as a lever beside the force's bound: what has the one must have a trace of the other, a coefficient
-// of 1e-6.
+// Torsional friction is a lever times the force's bound: contacts with torsional friction alone get a coefficient of
+// 1e-6.
 EMBODY_WIDE_INLINE void fill_coefficients(float* batch, Wide friction_static, Wide friction_dynamic, Wide torsional,
                                           Wide rolling) {
     const Wide zero{}, least = select(torsional > zero, broadcast(1e-6F), zero);
@@ -249,7 +249,7 @@ EMBODY_WIDE_INLINE void fill_coefficients(float* batch, Wide friction_static, Wi
     store(batch + BatchHead::friction_rolling * lanes, rolling);
 }
 
-// Rows of contacts to lanes. What a lane has no contact for is zero where it would do something.
+// Rows of contacts to lanes. Lanes without a contact are zero where they would have an effect.
 void fill(float* batch, int points, const BatchSource& source) {
     const auto take = [&](int row, Wide column[row_floats]) {
         gather_rows(source.contacts + row_floats * row, source.contact_row, column);

@@ -10,8 +10,8 @@
 //   velocity phase:  v_n >= 0 at touching points: takes back the speed that the first phase gave to push bodies apart
 //   both:            λ >= 0 for the sum over the substep
 //
-// A region is solved as one: its points lie on one plane of a rigid body, so six relative velocities at its anchor tell
-// all of them (docs/physics/contact-solver.md). With the offsets s, t of a point along the tangents
+// A region is solved as one: its points lie on one plane of a rigid body, so six relative velocities at its anchor
+// determine all of them (docs/physics/contact-solver.md). With the offsets s, t of a point along the tangents
 //
 //   u_i = u_n + t_i ω₁ − s_i ω₂,     u_i ← u_i + Σ_j A_ij Δλ_j,    A_ij = e_iᵀ K e_j,   e = (1, t, −s)
 //
@@ -28,7 +28,7 @@ namespace embody::physics::constraint {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double critical_damping = 2;  // a₁ = 2 ζ, ζ = 1: with less a contact would swing
+constexpr double critical_damping = 2;  // a₁ = 2 ζ, ζ = 1: with less a contact would oscillate
 constexpr double unbounded = 1e30;      // ratio of a squared force to a bound of nothing
 
 using Points = std::span<ContactPoint>;
@@ -79,7 +79,7 @@ void solve_normals(Contact& contact, const PreparedContact& prepared, SolvePhase
         bias[i] = separation > 0 ? separation / softness.substep : push;
     }
 
-    // Forwards and backwards: else the last point would win and a flat body lean.
+    // Forwards and backwards: else the last point would dominate and a flat body lean.
     const auto solve_point = [&](std::size_t i) {
         ContactPoint& point = points[i];
         if (!(time > point.inactive_until)) return;
@@ -193,7 +193,7 @@ void solve_rolling(Contact& contact, std::span<BodyState> bodies) {
 }  // namespace
 
 ContactSoftness ContactPlan::softness(double time_step, const ContactSettings& settings) const {
-    // ω for the load it carries, and damped so far that the penetration fades at the recovery rate.
+    // ω by the load of the contact, and so much damping that the penetration decays at the recovery rate.
     const double substep = time_step / substeps;
     const double omega = 2 * pi * stiffness / substep;
     const double a1 = std::max(omega / settings.recovery_rate, critical_damping);

@@ -18,13 +18,14 @@ enum class SolvePhase { position, velocity };
 /// Stiffness of the resting contacts of one list of constraints.
 struct ContactSoftness {
     double substep = 0;    ///< s
-    double bias_rate = 0;  ///< share of the penetration taken out a second, 1/s
+    double bias_rate = 0;  ///< fraction of the penetration corrected a second, 1/s
     double mass_scale = 1, impulse_scale = 0;
-    double push_speed = ContactSettings{}.max_correction_speed;    ///< overlapping bodies part no faster, m/s
-    double penetration_slop = ContactSettings{}.penetration_slop;  ///< penetration beyond the sag that is let be, m
+    double push_speed = ContactSettings{}.max_correction_speed;    ///< overlapping bodies are separated no faster, m/s
+    double penetration_slop = ContactSettings{}.penetration_slop;  ///< penetration beyond the sag that is not
+                                                                   ///< corrected, m
 
-    /// How deep a point sinks under its load: without that it would not press back. `response` in 1/kg, `impulse` of a
-    /// substep in N s.
+    /// Depth to which a point sinks under its load: without it the point would not press back. `response` in 1/kg,
+    /// `impulse` of a substep in N s.
     [[nodiscard]] double sag(double response, double impulse) const {
         const double stiffness = mass_scale * bias_rate;
         return stiffness > 0 ? impulse_scale * impulse * response / stiffness : 0;
@@ -40,7 +41,7 @@ inline bool resists_rolling(const Contact& contact) { return contact.friction_ro
 struct ContactPlan {
     int substeps = 1;
     int passes = 1;        ///< sweeps of each phase
-    double stiffness = 0;  ///< contact frequency over substep frequency: as much as converges
+    double stiffness = 0;  ///< contact frequency over substep frequency: the maximum that converges
 
     [[nodiscard]] ContactSoftness softness(double time_step, const ContactSettings& settings) const;
 };

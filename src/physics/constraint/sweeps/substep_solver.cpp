@@ -13,7 +13,7 @@ int joint_passes(std::size_t joints, const JointSettings& settings) {
     return static_cast<int>(std::clamp(passes, least, std::max(least, static_cast<std::size_t>(settings.max_sweeps))));
 }
 
-// Impulses that the passes did not bring to an end would swing up from substep to substep: such lists begin anew.
+// Oscillations of impulses that have not converged would grow from substep to substep: such lists begin anew.
 void warm_start_joints(const ConstraintList& list, SolvePhase phase, std::span<BodyState> bodies) {
     const bool are_good = std::all_of(list.joint_order.begin(), list.joint_order.end(),
                                       [&](std::uint32_t i) { return impulses_of(list.joints[i], phase).are_good; });
@@ -59,7 +59,8 @@ void solve_phase(const ConstraintList& list, SolvePhase phase, double substep, d
     double error = 0;
     for (int pass = 0; pass < most; ++pass) {
         error = solve_joints(list, joint_phase, bodies, constants);
-        // Bottom-up while positions are mended, top-down for the velocities: weights travel down, support travels up.
+        // Bottom-up while positions are corrected, top-down for the velocities: weights travel down, support travels
+        // up.
         for (std::size_t k = 0; k < count; ++k) {
             const std::size_t place = phase == SolvePhase::position ? k : count - 1 - k;
             solve_contact(list.contacts[list.contact_order[place]], list.prepared[place], phase, time, softness,

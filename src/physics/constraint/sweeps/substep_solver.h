@@ -17,7 +17,7 @@ struct ConstraintList {
     std::span<const PreparedContact> prepared;  ///< one for each of contact_order
     std::span<Joint> joints;
     std::span<const std::uint32_t> joint_order;
-    JointSystem* system = nullptr;  ///< all the joints, to be solved at once; none: one after the other
+    JointSystem* system = nullptr;  ///< all the joints, to be solved at once; null: one after the other
     const ConstraintSettings& settings;
 };
 

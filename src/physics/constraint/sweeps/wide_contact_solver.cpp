@@ -12,8 +12,8 @@ namespace embody::physics::constraint {
 
 namespace {
 
-// Batches that a worker needs in the mean of all stages, and in one stage: below, what bodies' velocities take from one
-// worker's cache to the other's, and the waiting at the stages' ends, is more than what is saved.
+// Minimum number of batches for a worker in the mean of all stages, and in one stage: below it, moving bodies'
+// velocities between the workers' caches and waiting at the stages' ends take more time than is saved.
 constexpr std::size_t fewest_batches_in_mean = 4, min_parallel_batches = 2;
 
 float to_float(double number) { return static_cast<float>(number); }
@@ -108,7 +108,7 @@ void WideContactSolver::fill_row(std::size_t row, const Work& work) {
     damping_[row] = {{d, d, d, e, e, e, 1, 1}};
 }
 
-// Bodies that stand still for ever share row 0.
+// All bodies that stand still for ever have row 0.
 std::int32_t WideContactSolver::row_of(std::uint32_t body) const {
     if (body >= row_of_slot_.size()) return 0;
     const auto row = static_cast<std::size_t>(row_of_slot_[body]);
@@ -250,7 +250,7 @@ void WideContactSolver::solve_fraction(const Work& work, int worker) {
         k.separate(lines_[batches_[i].first_line].value, batches_[i].points, sweep);
     }
     for (int substep = 1; substep <= substeps_; ++substep) {
-        // Forces, constraints that also mend positions, motion.
+        // Forces, constraints that also correct positions, motion.
         sweep.time = to_float(substep * substep_);
         k.kick(rows, first_row, last_row);
         work.barrier.wait();
@@ -271,7 +271,7 @@ void WideContactSolver::solve_fraction(const Work& work, int worker) {
         }
     }
 
-    // What the contacts did gives no energy.
+    // The contacts must not add energy.
     const std::size_t last_movable = std::min(range.last + 1, movable_rows_);
     for (std::size_t row = range.first + 1; row < last_movable; ++row) measure_work(row, work);
     work.barrier.wait();
@@ -297,7 +297,7 @@ void WideContactSolver::solve(int passes, const ContactSoftness& softness, std::
                               std::span<const BodyConstants> constants, std::span<Contact> contacts,
                               std::span<ContactSummary> summaries, TaskPool& pool) {
     if (lines_.size() < used_lines_) {
-        // What they held is of the last step.
+        // What they held belongs to the last step.
         lines_.clear();
         lines_.resize(used_lines_ + used_lines_ / 2);
     }
@@ -341,7 +341,7 @@ void WideContactSolver::measure_work(std::size_t row, const Work& work) {
     work_[row] = contact_work(work.constants[slot_of_row_[row]], state.rotation, without, change);
 }
 
-// In the order of the rows, whoever measured them.
+// In the order of the rows, whichever worker measured them.
 void WideContactSolver::set_kept_fractions() {
     std::size_t row = 1;
     for (std::size_t i = 0; i < groups_.size(); ++i) {

@@ -27,7 +27,7 @@ public:
     /// Movable bodies that touch each other, directly or through others, and nobody else.
     struct Group {
         std::uint32_t bodies = 0;  ///< how many
-        bool is_bounded = false;  ///< its contacts must not give it energy; not where bodies move it that obey no force
+        bool is_bounded = false;   ///< its contacts must not add energy; false where kinematic bodies move it
     };
     /// Bodies (slots) that contacts move, group after group, and kinematic ones in motion; all others stand still.
     struct Members {
@@ -42,14 +42,14 @@ public:
     /// Adds contacts of different movable bodies, at most lanes() of them, with up to `points` points. The batches of
     /// one stage have no movable body in common. The list of contacts stays where it is until they are solved.
     void add_batch(std::span<const std::uint32_t> batch, int points);
-    /// Solves the step, with `passes` sweeps before and after the drift of each substep, and hands the motion to the
-    /// bodies, the impulses to the contacts and what came of them to their summaries. The same for any number of
-    /// workers.
+    /// Solves the step, with `passes` sweeps before and after the drift of each substep, and writes the motion to the
+    /// bodies, the impulses to the contacts and their results to the contact summaries. The result is the same for any
+    /// number of workers.
     void solve(int passes, const ContactSoftness& softness, std::span<BodyState> bodies,
                std::span<const BodyConstants> constants, std::span<Contact> contacts,
                std::span<ContactSummary> summaries, TaskPool& pool);
-    /// Of what the contacts did to a movable body, how much it kept in the last solve(), see contact_work.h: impulses
-    /// are handed out as they were before.
+    /// Fraction of what the contacts did to a movable body that it kept in the last solve(), see contact_work.h:
+    /// impulses are written without that factor.
     [[nodiscard]] double kept_fraction(std::uint32_t body) const {
         return static_cast<double>(kept_fraction_[group_of_row_[static_cast<std::size_t>(row_of(body))]]);
     }
@@ -67,7 +67,7 @@ private:
         std::uint32_t first_lane = 0;
         int points = 0;
     };
-    /// What the workers of a step share.
+    /// State that is common to the workers of a step.
     struct Work {
         std::span<BodyState> bodies;
         std::span<const BodyConstants> constants;
@@ -116,7 +116,7 @@ private:
     std::vector<std::uint32_t> slot_of_row_;
     std::vector<std::int32_t> row_of_slot_;  // valid where slot_of_row_ agrees
     std::size_t movable_rows_ = 0;
-    std::vector<Row> free_;          // change of the velocity in the step had there been no contacts
+    std::vector<Row> free_;          // change of the velocity in the step without contacts
     std::vector<ContactWork> work_;  // of the contacts on each movable body
     std::vector<std::uint32_t> group_of_row_;
     std::vector<Group> groups_;
